@@ -85,6 +85,7 @@ class GuardedMass final : public Guard<MassStrategy> {
       fault("build", *wrong);
     return answer;
   }
+  bool takes_given() const override { RICOCHET_FORWARD(takes_given); }
 };
 
 class GuardedLaw final : public Guard<ContactLaw> {

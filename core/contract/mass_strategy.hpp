@@ -1,12 +1,20 @@
 #pragma once
 #include <Eigen/SparseCore>
 #include <array>
+#include <optional>
 #include <ricochet/contract/errors.hpp>
 #include <string>
 #include <variant>
 #include <vector>
 
 namespace ricochet {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+/// The mass of a structure that is given by its matrices and has no elements.
+struct GivenMass {
+  SparseMatrix mass;  ///< M, n × n, both triangles, positive semidefinite
+};
 
 /// The displacement space, as mass strategies need it: elements with local shape functions, and point masses.
 ///
@@ -30,7 +38,7 @@ struct FiniteElementSpace {
     double mass = 0;        ///< kg; kg m² on a rotation
     bool rotation = false;  ///< whether the dof is a rotation, which a rigid translation does not move
   };
-  std::string structure;  ///< "beam", "bar", "oscillator": for sentences only
+  std::string structure;  ///< "beam", "bar", "oscillator", "assembled structure": for sentences only
   Basis basis = Basis::hermite;
   int dofs = 0;                   ///< n
   std::vector<Element> elements;  ///< ordered in x
@@ -40,6 +48,7 @@ struct FiniteElementSpace {
   /// a node, its displacement; of one inside an element, all dofs of that element). Empty where no stop stands. For
   /// strategies that leave such dofs without inertia; whether a contact law acts there is not known here.
   std::vector<int> contact_dofs;
+  std::optional<GivenMass> given;  ///< of matrices that are given: then there are no elements
 
   int functions() const { return basis == Basis::hermite ? 4 : 2; }
 };
@@ -62,8 +71,6 @@ struct GaussPoint {
   double xi, weight;
 };
 const std::array<GaussPoint, 4>& gauss_points();
-
-using SparseMatrix = Eigen::SparseMatrix<double>;
 
 /// The mass matrix, symmetric positive semidefinite, in one of three forms; the matrices of the others stay empty
 /// (0×0).
@@ -96,9 +103,12 @@ class MassStrategy {
  public:
   virtual ~MassStrategy() = default;
   virtual InertiaOrRefusal build(const FiniteElementSpace& space) const = 0;
+  /// Whether it makes a mass of matrices that are given (FiniteElementSpace::given); where not, it is not asked.
+  virtual bool takes_given() const { return false; }
 };
 
-/// M_ij = ∫ρS φ_i φ_j + ρI θ_i θ_j dx: the consistent matrix of the space, point masses included.
+/// M_ij = ∫ρS φ_i φ_j + ρI θ_i θ_j dx: the consistent matrix of the space, point masses included; of matrices that are
+/// given, M itself.
 SparseMatrix consistent_mass(const FiniteElementSpace& space);
 
 /// Rank of a symmetric positive semidefinite A (n × n), rows and columns scaled by D = diag(A)^{-1/2} first so that no

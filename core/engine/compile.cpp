@@ -132,6 +132,7 @@ void connect_works(Program& program) {
     const std::size_t source = k - static_cast<std::size_t>(program.stages[k].restores);
     const WorkForm& work = *program.plan.stages[source].work;
     program.stages[source].motion = padded(work.displacement, program.plan.slots.size());
+    program.stages[source].motion_levels = work.support;
     program.stages[source].motion_phase = PhaseWeights(work.support, program.problem->support.pulsation, program.h);
   }
 }
@@ -143,7 +144,7 @@ void say_what_is_left_out(Program& program) {
   };
   say("damping matrix C",
       problem.damped() ? "C = αK + ηM is folded into the weights of K and M" : "the structure is undamped");
-  if (!program.support) say("inertia load of the support", "the support does not move");
+  if (!program.support && problem.motions.empty()) say("inertia load of the support", "the support does not move");
   if (!program.load)
     say("distributed load", "it is zero");
   else if (program.load_constant)

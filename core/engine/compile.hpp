@@ -69,6 +69,7 @@ struct StageProgram {
   bool driven = true;    ///< whether b has any term; else z° = 0
   int restores = 0;      ///< k > 0: its efforts give back the work of contact in the stage k before
   Combination motion;    ///< of a stage whose work is given back: its test displacement; else empty
+  Levels motion_levels;  ///< of the supports, in it
   double measure_z = 0;  ///< η
   /// What an effort moves the measure and the rate by, over what the columns that the law is given say: η π₀ and η_u
   /// π₀, where those are W = H S⁻¹Hᵀ.

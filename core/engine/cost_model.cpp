@@ -93,7 +93,8 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork
     const bool assembled = problem.load && problem.load->has_formula() && !problem.load->constant_in_time();
     if (assembled) nanoseconds += n * n / lanes;
   } else {
-    const double w = half_bandwidth(problem.stiffness);
+    double w = half_bandwidth(problem.stiffness);
+    if (problem.space.given) w = std::max<double>(w, half_bandwidth(inertia.mass));
     const double v = border > 0 ? w + 2 : w;
     nanoseconds += n * (2 * w + 1) * rate.product;
     const double solve = kind == OperatorKind::sparse ? rate.sparse : rate.substitution;

@@ -67,7 +67,7 @@ void Marcher::begin_contact() {
   for (int lane = 0; lane < lanes(); ++lane) {
     const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
     for (int i = 0; i < points; ++i) {
-      double at = support(lane, 0), speed = support_rate(lane, 0);
+      double at = lift(lane, i, 0), speed = lift_rate(lane, i, 0);
       for (SparseRows::InnerIterator entry(measured, i); entry; ++entry) {
         at += entry.value() * spec.position[entry.col()];
         speed += entry.value() * spec.velocity[entry.col()];

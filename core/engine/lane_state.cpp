@@ -29,7 +29,7 @@ double Marcher::stored_at_start(int lane) const {
     double place = 0;
     for (SparseRows::InnerIterator entry(measured, point); entry; ++entry)
       place += entry.value() * spec.position[entry.col()];
-    sum += stored(lane, point, place, spec.amplitude * std::sin(spec.phase));
+    sum += stored(lane, point, place, spec.amplitude * std::sin(spec.phase) + motions().point(point, 0));
   }
   return sum;
 }

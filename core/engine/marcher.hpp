@@ -85,6 +85,12 @@ class Marcher {
     clamp_.turn(lane, sine, cosine);
     return phase.along * sine + phase.across * cosine;
   }
+  /// What supports lift a contact point by at t, and its rate: φ, and Σ (Hψ_j) φ_j of motions by histories.
+  double lift(int lane, int point, double t) const { return support(lane, t) + motions().point(point, t); }
+  double lift_rate(int lane, int point, double t) const {
+    return support_rate(lane, t) + motions().point_rate(point, t);
+  }
+  const SupportMotions& motions() const { return program_.problem->motions; }
   /// Which stops pushed a lane at the last instant of contact: lower, upper.
   std::array<bool, 2> pushed_by(int lane) const;
   /// Absolute displacement of the tip at the end of the last step.
@@ -93,8 +99,8 @@ class Marcher {
   /// `law_saw_end`: where the last stage's law reads the position there, points that its own problem leaves between
   /// their stops need not be measured.
   double penetration(int lane, bool law_saw_end = false) const;
-  /// Energy that a compliant law stores at a contact point, J: of both of its stops, for a given H w and φ.
-  double stored(int lane, int point, double relative, double support) const;
+  /// Energy that a compliant law stores at a contact point, J: of both of its stops, for a given H w and lift().
+  double stored(int lane, int point, double relative, double lift) const;
   /// Σ φ_k F(t + c_k h) of the distributed load in model coordinates (n); null when there is none.
   const double* distributed_load(const Levels& levels, double t);
   /// Number of Delassus columns computed so far in the stages.
@@ -144,6 +150,7 @@ class Marcher {
   std::uint32_t measure_contact(StageProgram& program, StageState& state, const double* z);
   void measure_rows(const RowMatrix& rows, int terms, const double* const* x, const double* weights,
                     const double* offset, double* out);
+  void add_motions(const Levels& levels, bool rate, Block& out) const;
   void open_gates(StageProgram& program, StageState& state, std::span<const double* const> terms);
 
   // effort_history.cpp: efforts of stages and steps before.

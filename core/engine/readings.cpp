@@ -69,14 +69,14 @@ Eigen::VectorXd Marcher::position(int lane) const {
 
 double Marcher::tip(int lane) const {
   const RowMatrix& row = program_.model->tip();
-  double sum = support(lane, time());
+  double sum = support(lane, time()) + motions().tip(time());
   for (std::size_t e = 0; e < row.index.size(); ++e) sum += row.value[e] * blocks_[0].at(row.index[e], lane);
   return sum;
 }
 
-double Marcher::stored(int lane, int point, double relative, double support) const {
+double Marcher::stored(int lane, int point, double relative, double lift) const {
   const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
-  const double place = relative + support, layer = program_.law->layer(lane);
+  const double place = relative + lift, layer = program_.law->layer(lane);
   double sum = 0;
   for (const double depth : {spec.lower[point] - place, place - spec.upper[point]})
     if (depth > -layer) sum += program_.law->potential(depth, lane);
@@ -135,7 +135,7 @@ double Marcher::penetration(int lane, bool law_saw_end) const {
   const double phi = support(lane, time());
   double deepest = 0;
   const auto see = [&](int j, double relative) {
-    const double place = relative + phi;
+    const double place = relative + phi + motions().point(j, time());
     deepest = std::max(deepest, std::max(lower[j] - place, place - upper[j]));
   };
   const int n = program_.model->rows();

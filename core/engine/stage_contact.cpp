@@ -27,20 +27,38 @@ void Marcher::measure_rows(const RowMatrix& rows, int terms, const double* const
   for (int i = 0; offset && i < rows.rows(); ++i) out[i] += offset[0];
 }
 
+// What motions of supports by histories lift each point by, Σ_k w_k Σ_j A_ij φ_j(t + c_k h), or its rate.
+void Marcher::add_motions(const Levels& levels, bool rate, Block& out) const {
+  const SupportMotions& motions = this->motions();
+  for (std::size_t j = 0; j < motions.histories.size(); ++j) {
+    double lift = 0;
+    for (const Level& level : levels) {
+      const double t = time() + level.at * program_.h;
+      lift += level.weight * (rate ? motions.histories[j]->rate(t) : motions.histories[j]->value(t));
+    }
+    for (int i = 0; i < out.rows(); ++i) {
+      const double share = motions.at_points(i, static_cast<Eigen::Index>(j)) * lift;
+      for (int lane = 0; lane < lanes(); ++lane) out.at(i, lane) += share;
+    }
+  }
+}
+
 // Gap test and approach test: a side that is open has an infinite bound; a closed one may rebound.
 void Marcher::open_gates(StageProgram& program, StageState& state, std::span<const double* const> terms) {
   const VelocityGate& gate = *program.gate;
   const int points = lower_.rows(), T = program_.width;
   const double* offset = nullptr;
-  const auto measure = [&](const std::vector<double>& weights, const PhaseWeights& phase, bool rate, Block& out) {
+  const auto measure = [&](const std::vector<double>& weights, const PhaseWeights& phase, const Levels& levels,
+                           bool rate, Block& out) {
     if (program_.support) {
       clamp_.offsets(phase, offset_.data(), rate);
       offset = offset_.data();
     }
     const int count = slot_count() + (weights.back() != 0);
     measure_rows(program_.model->measured(), count, terms.data(), weights.data(), offset, out.data());
+    add_motions(levels, rate, out);
   };
-  measure(state.gap_weights, program.predictor_phase, false, state.gap);
+  measure(state.gap_weights, program.predictor_phase, gate.predictor_bound, false, state.gap);
   state.closed_lanes = 0;
   for (int lane = 0; lane < T; ++lane) {
     bool closed = false;
@@ -49,7 +67,7 @@ void Marcher::open_gates(StageProgram& program, StageState& state, std::span<con
     state.closed_lanes |= static_cast<std::uint32_t>(closed) << lane;
   }
   if (state.closed_lanes == 0) return;
-  measure(state.approach_weights, program.approach_phase, true, state.approach);
+  measure(state.approach_weights, program.approach_phase, gate.approach_bound, true, state.approach);
   for (int lane = 0; lane < T; ++lane) {
     if (!((state.closed_lanes >> lane) & 1u)) continue;
     double& fastest = state.fastest.at(0, lane);
@@ -98,15 +116,18 @@ std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state,
   }
   measure_rows(program_.model->measured(), slot_count() + 1, slots.data(), state.measure_weights.data(), offset,
                state.free.data());
+  add_motions(program.measure_levels, gated, state.free);
   if (state.rate.rows() > 0) {
     if (program_.support) clamp_.offsets(program.rate_phase, offset_.data(), true);
     measure_rows(program_.model->measured(), slot_count() + 1, slots.data(), state.rate_weights.data(), offset,
                  state.rate.data());
+    add_motions(program.compliance->rate_bound, true, state.rate);
   }
   if (state.before.rows() > 0) {
     if (program_.support) clamp_.offsets(program.before_phase, offset_.data(), false);
     measure_rows(program_.model->measured(), slot_count() + 1, slots.data(), state.before_weights.data(), offset,
                  state.before.data());
+    add_motions(program.compliance->before_bound, false, state.before);
   }
   if (state.restored) return state.restored->contact_lanes;
   const Block& lower = gated ? state.gate_lower : lower_;
@@ -307,6 +328,7 @@ void Marcher::measure_way(const StageProgram& program, StageState& state, const 
   }
   measure_rows(program_.model->contact(), slot_count() + 1, slots.data(), state.way_weights.data(), offset,
                state.way.data());
+  add_motions(program.motion_levels, false, state.way);
   for (const int lane : touched_) {
     double corrected = 0, size = 0;
     for (int i = 0; i < lower_.rows(); ++i) {

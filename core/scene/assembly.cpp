@@ -6,6 +6,7 @@
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
 
 namespace ricochet {
 
@@ -111,6 +112,18 @@ std::vector<std::pair<int, double>> displacement_row(const FiniteElementSpace& s
   return row_of(space, *element, shape_values(space.basis, *element, xi));
 }
 
+std::vector<std::pair<double, double>> held_row(const FiniteElementSpace& space, double x) {
+  std::vector<std::pair<double, double>> row;
+  if (space.elements.empty()) return row;
+  const auto [element, xi] = locate(space, x);
+  const std::array<double, 4> values = shape_values(space.basis, element->length, xi);
+  const int right = space.basis == FiniteElementSpace::Basis::hermite ? 2 : 1;
+  for (const int a : {0, right})
+    if (element->dof[a] < 0 && values[a] != 0)
+      row.emplace_back(a == 0 ? element->left : element->left + element->length, values[a]);
+  return row;
+}
+
 std::vector<std::pair<int, double>> strain_row(const FiniteElementSpace& space, double x) {
   if (space.elements.empty()) return {};
   const auto [element, xi] = locate(space, x);
@@ -149,6 +162,20 @@ FiniteElementSpace make(const OscillatorSpec& oscillator, int elements) {
   space.basis = FiniteElementSpace::Basis::linear;
   space.dofs = 1;
   space.point_masses = {{0, oscillator.mass}};
+  return space;
+}
+
+/// The matrices as they are; no element.
+FiniteElementSpace make(const AssembledSpec& spec, int elements) {
+  if (elements != 1)
+    throw InputError(
+        "/mesh/elements",
+        fmt::format("{} elements; an assembled structure has the mesh of its files: expected 1", elements));
+  FiniteElementSpace space;
+  space.structure = "assembled structure";
+  space.basis = FiniteElementSpace::Basis::linear;
+  space.dofs = spec.structure->dofs();
+  space.given = GivenMass{spec.structure->mass};
   return space;
 }
 

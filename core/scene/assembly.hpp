@@ -31,6 +31,10 @@ Eigen::VectorXd rigid_motion_load(const FiniteElementSpace& space);
 /// is that node: one entry, exactly 1. Without elements the only dof is everywhere.
 std::vector<std::pair<int, double>> displacement_row(const FiniteElementSpace& space, double x);
 
+/// What displacement_row() leaves out: for each end of an element whose displacement is held, where it is (m) and its
+/// share of the displacement at x.
+std::vector<std::pair<double, double>> held_row(const FiniteElementSpace& space, double x);
+
 /// Rows of displacement_row() for each x (m × n).
 Eigen::SparseMatrix<double, Eigen::RowMajor> displacement_rows(const FiniteElementSpace& space,
                                                                const std::vector<double>& x);

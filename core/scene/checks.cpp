@@ -8,7 +8,10 @@
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
+#include <ricochet/scene/supports.hpp>
 
 namespace ricochet {
 
@@ -52,6 +55,13 @@ void check_structure(const BarSpec& bar, int) {
             "the damping of the bar is not a finite number, 0 or above");
 }
 
+void check_structure(const AssembledSpec& spec, int) {
+  for (const auto& [value, key, unit] :
+       {std::tuple(spec.damping.stiffness, "stiffness", "s"), {spec.damping.mass, "mass", "1/s"}})
+    require(std::isfinite(value) && value >= 0, std::string("/scene/structure/damping/") + key,
+            fmt::format("the damping is {:.6g} {}; expected a finite number, 0 or above", value, unit));
+}
+
 void check_support(const SupportSpec& support) {
   require(std::isfinite(support.amplitude), "/scene/support/amplitude", "the amplitude of the support is not finite");
   require(std::isfinite(support.pulsation) && support.pulsation >= 0, "/scene/support/pulsation",
@@ -76,7 +86,8 @@ std::string load_pointer(std::size_t term, const char* key) {
   return fmt::format("/scene/load/{}/{}", term, key);
 }
 
-/// Whether something at x can move the structure there.
+}  // namespace
+
 bool on_free_part(const SceneSpec& scene, double x) {
   return x >= 0 && x <= structure_length(scene) && !displacement_held(scene, x);
 }
@@ -89,6 +100,8 @@ std::string free_part(const SceneSpec& scene) {
   return text;
 }
 
+namespace {
+
 /// Every term acts somewhere, and is finite there at t = 0.
 void check_load(const SceneSpec& scene, const FiniteElementSpace& space) {
   const bool oscillator = std::holds_alternative<OscillatorSpec>(scene.structure);
@@ -97,6 +110,8 @@ void check_load(const SceneSpec& scene, const FiniteElementSpace& space) {
     const char* one_point = "an oscillator has one point; expected an entry {\"force\": formula in t, in N}";
     require(!oscillator || term.force, load_pointer(k, "shape"), one_point);
     require(!oscillator || !term.at, load_pointer(k, "at"), one_point);
+    require(!term.place, load_pointer(k, "at"),
+            fmt::format("a {} has no nodes that are called; expected x in m", space.structure));
     require(oscillator || !term.force || term.at, load_pointer(k, "at"),
             "missing; expected where the force acts, x in m");
     if (term.at) {
@@ -252,6 +267,7 @@ std::vector<double> mesh_nodes(const SceneSpec& scene, int elements) {
 }
 
 std::vector<double> contact_positions(const SceneSpec& scene, int elements) {
+  if (!scene.stops.named.empty()) return named_positions(scene.stops);
   if (!scene.stops.lower && !scene.stops.upper) return {};
   if (scene.stops.place == StopsSpec::Place::tip || structure_length(scene) == 0) return {tip_position(scene)};
   if (scene.stops.place == StopsSpec::Place::positions) return scene.stops.positions;
@@ -269,7 +285,7 @@ ForceBeyond force_beyond(ContactLaw& law, const Parameters& parameters) {
 
 void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u, const Eigen::VectorXd& lower,
                          const Eigen::VectorXd& upper, const std::string& pointer, const std::string& what,
-                         const ForceBeyond& beyond) {
+                         const ForceBeyond& beyond, const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const double over = u[row] - upper[row], under = lower[row] - u[row];
@@ -277,10 +293,11 @@ void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u,
     const bool below = under > 1e-12 * (std::abs(u[row]) + std::abs(lower[row]));
     if ((!above && !below) || pushed_back(beyond, std::max(over, under))) continue;
     const bool upper_one = above && over >= under;
-    throw BeyondStop(
-        pointer, fmt::format("{} is {:.6g} m at x = {:.6g} m, beyond the {} stop at {:.6g} m; expected a state "
-                             "between the stops, or a compliant law that lets points pass them",
-                             what, u[row], x[i], upper_one ? "upper" : "lower", upper_one ? upper[row] : lower[row]));
+    throw BeyondStop(pointer,
+                     fmt::format("{} is {:.6g} m at {}, beyond the {} stop at {:.6g} m; expected a state "
+                                 "between the stops, or a compliant law that lets points pass them",
+                                 what, u[row], names.empty() ? fmt::format("x = {:.6g} m", x[i]) : "stop " + names[i],
+                                 upper_one ? "upper" : "lower", upper_one ? upper[row] : lower[row]));
   }
 }
 
@@ -297,13 +314,34 @@ Eigen::VectorXd stop_values(const std::optional<Formula>& stop, const std::vecto
   return values;
 }
 
+namespace {
+
+// Formulas give numbers at nodes and Gauss points.
+void check_fields(const SceneSpec& scene, const FiniteElementSpace& space, int elements) {
+  for (double node : mesh_nodes(scene, elements)) {
+    scene.initial.displacement(node);
+    scene.initial.velocity(node);
+  }
+  for (const auto& element : space.elements)
+    for (const auto& point : gauss_points()) scene.load.formula(element.left + point.xi * element.length, 0);
+  scene.load.formula(tip_position(scene), 0);
+  check_load(scene, space);
+}
+
+}  // namespace
+
 void check_scene(const SceneSpec& shared, int elements, const ForceBeyond& beyond) {
   const SceneSpec scene = shared;  // formulas keep their variables inside: evaluate our own copies
   std::visit([&](const auto& structure) { check_structure(structure, elements); }, scene.structure);
   const auto space = make_space(scene.structure, elements);
   check_support(scene.support);
+  check_motions(scene);
   check_magnitudes(scene, elements);
   check_variables(scene);
+  if (!scene.stops.named.empty()) check_named_stops(scene, space);
+  if (std::holds_alternative<AssembledSpec>(scene.structure)) return check_assembled(scene, space, beyond);
+  require(scene.initial.dofs.empty(), "/scene/initial/file",
+          fmt::format("a {} begins as formulas in x say; expected displacement and velocity", space.structure));
   check_positions(scene);
   if (const auto* bar = std::get_if<BarSpec>(&scene.structure))
     require(bar->fixed != BarSpec::Fixed::none || scene.support.amplitude == 0, "/scene/support/amplitude",
@@ -313,25 +351,23 @@ void check_scene(const SceneSpec& shared, int elements, const ForceBeyond& beyon
         scene.support.amplitude == 0 || !rigid_freedom(*beam).translates, "/scene/support/amplitude",
         "no support of the beam would move it; expected an amplitude of 0, or a clamped, pinned or elastic support");
 
-  const auto x = touchable(scene, elements);
-  const auto lower = stop_values(scene.stops.lower, x, -infinity);
-  const auto upper = stop_values(scene.stops.upper, x, infinity);
-  check_order(x, lower, upper, beyond);
-  if (scene.stops.place == StopsSpec::Place::nodes)
-    for (const HeldPlace& place : held_places(scene))
-      if (place.displacement) check_held(scene, place, beyond);
-  Eigen::VectorXd start(static_cast<Eigen::Index>(x.size()));
-  for (std::size_t i = 0; i < x.size(); ++i) start[static_cast<Eigen::Index>(i)] = scene.initial.displacement(x[i]);
-  check_between_stops(x, start, lower, upper, "/scene/initial/displacement", "the initial displacement", beyond);
-
-  for (double node : mesh_nodes(scene, elements)) {
-    scene.initial.displacement(node);
-    scene.initial.velocity(node);
+  if (!scene.motions.empty()) {
+    // discretise() knows where the stops are at t = 0.
+  } else if (scene.stops.named.empty()) {
+    const auto x = touchable(scene, elements);
+    const auto lower = stop_values(scene.stops.lower, x, -infinity);
+    const auto upper = stop_values(scene.stops.upper, x, infinity);
+    check_order(x, lower, upper, beyond);
+    if (scene.stops.place == StopsSpec::Place::nodes)
+      for (const HeldPlace& place : held_places(scene))
+        if (place.displacement) check_held(scene, place, beyond);
+    Eigen::VectorXd start(static_cast<Eigen::Index>(x.size()));
+    for (std::size_t i = 0; i < x.size(); ++i) start[static_cast<Eigen::Index>(i)] = scene.initial.displacement(x[i]);
+    check_between_stops(x, start, lower, upper, "/scene/initial/displacement", "the initial displacement", beyond);
+  } else {
+    check_named_start(scene, space, beyond);
   }
-  for (const auto& element : space.elements)
-    for (const auto& point : gauss_points()) scene.load.formula(element.left + point.xi * element.length, 0);
-  scene.load.formula(tip_position(scene), 0);
-  check_load(scene, space);
+  check_fields(scene, space, elements);
 }
 
 void require_positive(double value, const char* key, const char* what, const char* unit) {

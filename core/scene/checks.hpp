@@ -17,6 +17,9 @@ double structure_length(const SceneSpec& scene);
 /// both, the middle of its longest span.
 double tip_position(const SceneSpec& scene);
 
+/// Whether something at x can move a beam, a bar or an oscillator there, and how a sentence says where that is.
+bool on_free_part(const SceneSpec& scene, double x);
+std::string free_part(const SceneSpec& scene);
 /// A place of the structure whose displacement or slope is imposed, x in m; `name` for sentences ("the clamp").
 struct HeldPlace {
   double x = 0;
@@ -53,10 +56,11 @@ struct BeyondStop : InputError {
 };
 
 /// Throws BeyondStop at `pointer` when u leaves [lower, upper] at a point (absolute displacements, m) where no law
-/// pushes it back; `what` names u in the sentence. A passage smaller than 1e-12 of the values compared is rounding.
+/// pushes it back; `what` names u in the sentence, `names` the stops where they have names. A passage smaller than
+/// 1e-12 of the values compared is rounding.
 void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u, const Eigen::VectorXd& lower,
                          const Eigen::VectorXd& upper, const std::string& pointer, const std::string& what,
-                         const ForceBeyond& beyond = {});
+                         const ForceBeyond& beyond = {}, const std::vector<std::string>& names = {});
 
 /// Throws InputError where numbers that are each in range make coefficients whose squares doubles cannot hold: the
 /// stiffness and the mass of an element, their ratio, damping, the acceleration of the support.

@@ -9,4 +9,8 @@ namespace ricochet {
 /// and rows that give w and its strain at `places` (x, m). A load that depends on t is given by its value at 0.
 DiscreteProblem discrete_problem(const SemiDiscrete& problem, const std::vector<double>& places);
 
+/// The displacement at `places` (x, m) as rows (places × n); of matrices that are given, which have no x, that of the
+/// tip.
+SparseRows place_rows(const SemiDiscrete& problem, const std::vector<double>& places);
+
 }  // namespace ricochet

@@ -19,7 +19,7 @@ namespace {
 std::string variables_in_words(const std::string& variables) {
   if (variables.empty()) return "no variable may appear";
   if (variables == "x") return "the only variable is x";
-  if (variables == "t") return "the only variable is t";
+  if (variables == "t" || variables == "f") return "the only variable is " + variables;
   return "the variables are x and t";
 }
 
@@ -56,6 +56,7 @@ struct Formula::Compiled {
     parser.DefineConst("e", std::numbers::e);
     if (variables.find('x') != std::string::npos) parser.DefineVar("x", &x);
     if (variables.find('t') != std::string::npos) parser.DefineVar("t", &t);
+    if (variables.find('f') != std::string::npos) parser.DefineVar("f", &t);
   }
   Compiled(const Compiled&) = delete;
   Compiled& operator=(const Compiled&) = delete;
@@ -66,6 +67,7 @@ struct Formula::Source {
   std::string text, pointer, variables;
   bool uses_x = false, uses_t = false;
   double constant = 0;
+  std::function<double(double)> given;
 
   bool varies() const { return uses_x || uses_t; }
 
@@ -116,7 +118,7 @@ Formula::Formula(const std::string& text, const std::string& pointer, const std:
     source_->constant = parser.Eval();  // first: unlike GetUsedVar() it names an unknown word as such
     const auto& used = parser.GetUsedVar();
     source_->uses_x = used.contains("x");
-    source_->uses_t = used.contains("t");
+    source_->uses_t = used.contains("t") || used.contains("f");
     parser.Eval();
     if (parser.GetNumResults() != 1)
       throw InputError(pointer, fmt::format("the formula \"{}\" gives {} values; expected one (decimals take a point)",
@@ -129,6 +131,14 @@ Formula::Formula(const std::string& text, const std::string& pointer, const std:
   else if (!std::isfinite(source_->constant))
     throw InputError(pointer, fmt::format("the formula \"{}\" gives {}; expected a finite number", shortened(text),
                                           std::isnan(source_->constant) ? "no number (NaN)" : "an infinite value"));
+}
+
+Formula::Formula(std::function<double(double)> of_t, const std::string& text, const std::string& pointer)
+    : source_(std::make_shared<Source>()) {
+  source_->text = text;
+  source_->pointer = pointer;
+  source_->uses_t = true;
+  source_->given = std::move(of_t);
 }
 
 Formula::Formula(const Formula& other) : source_(other.source_) {}
@@ -152,6 +162,7 @@ Formula& Formula::operator=(const Formula& other) {
 
 double Formula::evaluated(double x, double t) const {
   if (!source_->varies()) return source_->constant;
+  if (source_->given) return source_->given(t);
   if (!own_) own_ = source_->take();
   own_->x = x;
   own_->t = t;
@@ -208,6 +219,9 @@ bool Formula::is_zero() const {
 }
 const std::string& Formula::text() const {
   return source_->text;
+}
+bool Formula::is_given() const {
+  return static_cast<bool>(source_->given);
 }
 
 namespace {

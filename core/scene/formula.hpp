@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -28,8 +29,10 @@ class Formula {
  public:
   Formula();  ///< the constant 0
   explicit Formula(double constant);
-  /// `variables` is the subset of "xt" that may appear.
+  /// `variables` is the subset of "xt" that may appear; or "f" (Hz), which stands in the place of t.
   Formula(const std::string& text, const std::string& pointer, const std::string& variables = "xt");
+  /// A function of t that is given otherwise: a table, a random load. `text` names it for people.
+  Formula(std::function<double(double)> of_t, const std::string& text, const std::string& pointer);
   Formula(const Formula&);
   Formula(Formula&&) noexcept;
   Formula& operator=(const Formula&);
@@ -49,6 +52,8 @@ class Formula {
   /// A constant that equals zero: what it feeds is left out.
   bool is_zero() const;
   const std::string& text() const;
+  /// Whether it is such a function, and not an expression.
+  bool is_given() const;
 
  private:
   struct Source;

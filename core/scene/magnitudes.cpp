@@ -74,6 +74,8 @@ void check(const BarSpec& bar, int elements) {
   check_element(bar.damping, bar.EA / length, bar.rhoA * length);
 }
 
+void check(const AssembledSpec&, int) {}
+
 void check(const OscillatorSpec& oscillator, int) {
   not_zero(oscillator.mass, "/scene/structure/mass", "the mass", "kg");
   representable(oscillator.stiffness, "/scene/structure/stiffness", "the stiffness", "N/m");

@@ -8,6 +8,7 @@
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/scene.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
 
 namespace ricochet {
 namespace {
@@ -91,7 +92,7 @@ bool LoadSpec::uses_t() const {
 }
 
 bool LoadSpec::has_point_forces() const {
-  return std::any_of(terms.begin(), terms.end(), [](const LoadTerm& term) { return term.at.has_value(); });
+  return std::any_of(terms.begin(), terms.end(), [](const LoadTerm& term) { return term.at || term.place; });
 }
 
 double LoadSpec::spread(double x, double t) const {
@@ -100,7 +101,8 @@ double LoadSpec::spread(double x, double t) const {
   return sum;
 }
 
-DistributedLoad::DistributedLoad(const LoadSpec& load, const FiniteElementSpace& space)
+DistributedLoad::DistributedLoad(const LoadSpec& load, const FiniteElementSpace& space,
+                                 const AssembledStructure* assembled)
     : formula_(load.formula), size_(space.dofs) {
   if (load.is_zero()) return;
   const auto& gauss = gauss_points();
@@ -121,11 +123,18 @@ DistributedLoad::DistributedLoad(const LoadSpec& load, const FiniteElementSpace&
     one.shape = Eigen::VectorXd::Zero(size_);
     one.history = term.history;
     terms_vary_ = terms_vary_ || term.history.uses_t();
-    if (term.force)
+    if (assembled && term.place)
+      for (const auto& [dof, value] : assembled->row(*term.place, "/scene/load").free) one.shape[dof] = value;
+    else if (term.force)
       for (const auto& [dof, value] : displacement_row(space, term.at.value_or(0))) one.shape[dof] = value;
     else
       integrate(term.shape, 0, one.shape.data());
   }
+}
+
+void DistributedLoad::add(Eigen::VectorXd shape, Formula history) {
+  terms_vary_ = terms_vary_ || history.uses_t();
+  terms_.push_back({std::move(shape), std::move(history)});
 }
 
 void DistributedLoad::integrate(const Formula& load, double t, double* out) const {

@@ -1,6 +1,9 @@
 #pragma once
+#include <memory>
 #include <optional>
 #include <ricochet/scene/formula.hpp>
+#include <ricochet/scene/history/piecewise_cubic.hpp>
+#include <ricochet/scene/place.hpp>
 #include <string>
 #include <utility>
 #include <variant>
@@ -111,14 +114,36 @@ struct BarSpec {
   Fixed fixed = Fixed::right;
   Damping damping;
 };
-using StructureSpec = std::variant<BeamSpec, OscillatorSpec, BarSpec>;
 
-/// Two rigid stops g1(x) ≤ u ≤ g2(x); a missing formula is an absent stop.
+struct AssembledStructure;
+/// A structure given by its matrices, as its files say it (assembled_structure.hpp).
+struct AssembledSpec {
+  std::shared_ptr<const AssembledStructure> structure;
+  Damping damping;
+  std::optional<Place> tip;  ///< the displacement shown to people; none: that of the first stop, else of the first load
+};
+using StructureSpec = std::variant<BeamSpec, OscillatorSpec, BarSpec, AssembledSpec>;
+
+/// A stop of its own name: lower ≤ u(at) − u(to) ≤ upper, m.
+struct NamedStop {
+  std::string name;  ///< letters, digits, '-' and '_'
+  Place at;
+  std::optional<Place> to;  ///< absent: the ground
+  std::optional<double> lower, upper;
+  std::string moves_with = {};  ///< the support that carries it, or all; empty: it stands still
+};
+
+/// Two rigid stops g1(x) ≤ u ≤ g2(x); a missing formula is an absent stop. Or a list of stops that have names: then
+/// the rest is empty.
 struct StopsSpec {
   enum class Place { nodes, tip, positions };
   std::optional<Formula> lower, upper;
   Place place = Place::nodes;
   std::vector<double> positions;  ///< m, for Place::positions, anywhere in ]0, L]
+  std::vector<NamedStop> named = {};
+  std::string moves_with = {};  ///< the support that carries the stops, or all; empty: they stand still
+
+  bool any() const { return lower || upper || !named.empty(); }
 };
 
 /// φ(t) = A0 sin(ωt + ψ).
@@ -128,19 +153,40 @@ struct SupportSpec {
   double phase = 0;      ///< rad
 };
 
-/// Absolute u(x,0) and u_t(x,0).
+/// A motion φ(t) that some supports have, given as a function of time.
+struct MotionSpec {
+  std::vector<std::string> supports;              ///< their names; empty: all
+  std::shared_ptr<const PiecewiseCubic> history;  ///< φ, m
+  std::string text;                               ///< what it was made of, for people: "ground.csv"
+  std::shared_ptr<const TimeTable> table = {};    ///< what it was made of; null: of something else
+  bool accelerates = true;                        ///< whether the table gives φ'', and not φ
+};
+
+/// The word for all supports together, where a name may stand.
+inline constexpr const char* all_supports = "all";
+
+/// How one dof of a table begins.
+struct DofState {
+  int dof = 0;                            ///< from 1
+  double displacement = 0, velocity = 0;  ///< m, m/s; of a rotation rad, rad/s
+};
+
+/// u(x,0) and u_t(x,0), absolute or from the supports as the scene's frame says.
 struct InitialSpec {
   enum class Projection { none, constraint };
   Formula displacement, velocity;
   Projection projection = Projection::none;
+  std::vector<DofState> dofs = {};  ///< of matrices that are given: those that do not begin at rest at 0
 };
 
 /// One part of a load whose form in space stays as it is: a shape that a history scales, or a force at a point.
 struct LoadTerm {
-  bool force = false;        ///< at a point
-  std::optional<double> at;  ///< where that is, m; none of an oscillator, which has one point
-  Formula shape;             ///< f(x), N/m, of what is spread
-  Formula history;           ///< g(t), 1; of a force F(t), N
+  bool force = false;                           ///< at a point
+  std::optional<double> at;                     ///< where that is, m; none of an oscillator, which has one point
+  Formula shape;                                ///< f(x), N/m, of what is spread
+  Formula history;                              ///< g(t), 1; of a force F(t), N
+  std::optional<ricochet::Place> place = {};    ///< of a force on matrices that are given, in the place of `at`
+  std::shared_ptr<const TimeTable> table = {};  ///< that the history was made of, where it was
 };
 
 /// What pushes the structure, beside its support: a formula, and terms that are added to it.
@@ -163,6 +209,9 @@ struct SceneSpec {
   SupportSpec support;
   LoadSpec load;
   InitialSpec initial;
+  std::vector<MotionSpec> motions;  ///< beside `support`, which is at rest then
+  /// Whether the initial state, and the displacements that are shown, count from the supports that move by `motions`.
+  bool from_supports = false;
 };
 
 }  // namespace ricochet

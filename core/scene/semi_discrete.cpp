@@ -9,7 +9,10 @@
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/massless_part.hpp>
+#include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
+#include <ricochet/scene/supports.hpp>
 #include <stdexcept>
 
 namespace ricochet {
@@ -84,8 +87,20 @@ void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem) {
     problem.velocity[row] =
         slope ? initial.velocity.slope(std::min(x, length), 0, length) : initial.velocity(x) - support.velocity;
   }
+  if (const auto* spec = std::get_if<AssembledSpec>(&scene.structure)) {
+    problem.position = initial_dofs(*spec->structure, scene.initial, &DofState::displacement);
+    problem.velocity = initial_dofs(*spec->structure, scene.initial, &DofState::velocity);
+  }
+  const SupportMotions& motions = problem.motions;
+  if (!motions.empty() && !motions.from_supports)
+    for (std::size_t k = 0; k < motions.histories.size(); ++k)
+      for (const std::size_t j : motions.supports[k]) {
+        const auto mode = problem.static_modes.col(static_cast<Eigen::Index>(j));
+        problem.position -= motions.histories[k]->value(0) * mode;
+        problem.velocity -= motions.histories[k]->rate(0) * mode;
+      }
   const std::vector<HeldPlace> held = held_places(scene);
-  if (held.empty()) return;
+  if (held.empty() || !motions.empty()) return;
   const double size = problem.position.lpNorm<Eigen::Infinity>() + std::abs(support.position);
   const double rate = problem.velocity.lpNorm<Eigen::Infinity>() + std::abs(support.velocity);
   // Values are rounded to 1e-16; slopes come from a stencil of length/256.
@@ -138,36 +153,6 @@ void project_on_mass_constraint(SemiDiscrete& problem) {
 
 namespace {
 
-// One support that holds the structure as a whole: its static mode is the translation.
-void hold_rigidly(SemiDiscrete& problem, const char* name) {
-  problem.supports = {name};
-  problem.static_modes = Eigen::MatrixXd::Zero(problem.space.dofs, 1);
-  const auto places = dof_places(problem.space);
-  for (Eigen::Index i = 0; i < problem.space.dofs; ++i)
-    problem.static_modes(i, 0) = places[static_cast<std::size_t>(i)].slope ? 0 : 1;
-  problem.support_loads = rigid_motion_load(problem.space);
-}
-
-void add_supports(const BeamSpec& beam, int elements, SemiDiscrete& problem) {
-  problem.held = rigid_freedom(beam).held();
-  if (!beam.supports && beam.foundation == 0) return hold_rigidly(problem, "clamp");
-  StaticModes found = static_modes(beam, elements);
-  problem.supports = std::move(found.supports);
-  problem.static_modes = std::move(found.modes);
-  problem.support_loads = std::move(found.loads);
-}
-void add_supports(const BarSpec& bar, int, SemiDiscrete& problem) {
-  problem.held = bar.fixed != BarSpec::Fixed::none;
-  if (problem.held) return hold_rigidly(problem, "clamp");
-  problem.static_modes.resize(problem.space.dofs, 0);
-  problem.support_loads.resize(problem.space.dofs, 0);
-}
-void add_supports(const OscillatorSpec&, int, SemiDiscrete& problem) {
-  problem.supports = {"base"};
-  problem.static_modes = Eigen::MatrixXd::Ones(1, 1);
-  problem.support_loads = rigid_motion_load(problem.space);
-}
-
 // Of several sections, the stiffest says how stiff the beam is.
 void add_stiffness(const BeamSpec& beam, SemiDiscrete& problem) {
   for (const UniformPart& part : uniform_parts(beam)) problem.rigidity = std::max(problem.rigidity, part.section.EI);
@@ -185,6 +170,13 @@ void add_stiffness(const OscillatorSpec& oscillator, SemiDiscrete& problem) {
   problem.stiffness.insert(0, 0) = oscillator.stiffness;
   problem.stiffness.makeCompressed();
   problem.damping.mass = oscillator.damping / oscillator.mass;
+}
+
+void add_stiffness(const AssembledSpec& spec, SemiDiscrete& problem) {
+  const AssembledStructure& structure = *spec.structure;
+  problem.stiffness = structure.stiffness;
+  problem.damping = spec.damping;
+  problem.notes = structure.notes;
 }
 
 // An oscillator's harmonic force is one more term of its load.
@@ -236,11 +228,17 @@ std::vector<int> touched_dofs(const SparseRows& contact) {
   return dofs;
 }
 
+// What supports lift each contact point by at t = 0, less what its stop moves by.
+Eigen::VectorXd lift_at_start(const SemiDiscrete& problem) {
+  Eigen::VectorXd lift = Eigen::VectorXd::Constant(problem.points(), support_at_start(problem.support).position);
+  for (int i = 0; i < problem.points(); ++i) lift[i] += problem.motions.point(i, 0);
+  return lift;
+}
+
 void check_start(const SemiDiscrete& problem, const std::string& pointer, const std::string& what,
                  const ForceBeyond& beyond) {
-  const double support = support_at_start(problem.support).position;
-  const Eigen::VectorXd absolute = (problem.contact * problem.position).array() + support;
-  check_between_stops(problem.contact_x, absolute, problem.lower, problem.upper, pointer, what, beyond);
+  const Eigen::VectorXd absolute = problem.contact * problem.position + lift_at_start(problem);
+  check_between_stops(problem.contact_x, absolute, problem.lower, problem.upper, pointer, what, beyond, problem.stops);
 }
 
 /// Gᵀp of a compliant law that pushes in the initial state; empty where none does.
@@ -249,8 +247,7 @@ Eigen::VectorXd pushed_at_start(ContactLaw& law, const Parameters& parameters, c
   if (points == 0 || law.absent() || !law.reads()) return {};
   law.prepare(points, {&parameters, 1});
   const double layer = law.layer(0);
-  const Eigen::VectorXd place =
-      (problem.measured() * problem.position).array() + support_at_start(problem.support).position;
+  const Eigen::VectorXd place = problem.measured() * problem.position + lift_at_start(problem);
   const Eigen::VectorXd lower = problem.lower.array() + layer, upper = problem.upper.array() - layer;
   const std::vector<double> force = standing_force(law, {points, 1, place.data(), lower.data(), upper.data()});
   const Eigen::Map<const Eigen::VectorXd> p(force.data(), points);
@@ -271,9 +268,15 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
 
   SemiDiscrete problem;
   problem.space = make_space(scene.structure, elements);
-  problem.contact_x = contact_positions(scene, elements);
-  problem.contact = displacement_rows(problem.space, problem.contact_x);
+  ContactPoints points = contact_points(scene, problem.space, elements);
+  problem.contact_x = std::move(points.x);
+  problem.contact = std::move(points.rows);
+  problem.stops = std::move(points.names);
   problem.space.contact_dofs = touched_dofs(problem.contact);
+  if (problem.space.given && !mass.takes_given())
+    return Refusal{
+        "this mass is made of elements, and an assembled structure has matrices alone: use one that takes the mass as "
+        "given (consistent)"};
   auto built = mass.build(problem.space);
   if (auto* refusal = std::get_if<Refusal>(&built)) return *refusal;
   problem.inertia = std::get<Inertia>(std::move(built));
@@ -281,12 +284,17 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   std::visit([&](const auto& structure) { add_stiffness(structure, problem); }, scene.structure);
   problem.support = scene.support;
   problem.support_shape = rigid_motion_load(problem.space);
-  std::visit([&](const auto& structure) { add_supports(structure, elements, problem); }, scene.structure);
-  problem.load = std::make_shared<const DistributedLoad>(whole_load(scene), problem.space);
+  hold_by_supports(scene.structure, elements, problem);
+  const auto* assembled = std::get_if<AssembledSpec>(&scene.structure);
+  auto load = std::make_shared<DistributedLoad>(whole_load(scene), problem.space,
+                                                assembled ? assembled->structure.get() : nullptr);
 
-  problem.lower = stop_values(scene.stops.lower, problem.contact_x, -infinity);
-  problem.upper = stop_values(scene.stops.upper, problem.contact_x, infinity);
-  problem.tip = displacement_rows(problem.space, {tip_position(scene)});
+  problem.lower = std::move(points.lower);
+  problem.upper = std::move(points.upper);
+  problem.tip = tip_row(scene, problem.space);
+  add_motions(scene, points.on_supports, problem, *load);
+  problem.load = std::move(load);
+  if (const std::string chosen = tip_choice(scene); !chosen.empty()) problem.notes.push_back("the tip is " + chosen);
   if (law && law->changes_problem() && problem.points() > 0) {
     if (auto refusal = change_by(*law, problem)) return *refusal;
     if (law_decides) beyond = force_beyond(*law, *parameters);

@@ -5,6 +5,7 @@
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/history/support_motions.hpp>
 #include <ricochet/scene/scene.hpp>
 #include <string>
 #include <variant>
@@ -19,7 +20,9 @@ class ContactLaw;
 /// x into φ_i(x), and then scaled: F(t) = ∫f φ dx + Σ g_k(t) F_k.
 class DistributedLoad {
  public:
-  DistributedLoad(const LoadSpec& load, const FiniteElementSpace& space);
+  DistributedLoad(const LoadSpec& load, const FiniteElementSpace& space, const AssembledStructure* assembled = nullptr);
+  /// One more term: g(t) times F_k (n).
+  void add(Eigen::VectorXd shape, Formula history);
   bool absent() const { return formula_.is_zero() && terms_.empty(); }
   bool constant_in_time() const { return !formula_.uses_t() && !terms_vary_; }
   /// F(t) into `out` (n); no allocation. Values that are not finite are passed on, and stop the lane as diverged.
@@ -54,8 +57,9 @@ class DistributedLoad {
 
 /// The semi-discrete problem for w = u − φ:
 ///     M q'' + C q' + K q = F(t) − φ''(t) s + Hᵀ p,     lower − φ(t) ≤ H q ≤ upper − φ(t),     C = αK + ηM
-/// with s_i = ∫ρS φ_i (whatever the mass strategy). φ moves all supports and the ground of a foundation together. Of a
-/// contact law that changes the problem, K is the K' and H the G of ContactStructure; `contact` stays H.
+/// with s_i = ∫ρS φ_i (whatever the mass strategy). φ moves all supports and the ground of a foundation together.
+/// Motions φ_j of supports by histories: w = u − Σ ψ_j φ_j, F holds −Σ s_j φ_j'', and bounds are less Σ (Hψ)_j φ_j. Of
+/// a contact law that changes the problem, K is the K' and H the G of ContactStructure; `contact` stays H.
 struct SemiDiscrete {
   FiniteElementSpace space;
   Inertia inertia;
@@ -64,7 +68,8 @@ struct SemiDiscrete {
   Damping damping;         ///< α, η
   SupportSpec support;
   Eigen::VectorXd support_shape;  ///< s (kg)
-  /// What holds the structure, by name: the supports of a beam, the clamp of a beam or bar, the base of an oscillator.
+  /// What holds the structure, by name: the supports of a beam, the clamp of a beam or bar, the base of an oscillator,
+  /// those of the table of dofs.
   std::vector<std::string> supports;
   /// ψ_j (n × r), K ψ_j = −K_fs e_j: the displacement of the structure at rest while support j alone is moved by 1. Its
   /// columns sum to the rigid translation, unless a foundation, whose ground stays at rest, holds the beam too.
@@ -72,13 +77,16 @@ struct SemiDiscrete {
   /// s_j = M ψ_j + M_fs e_j (n × r, kg) with the consistent mass whatever the strategy: support j accelerating by a
   /// loads the displacements relative to ψ_j by −a s_j.
   Eigen::MatrixXd support_loads;
+  std::vector<double> support_x;  ///< where each holds the displacement of a beam or bar, m; NaN where it holds none
   /// Whether nothing of the structure can move rigidly, so that K is positive definite; false of an oscillator.
   bool held = false;
+  SupportMotions motions;
   std::shared_ptr<const DistributedLoad> load;
   SparseRows contact;                                ///< H, m × n: displacements of the contact points
   SparseRows law_rows;                               ///< G, where the law changed the problem; else empty
   SparseMatrix own_stiffness;                        ///< K of the structure itself there; else empty
   std::vector<double> contact_x;                     ///< position of each contact point, m
+  std::vector<std::string> stops;                    ///< name of each contact point's stop; empty where they have none
   Eigen::VectorXd lower, upper;                      ///< g1, g2 at the contact points; ±∞ where absent
   Eigen::SparseMatrix<double, Eigen::RowMajor> tip;  ///< 1 × n: the displacement shown to people
   Eigen::VectorXd position, velocity;                ///< q₀, v₀ of w
@@ -97,6 +105,12 @@ struct SemiDiscrete {
 };
 
 using SemiDiscreteOrRefusal = std::variant<SemiDiscrete, Refusal>;
+
+/// (Hψ)_j at x (m): rows of places, a column for each support. 1 at the support itself.
+Eigen::MatrixXd support_shapes(const SemiDiscrete& problem, const std::vector<double>& x);
+
+/// The share that places x (m) have of each motion, places × motions: Σ of (Hψ)_j over the supports that it moves.
+Eigen::MatrixXd motion_shapes(const SemiDiscrete& problem, const std::vector<double>& x);
 
 /// The displacement space of the structure without contact dofs, on `elements` equal elements; of a beam with supports,
 /// sections or masses between its ends, on those of beam_intervals().

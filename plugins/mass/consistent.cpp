@@ -12,9 +12,11 @@ class Consistent : public MassStrategy {
     // A semidefinite matrix has a zero row where its diagonal is zero: dofs that neither an element nor a point mass
     // moves.
     const Eigen::VectorXd diagonal = inertia.mass.diagonal();
-    inertia.kernel_dimension = static_cast<int>((diagonal.array() == 0).count());
+    inertia.kernel_dimension =
+        space.given ? space.dofs - semidefinite_rank(inertia.mass) : static_cast<int>((diagonal.array() == 0).count());
     return inertia;
   }
+  bool takes_given() const override { return true; }
 };
 
 void register_consistent(Registry& registry) {
@@ -24,7 +26,8 @@ void register_consistent(Registry& registry) {
   manual.text =
       R"(The Galerkin mass matrix, integrated exactly. Regular; frequencies converge with order 4 in the element
           length for Hermite elements. Every contact point carries inertia, so that a rigid impact destroys the
-          kinetic energy of its node: a loss of the discretisation, which shrinks with the mesh.)";
+          kinetic energy of its node: a loss of the discretisation, which shrinks with the mesh. Of an assembled
+          structure it is the mass matrix of its files.)";
   manual.source = "Archer 1963, Consistent mass matrix for distributed mass systems, J. Struct. Div. ASCE 89, 161-178";
   registry.add_mass(std::move(manual), [](const Parameters&) { return std::make_unique<Consistent>(); });
 }

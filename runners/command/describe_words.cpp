@@ -65,7 +65,11 @@ std::string type_of(const Field& field) {
       return "number or formula in " + std::string(field.variables == "xt" ? "x and t" : field.variables) + list;
     case Field::Form::places:
       return "word or positions" + list;
+    case Field::Form::place:
+      return field.plain ? "number or place" : "place";
     case Field::Form::object:
+      return field.listed.empty() ? "object" : "object, or a list of objects";
+    case Field::Form::files:
       return "object";
     case Field::Form::objects:
       return field.count == 0 ? "list of objects" : fmt::format("list of {} objects", field.count);
@@ -102,6 +106,7 @@ void add_keys(const ObjectForm& form, const std::string& path, const std::string
                field.spec.text + when});
     if (default_of(field) == "see below") below += fmt::format("    {}: {}\n", name, plain(*field.fallback));
     for (const ObjectForm& nested : field.nested) add_keys(nested, name + ".", when, table, below);
+    for (const ObjectForm& one : field.listed) add_keys(one, name + "[].", when + " (in a list)", table, below);
   }
   for (const Variant& variant : form.variants)
     add_keys(variant.keys, path, fmt::format(" (with {})", fmt::join(variant.words, ", ")), table, below);

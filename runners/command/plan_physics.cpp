@@ -98,6 +98,31 @@ const StudyCase& representative(const Group& group) {
   return *found->study_case;
 }
 
+std::string place_text(const Json& place) {
+  if (place.contains("x")) return fmt::format("x = {:.6g} m", place["x"].get<double>());
+  if (place.contains("component"))
+    return place["node"].get<std::string>() + " " + place["component"].get<std::string>();
+  return place.dump();
+}
+
+/// Name, place and bounds of each stop that has a name.
+std::string stops_text(const Json& scene) {
+  constexpr std::size_t most_stops = 12;
+  const Json& stops = scene.at("stops");
+  if (!stops.is_array()) return "";
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most_stops, stops.size()); ++i) {
+    const Json& stop = stops[i];
+    text += fmt::format("    stop {}: {}{}", stop["name"].get<std::string>(), place_text(stop["at"]),
+                        stop["to"].is_null() ? "" : " less " + place_text(stop["to"]));
+    for (const char* side : {"lower", "upper"})
+      if (!stop[side].is_null()) text += fmt::format(", {} {:.6g} m", side, stop[side].get<double>());
+    text += "\n";
+  }
+  if (stops.size() > most_stops) text += fmt::format("    and {} more stops\n", stops.size() - most_stops);
+  return text;
+}
+
 std::string structure_text(const StudyCase& one, const std::vector<double>& steps, const Registry& registry) {
   const auto mass = registry.mass(one.mass.name)->make(one.mass.parameters);
   const auto answer = structure_physics(one.scene, one.elements, *mass);
@@ -105,13 +130,18 @@ std::string structure_text(const StudyCase& one, const std::vector<double>& step
   if (!physics) return "";
   std::string text = "  " + physics->structure + ":";
   for (const PhysicalNumber& number : physics->numbers)
-    text += fmt::format("{} {} {:.4g} {}", &number == physics->numbers.data() ? "" : ",", number.symbol, number.value,
-                        number.unit);
-  text += std::holds_alternative<OscillatorSpec>(one.scene.structure)
-              ? "\n"
+    text += fmt::format("{} {} {:.4g}{}{}", &number == physics->numbers.data() ? "" : ",", number.symbol, number.value,
+                        *number.unit == '\0' ? "" : " ", number.unit);
+  text += std::holds_alternative<OscillatorSpec>(one.scene.structure) ? "\n"
+          : std::holds_alternative<AssembledSpec>(one.scene.structure)
+              ? fmt::format("; modes with mass {}\n", one.mass.name)
               : fmt::format("; modes with mass {} on {} elements\n", one.mass.name, physics->elements);
   for (const std::string& line : physics->details) text += "    " + line + "\n";
-  return text + modes_text(*physics, steps);
+  if (physics->pulsations.empty())
+    text += "    no frequencies: the structure has more dofs than plan finds modes of\n";
+  else
+    text += modes_text(*physics, steps);
+  return text + stops_text(one.scene_json);
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ void GapWatch::look(const Marcher& marcher, double penetration) {
   double most = 0;
   const LaneSpec& lane = marcher.program().lanes.front();
   for (int j = 0; j < points_of(marcher); ++j) {
-    const double place = model.times(model.contact(), j, marcher.slot(0)) + support;
+    const double place =
+        model.times(model.contact(), j, marcher.slot(0)) + support + marcher.motions().point(j, marcher.time());
     most = std::max(most, std::max(lane.lower[j] - place, place - lane.upper[j]) / gap_of(marcher, j));
   }
   looked_at_ = penetration;

@@ -65,7 +65,9 @@ SceneSpec forced_beam() {
   beam.damping.stiffness = 1e-4;
   SceneSpec scene;
   scene.structure = beam;
-  scene.stops = {Formula(-0.1), Formula(0.1), StopsSpec::Place::tip, {}};
+  scene.stops.lower = Formula(-0.1);
+  scene.stops.upper = Formula(0.1);
+  scene.stops.place = StopsSpec::Place::tip;
   scene.support = {0.02, 26, 0.3};
   scene.load = Formula("exp(-x)*sin(40*t)", "");
   scene.initial.displacement = Formula("0.04*x^2", "");

@@ -53,7 +53,27 @@ class Gaps {
   double largest_ = 0;
 };
 
+/// Motions of supports by tables: which supports, what is given, and where it stands.
+std::vector<std::string> motion_words(const SceneValues& scene) {
+  std::vector<std::string> words;
+  const auto* motions = scene.at("/scene/motions");
+  if (!motions || !motions->is_array()) return words;
+  for (const auto& motion : *motions) {
+    const bool accelerates = motion.contains("acceleration");
+    const auto& given = motion[accelerates ? "acceleration" : "displacement"];
+    std::string who;
+    for (const auto& name : motion["supports"]) who += (who.empty() ? "" : ", ") + name.get<std::string>();
+    const auto& source = given.contains("file") ? given["file"] : given["formula"];
+    words.push_back(fmt::format("{} of {}: {}", accelerates ? "acceleration" : "displacement",
+                                who == "all" ? "all supports" : who,
+                                source.is_string() ? source.get<std::string>() : source.dump()));
+  }
+  return words;
+}
+
 std::string support_words(const SceneValues& scene) {
+  if (const auto* motions = scene.at("/scene/motions"); motions && !motions->empty())
+    return motions->front().contains("acceleration") ? "a(t)" : "φ(t)";
   const std::string amplitude = scene.text("/scene/support/amplitude", "m");
   return amplitude.empty() ? "" : "A₀ sin(ωt)";
 }
@@ -102,6 +122,7 @@ std::string beam(const SceneValues& scene) {
     const double x = x_of(stop.x);
     if (stop.upper) out += level_stop(x, sketch_rest - gaps(*stop.upper), -1);
     if (stop.lower) out += level_stop(x, sketch_rest + gaps(*stop.lower), 1);
+    if (!stop.name.empty()) out += label(x, sketch_rest - widest_gap - 24, stop.name);
     if (!few && &stop != &stops.back()) continue;
     if (stop.upper) out += label(x, sketch_rest - gaps(*stop.upper) - 11, metres(*stop.upper));
     if (stop.lower) out += label(x, sketch_rest + gaps(*stop.lower) + 20, metres(*stop.lower));
@@ -195,6 +216,12 @@ const std::vector<Structure>& structures() {
                                                {"EA", "EA", "N"},
                                                {"ρA", "rhoA", "kg/m"},
                                                {"α (damping, of K)", "damping/stiffness", "s"},
+                                               {"η (damping, of M)", "damping/mass", "1/s"}}},
+                                             {"assembled",
+                                              nullptr,
+                                              {{"K", "stiffness", ""},
+                                               {"M", "mass", ""},
+                                               {"α (damping, of K)", "damping/stiffness", "s"},
                                                {"η (damping, of M)", "damping/mass", "1/s"}}}};
   return all;
 }
@@ -211,7 +238,7 @@ const Structure* structure_of(const SceneValues& scene) {
 std::string scene_svg(const nlohmann::ordered_json& study) {
   const SceneValues scene(study);
   const Structure* structure = structure_of(scene);
-  if (!structure) return "";
+  if (!structure || !structure->draw) return "";
   std::string said = std::string("Sketch of the scene: ") + structure->name;
   for (const auto& [symbol, text] : scene_numbers(study)) said += ", " + symbol + " " + text;
   return fmt::format("<svg class=\"sketch\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">{}</svg>\n",
@@ -240,11 +267,13 @@ std::vector<std::pair<std::string, std::string>> scene_numbers(const nlohmann::o
     add(symbol,
         stop && scene.text(pointer, "m").empty() ? "0 m" : scene.text(pointer, stop && stop->is_string() ? "" : "m"));
   }
+  for (const auto& [name, text] : scene.named_stops()) add("stop " + name, text);
   const auto* at = scene.at("/scene/stops/at");
   if (at) add("stops at", at->is_string() ? at->get<std::string>() : scene.text("/scene/stops/at", "m"));
   add("A₀ (clamp)", scene.text("/scene/support/amplitude", "m"));
   if (!scene.text("/scene/support/amplitude", "").empty())
     add("ω (clamp)", scene.text("/scene/support/pulsation", "rad/s"));
+  for (const std::string& words : motion_words(scene)) add("motion", words);
   add("load", scene.text("/scene/load", ""));
   add("u(x, 0)", scene.text("/scene/initial/displacement", ""));
   add("u_t(x, 0)", scene.text("/scene/initial/velocity", ""));

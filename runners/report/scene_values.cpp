@@ -98,7 +98,36 @@ std::string SceneValues::text(const std::string& pointer, const std::string& uni
                      with(number_text(*high, scene_digits), unit), numbers.size());
 }
 
+std::vector<std::pair<std::string, std::string>> SceneValues::named_stops() const {
+  std::vector<std::pair<std::string, std::string>> out;
+  const SceneJson* list = at("/scene/stops");
+  if (!list || !list->is_array()) return out;
+  const auto place = [](const SceneJson& one) {
+    if (one.contains("component")) return one.value("node", "") + " " + one.value("component", "");
+    if (one.contains("direction")) return one.value("node", "") + " along " + one["direction"].dump();
+    return one.contains("x") ? "x = " + number_text(one["x"].get<double>(), scene_digits) + " m" : std::string("dofs");
+  };
+  for (const SceneJson& stop : *list) {
+    std::string text = place(stop.at("at"));
+    if (stop.contains("to") && !stop["to"].is_null()) text += " less " + place(stop["to"]);
+    for (const char* side : {"lower", "upper"})
+      if (stop.contains(side) && !stop[side].is_null())
+        text += fmt::format(", {} {} m", side, number_text(stop[side].get<double>(), scene_digits));
+    out.emplace_back(stop.value("name", ""), text);
+  }
+  return out;
+}
+
 std::vector<SceneValues::Stop> SceneValues::stops(double length) const {
+  if (const SceneJson* list = at("/scene/stops"); list && list->is_array()) {
+    std::vector<Stop> out;
+    for (const SceneJson& stop : *list)
+      if (const SceneJson& place = stop.at("at");
+          place.contains("x") && out.size() < most_stops && (!stop.contains("to") || stop["to"].is_null()))
+        out.push_back({place["x"].get<double>(), first_number(&stop["lower"]), first_number(&stop["upper"]),
+                       stop.value("name", "")});
+    return out;
+  }
   const SceneJson *lower = at("/scene/stops/lower"), *upper = at("/scene/stops/upper"), *where = at("/scene/stops/at");
   if (!lower && !upper) return {};
   std::vector<double> places;

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ricochet::report {
@@ -24,9 +25,12 @@ class SceneValues {
   struct Stop {
     double x = 0;
     std::optional<double> lower, upper;
+    std::string name = {};  ///< where it has one
   };
   /// The stops, at most twelve places of a structure this long; none where there is no contact.
   std::vector<Stop> stops(double length) const;
+  /// Name of each stop that has one, and its place and bounds in words.
+  std::vector<std::pair<std::string, std::string>> named_stops() const;
   /// EI (N m²) and ρS (kg/m) of a beam; nothing where its section varies or is none.
   struct Section {
     double EI, rhoS;

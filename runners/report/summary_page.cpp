@@ -162,7 +162,9 @@ std::string css_string(const std::string& text) {
 
 std::string study_fingerprint(const StudyResults& results) {
   constexpr std::size_t digits = 16;
-  std::string content = results.study.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  nlohmann::ordered_json study = results.study;
+  if (study.contains("files")) study["files"].erase("folder");  // where files lie says nothing of the study
+  std::string content = study.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   content += environment_entry(results.environment, "commit");
   for (const auto& [name, value] : results.environment.entries)
     if (name.starts_with("plugin ")) content += name + without_place(name, value);

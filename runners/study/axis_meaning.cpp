@@ -115,6 +115,7 @@ std::string spoken_choice(const std::string& column) {
       {"structure.damping", "the damping"},
       {"structure.stiffness", "the stiffness of the structure"},
       {"structure.length", "the length"},
+      {"structure.folder", "the files of the structure"},
       {"structure.tension", "the tension"},
       {"structure.added_mass", "the added mass"},
       {"structure.foundation", "the foundation"},

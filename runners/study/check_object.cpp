@@ -6,6 +6,7 @@
 #include <ricochet/scene/formula.hpp>
 
 #include "runners/json/json_text.hpp"
+#include "runners/study/check_place.hpp"
 
 namespace ricochet {
 namespace {
@@ -62,6 +63,7 @@ Json check_formula(const Field& field, const Json& value, const std::string& poi
     Formula(value.get<std::string>(), pointer, field.variables);
     return value;
   }
+  if (value.is_object() && !field.given.empty()) return check_object(field.given.front(), value, pointer, axes);
   const bool listed = !field.nested.empty();
   if (listed && value.is_array() && !value.empty()) {
     Json result = Json::array();
@@ -71,7 +73,8 @@ Json check_formula(const Field& field, const Json& value, const std::string& poi
   }
   const std::string variables = field.variables == "xt" ? "x and t" : field.variables;
   throw InputError(pointer, "expected a number or a formula in " + variables + (field.nullable ? " or null" : "") +
-                                unit_text(field.spec) + (listed ? ", or a list of objects" : "") + ", found " +
+                                unit_text(field.spec) + (listed ? ", or a list of objects" : "") +
+                                (field.given.empty() ? "" : ", or a table or spectrum as an object") + ", found " +
                                 quote(value));
 }
 
@@ -99,11 +102,15 @@ Json check_words(const Field& field, const Json& value, const std::string& point
   if (field.nullable && value.is_null()) return value;
   Json result = Json::array();
   const bool list = value.is_array();
+  const bool names = field.spec.words.empty();
   if (list && value.empty())
-    throw InputError(pointer, "an empty list; expected at least one of " + quoted_list(field.spec.words));
+    throw InputError(pointer, "an empty list; expected at least one " +
+                                  (names ? std::string("name") : "of " + quoted_list(field.spec.words)));
   for (std::size_t i = 0; i < (list ? value.size() : 1); ++i) {
     const std::string here = list ? pointer_to(pointer, i) : pointer;
-    result.push_back(check_scalar(field, list ? value[i] : value, here));
+    const Json& one = list ? value[i] : value;
+    if (names && !one.is_string()) throw InputError(here, "expected a name, found " + quote(one));
+    result.push_back(names ? one : check_scalar(field, one, here));
     for (std::size_t j = 0; j < i; ++j)
       if (result[j] == result[i]) throw InputError(here, "repeats " + quote(result[i]));
   }
@@ -150,6 +157,25 @@ Json check_starts(const Field& field, const Json& value, const std::string& poin
       if (result[j] == result[i]) throw InputError(here, "repeats " + quote(result[i]));
   }
   return result;
+}
+
+// A list of any length of objects, each of its own name, in the place of one object.
+Json check_listed(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
+  if (value.empty()) throw InputError(pointer, "an empty list; leave " + field.key() + " out for none");
+  Json result = Json::array();
+  for (std::size_t i = 0; i < value.size(); ++i)
+    result.push_back(check_object(field.listed.front(), value[i], pointer_to(pointer, i), axes));
+  return result;
+}
+
+// What the program wrote of the files that a study names.
+Json check_files(const Json& value, const std::string& pointer) {
+  const auto is_text = [](const Json& one) { return one.is_string(); };
+  if (value.is_null()) return value;
+  if (!value.is_object() || !value.contains("folder") || !value["folder"].is_string() || !value.contains("digests") ||
+      !value["digests"].is_object() || !std::all_of(value["digests"].begin(), value["digests"].end(), is_text))
+    throw InputError(pointer, R"(expected {"folder": path, "digests": {file: digest}}, found )" + quote(value));
+  return value;
 }
 
 Json check_objects(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
@@ -202,10 +228,15 @@ Json check_value(const Field& field, const Json& value, const std::string& point
       return value;
     case Field::Form::formula:
       return check_formula(field, value, pointer, axes);
+    case Field::Form::place:
+      return check_place(field, value, pointer);
+    case Field::Form::files:
+      return check_files(value, pointer);
     case Field::Form::places:
       return check_places(value, pointer);
     case Field::Form::object:
       if (field.nullable && value.is_null()) return value;
+      if (value.is_array() && !field.listed.empty()) return check_listed(field, value, pointer, axes);
       return check_object(field.nested.front(), value, pointer, axes);
     case Field::Form::objects:
       return check_objects(field, value, pointer, axes);
@@ -245,7 +276,11 @@ const ObjectForm& find_way(const ObjectForm& form, const Json& object, const std
                                                      " (keys here: " + quoted_list(all) + ")");
   for (const ObjectForm& way : form.ways)
     for (const Field& field : way.fields) {
-      if (!object.contains(field.key())) continue;
+      const bool shared = std::count_if(form.ways.begin(), form.ways.end(), [&](const ObjectForm& one) {
+                            const std::vector<std::string> keys = keys_of(one.fields);
+                            return std::find(keys.begin(), keys.end(), field.key()) != keys.end();
+                          }) > 1;
+      if (!object.contains(field.key()) || shared) continue;
       if (found && found != &way)
         throw InputError(pointer_to(pointer, field.key()),
                          "does not go together with \"" + first + "\"; expected either " + expected);

@@ -71,6 +71,12 @@ Field methods(const char* key, Role role, const char* text) {
   return field;
 }
 
+Field place(const char* key, std::optional<Json> fallback, const char* text) {
+  Field field = of_form(Field::Form::place, key, std::move(fallback), text);
+  field.nullable = field.fallback.has_value();
+  return field;
+}
+
 Field step() {
   return real("step", "s", positive, std::nullopt, "Time step h.");
 }

@@ -32,27 +32,32 @@ struct Field {
     scalar,    ///< a number, whole number, boolean or word, as `spec` declares
     text,      ///< any string
     formula,   ///< a number or a formula in `variables`; where there is a nested object, also a list of such objects
+    place,     ///< one place of the structure (check_place.hpp)
+    files,     ///< the folder of the files that a study names, and their digests
     places,    ///< where stops act: "nodes", "tip" or a list of positions
     object,    ///< a nested object
     methods,   ///< methods of `role`: a name, an object, or a list of either
     objects,   ///< a list of exactly `count` nested objects (0: of any number), one value together
     numbers,   ///< a number or a list of different numbers in `spec.range`, one value together
-    words,     ///< a word or a list of words out of `spec.words`, one value together
+    words,     ///< a word or a list of words out of `spec.words` (empty: any names), one value together
     starts,    ///< a word out of `spec.words`, a nested object (at most one), or a list of these, one value together
     excludes,  ///< partial matches with a reason
   };
   Form form = Form::scalar;
-  ParameterSpec spec;              ///< key, unit, text; for scalars also type, range, words
-  std::optional<Json> fallback;    ///< what an absent key means; none: the study must give it
-  bool axis = false;               ///< a list here is an axis of the cross product
-  bool nullable = false;           ///< null is a value (an absent stop, no limit)
-  std::string variables;           ///< for formulas: a subset of "xt"
-  Role role = Role::mass;          ///< for methods
-  bool marched = false;            ///< for references: marched_reference is one as well
-  std::vector<ObjectForm> nested;  ///< one entry for Form::object, objects, starts and such formulas
-  std::size_t count = 0;           ///< for Form::objects
-  bool quiet = false;              ///< absent or its default, it is not written out: older studies keep their identity
-  std::string unless;              ///< another key of the object in whose presence this one is not given
+  ParameterSpec spec;                   ///< key, unit, text; for scalars also type, range, words
+  std::optional<Json> fallback;         ///< what an absent key means; none: the study must give it
+  bool axis = false;                    ///< a list here is an axis of the cross product
+  bool nullable = false;                ///< null is a value (an absent stop, no limit)
+  std::string variables;                ///< for formulas: a subset of "xt"
+  Role role = Role::mass;               ///< for methods
+  bool marched = false;                 ///< for references: marched_reference is one as well
+  std::vector<ObjectForm> nested;       ///< one entry for Form::object, objects, starts and such formulas
+  std::size_t count = 0;                ///< for Form::objects
+  std::vector<ObjectForm> listed = {};  ///< of Form::object: a list of such objects is possible as well, one value
+  bool plain = false;                   ///< of Form::place: a number is x
+  std::vector<ObjectForm> given = {};   ///< of Form::formula: an object that may stand for it (histories.hpp)
+  bool quiet = false;  ///< absent or its default, it is not written out: older studies keep their identity
+  std::string unless;  ///< another key of the object in whose presence this one is not given
 
   const std::string& key() const { return spec.key; }
   bool required() const { return !fallback; }
@@ -100,6 +105,7 @@ Field object(const char* key, std::optional<Json> fallback, const char* text, Ob
 /// A list of any number of objects, one value together.
 Field objects(const char* key, const char* text, ObjectForm keys);
 Field methods(const char* key, Role role, const char* text);
+Field place(const char* key, std::optional<Json> fallback, const char* text);
 
 /// The field as one value, never a list.
 Field single(Field field);

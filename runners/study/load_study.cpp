@@ -9,6 +9,7 @@
 #include "runners/json/json_text.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/study/check_object.hpp"
+#include "runners/study/histories.hpp"
 #include "runners/study/product.hpp"
 #include "runners/study/read_methods.hpp"
 #include "runners/study/read_scene.hpp"
@@ -164,7 +165,8 @@ std::vector<bool> start_beyond(const std::vector<MethodOption>& contacts, const 
 // Reads and checks every scene that is marched; an offending value that came from a list is named with its place in the
 // list. `beyond`: whether some law of the study lets it begin beyond a stop.
 std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis>& axes, int finest, bool beyond,
-                                       const StudyKind& kind, const Json& settings) {
+                                       const StudyKind& kind, const Json& settings, StudyFiles& files,
+                                       double duration) {
   std::vector<SceneOption> options;
   Product product;
   for (const Axis& axis : axes) product.add(axis.values.size());
@@ -182,8 +184,10 @@ std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis
       option.axes.emplace_back(column_of(axes[a].pointer), value);
     }
     try {
-      option.scene = read_scene(option.json);
+      option.scene = read_scene(option.json, &files);
+      files.add_digests(option.json);
       check_scene(option.scene, finest, beyond ? anywhere_beyond() : ForceBeyond());
+      if (duration > 0) check_tables(option.scene, duration);
     } catch (const InputError& error) {
       if (kind.marches_another) {
         StudyCase one;
@@ -258,6 +262,8 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   const bool ways = given.contains("march");
   if (!ways) resolved.erase("march");
   if (!given.contains("compare")) resolved.erase("compare");
+  const auto files = std::make_shared<StudyFiles>(folder, resolved["files"]);
+  resolved.erase("files");
   if (kind.check) kind.check(resolved);
   const std::vector<int> meshes = list_of<int>(resolved["mesh"]["elements"]);
 
@@ -288,8 +294,10 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
 
   const int finest = *std::max_element(meshes.begin(), meshes.end());
   const std::vector<bool> beyond = start_beyond(contacts, catalogue, registry);
-  const std::vector<SceneOption> scenes = expand_scenes(
-      resolved["scene"], axes, finest, std::find(beyond.begin(), beyond.end(), true) != beyond.end(), kind, settings);
+  const std::vector<SceneOption> scenes =
+      expand_scenes(resolved["scene"], axes, finest, std::find(beyond.begin(), beyond.end(), true) != beyond.end(),
+                    kind, settings, *files, duration);
+  if (Json said = files->said(); !said.is_null()) resolved["files"] = std::move(said);
   if (kind.check_methods) {
     const int coarsest = *std::min_element(meshes.begin(), meshes.end());
     kind.check_methods(resolved, settings, registry, everything.count(),
@@ -333,6 +341,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
     one.samples = samples;
     one.references = references;
     one.settings = settings;
+    one.files = files;
     if (kind.complete) kind.complete(settings, registry, one);
     one.id = ids.next(one, study.kind);
     study.cases.push_back(std::move(one));

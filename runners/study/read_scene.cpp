@@ -1,6 +1,7 @@
 #include "runners/study/read_scene.hpp"
 
 #include "runners/json/json_text.hpp"
+#include "runners/study/histories.hpp"
 
 namespace ricochet {
 namespace {
@@ -10,17 +11,42 @@ Formula read_formula(const Json& value, const std::string& pointer, const std::s
   return Formula(value.get<std::string>(), pointer, variables);
 }
 
-LoadSpec read_load(const Json& value, const std::string& pointer) {
+Place read_place(const Json& json) {
+  Place place;
+  if (json.contains("x")) place.x = json.at("x").get<double>();
+  place.node = json.value("node", "");
+  place.component = json.value("component", "");
+  if (json.contains("direction")) place.direction = json.at("direction").get<std::vector<double>>();
+  if (json.contains("dofs"))
+    for (const Json& one : json.at("dofs"))
+      place.dofs.emplace_back(one.at("dof").get<int>(), one.at("weight").get<double>());
+  return place;
+}
+
+std::optional<Place> optional_place(const Json& json) {
+  return json.is_null() ? std::nullopt : std::optional(read_place(json));
+}
+
+LoadSpec read_load(const Json& value, const std::string& pointer, StudyFiles* files, long long seed) {
   if (!value.is_array()) return read_formula(value, pointer, "xt");
   LoadSpec load;
   for (std::size_t i = 0; i < value.size(); ++i) {
     const std::string here = pointer_to(pointer, i);
     LoadTerm& term = load.terms.emplace_back();
     term.force = value[i].contains("force");
-    if (term.force && !value[i].at("at").is_null()) term.at = value[i].at("at").get<double>();
+    if (term.force && value[i].at("at").is_number()) term.at = value[i].at("at").get<double>();
+    if (term.force && value[i].at("at").is_object()) {
+      const Place place = read_place(value[i].at("at"));
+      if (place.x)
+        term.at = place.x;
+      else
+        term.place = place;
+    }
     if (!term.force) term.shape = read_formula(value[i].at("shape"), here + "/shape", "x");
     const char* history = term.force ? "force" : "time";
-    term.history = read_formula(value[i].at(history), here + "/" + history, "t");
+    const Json& given = value[i].at(history);
+    term.history = given.is_object() ? read_load_history(given, here + "/" + history, files, seed, i, term.table)
+                                     : read_formula(given, here + "/" + history, "t");
   }
   return load;
 }
@@ -115,17 +141,33 @@ BarSpec read_bar(const Json& json) {
           read_damping(json.at("damping"))};
 }
 
-StructureSpec read_structure(const Json& json) {
+AssembledSpec read_assembled(const Json& json, StudyFiles* files) {
+  if (!files) throw InputError("/scene/structure/type", "a scene that names files stands in a study alone");
+  return {files->assembled(json), read_damping(json.at("damping")), optional_place(json.at("tip"))};
+}
+
+StructureSpec read_structure(const Json& json, StudyFiles* files) {
   const auto type = json.at("type").get<std::string>();
   if (type == "oscillator") return read_oscillator(json);
   if (type == "bar") return read_bar(json);
+  if (type == "assembled") return read_assembled(json, files);
   return read_beam(json);
 }
 
 StopsSpec read_stops(const Json& json) {
   StopsSpec stops;
+  if (json.is_array()) {
+    const auto bound = [](const Json& value) {
+      return value.is_null() ? std::nullopt : std::optional(value.get<double>());
+    };
+    for (const Json& one : json)
+      stops.named.push_back({one.at("name").get<std::string>(), read_place(one.at("at")), optional_place(one.at("to")),
+                             bound(one.at("lower")), bound(one.at("upper")), one.value("moves_with", "")});
+    return stops;
+  }
   if (!json.at("lower").is_null()) stops.lower = read_formula(json.at("lower"), "/scene/stops/lower", "x");
   if (!json.at("upper").is_null()) stops.upper = read_formula(json.at("upper"), "/scene/stops/upper", "x");
+  stops.moves_with = json.value("moves_with", "");
   const Json& at = json.at("at");
   if (at.is_string()) {
     stops.place = at == "tip" ? StopsSpec::Place::tip : StopsSpec::Place::nodes;
@@ -138,19 +180,24 @@ StopsSpec read_stops(const Json& json) {
 
 }  // namespace
 
-SceneSpec read_scene(const Json& scene) {
+SceneSpec read_scene(const Json& scene, StudyFiles* files) {
   SceneSpec spec;
-  spec.structure = read_structure(scene.at("structure"));
+  spec.structure = read_structure(scene.at("structure"), files);
   spec.stops = read_stops(scene.at("stops"));
   const Json& support = scene.at("support");
   spec.support = {support.at("amplitude").get<double>(), support.at("pulsation").get<double>(),
                   support.at("phase").get<double>()};
-  spec.load = read_load(scene.at("load"), "/scene/load");
+  spec.load = read_load(scene.at("load"), "/scene/load", files, scene.value("seed", 0LL));
+  const Json motions = scene.value("motions", Json::array());
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    spec.motions.push_back(read_motion(motions[i], pointer_to("/scene/motions", i), files));
+  spec.from_supports = scene.value("frame", "") == "supports";
   const Json& initial = scene.at("initial");
   spec.initial.displacement = read_formula(initial.at("displacement"), "/scene/initial/displacement", "x");
   spec.initial.velocity = read_formula(initial.at("velocity"), "/scene/initial/velocity", "x");
   spec.initial.projection =
       initial.at("projection") == "constraint" ? InitialSpec::Projection::constraint : InitialSpec::Projection::none;
+  if (initial.contains("file") && files) spec.initial.dofs = files->initial(initial, scene.at("structure"));
   return spec;
 }
 

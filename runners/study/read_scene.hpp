@@ -2,12 +2,13 @@
 #include <string>
 
 #include "runners/study/study.hpp"
+#include "runners/study/study_files.hpp"
 
 namespace ricochet {
 
 /// A checked and complete scene, scalars only (as check_object leaves it, lists replaced by one value each), as the
 /// core wants it. What one key alone does not show (a wall thicker than the radius, a position beyond the tip) is left
-/// to check_scene().
-SceneSpec read_scene(const Json& scene);
+/// to check_scene(). `files`: of a scene that may name some; their faults are InputErrors.
+SceneSpec read_scene(const Json& scene, StudyFiles* files);
 
 }  // namespace ricochet

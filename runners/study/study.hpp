@@ -13,6 +13,8 @@
 
 namespace ricochet {
 
+class StudyFiles;
+
 /// A method as a case names it, parameters checked and complete.
 struct MethodChoice {
   std::string name;
@@ -40,7 +42,8 @@ struct StudyCase {
   Json settings;  ///< the further keys of the kind, complete; null where it has none or all are at rest
   /// Whether its contact law pushes back what lies beyond a stop: then the scene may begin there.
   bool starts_beyond = false;
-  std::optional<std::string> excluded;  ///< the reason given in `exclude`
+  std::shared_ptr<StudyFiles> files = {};  ///< that its scene may name
+  std::optional<std::string> excluded;     ///< the reason given in `exclude`
   /// Method parameters that the settings go through: JSON pointer, and how the plugin declares it.
   std::vector<std::pair<std::string, ParameterSpec>> swept;
 };

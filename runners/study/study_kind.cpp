@@ -1,6 +1,7 @@
 #include "runners/study/study_kind.hpp"
 
 #include "runners/study/fields.hpp"
+#include "runners/study/histories.hpp"
 
 namespace ricochet {
 
@@ -44,6 +45,23 @@ ObjectForm section() {
         "",
         {}}},
   };
+  return keys;
+}
+
+ObjectForm assembled(const ObjectForm& damping) {
+  const auto file = [](const char* key, const char* text) {
+    return of_form(Field::Form::text, key, std::nullopt, text);
+  };
+  ObjectForm keys;
+  keys.fields = {
+      of_form(Field::Form::text, "folder", Json(""), "Folder of the files, in that of the study."),
+      file("stiffness", "K, Matrix Market, all dofs of the table."),
+      file("mass", "M, Matrix Market, all dofs of the table."),
+      file("dofs", "CSV with the columns dof,node,component,x,y,z,held."),
+      single(real("length_unit", "m", positive, 1.0, "Unit of length of the files; 0.001: mm, t, s.")),
+      object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping),
+      place("tip", Json(nullptr), "Displacement that is shown; null: the first stop's, else the first load's.")};
+  keys.fields.front().axis = true;
   return keys;
 }
 
@@ -143,9 +161,25 @@ ObjectForm structure() {
                      "The end that is held; the tip is the free one, or x = 0."),
                 object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping)};
   ObjectForm keys;
-  keys.fields = {word("type", {"beam", "oscillator", "bar"}, std::nullopt, "What moves.")};
+  keys.fields = {word("type", {"beam", "oscillator", "bar", "assembled"}, std::nullopt, "What moves.")};
   keys.discriminator = "/type";
-  keys.variants = {{{"beam"}, beam}, {{"oscillator"}, oscillator}, {{"bar"}, bar}};
+  keys.variants = {{{"beam"}, beam}, {{"oscillator"}, oscillator}, {{"bar"}, bar}, {{"assembled"}, assembled(damping)}};
+  return keys;
+}
+
+Field moves_with() {
+  return quiet(
+      of_form(Field::Form::text, "moves_with", Json(""), "The support that carries it, or \"all\"; absent: none."));
+}
+
+ObjectForm named_stop() {
+  ObjectForm keys;
+  keys.fields = {of_form(Field::Form::text, "name", std::nullopt, "Letters, digits, '-' and '_'; each once."),
+                 place("at", std::nullopt, "Place whose displacement u(at) − u(to) the stop bounds."),
+                 place("to", Json(nullptr), "The other place; null: the ground."),
+                 optional(real("lower", "m", any, std::nullopt, "Lower bound; null: none.")),
+                 optional(real("upper", "m", any, std::nullopt, "Upper bound; null: none.")),
+                 moves_with()};
   return keys;
 }
 
@@ -157,6 +191,7 @@ ObjectForm scene() {
                   of_form(Field::Form::places, "at", Json("nodes"),
                           "Where stops act: \"nodes\", \"tip\" or a list of positions x in ]0, L].")};
   stops.fields.back().axis = true;
+  stops.fields.push_back(moves_with());
 
   ObjectForm support;
   support.fields = {real("amplitude", "m", any, std::nullopt, "A0 of the motion of the supports."),
@@ -171,24 +206,41 @@ ObjectForm scene() {
       word("projection", {"none", "constraint"}, "none",
            "\"constraint\" projects the initial data on Zᵀ(Kq − F) = 0, Z the kernel of a singular mass.")};
   initial.fields.back().axis = true;
+  initial.fields.push_back(
+      of_form(Field::Form::text, "file", Json(""),
+              "CSV of an assembled structure: dof, or node and component; displacement, velocity."));
+  initial.fields.back().quiet = true;
 
   ObjectForm point;
-  point.fields = {optional(real("at", "m", any, std::nullopt, "Where the force acts; an oscillator has none.")),
-                  single(formula("force", "N", "t", false, std::nullopt, "Force F(t)."))};
+  point.fields = {place("at", Json(nullptr), "Where the force acts: x in m, or a place; an oscillator has none."),
+                  single(formula("force", "N", "t", false, std::nullopt, "Force F(t); or a table, or a spectrum."))};
+  point.fields.back().given.push_back(load_history("N"));
+  point.fields.front().plain = true;
   ObjectForm spread;
   spread.fields = {single(formula("shape", "N/m", "x", false, std::nullopt, "f(x) of a load f(x) g(t).")),
-                   single(formula("time", "1", "t", false, std::nullopt, "g(t)."))};
+                   single(formula("time", "1", "t", false, std::nullopt, "g(t); or a table, or a spectrum."))};
+  spread.fields.back().given.push_back(load_history("1"));
   Field load = formula("load", "N/m", "xt", false, Json("0"), "Load f(x,t), or a list of forces and of shapes.");
   load.nested.emplace_back();
   load.nested.back().ways = {point, spread};
 
+  Field seed = integer("seed", {0, 9007199254740992.0, false, false}, 0, "Of random loads: another one, other phases.");
+  seed.axis = true;
+
   ObjectForm keys;
-  keys.fields = {object("structure", std::nullopt, "The structure.", structure()),
-                 object("stops", Json::object(), "Two rigid stops g1(x) ≤ u ≤ g2(x); absent: none.", stops),
-                 object("support", Json{{"amplitude", 0.0}, {"pulsation", 0.0}, {"phase", 0.0}},
-                        "Motion of all supports together, φ(t) = A0 sin(ωt + ψ); absent: at rest.", support),
-                 std::move(load),
-                 object("initial", Json::object(), "Absolute initial state; absent: at rest.", initial)};
+  keys.fields = {
+      object("structure", std::nullopt, "The structure.", structure()),
+      object("stops", Json::object(),
+             "Two rigid stops g1(x) ≤ u ≤ g2(x), or a list of stops that have names; absent: none.", stops),
+      object("support", Json{{"amplitude", 0.0}, {"pulsation", 0.0}, {"phase", 0.0}},
+             "Motion of all supports together, φ(t) = A0 sin(ωt + ψ); absent: at rest.", support),
+      std::move(load),
+      object("initial", Json::object(), "Initial state, absolute unless `frame` says; absent: at rest.", initial),
+      quiet(objects("motions", "Motions of supports by tables, in the place of `support`.", motion_form())),
+      quiet(word("frame", {"absolute", "supports"}, "absolute",
+                 "What the initial state and the displacements shown count from, with `motions`.")),
+      quiet(seed)};
+  keys.fields[1].listed.push_back(named_stop());
   return keys;
 }
 
@@ -219,7 +271,9 @@ ObjectForm study() {
       object("scene", std::nullopt, "What is simulated, in SI units.", scene()),
       object("mesh", Json{{"elements", 1}}, "The meshes; only an oscillator does without.", mesh),
       object("methods", std::nullopt, "The methods that are combined.", chosen),
-      of_form(Field::Form::excludes, "exclude", Json::array(), "Combinations left out, each with its reason.")};
+      of_form(Field::Form::excludes, "exclude", Json::array(), "Combinations left out, each with its reason."),
+      of_form(Field::Form::files, "files", Json(nullptr),
+              "Written by the program into a stored study: folder and digests of the files that its scene names.")};
   keys.discriminator = "/kind";
   for (const StudyKind* kind : study_kinds()) keys.variants.push_back({{kind->name}, {kind->keys, "", {}}});
   return keys;

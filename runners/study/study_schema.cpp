@@ -8,6 +8,7 @@
 #include <set>
 
 #include "runners/plan_files/plan_file.hpp"
+#include "runners/study/check_place.hpp"
 #include "runners/study/fields.hpp"
 
 namespace ricochet {
@@ -134,7 +135,14 @@ class SchemaWriter {
       case Field::Form::places:
         return {{"anyOf", Json::array({{{"enum", {"nodes", "tip"}}},
                                        {{"type", "array"}, {"items", position_schema}, {"minItems", 1}}})}};
+      case Field::Form::place:
+        return place_schema(field);
+      case Field::Form::files:
+        return {{"type", Json::array({"object", "null"})}};
       case Field::Form::object:
+        if (!field.listed.empty())
+          return either("array", {{"items", object(field.listed.front())}, {"minItems", 1}},
+                        object(field.nested.front()));
         return or_null(field, object(field.nested.front()));
       case Field::Form::objects:
         if (field.count == 0) return {{"type", "array"}, {"items", object(field.nested.front())}};
@@ -159,7 +167,8 @@ class SchemaWriter {
   Json formula(const Field& field) {
     Json types = {"number", "string"};
     if (field.nullable) types.push_back("null");
-    const Json one = {{"type", types}};
+    Json one = {{"type", types}};
+    if (!field.given.empty()) one = either("object", object(field.given.front()), one);
     if (field.nested.empty()) return one;
     return either("array", {{"items", object(field.nested.front())}, {"minItems", 1}}, one);
   }
@@ -192,7 +201,7 @@ class SchemaWriter {
       case ParameterSpec::Type::boolean:
         return {{"type", "boolean"}};
       case ParameterSpec::Type::word:
-        return {{"enum", spec.words}};
+        return spec.words.empty() ? Json{{"type", "string"}} : Json{{"enum", spec.words}};
       case ParameterSpec::Type::real:
       case ParameterSpec::Type::integer:
         break;

@@ -54,7 +54,7 @@ TEST_CASE("a clamp that is given equals the clamp that is not, bit for bit") {
   }
 }
 
-TEST_CASE("nodes stand at supports, ends of sections and masses; each interval has its share of elements") {
+TEST_CASE("nodes stand at supports, ends of sections and masses, each interval has its share of elements") {
   const SceneSpec scene = held_beam(3, {pinned("a", 0), pinned("b", 1), pinned("c", 3)});
   BeamSpec beam = beam_of(scene);
   beam.masses = {{.x = 2.9, .mass = 1}};
@@ -226,7 +226,7 @@ TEST_CASE("static modes sum to the translation, their loads to that of the trans
   CHECK((middle > 0 && middle < 0.9));
 }
 
-TEST_CASE("contact at all nodes leaves out what is held; the tip is a free end, or the middle of the longest span") {
+TEST_CASE("contact at all nodes leaves out what is held, the tip is a free end, or the middle of the longest span") {
   SceneSpec scene = held_beam(3, pinned_at_each(3));
   scene.stops = {Formula(-1.0), Formula(1.0), StopsSpec::Place::nodes, {}};
   CHECK(contact_positions(scene, 6) == std::vector<double>{0.5, 1.5, 2.5});

@@ -23,7 +23,7 @@ TEST_CASE("supports outside of the beam, twice at a place or by one name, spring
   CHECK(with({pinned("a", 0), pinned("b", 3)}) == "no error");
 }
 
-TEST_CASE("sections end in order, the last one at L; their errors say which") {
+TEST_CASE("sections end in order, the last one at L, their errors say which") {
   SceneSpec scene = held_beam(3, pinned_at_each(3));
   BeamSpec& beam = beam_of(scene);
   const Section given = beam.section;

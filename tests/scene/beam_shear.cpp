@@ -135,7 +135,7 @@ TEST_CASE("shear of a slender beam vanishes with its slenderness, and a stiff fa
   CHECK(stiff == Approx(pulsations(scene, 20)[0]).epsilon(1e-8));
 }
 
-TEST_CASE("static modes in shear sum to the translation; sections given by numbers have no area") {
+TEST_CASE("static modes in shear sum to the translation, sections given by numbers have no area") {
   SceneSpec scene = deep_beam();
   beam_of(scene).supports = {clamped("a", 0), pinned("b", 4), elastic("c", 10, 1e8)};
   const SemiDiscrete problem = discretised(scene, 20, *mass("consistent"));

@@ -90,10 +90,9 @@ void ImpactRecorder::press_left_out(const Marcher& marcher, const StepInterval& 
   const std::vector<StageProgram>& stages = marcher.program().stages;
   double begins = steps.from, lasts = 0;
   if (!tells_slots_) {
-    const double lifted = marcher.support(0, latest_time_);
     for (const ClosedPoint& closed : steps.closed)
       lane.points[static_cast<std::size_t>(closed.point)].place =
-          model_.contact().times(closed.point, latest_.data()) + lifted;
+          model_.contact().times(closed.point, latest_.data()) + marcher.lift(0, closed.point, latest_time_);
     left_at_ = latest_time_;
   }
   steps.each_stage([&](int at, std::span<const double> efforts, std::span<const double> places) {
@@ -203,15 +202,17 @@ bool ImpactRecorder::know(const double* const* slots, double time) {
 }
 
 // Absolute velocity of a point over the last sub-step; of the initial state where there was none.
-double ImpactRecorder::velocity(const Marcher& marcher, int lane, int point, double lift) const {
+double ImpactRecorder::velocity(const Marcher& marcher, int lane, int point, double support) const {
   if (known_ < 2) {
     const LaneSpec& spec = marcher.program().lanes[static_cast<std::size_t>(lane)];
-    double speed = marcher.support_rate(lane, 0);
+    double speed = marcher.lift_rate(lane, point, 0);
     for (SparseRows::InnerIterator entry(model_.problem().contact, point); entry; ++entry)
       speed += entry.value() * spec.velocity[entry.col()];
     return speed;
   }
   const RowMatrix& rows = model_.contact();
+  const double lift =
+      support + marcher.motions().point(point, latest_time_) - marcher.motions().point(point, earlier_time_);
   if (increment_ && T_ == 1) return (model_.times(rows, point, increment_) + lift) / (latest_time_ - earlier_time_);
   double way = 0;
   for (int e = rows.start[static_cast<std::size_t>(point)]; e < rows.start[static_cast<std::size_t>(point) + 1]; ++e) {
@@ -233,7 +234,7 @@ void ImpactRecorder::moved(const Marcher& marcher, int lane) {
   const double lifted = lift(marcher, lane);
   state.closed.each([&](int point) {
     if (left_) {
-      const double place = model_.contact().times(point, latest_.data()) + marcher.support(lane, latest_time_);
+      const double place = model_.contact().times(point, latest_.data()) + marcher.lift(lane, point, latest_time_);
       return move_to_place(state, point, place, latest_time_);
     }
     move(state, point, velocity(marcher, lane, point, lifted));

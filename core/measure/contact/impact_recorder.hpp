@@ -125,7 +125,7 @@ class ImpactRecorder final : public StepObserver {
   long long next_shown(const Marcher& marcher) const;
   void moved(const Marcher& marcher, int lane);
   void leave(const Marcher& marcher, int lane, double lifted);
-  double velocity(const Marcher& marcher, int lane, int point, double lift) const;
+  double velocity(const Marcher& marcher, int lane, int point, double support) const;
   double lift(const Marcher& marcher, int lane) const;
   void close_instant(const Marcher& marcher, const StageView& view, int lane);
   void begin(const Marcher& marcher, const StageView& view, int lane, int point, int side);

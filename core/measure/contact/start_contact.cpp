@@ -22,7 +22,9 @@ StartContact::StartContact(const Marcher& marcher, int lane) : lane_(lane) {
   layer_ = marcher.law().layer(lane);
   const double lifted = marcher.support(lane, 0), rising = marcher.support_rate(lane, 0);
   for (int point = 0; point < program.problem->points(); ++point) {
-    double place = lifted, speed = rising, terms = std::abs(rising);
+    const double raised = marcher.motions().point_rate(point, 0);
+    double place = lifted + marcher.motions().point(point, 0), speed = rising + raised,
+           terms = std::abs(rising) + std::abs(raised);
     for (SparseRows::InnerIterator entry(contact, point); entry; ++entry) {
       place += entry.value() * spec.position[entry.col()];
       speed += entry.value() * spec.velocity[entry.col()];
@@ -54,7 +56,7 @@ void StartContact::look(const Marcher& marcher, const double* const* slots, doub
   const double lifted = marcher.support(lane_, t);
   const auto width = static_cast<std::size_t>(marcher.width());
   std::erase_if(held_, [&](Held& held) {
-    double place = lifted;
+    double place = lifted + marcher.motions().point(held.point, t);
     const auto point = static_cast<std::size_t>(held.point);
     for (int e = rows.start[point]; e < rows.start[point + 1]; ++e)
       place += rows.value[static_cast<std::size_t>(e)] *

@@ -82,9 +82,7 @@ EnergySample EnergyAudit::sample(const Marcher& marcher, int lane) {
   sample.elastic = values.elastic;
   if (marcher.program().contact && compliant_) {
     const double t = marcher.time();
-    double phi = marcher.support(lane, t);
-    if (mean_velocity_) phi = 0.5 * (phi + marcher.support(lane, t - state.duration));
-    sample.contact = potential(marcher, energies_.place(), phi, lane);
+    sample.contact = potential(marcher, energies_.place(), t, mean_velocity_ ? t - state.duration : t, lane);
   }
   sample.scheme = state.energy.own_energy ? values.scheme : sample.common();
   return sample;
@@ -97,16 +95,20 @@ EnergySample EnergyAudit::initial_energy(const Marcher& marcher, int lane) {
   EnergySample sample;
   sample.kinetic = 0.5 * mass_(speed.data());
   sample.elastic = 0.5 * stiffness_(place.data());
-  if (marcher.program().contact && compliant_)
-    sample.contact = potential(marcher, place.data(), marcher.support(lane, 0), lane);
+  if (marcher.program().contact && compliant_) sample.contact = potential(marcher, place.data(), 0, 0, lane);
   sample.scheme = sample.common();
   return sample;
 }
 
-double EnergyAudit::potential(const Marcher& marcher, const double* place, double support, int lane) const {
+// Where supports stand in the mean of two times, which may be one.
+double EnergyAudit::potential(const Marcher& marcher, const double* place, double now, double before, int lane) const {
+  const auto mean = [&](auto&& lift) { return now == before ? lift(now) : 0.5 * (lift(now) + lift(before)); };
+  const double support = mean([&](double t) { return marcher.support(lane, t); });
   double sum = 0;
-  for (int j = 0; j < model_.problem().points(); ++j)
-    sum += marcher.stored(lane, j, model_.measured().times(j, place), support);
+  for (int j = 0; j < model_.problem().points(); ++j) {
+    const double lift = support + mean([&](double t) { return marcher.motions().point(j, t); });
+    sum += marcher.stored(lane, j, model_.measured().times(j, place), lift);
+  }
   return sum;
 }
 
@@ -312,7 +314,9 @@ void EnergyAudit::take_sample(Marcher& marcher, int lane) {
   const double t = marcher.time();
   const EnergySample sample = this->sample(marcher, lane);
   if (state.asked)
-    state.tip_way = tip_increment(marcher, lane) + marcher.support(lane, t) - marcher.support(lane, t - state.duration);
+    state.tip_way = tip_increment(marcher, lane) + marcher.support(lane, t) -
+                    marcher.support(lane, t - state.duration) + marcher.motions().tip(t) -
+                    marcher.motions().tip(t - state.duration);
   confirm(state, sample.scheme, false);
   state.now = state.energy.last = sample;
   const double energy = sample.common();

@@ -138,7 +138,7 @@ class EnergyAudit final : public StepObserver {
     bool still = false;        // no effort acts, none did at the instant before, and that has been counted
   };
   EnergySample initial_energy(const Marcher& marcher, int lane);
-  double potential(const Marcher& marcher, const double* place, double support, int lane) const;
+  double potential(const Marcher& marcher, const double* place, double now, double before, int lane) const;
   EnergySample sample(const Marcher& marcher, int lane);
   bool asks(const Lane& state, long long step) const;
   void begin_step(const Marcher& marcher, const StageView& view, Lane& state);

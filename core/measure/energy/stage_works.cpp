@@ -161,6 +161,7 @@ StageWorks::StageTerms StageWorks::describe(const Stage& plan, double pulsation,
   stage.load.along *= pulsation * pulsation;
   stage.load.across *= pulsation * pulsation;
   stage.support = PhaseWeights(plan.work->support, pulsation, h);
+  stage.support_levels = plan.work->support;
   const std::vector<double>&s = stage.displacement.weight, &r = stage.rate.weight;
   if (!damped_ || s.empty() || stage.rate.which != stage.displacement.which) return stage;
   const double ratio = r[0] / s[0];
@@ -196,7 +197,8 @@ StageWorks::StageTerms StageWorks::describe_start(const StepPlan& plan, std::siz
   const bool moves = facts.to > facts.from;
   const double from = moves ? facts.from : facts.from - 0.5, to = moves ? facts.to : facts.from + 0.5;
   const double rate = 1 / ((to - from) * h);
-  terms.support = PhaseWeights({{to, rate}, {from, -rate}}, pulsation, h);
+  terms.support_levels = {{to, rate}, {from, -rate}};
+  terms.support = PhaseWeights(terms.support_levels, pulsation, h);
   terms.impulsive = true;
   return terms;
 }
@@ -239,12 +241,16 @@ void StageWorks::add_all(const Marcher& marcher, const StageView& view, const St
 void StageWorks::add_contact(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane,
                              const double* s, Works& works) const {
   const std::vector<double>& weights = view.program->work_effort;
-  const double lift = marcher.program().support ? marcher.support(lane, stage.support) : 0.0;
+  const double support = marcher.program().support ? marcher.support(lane, stage.support) : 0.0;
   const auto add_point = [&](int j) {
     double effort = 0;
     for (int k = 0; k < std::min(static_cast<int>(weights.size()), view.efforts); ++k)
       if (view.effort[k]) effort += weights[static_cast<std::size_t>(k)] * view.effort[k][j * T_ + lane];
     if (effort == 0) return;
+    double lift = support;
+    if (!marcher.motions().empty())
+      for (const Level& level : stage.support_levels)
+        lift += level.weight * marcher.motions().point(j, view.time + level.at * marcher.program().h);
     works.contact += effort * (model_.times(model_.measured(), j, s) + lift);
     works.loads -= effort * lift;
   };

@@ -193,6 +193,7 @@ class StageWorks {
     double by_mass = 0;   // c η where K damps too
     PhaseWeights load;    // times ω²: −φ'' = ω² φ for the harmonic support
     PhaseWeights support;
+    Levels support_levels;
     std::vector<Loss> losses;
     bool impulsive = false;  // a start rule whose contact alone works: `displacement` is the mean velocity
     // Where damping and clamp are all there is without contact, of an operator that adds up their squares: of s over

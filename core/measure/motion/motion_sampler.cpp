@@ -4,6 +4,7 @@
 #include <ricochet/engine/flight/step_interval.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 #include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/discrete_problem.hpp>
 
 namespace ricochet {
 namespace {
@@ -17,6 +18,12 @@ StrainRows strain_rows(const FiniteElementSpace& space, const std::vector<double
   StrainRows rows(static_cast<Eigen::Index>(places.size()), space.dofs);
   rows.setFromTriplets(entries.begin(), entries.end());
   return rows;
+}
+
+// The share of motions at the places; none where displacements count from the supports.
+Eigen::MatrixXd shown_shapes(const SemiDiscrete& problem, const std::vector<double>& places) {
+  const SupportMotions& motions = problem.motions;
+  return motions.empty() || motions.from_supports ? Eigen::MatrixXd() : motion_shapes(problem, places);
 }
 
 // Weights of the cubic through s = −1, 0, 1, 2, and of its derivative in s, at s in [0, 1].
@@ -71,13 +78,13 @@ double ContactLog::onset(const Marcher& marcher, const StageView& view, int poin
       velocity_[i] = 0;
       for (std::size_t s = 0; s < rate.slots.size(); ++s) velocity_[i] += rate.slots[s] * view.slots[s][i * T];
     }
-    tip_speed_ = marcher.support_rate(0, t) + model_.tip().times(0, velocity_.data());
+    tip_speed_ = marcher.support_rate(0, t) + marcher.motions().tip_rate(t) + model_.tip().times(0, velocity_.data());
     state_known_ = true;
   }
   const LaneSpec& lane = marcher.program().lanes.front();
   const double stop = side == 0 ? lane.lower[point] : lane.upper[point];
-  const double gap = model_.contact().times(point, position_.data()) + marcher.support(0, t) - stop;
-  const double speed = model_.contact().times(point, velocity_.data()) + marcher.support_rate(0, t);
+  const double gap = model_.contact().times(point, position_.data()) + marcher.lift(0, point, t) - stop;
+  const double speed = model_.contact().times(point, velocity_.data()) + marcher.lift_rate(0, point, t);
   double time = t;
   if (gap * speed < 0) time += std::min(-gap / speed, 2 * dt);
   if ((side == 0) == (gap < 0)) time = t;  // beyond the stop already: a constraint on other levels let it pass
@@ -176,8 +183,9 @@ MotionSampler::MotionSampler(Marcher& marcher, const SampleGrid& grid, StepObser
       observers_{beside, &log_},
       mass_(QuadraticForm::of(marcher.program().problem->inertia)),
       stiffness_(marcher.program().problem->stiffness),
-      places_(displacement_rows(marcher.program().problem->space, grid.places)),
+      places_(place_rows(*marcher.program().problem, grid.places)),
       strains_(strain_rows(marcher.program().problem->space, grid.places)),
+      shares_(shown_shapes(*marcher.program().problem, grid.places)),
       offset_(marcher.program().velocity_offset) {
   const std::size_t times = grid_.times.size(), fields = times * grid_.places.size();
   for (auto* series : {&motion_.tip, &motion_.tip_velocity, &motion_.energy, &motion_.impulse}) series->reserve(times);
@@ -246,14 +254,19 @@ bool MotionSampler::next() {
   double energy = 0.5 * mass_(v.data()) + 0.5 * stiffness_(w.data());
   if (marcher_.program().contact && marcher_.law().reads()) {
     const Eigen::VectorXd touched = problem.measured() * w;
-    for (int j = 0; j < problem.points(); ++j) energy += marcher_.stored(0, j, touched[j], support);
+    for (int j = 0; j < problem.points(); ++j)
+      energy += marcher_.stored(0, j, touched[j], support + problem.motions.point(j, t));
   }
-  motion_.tip.push_back((problem.tip * w)[0] + support);
-  motion_.tip_velocity.push_back((problem.tip * v)[0] + rate);
+  motion_.tip.push_back((problem.tip * w)[0] + support + problem.motions.tip(t));
+  motion_.tip_velocity.push_back((problem.tip * v)[0] + rate + problem.motions.tip_rate(t));
   motion_.energy.push_back(energy);
   motion_.impulse.push_back(impulse);
-  const Eigen::VectorXd u = (places_ * w).array() + support, strain = strains_ * w,
-                        velocity = (places_ * v).array() + rate;
+  Eigen::VectorXd u = (places_ * w).array() + support, velocity = (places_ * v).array() + rate;
+  for (Eigen::Index i = 0; i < shares_.rows(); ++i) {
+    u[i] += problem.motions.sum(shares_.row(i), t, false);
+    velocity[i] += problem.motions.sum(shares_.row(i), t, true);
+  }
+  const Eigen::VectorXd strain = strains_ * w;
   motion_.displacement.insert(motion_.displacement.end(), u.begin(), u.end());
   motion_.strain.insert(motion_.strain.end(), strain.begin(), strain.end());
   motion_.velocity.insert(motion_.velocity.end(), velocity.begin(), velocity.end());

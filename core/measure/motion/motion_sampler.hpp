@@ -95,7 +95,8 @@ class MotionSampler {
   Observers observers_;
   QuadraticForm mass_, stiffness_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> places_, strains_;
-  double offset_ = 0;  // of the impulses kept, in steps
+  Eigen::MatrixXd shares_;  // of motions at the places
+  double offset_ = 0;       // of the impulses kept, in steps
   std::deque<State> states_;
   SampledMotion motion_;
   std::size_t next_ = 0;

@@ -174,7 +174,11 @@ void StabilityPredictor::choose_sets() {
   }
   const auto x = [&](int i) { return problem_->contact_x[static_cast<std::size_t>(i)]; };
   std::sort(points.begin(), points.end(), [&](int a, int b) { return x(a) > x(b); });
-  const auto alone = [&](int i) { sets_.push_back({fmt::format("x = {:.6g} m", x(i)), {i}}); };
+  const auto where = [&](int i) {
+    return problem_->stops.empty() ? fmt::format("x = {:.6g} m", x(i))
+                                   : "stop " + problem_->stops[static_cast<std::size_t>(i)];
+  };
+  const auto alone = [&](int i) { sets_.push_back({where(i), {i}}); };
   if (points.size() == 1)
     sets_.push_back({"the contact point", points});
   else if (points.size() <= most_single_points)

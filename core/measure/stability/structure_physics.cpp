@@ -8,6 +8,7 @@
 #include <ricochet/measure/stability/no_contact.hpp>
 #include <ricochet/measure/stability/structure_physics.hpp>
 #include <ricochet/scene/beam.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
 
 namespace ricochet {
 
@@ -80,6 +81,8 @@ namespace {
 // Beyond, a dense eigenvalue problem takes longer than a person waits for a plan (0.1 s); the first frequencies have
 // converged long before.
 constexpr int most_elements = 120;
+// Of matrices that are given, whose mesh nobody coarsens: a dense problem of a few seconds.
+constexpr int most_given_dofs = 1000;
 
 struct Numbers {
   std::vector<PhysicalNumber> operator()(const BeamSpec& beam) const {
@@ -100,6 +103,11 @@ struct Numbers {
   }
   std::vector<PhysicalNumber> operator()(const BarSpec& bar) const {
     return {{"EA", bar.EA, "N"}, {"ρA", bar.rhoA, "kg/m"}, {"length", bar.length, "m"}};
+  }
+  std::vector<PhysicalNumber> operator()(const AssembledSpec& spec) const {
+    return {{"free dofs", static_cast<double>(spec.structure->dofs()), ""},
+            {"held dofs", static_cast<double>(spec.structure->held_dofs), ""},
+            {"half-bandwidth", static_cast<double>(spec.structure->half_width), ""}};
   }
 };
 
@@ -183,6 +191,7 @@ std::variant<StructurePhysics, Refusal> structure_physics(const SceneSpec& scene
   out.details = std::visit(Details{out.elements, problem.dofs()}, scene.structure);
   if (out.damping.stiffness != 0) out.numbers.push_back({"α", out.damping.stiffness, "s"});
   if (out.damping.mass != 0) out.numbers.push_back({"η", out.damping.mass, "1/s"});
+  if (problem.space.given && problem.dofs() > most_given_dofs) return out;
   const StructureModes modes = open_modes(problem);
   for (int i = 0; i < modes.regular; ++i) out.pulsations.push_back(modes.pulsation(i));
   return out;

@@ -24,7 +24,10 @@ std::vector<std::string> cells_of(std::string_view line, const TextLines& lines)
 std::size_t CsvFile::column(const std::string& key) const {
   const auto found = std::find(columns.begin(), columns.end(), key);
   if (found != columns.end()) return static_cast<std::size_t>(found - columns.begin());
-  const std::string nearest = nearest_name(key, columns);
+  std::string nearest = nearest_name(key, columns);
+  constexpr std::size_t shortest = 3;
+  for (const std::string& one : columns)  // an abbreviation is nearer than any other word
+    if (one.size() >= shortest && key.starts_with(one)) nearest = one;
   throw FileError(fmt::format("{} has no column \"{}\"; there are {}{}", name, key, fmt::join(columns, ","),
                               nearest.empty() ? "" : fmt::format(": did you mean {}?", nearest)));
 }

@@ -47,8 +47,8 @@ DofTable read_dof_table(std::string_view content, const std::string& name) {
       if (!is_name(*text))
         file.fail(row, fmt::format("\"{}\" for {}; expected a word without spaces", shortened(*text), what));
     if (!one.held.empty() && !is_name(one.held))
-      file.fail(row, fmt::format("\"{}\" for held; expected nothing, fixed or the name of a support",
-                                 shortened(one.held)));
+      file.fail(row,
+                fmt::format("\"{}\" for held; expected nothing, fixed or the name of a support", shortened(one.held)));
     for (std::size_t axis = 0; axis < axes.size(); ++axis) one.place[axis] = file.number(row, axes[axis]);
     const auto [first, fresh] = known.emplace(std::pair(one.node, one.component), one.dof);
     if (!fresh) file.fail(row, fmt::format("{} is dof {} and dof {}", one.text(), first->second, one.dof));

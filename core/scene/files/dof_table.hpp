@@ -25,8 +25,8 @@ struct DofTable {
   std::vector<DofName> dofs;  ///< in the order of their numbers
 };
 
-/// Reads a CSV with the columns dof,node,component,x,y,z,held in any order, numbers as in the file. Throws FileError for
-/// dofs that are missing or stand twice, nodes with two equal components or two places, empty names.
+/// Reads a CSV with the columns dof,node,component,x,y,z,held in any order, numbers as in the file. Throws FileError
+/// for dofs that are missing or stand twice, nodes with two equal components or two places, empty names.
 DofTable read_dof_table(std::string_view content, const std::string& name);
 
 }  // namespace ricochet

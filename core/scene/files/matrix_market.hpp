@@ -7,9 +7,9 @@ namespace ricochet {
 
 /// A symmetric matrix as a file gives it.
 struct FileMatrix {
-  SparseMatrix matrix;    ///< both triangles, zeros left out, symmetric to the last bit
-  double asymmetry = 0;   ///< largest |a_ij − a_ji| over the largest |a_ij|, averaged away
-  int row = 0, column = 0;  ///< where that is, from 1
+  SparseMatrix matrix;           ///< both triangles, zeros left out, symmetric to the last bit
+  double asymmetry = 0;          ///< largest |a_ij − a_ji| over the largest |a_ij|, averaged away
+  int row = 0, column = 0;       ///< where that is, from 1
   double there = 0, across = 0;  ///< a_ij and a_ji
 };
 

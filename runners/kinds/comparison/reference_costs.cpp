@@ -124,6 +124,16 @@ std::function<double(double)> of_x(const std::optional<Formula>& formula, double
   return of_x(*formula);
 }
 
+/// The bounds of stops that have names, at their places.
+std::function<double(double)> of_stops(const std::vector<NamedStop>& stops, std::optional<double> NamedStop::*bound,
+                                       double absent) {
+  return [=](double x) {
+    for (const NamedStop& stop : stops)
+      if (stop.at.x == x) return (stop.*bound).value_or(absent);
+    return absent;
+  };
+}
+
 void describe(const BeamSpec& beam, ReferenceProblem& problem) {
   problem.other_beam = beam.supports || !beam.sections.empty() || !beam.masses.empty() || beam.shear ||
                        beam.tension != 0 || beam.foundation != 0 || beam.added_mass != 0;
@@ -156,6 +166,12 @@ void describe(const OscillatorSpec& oscillator, ReferenceProblem& problem) {
   problem.force_phase = oscillator.force.phase;
 }
 
+void describe(const AssembledSpec& spec, ReferenceProblem& problem) {
+  problem.structure = "assembled structure";
+  problem.damping_stiffness = spec.damping.stiffness;
+  problem.damping_mass = spec.damping.mass;
+}
+
 }  // namespace
 
 ReferenceProblem reference_problem(const StudyCase& study_case, const Registry& registry) {
@@ -175,8 +191,12 @@ ReferenceProblem reference_problem(const StudyCase& study_case, const Registry& 
   problem.stops_at_nodes = scene.stops.place == StopsSpec::Place::nodes && problem.structure != "oscillator";
   problem.stops_at_tip = problem.stop_places.size() == 1 &&
                          std::abs(problem.stop_places[0] - tip_position(scene)) <= 1e-12 * problem.length;
-  problem.lower = of_x(scene.stops.lower, -infinity);
-  problem.upper = of_x(scene.stops.upper, infinity);
+  problem.lower = scene.stops.named.empty() ? of_x(scene.stops.lower, -infinity)
+                                            : of_stops(scene.stops.named, &NamedStop::lower, -infinity);
+  problem.upper = scene.stops.named.empty() ? of_x(scene.stops.upper, infinity)
+                                            : of_stops(scene.stops.named, &NamedStop::upper, infinity);
+  if (std::any_of(scene.stops.named.begin(), scene.stops.named.end(), [](const auto& stop) { return stop.to; }))
+    problem.structure = "structure with a stop between two places";
   auto law = make_law(study_case, registry);
   problem.contact_absent = law->absent();
   if (law->reads()) {

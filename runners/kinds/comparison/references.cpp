@@ -188,6 +188,10 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
         "the load has a force at a point, and this reference knows loads that are spread: use a reference of the mesh";
     return known;
   }
+  if (!study_case.scene.motions.empty()) {
+    known.refusal = "supports move by motions, and references know the harmonic support: use the reference self";
+    return known;
+  }
   if (solver->of_the_mesh()) {
     const auto law = make_law(study_case, registry_);
     auto built = discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry_), law.get(),

@@ -30,12 +30,15 @@ void collect(const ObjectForm& form, const Json& value, const std::string& point
     const std::string here = pointer_to(pointer, field->key());
     const auto found = value.find(field->key());
     if (found == value.end()) continue;
-    if (field->form == Field::Form::object)
+    if (field->form == Field::Form::object && found->is_array())
+      for (std::size_t i = 0; i < found->size(); ++i)
+        collect(field->listed.front(), (*found)[i], pointer_to(here, i), scalars);
+    else if (field->form == Field::Form::object)
       collect(field->nested.front(), *found, here, scalars);
     else if (is_object_list(*field, *found))
       for (std::size_t i = 0; i < found->size(); ++i)
         collect(field->nested.front(), (*found)[i], pointer_to(here, i), scalars);
-    else if (field->form == Field::Form::formula ||
+    else if (field->form == Field::Form::formula || (field->form == Field::Form::place && found->is_number()) ||
              (field->form == Field::Form::scalar && field->spec.type == ParameterSpec::Type::real))
       scalars.push_back({here, field});
     else if (field->form == Field::Form::places && found->is_array())
@@ -121,7 +124,7 @@ StudyCase with_parameters(const StudyCase& study_case, const std::vector<std::pa
     }
   }
   if (scene) {
-    one.scene = read_scene(one.scene_json);
+    one.scene = read_scene(one.scene_json, one.files.get());
     check_scene(one.scene, one.elements, one.starts_beyond ? anywhere_beyond() : ForceBeyond());
   }
   if (one.steps_per_period > 0) check_forcing(one.scene);
@@ -131,8 +134,10 @@ StudyCase with_parameters(const StudyCase& study_case, const std::vector<std::pa
 StudyCase at_rest(const StudyCase& study_case) {
   StudyCase one = study_case;
   one.scene.initial.displacement = one.scene.initial.velocity = Formula(0.0);
+  one.scene.initial.dofs.clear();
   if (one.scene_json.is_object())
     for (const char* key : {"displacement", "velocity"}) one.scene_json["initial"][key] = "0";
+  if (one.scene_json.is_object()) one.scene_json["initial"].erase("file");
   return one;
 }
 
@@ -182,6 +187,10 @@ void check_repeats(const Formula& load, const std::string& pointer, const std::s
 }  // namespace
 
 void check_forcing(const SceneSpec& scene) {
+  if (!scene.motions.empty())
+    throw InputError("/scene/motions",
+                     "motions by tables have no period, and steps per period need one: expected the "
+                     "harmonic `support`");
   const double pulsation = forcing_pulsation(scene);
   const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
   if (!(pulsation > 0))

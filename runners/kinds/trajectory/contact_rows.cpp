@@ -14,6 +14,7 @@ constexpr const char* side_names[] = {"lower", "upper"};
 
 const Column point_column{"point", "1", "Number of the contact point of the scene, from 0."};
 const Column x_column{"x", "m", "Place of the contact point."};
+const Column stop_column{"stop", "", "Name of the stop."};
 
 NumberTable impacts_head() {
   NumberTable table = number_table(
@@ -59,13 +60,19 @@ Table stops_head() {
       {}};
 }
 
-void add_impacts(CaseRecord& record, const ImpactRecorder& recorder, const std::vector<double>& x) {
+void add_impacts(CaseRecord& record, const ImpactRecorder& recorder, const SemiDiscrete& problem) {
+  const std::vector<double>& x = problem.contact_x;
   NumberTable table = impacts_head();
   table.words = {{"side", {side_names[0], side_names[1]}}, {"open_end", {"false", "true"}}};
   for (const Impact& impact : recorder.impacts(0))
     table.add({impact.time, static_cast<double>(impact.point), x[static_cast<std::size_t>(impact.point)],
                static_cast<double>(impact.side), impact.speed_in, impact.speed_out, impact.impulse, impact.peak_force,
                impact.duration, impact.release_force, impact.open_end ? 1.0 : 0.0});
+  if (!problem.stops.empty()) {
+    table.columns.push_back(stop_column);
+    table.values.push_back(*table.series(point_column.name));
+    table.words.emplace_back(stop_column.name, problem.stops);
+  }
   const auto listed = static_cast<long long>(table.rows());
   if (listed < recorder.count(0))
     record.notes.push_back(fmt::format("impacts.csv has the first {} of {} impacts; counts and sums have all of them",
@@ -80,6 +87,8 @@ void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const March
   if (!marcher.program().contact) return;
   const SemiDiscrete& problem = *marcher.program().problem;
   Table stops = stops_head();
+  const bool named = !problem.stops.empty();
+  if (named) stops.columns.push_back(stop_column);
   double peak = 0, time = 0;
   for (int point = 0; point < problem.points(); ++point)
     for (const StopSide side : {StopSide::lower, StopSide::upper}) {
@@ -91,16 +100,19 @@ void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const March
                             side_names[static_cast<std::size_t>(side)], totals.impacts, totals.peak_force,
                             totals.mean_force(), totals.rms_force(), totals.contact_time, totals.impulse,
                             totals.normal_work, totals.impacts > 0 ? Cell(totals.fastest) : Cell()});
+      if (named) stops.rows.back().push_back(problem.stops[static_cast<std::size_t>(point)]);
     }
   put_measure(record, "peak_contact_force", peak);
   put_measure(record, "contact_time", time);
-  add_impacts(record, recorder, problem.contact_x);
+  add_impacts(record, recorder, problem);
   record.tables.push_back(std::move(stops));
 }
 
 void describe_contact(std::vector<CaseRecord>& records) {
-  const Table stops = stops_head();
-  const NumberTable impacts = impacts_head();
+  Table stops = stops_head();
+  NumberTable impacts = impacts_head();
+  stops.columns.push_back(stop_column);
+  impacts.columns.push_back(stop_column);
   // Of a study of many cases in which nothing is hit, what they mean would be the largest part.
   bool stops_told = false, impacts_told = false;
   for (CaseRecord& record : records) {

@@ -54,7 +54,13 @@ SnapshotTaker::SnapshotTaker(const Marcher& marcher, long long steps, int count)
     shape_.upper.push_back(problem.upper.segment(first, last - first + 1).minCoeff());
   }
   given_.assign(static_cast<std::size_t>(points), 0);
-  take(problem.position, marcher.support(0, 0), 0);
+  // Displacements are drawn as the stops see them.
+  if (!problem.motions.empty() && !problem.motions.carry_stops) {
+    std::vector<double> places = shape_.x;
+    places.push_back(problem.support_x.front());
+    shares_ = motion_shapes(problem, places);
+  }
+  take(problem, problem.position, marcher.support(0, 0), 0);
   asks_.next_shown = step_of(next_);
 }
 
@@ -69,7 +75,7 @@ void SnapshotTaker::stage_solved(const Marcher& marcher, const StageView& view) 
 
 void SnapshotTaker::step_done(Marcher& marcher) {
   if (next_ > count_ || marcher.step() < step_of(next_) || !marcher.status(0).running) return;
-  take(marcher.position(0), marcher.support(0, marcher.time()), marcher.time());
+  take(*marcher.program().problem, marcher.position(0), marcher.support(0, marcher.time()), marcher.time());
   while (next_ <= count_ && step_of(next_) <= marcher.step()) ++next_;
   asks_.next_shown = next_ > count_ ? never : step_of(next_);
 }
@@ -85,8 +91,11 @@ void SnapshotTaker::interval(Marcher& marcher, const StepInterval& steps) {
   });
 }
 
-void SnapshotTaker::take(const Eigen::VectorXd& position, double support, double time) {
-  const Eigen::VectorXd u = (at_ * position).array() + support;
+void SnapshotTaker::take(const SemiDiscrete& problem, const Eigen::VectorXd& position, double support, double time) {
+  Eigen::VectorXd u = (at_ * position).array() + support;
+  for (Eigen::Index i = 0; i < u.size() && shares_.rows() > 0; ++i)
+    u[i] += problem.motions.sum(shares_.row(i), time, false);
+  if (shares_.rows() > 0) support += problem.motions.sum(shares_.row(u.size()), time, false);
   if (!u.allFinite()) return;
   const double since = t_.empty() ? 0 : time - t_.back();
   const auto points = shape_.point.size();

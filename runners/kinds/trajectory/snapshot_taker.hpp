@@ -24,12 +24,13 @@ class SnapshotTaker final : public StepObserver {
   Snapshots finish() const;
 
  private:
-  void take(const Eigen::VectorXd& position, double support, double time);
+  void take(const SemiDiscrete& problem, const Eigen::VectorXd& position, double support, double time);
   long long step_of(long long k) const { return (steps_ * k + count_ / 2) / count_; }
 
   long long steps_, count_, next_ = 1;
   int group_ = 1;                                    // contact points that are one
   Eigen::SparseMatrix<double, Eigen::RowMajor> at_;  // places × n
+  Eigen::MatrixXd shares_;                           // of motions at the places, and at the clamp
   Snapshots shape_;                                  // all that does not change
   std::vector<double> t_, clamp_, displacement_;
   std::vector<double> given_;  // per point since the last snapshot, N s

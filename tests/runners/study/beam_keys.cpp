@@ -28,7 +28,7 @@ Json changed(const std::string& pointer, const Json& value) {
 
 }  // namespace
 
-TEST_CASE("a study gives a beam its supports, masses, tension; what is absent is not written out") {
+TEST_CASE("a study gives a beam its supports, masses, tension, what is absent is not written out") {
   const Study study = parse(held_study());
   const auto& beam = std::get<BeamSpec>(study.cases.front().scene.structure);
   REQUIRE(beam.supports);

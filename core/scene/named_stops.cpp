@@ -1,0 +1,250 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <ricochet/contract/errors.hpp>
+#include <ricochet/kernels/floating_point.hpp>
+#include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/beam.hpp>
+#include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/named_stops.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
+
+namespace ricochet {
+namespace {
+
+const AssembledStructure* assembled_of(const SceneSpec& scene) {
+  const auto* spec = std::get_if<AssembledSpec>(&scene.structure);
+  return spec ? spec->structure.get() : nullptr;
+}
+
+std::string stop_pointer(std::size_t number, const char* key) {
+  return fmt::format("/scene/stops/{}{}", number, key);
+}
+
+void check_stop_name(const std::string& name, std::size_t number) {
+  const auto allowed = [](unsigned char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
+  };
+  constexpr std::size_t longest = 40;
+  if (name.empty() || name.size() > longest || !std::all_of(name.begin(), name.end(), allowed))
+    throw InputError(
+        stop_pointer(number, "/name"),
+        fmt::format("\"{}\"; expected a name of 1 to {} letters, digits, '-' or '_'", shortened(name), longest));
+}
+
+std::size_t support_count(const SceneSpec& scene) {
+  if (const AssembledStructure* assembled = assembled_of(scene)) return assembled->supports.size();
+  if (const auto* beam = std::get_if<BeamSpec>(&scene.structure)) return supports_of(*beam).size();
+  const auto* bar = std::get_if<BarSpec>(&scene.structure);
+  return bar && bar->fixed == BarSpec::Fixed::none ? 0 : 1;
+}
+
+// What supports add to the displacement at x by themselves: number and weight.
+std::vector<std::pair<int, double>> held_by(const SceneSpec& scene, const FiniteElementSpace& space, double x) {
+  std::vector<std::pair<int, double>> held;
+  const auto* beam = std::get_if<BeamSpec>(&scene.structure);
+  const std::vector<BeamSupport> supports = beam ? supports_of(*beam) : std::vector<BeamSupport>(1);
+  for (const auto& [where, weight] : held_row(space, x)) {
+    std::size_t nearest = 0;
+    double away = infinity;
+    for (std::size_t j = 0; j < supports.size(); ++j)
+      if (supports[j].holds_displacement() && std::abs(supports[j].x - where) < away) {
+        away = std::abs(supports[j].x - where);
+        nearest = j;
+      }
+    held.emplace_back(static_cast<int>(nearest), weight);
+  }
+  return held;
+}
+
+void check_bounds(const NamedStop& stop, std::size_t number) {
+  if (!stop.lower && !stop.upper)
+    throw InputError(stop_pointer(number, ""),
+                     fmt::format("stop {} has no bound; expected lower, upper or both, in m", stop.name));
+  if (stop.lower && stop.upper && *stop.lower > *stop.upper)
+    throw InputError(stop_pointer(number, "/lower"),
+                     fmt::format("stop {}: lower {:.6g} m > upper {:.6g} m; expected lower ≤ upper", stop.name,
+                                 *stop.lower, *stop.upper));
+}
+
+}  // namespace
+
+PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place,
+                   const std::string& pointer) {
+  if (const AssembledStructure* assembled = assembled_of(scene)) return assembled->row(place, pointer);
+  if (!place.x)
+    throw InputError(
+        pointer, fmt::format("a {} has no nodes that are called; expected {{\"x\": position in m}}", space.structure));
+  const double length = structure_length(scene), x = *place.x;
+  if (!(x >= 0 && x <= length))
+    throw InputError(pointer + "/x",
+                     fmt::format("{:.6g} m is beyond the {}; expected 0 to {:.6g} m", x, space.structure, length));
+  PlaceRow out;
+  out.free = displacement_row(space, x);
+  std::sort(out.free.begin(), out.free.end());
+  out.held = held_by(scene, space, x);
+  out.x = x;
+  return out;
+}
+
+PlaceRow stop_row(const SceneSpec& scene, const FiniteElementSpace& space, const NamedStop& stop, std::size_t number) {
+  const PlaceRow at = place_row(scene, space, stop.at, stop_pointer(number, "/at"));
+  return stop.to ? difference(at, place_row(scene, space, *stop.to, stop_pointer(number, "/to"))) : at;
+}
+
+ContactPoints contact_points(const SceneSpec& scene, const FiniteElementSpace& space, int elements) {
+  ContactPoints out;
+  const auto supports = static_cast<Eigen::Index>(support_count(scene));
+  if (scene.stops.named.empty()) {
+    out.x = contact_positions(scene, elements);
+    out.rows = displacement_rows(space, out.x);
+    out.lower = stop_values(scene.stops.lower, out.x, -infinity);
+    out.upper = stop_values(scene.stops.upper, out.x, infinity);
+    out.on_supports = Eigen::MatrixXd::Zero(out.rows.rows(), supports);
+    for (std::size_t i = 0; i < out.x.size(); ++i)
+      for (const auto& [support, weight] : held_by(scene, space, out.x[i]))
+        out.on_supports(static_cast<Eigen::Index>(i), support) += weight;
+    return out;
+  }
+  const auto count = static_cast<Eigen::Index>(scene.stops.named.size());
+  out.lower = Eigen::VectorXd::Constant(count, -infinity);
+  out.upper = Eigen::VectorXd::Constant(count, infinity);
+  out.on_supports = Eigen::MatrixXd::Zero(count, supports);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const NamedStop& stop = scene.stops.named[static_cast<std::size_t>(i)];
+    const PlaceRow row = stop_row(scene, space, stop, static_cast<std::size_t>(i));
+    for (const auto& [dof, value] : row.free) entries.emplace_back(static_cast<int>(i), dof, value);
+    for (const auto& [support, weight] : row.held) out.on_supports(i, support) += weight;
+    out.x.push_back(row.x);
+    out.names.push_back(stop.name);
+    if (stop.lower) out.lower[i] = *stop.lower;
+    if (stop.upper) out.upper[i] = *stop.upper;
+  }
+  out.rows.resize(count, space.dofs);
+  out.rows.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
+std::vector<double> named_positions(const StopsSpec& stops) {
+  std::vector<double> x;
+  for (const NamedStop& stop : stops.named) x.push_back(stop.at.x.value_or(0));
+  return x;
+}
+
+SparseRows tip_row(const SceneSpec& scene, const FiniteElementSpace& space) {
+  const auto* spec = std::get_if<AssembledSpec>(&scene.structure);
+  if (!spec) return displacement_rows(space, {tip_position(scene)});
+  SparseRows row(1, space.dofs);
+  const auto take = [&](const Place& place, const std::string& pointer) {
+    for (const auto& [dof, value] : spec->structure->row(place, pointer).free) row.insert(0, dof) = value;
+    row.makeCompressed();
+    return row;
+  };
+  if (spec->tip) return take(*spec->tip, "/scene/structure/tip");
+  if (!scene.stops.named.empty()) return take(scene.stops.named.front().at, "/scene/stops/0/at");
+  for (std::size_t k = 0; k < scene.load.terms.size(); ++k)
+    if (scene.load.terms[k].place) return take(*scene.load.terms[k].place, fmt::format("/scene/load/{}/at", k));
+  throw InputError("/scene/structure/tip",
+                   "missing; without stops and loads expected the place whose displacement is shown");
+}
+
+std::string tip_choice(const SceneSpec& scene) {
+  const auto* spec = std::get_if<AssembledSpec>(&scene.structure);
+  if (!spec || spec->tip) return "";
+  return scene.stops.named.empty() ? "the place of the first load" : "the place of stop " + scene.stops.named[0].name;
+}
+
+void check_named_stops(const SceneSpec& scene, const FiniteElementSpace& space) {
+  std::map<std::string, std::size_t> names;
+  std::vector<PlaceRow> rows;
+  for (std::size_t i = 0; i < scene.stops.named.size(); ++i) {
+    const NamedStop& stop = scene.stops.named[i];
+    check_stop_name(stop.name, i);
+    if (!names.emplace(stop.name, i).second)
+      throw InputError(stop_pointer(i, "/name"), fmt::format("two stops are called \"{}\"", stop.name));
+    check_bounds(stop, i);
+    if (stop.to && scene.support.amplitude != 0 && !space.given)
+      throw InputError(stop_pointer(i, "/to"),
+                       fmt::format("stop {} is between two points of a structure whose clamp moves; expected an "
+                                   "amplitude of 0, or a stop on the ground",
+                                   stop.name));
+    rows.push_back(stop_row(scene, space, stop, i));
+    if (rows.back().free.empty())
+      throw InputError(stop_pointer(i, "/at"),
+                       stop.to
+                           ? fmt::format("stop {} joins two held dofs: nothing there can move", stop.name)
+                           : fmt::format("stop {} is where the structure is held: nothing there can move", stop.name));
+    for (std::size_t j = 0; j < i; ++j)
+      if (rows[j].free == rows[i].free && rows[j].held == rows[i].held)
+        throw InputError(stop_pointer(i, "/at"), fmt::format("stops {} and {} are the same row: use one with both "
+                                                             "bounds",
+                                                             scene.stops.named[j].name, stop.name));
+  }
+}
+
+void check_named_start(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond) {
+  const ContactPoints points = contact_points(scene, space, 1);
+  Eigen::VectorXd start(points.rows.rows());
+  for (std::size_t i = 0; i < points.x.size(); ++i) {
+    const NamedStop& stop = scene.stops.named[i];
+    start[static_cast<Eigen::Index>(i)] =
+        scene.initial.displacement(*stop.at.x) - (stop.to ? scene.initial.displacement(*stop.to->x) : 0);
+  }
+  check_between_stops(points.x, start, points.lower, points.upper, "/scene/initial/displacement",
+                      "the initial displacement", beyond, points.names);
+}
+
+Eigen::VectorXd initial_dofs(const AssembledStructure& structure, const InitialSpec& initial, double DofState::*value) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(structure.dofs());
+  for (const DofState& state : initial.dofs)
+    if (const int free = structure.where[static_cast<std::size_t>(state.dof) - 1].free; free >= 0)
+      out[free] = state.*value;
+  return out;
+}
+
+void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond) {
+  if (scene.support.amplitude != 0)
+    throw InputError("/scene/support/amplitude", "an assembled structure has no clamp; expected an amplitude of 0");
+  if (scene.stops.lower || scene.stops.upper)
+    throw InputError("/scene/stops", "an assembled structure has no x; expected a list of stops with name and place");
+  if (!scene.load.formula.is_zero())
+    throw InputError("/scene/load",
+                     "an assembled structure has no x; expected a list of entries {\"at\": place, \"force\": F(t)}");
+  for (const auto& [formula, key] :
+       {std::pair(&scene.initial.displacement, "displacement"), {&scene.initial.velocity, "velocity"}})
+    if (!formula->is_zero())
+      throw InputError(fmt::format("/scene/initial/{}", key),
+                       "an assembled structure has no x; expected 0, or the file of an initial state");
+  for (std::size_t k = 0; k < scene.load.terms.size(); ++k) {
+    const LoadTerm& term = scene.load.terms[k];
+    const std::string pointer = fmt::format("/scene/load/{}", k);
+    if (!term.force)
+      throw InputError(pointer + "/shape",
+                       "an assembled structure has no x; expected {\"at\": place, \"force\": F(t)}");
+    if (!term.place)
+      throw InputError(pointer + "/at",
+                       "expected the place of the force: node and component, node and direction, or "
+                       "dofs");
+    if (place_row(scene, space, *term.place, pointer + "/at").free.empty())
+      throw InputError(pointer + "/at", "the force acts where the structure is held: nothing there can move");
+    term.history(0, 0);
+  }
+  tip_row(scene, space);
+  const AssembledStructure& structure = *assembled_of(scene);
+  for (const DofState& state : scene.initial.dofs)
+    if (structure.where[static_cast<std::size_t>(state.dof) - 1].free < 0 &&
+        (state.displacement != 0 || state.velocity != 0))
+      throw InputError("/scene/initial/file",
+                       fmt::format("dof {} is held, and would begin at {:.6g} with {:.6g}; expected 0 and 0", state.dof,
+                                   state.displacement, state.velocity));
+  const ContactPoints points = contact_points(scene, space, 1);
+  const Eigen::VectorXd start = points.rows * initial_dofs(structure, scene.initial, &DofState::displacement);
+  check_between_stops(points.x, start, points.lower, points.upper,
+                      scene.initial.dofs.empty() ? "/scene/stops" : "/scene/initial/file", "the initial displacement",
+                      beyond, points.names);
+}
+
+}  // namespace ricochet

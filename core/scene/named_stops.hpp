@@ -1,0 +1,59 @@
+#pragma once
+#include <Eigen/Core>
+#include <ricochet/contract/contact_law.hpp>
+#include <ricochet/contract/mass_strategy.hpp>
+#include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/place.hpp>
+#include <ricochet/scene/scene.hpp>
+#include <string>
+#include <vector>
+
+/// \file
+/// Places of a structure as rows, and where its stops act.
+namespace ricochet {
+
+/// The displacement at a place, relative to the clamp that moves a beam or a bar. Throws InputError below `pointer` for
+/// a place that the structure does not have.
+PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place,
+                   const std::string& pointer);
+
+/// The row of a stop: that of `at` less that of `to`. `number`: of the stop in its list, for pointers.
+PlaceRow stop_row(const SceneSpec& scene, const FiniteElementSpace& space, const NamedStop& stop, std::size_t number);
+
+/// The contact points of a scene.
+struct ContactPoints {
+  std::vector<double> x;           ///< m
+  std::vector<std::string> names;  ///< of the stops; empty where they have none
+  Eigen::VectorXd lower, upper;    ///< m; ±∞ where absent
+  SparseRows rows;                 ///< H, m × n
+  Eigen::MatrixXd on_supports;     ///< m × r: weights of the displacements of supports, beside H ψ
+};
+ContactPoints contact_points(const SceneSpec& scene, const FiniteElementSpace& space, int elements);
+
+/// Where the stops of a list stand along a beam or a bar, m; 0 for places without x.
+std::vector<double> named_positions(const StopsSpec& stops);
+
+/// The row of the displacement shown to people (1 × n).
+SparseRows tip_row(const SceneSpec& scene, const FiniteElementSpace& space);
+
+/// What the tip of matrices that are given stands for: "stop a", "load 0"; empty for any other structure, and where the
+/// study says it.
+std::string tip_choice(const SceneSpec& scene);
+
+/// Throws InputError for names that are none or stand twice, bounds that are missing or cross, places that are not
+/// there, stops at which nothing can move, two stops on one row, a stop between two points of a structure whose clamp
+/// moves.
+void check_named_stops(const SceneSpec& scene, const FiniteElementSpace& space);
+
+/// Throws BeyondStop where the formula of the initial displacement of a beam, a bar or an oscillator is beyond a stop
+/// of the list and nothing pushes back.
+void check_named_start(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond);
+
+/// What the study may not say of matrices that are given: positions x, formulas in x, a clamp that moves, a held dof
+/// that begins elsewhere, an initial state beyond a stop where nothing pushes back.
+void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond);
+
+/// Displacements or velocities of the free dofs at t = 0 (n).
+Eigen::VectorXd initial_dofs(const AssembledStructure& structure, const InitialSpec& initial, double DofState::*value);
+
+}  // namespace ricochet

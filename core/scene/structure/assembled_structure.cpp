@@ -1,0 +1,303 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ricochet/contract/errors.hpp>
+#include <ricochet/kernels/sparse_ldlt.hpp>
+#include <ricochet/scene/files/text_file.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
+#include <ricochet/scene/structure/band_order.hpp>
+
+namespace ricochet {
+namespace {
+
+void check_symmetry(const FileMatrix& read, const std::string& name, const DofTable& table,
+                    std::vector<std::string>& notes) {
+  if (read.asymmetry == 0) return;
+  const auto dof = [&](int number) { return table.dofs[static_cast<std::size_t>(number) - 1].text(); };
+  if (read.asymmetry > most_asymmetry)
+    throw FileError(fmt::format("{} is not symmetric: entry {}, {} is {:.6g}, entry {}, {} is {:.6g} ({}, {})", name,
+                                read.row, read.column, read.there, read.column, read.row, read.across, dof(read.row),
+                                dof(read.column)));
+  notes.push_back(fmt::format("{} is symmetric to {:.1e} of its largest entry: the mean of both triangles is used",
+                              name, read.asymmetry));
+}
+
+/// ℓ T A T, T = 1/ℓ on displacements and 1 on rotations.
+SparseMatrix in_metres(SparseMatrix matrix, const DofTable& table, double unit) {
+  if (unit == 1) return matrix;
+  Eigen::VectorXd scale(matrix.rows());
+  for (const DofName& one : table.dofs) {
+    if (!one.translation() && !one.rotation())
+      throw FileError(
+          fmt::format("{}: the component {} of dof {} has no known unit; with length_unit {:g} expected ux, "
+                      "uy, uz, rx, ry or rz",
+                      table.name, one.component, one.dof, unit));
+    scale[one.dof - 1] = one.translation() ? 1 / unit : 1.0;
+  }
+  SparseMatrix scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
+  scaled *= unit;
+  return scaled;
+}
+
+/// Rows and columns of a matrix, in this order.
+SparseMatrix picked(const SparseMatrix& matrix, const std::vector<int>& rows, const std::vector<int>& columns) {
+  std::vector<int> place(static_cast<std::size_t>(matrix.rows()), -1);
+  for (std::size_t i = 0; i < rows.size(); ++i) place[static_cast<std::size_t>(rows[i])] = static_cast<int>(i);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t j = 0; j < columns.size(); ++j)
+    for (SparseMatrix::InnerIterator it(matrix, columns[j]); it; ++it)
+      if (const int row = place[static_cast<std::size_t>(it.row())]; row >= 0)
+        entries.emplace_back(row, static_cast<int>(j), it.value());
+  SparseMatrix out(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
+Eigen::VectorXd row_sizes(const SparseMatrix& matrix) {
+  Eigen::VectorXd size = Eigen::VectorXd::Zero(matrix.rows());
+  for (int j = 0; j < matrix.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(matrix, j); it; ++it)
+      size[it.row()] = std::max(size[it.row()], std::abs(it.value()));
+  return size;
+}
+
+/// The most negative pivot of A + 1e-11 of its own scale, in the units of A, and its row; nothing where none is.
+struct NegativePivot {
+  int row = 0;
+  double value = 0;
+};
+std::optional<NegativePivot> negative_pivot(const SparseMatrix& matrix) {
+  constexpr double round_off = 1e-11;
+  const Eigen::VectorXd sizes = row_sizes(matrix);
+  std::optional<NegativePivot> worst;
+  const auto take = [&](int row, double value) {
+    if (value < 0 && (!worst || value < worst->value)) worst = NegativePivot{row, value};
+  };
+  // A semidefinite matrix has no entry beside a diagonal that is not positive.
+  const Eigen::VectorXd diagonal = matrix.diagonal();
+  for (int i = 0; i < sizes.size(); ++i)
+    if (diagonal[i] <= 0 && sizes[i] > 0) take(i, diagonal[i] < 0 ? diagonal[i] : -sizes[i]);
+  if (worst) return worst;
+  Eigen::VectorXd scale = diagonal;
+  for (double& one : scale) one = one > 0 ? 1 / std::sqrt(one) : 1.0;
+  SparseMatrix shift(matrix.rows(), matrix.cols());
+  shift.setIdentity();
+  const SparseMatrix scaled = SparseMatrix(scale.asDiagonal() * matrix * scale.asDiagonal()) + round_off * shift;
+  SparseLdlt ldlt;
+  if (!ldlt.factorise(scaled)) return std::nullopt;
+  for (int i = 0; i < ldlt.size(); ++i) {
+    const int row = ldlt.order()[static_cast<std::size_t>(i)];
+    take(row, ldlt.pivot()[static_cast<std::size_t>(i)] / (scale[row] * scale[row]));
+  }
+  return worst;
+}
+
+class StructureMaker {
+ public:
+  explicit StructureMaker(const AssembledFiles& files) : files_(files) {
+    out_.stiffness_name = files.stiffness_name;
+    out_.mass_name = files.mass_name;
+    out_.table_name = files.table.name;
+  }
+
+  AssembledStructure make() {
+    check_symmetry(files_.stiffness, files_.stiffness_name, files_.table, out_.notes);
+    check_symmetry(files_.mass, files_.mass_name, files_.table, out_.notes);
+    const SparseMatrix K = in_metres(files_.stiffness.matrix, files_.table, files_.length_unit),
+                       M = in_metres(files_.mass.matrix, files_.table, files_.length_unit);
+    list_dofs(K, M);
+    out_.stiffness = picked(K, free_, free_);
+    out_.mass = picked(M, free_, free_);
+    out_.half_width = std::max(half_bandwidth(out_.stiffness), half_bandwidth(out_.mass));
+    check_matrices();
+    find_static_modes(picked(K, free_, held_), picked(M, free_, held_));
+    return std::move(out_);
+  }
+
+ private:
+  const DofName& dof(int index) const { return files_.table.dofs[static_cast<std::size_t>(index)]; }
+  std::string dof_text(int row) const {
+    const DofName& one = out_.names[static_cast<std::size_t>(row)];
+    return fmt::format("dof {} ({})", one.dof, one.text());
+  }
+
+  void list_dofs(const SparseMatrix& K, const SparseMatrix& M) {
+    out_.where.resize(files_.table.dofs.size());
+    for (const DofName& one : files_.table.dofs) {
+      AssembledStructure::Node& node = out_.nodes[one.node];
+      node.dofs[one.component] = one.dof;
+      for (std::size_t axis = 0; axis < 3; ++axis) node.place[axis] = files_.length_unit * one.place[axis];
+      if (one.held.empty()) {
+        free_.push_back(one.dof - 1);
+        continue;
+      }
+      held_.push_back(one.dof - 1);
+      if (one.held == "fixed") continue;
+      auto found = std::find(out_.supports.begin(), out_.supports.end(), one.held);
+      if (found == out_.supports.end()) found = out_.supports.insert(found, one.held);
+      if (!one.rotation())
+        out_.where[static_cast<std::size_t>(one.dof) - 1].support = static_cast<int>(found - out_.supports.begin());
+    }
+    out_.held_dofs = static_cast<int>(held_.size());
+    if (free_.empty())
+      throw FileError(fmt::format("{} holds all of its {} dofs; expected one that can move", files_.table.name,
+                                  files_.table.dofs.size()));
+    const SparseMatrix pattern = picked(K, free_, free_).cwiseAbs() + SparseMatrix(picked(M, free_, free_).cwiseAbs());
+    std::vector<int> order;
+    for (const int row : narrow_order(pattern)) order.push_back(free_[static_cast<std::size_t>(row)]);
+    free_ = std::move(order);
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      DofName one = dof(free_[i]);
+      for (double& x : one.place) x *= files_.length_unit;
+      out_.names.push_back(one);
+      out_.where[static_cast<std::size_t>(free_[i])].free = static_cast<int>(i);
+    }
+  }
+
+  void check_matrices() {
+    const Eigen::VectorXd stiff = row_sizes(out_.stiffness), heavy = row_sizes(out_.mass);
+    for (int i = 0; i < stiff.size(); ++i)
+      if (stiff[i] == 0 && heavy[i] == 0)
+        throw FileError(fmt::format("nothing holds or moves {}: its rows of {} and {} are zero", dof_text(i),
+                                    files_.stiffness_name, files_.mass_name));
+    if (const auto found = negative_pivot(out_.mass))
+      throw FileError(fmt::format("{} is not positive semidefinite: pivot {:.3g} at {}", files_.mass_name, found->value,
+                                  dof_text(found->row)));
+    if (const auto found = negative_pivot(out_.stiffness))
+      throw FileError(fmt::format("{} has a negative pivot {:.3g} at {}: expected a structure in stable equilibrium",
+                                  files_.stiffness_name, found->value, dof_text(found->row)));
+    SparseLdlt ldlt;
+    out_.definite = ldlt.factorise(out_.stiffness);
+    if (out_.definite) return;
+    const double sigma = (heavy.maxCoeff() > 0 && stiff.maxCoeff() > 0) ? stiff.maxCoeff() / heavy.maxCoeff() : 1.0;
+    if (!ldlt.factorise(out_.stiffness + sigma * out_.mass))
+      throw FileError(fmt::format("{} and {} have a motion that neither holds nor moves: {}", files_.stiffness_name,
+                                  files_.mass_name, ldlt.reason()));
+  }
+
+  void find_static_modes(const SparseMatrix& K_held, const SparseMatrix& M_held) {
+    const auto n = static_cast<Eigen::Index>(free_.size()), r = static_cast<Eigen::Index>(out_.supports.size());
+    out_.static_modes = out_.support_loads = Eigen::MatrixXd::Zero(n, r);
+    if (r == 0) return;
+    SparseLdlt ldlt;
+    if (!ldlt.factorise(out_.stiffness))
+      throw FileError(
+          fmt::format("{} does not hold the free dofs, so the support {} has no static mode; expected its "
+                      "dofs fixed, or a structure without rigid motion",
+                      files_.stiffness_name, out_.supports.front()));
+    for (Eigen::Index j = 0; j < r; ++j) {
+      Eigen::VectorXd moved = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held_.size()));
+      for (std::size_t i = 0; i < held_.size(); ++i)
+        if (out_.where[static_cast<std::size_t>(held_[i])].support == j) moved[static_cast<Eigen::Index>(i)] = 1;
+      const Eigen::VectorXd right = -(K_held * moved);
+      Eigen::VectorXd mode(n), step(n);
+      ldlt.solve(right.data(), mode.data());
+      // One refinement: the residual of a slender structure is then round-off of its own entries.
+      const Eigen::VectorXd residual = right - out_.stiffness * mode;
+      ldlt.solve(residual.data(), step.data());
+      mode += step;
+      out_.static_modes.col(j) = mode;
+      out_.support_loads.col(j) = out_.mass * mode + M_held * moved;
+    }
+  }
+
+  const AssembledFiles& files_;
+  AssembledStructure out_;
+  std::vector<int> free_, held_;  // of the table, from 0
+};
+
+std::vector<std::pair<int, double>> gathered(std::vector<std::pair<int, double>> entries) {
+  std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::pair<int, double>> out;
+  for (const auto& [index, value] : entries)
+    if (!out.empty() && out.back().first == index)
+      out.back().second += value;
+    else
+      out.emplace_back(index, value);
+  std::erase_if(out, [](const auto& entry) { return entry.second == 0; });
+  return out;
+}
+
+std::string components_of(const AssembledStructure::Node& node) {
+  std::vector<std::string> names;
+  for (const auto& [component, ignored] : node.dofs) names.push_back(component);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+PlaceRow difference(const PlaceRow& a, const PlaceRow& b) {
+  PlaceRow out = a;
+  for (const auto& [dof, value] : b.free) out.free.emplace_back(dof, -value);
+  for (const auto& [support, value] : b.held) out.held.emplace_back(support, -value);
+  out.free = gathered(std::move(out.free));
+  out.held = gathered(std::move(out.held));
+  return out;
+}
+
+PlaceRow AssembledStructure::row(const Place& place, const std::string& pointer) const {
+  if (place.x)
+    throw InputError(pointer,
+                     "x has no meaning for matrices that are given; expected node and component, node and "
+                     "direction, or dofs");
+  PlaceRow out;
+  const auto add = [&](int dof, double weight) {
+    const Where& at = where[static_cast<std::size_t>(dof) - 1];
+    if (at.free >= 0) out.free.emplace_back(at.free, weight);
+    if (at.support >= 0) out.held.emplace_back(at.support, weight);
+  };
+  if (!place.dofs.empty()) {
+    for (std::size_t i = 0; i < place.dofs.size(); ++i) {
+      const auto [dof, weight] = place.dofs[i];
+      if (dof < 1 || dof > static_cast<int>(where.size()))
+        throw InputError(fmt::format("{}/dofs/{}/dof", pointer, i),
+                         fmt::format("dof {} of a structure of {}; expected 1 to {}", dof, where.size(), where.size()));
+      add(dof, weight);
+      for (const auto& [name, node] : nodes)
+        if (i == 0)
+          for (const auto& [component, number] : node.dofs)
+            if (number == dof) out.x = node.place[0];
+    }
+  } else {
+    const auto found = nodes.find(place.node);
+    if (found == nodes.end()) {
+      std::vector<std::string> names;
+      for (const auto& [name, ignored] : nodes) names.push_back(name);
+      const std::string nearest = nearest_name(place.node, names);
+      throw InputError(pointer + "/node",
+                       fmt::format("\"{}\": no such node{}", shortened(place.node),
+                                   nearest.empty() ? fmt::format("; {} has {} nodes", table_name, nodes.size())
+                                                   : "; nearest " + nearest));
+    }
+    const Node& node = found->second;
+    out.x = node.place[0];
+    const auto component = [&](const std::string& name, double weight, const char* key) {
+      const auto dof = node.dofs.find(name);
+      if (dof == node.dofs.end())
+        throw InputError(fmt::format("{}/{}", pointer, key),
+                         fmt::format("node {} has {} and no {}", place.node, components_of(node), shortened(name)));
+      add(dof->second, weight);
+    };
+    if (place.direction.empty()) {
+      component(place.component, 1, "component");
+    } else {
+      double length = 0;
+      for (const double one : place.direction) length = std::hypot(length, one);
+      if (!(length > 0) || !std::isfinite(length))
+        throw InputError(pointer + "/direction", "the direction has no length; expected three numbers, not all 0");
+      static const char* const axes[] = {"ux", "uy", "uz"};
+      for (std::size_t axis = 0; axis < place.direction.size() && axis < 3; ++axis)
+        if (place.direction[axis] != 0) component(axes[axis], place.direction[axis] / length, "direction");
+    }
+  }
+  out.free = gathered(std::move(out.free));
+  out.held = gathered(std::move(out.held));
+  return out;
+}
+
+AssembledStructure assemble_structure(const AssembledFiles& files) {
+  return StructureMaker(files).make();
+}
+
+}  // namespace ricochet

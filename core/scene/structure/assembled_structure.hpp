@@ -1,0 +1,62 @@
+#pragma once
+#include <Eigen/Core>
+#include <map>
+#include <ricochet/scene/files/dof_table.hpp>
+#include <ricochet/scene/files/matrix_market.hpp>
+#include <ricochet/scene/place.hpp>
+#include <string>
+#include <vector>
+
+namespace ricochet {
+
+/// What an assembled structure is made of: matrices over all dofs of the table, held ones too.
+struct AssembledFiles {
+  std::string stiffness_name, mass_name;  ///< of files, for sentences
+  FileMatrix stiffness, mass;             ///< K (N/m), M (kg)
+  DofTable table;
+  double length_unit = 1;  ///< m: K and M of a consistent mm–t–s model have 0.001
+};
+
+/// A structure given by its matrices, held dofs eliminated: n free dofs, r supports that may move,
+///
+///     M q'' + K q = F − Σ_j s_j φ_j'',     w = q + Σ_j ψ_j φ_j,     K ψ_j = −K_fs e_j,     s_j = M ψ_j + M_fs e_j
+///
+/// with e_j = 1 on the displacements that support j holds, 0 on its rotations. Dofs stand in the order that makes the
+/// band narrow (reverse Cuthill–McKee, where it is narrower than the order of the file).
+struct AssembledStructure {
+  std::string stiffness_name, mass_name, table_name;
+  int held_dofs = 0;
+  bool definite = true;        ///< whether K is positive definite: no rigid motion
+  int half_width = 0;          ///< largest |i − j| of the entries of K and M
+  SparseMatrix stiffness;      ///< K, n × n, both triangles
+  SparseMatrix mass;           ///< M, n × n, both triangles, positive semidefinite
+  std::vector<DofName> names;  ///< of the free dofs, in their order here; places in m
+  std::vector<std::string> supports;
+  Eigen::MatrixXd static_modes;   ///< ψ, n × r
+  Eigen::MatrixXd support_loads;  ///< s (kg), n × r
+  std::vector<std::string> notes;
+
+  /// Of a dof of the file, from 1: its number here where it is free, else −1 and the number of its support, or −1 where
+  /// it is fixed.
+  struct Where {
+    int free = -1, support = -1;
+  };
+  std::vector<Where> where;
+  /// Dofs of each node of the file, by component, numbered from 1; its place.
+  struct Node {
+    std::map<std::string, int> dofs;
+    std::array<double, 3> place{};
+  };
+  std::map<std::string, Node> nodes;
+
+  int dofs() const { return static_cast<int>(names.size()); }
+  /// The displacement at a place. Throws InputError, its pointer below `pointer`, for a place that is not there, with
+  /// the nearest name.
+  PlaceRow row(const Place& place, const std::string& pointer) const;
+};
+
+/// Checks the matrices and makes the structure. Throws FileError for an asymmetry above 1e-10, an indefinite matrix, a
+/// dof that nothing holds or moves, components without a unit of length, supports of a structure that they do not hold.
+AssembledStructure assemble_structure(const AssembledFiles& files);
+
+}  // namespace ricochet

@@ -1,0 +1,100 @@
+#include "runners/study/check_place.hpp"
+
+#include <algorithm>
+
+#include "runners/json/json_text.hpp"
+
+namespace ricochet {
+namespace {
+
+const char* const place_forms =
+    R"({"x": m}, {"node": name, "component": name}, {"node": name, "direction": [3 numbers]} or {"dofs": [{"dof", "weight"}]})";
+
+void known_keys(const Json& object, const std::vector<std::string>& keys, const std::string& pointer) {
+  for (const auto& [key, ignored] : object.items())
+    if (std::find(keys.begin(), keys.end(), key) == keys.end())
+      throw InputError(pointer_to(pointer, key), "unknown key \"" + shortened(key) + "\"" + did_you_mean(key, keys) +
+                                                     " (keys here: " + quoted_list(keys) + ")");
+}
+
+double number_at(const Json& value, const std::string& pointer) {
+  if (!value.is_number()) throw InputError(pointer, "expected a number, found " + quote(value));
+  return value.get<double>();
+}
+
+std::string word_at(const Json& value, const std::string& pointer) {
+  if (!value.is_string()) throw InputError(pointer, "expected a name, found " + quote(value));
+  return value.get<std::string>();
+}
+
+Json check_dofs(const Json& list, const std::string& pointer) {
+  if (!list.is_array() || list.empty())
+    throw InputError(pointer, R"(expected a list of {"dof", "weight"}, found )" + quote(list));
+  Json out = Json::array();
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string here = pointer_to(pointer, i);
+    if (!list[i].is_object()) throw InputError(here, R"(expected {"dof", "weight"}, found )" + quote(list[i]));
+    known_keys(list[i], {"dof", "weight"}, here);
+    const auto dof = list[i].find("dof");
+    if (dof == list[i].end() || !dof->is_number_integer())
+      throw InputError(pointer_to(here, "dof"), "expected a whole number, that of the dof in its table");
+    const auto weight = list[i].find("weight");
+    out.push_back(
+        {{"dof", *dof}, {"weight", weight == list[i].end() ? 1.0 : number_at(*weight, pointer_to(here, "weight"))}});
+  }
+  return out;
+}
+
+}  // namespace
+
+Json check_place(const Field& field, const Json& value, const std::string& pointer) {
+  if (value.is_null() && field.nullable) return value;
+  if (value.is_number() && field.plain) return value.get<double>();
+  if (!value.is_object())
+    throw InputError(pointer, std::string("expected ") + (field.plain ? "x in m, or a place: " : "a place: ") +
+                                  place_forms + ", found " + quote(value));
+  known_keys(value, {"x", "node", "component", "direction", "dofs"}, pointer);
+  const auto has = [&](const char* key) { return value.contains(key); };
+  const int ways = has("x") + has("node") + has("dofs");
+  if (ways != 1 || (has("node") && has("component") == has("direction")) ||
+      (!has("node") && (has("component") || has("direction"))))
+    throw InputError(pointer, std::string("expected one of ") + place_forms + ", found " + quote(value));
+  if (has("x")) return {{"x", number_at(value["x"], pointer_to(pointer, "x"))}};
+  if (has("dofs")) return {{"dofs", check_dofs(value["dofs"], pointer_to(pointer, "dofs"))}};
+  Json out = {{"node", word_at(value["node"], pointer_to(pointer, "node"))}};
+  if (has("component")) {
+    out["component"] = word_at(value["component"], pointer_to(pointer, "component"));
+    return out;
+  }
+  const Json& direction = value["direction"];
+  const std::string here = pointer_to(pointer, "direction");
+  if (!direction.is_array() || direction.size() != 3)
+    throw InputError(here, "expected three numbers, found " + quote(direction));
+  for (std::size_t i = 0; i < 3; ++i) out["direction"].push_back(number_at(direction[i], pointer_to(here, i)));
+  return out;
+}
+
+Json place_schema(const Field& field) {
+  const Json number = {{"type", "number"}}, word = {{"type", "string"}};
+  const Json dof = {{"type", "object"},
+                    {"properties", {{"dof", {{"type", "integer"}, {"minimum", 1}}}, {"weight", number}}},
+                    {"required", {"dof"}},
+                    {"additionalProperties", false}};
+  const Json place = {{"properties",
+                       {{"x", number},
+                        {"node", word},
+                        {"component", word},
+                        {"direction", {{"type", "array"}, {"items", number}, {"minItems", 3}, {"maxItems", 3}}},
+                        {"dofs", {{"type", "array"}, {"items", dof}, {"minItems", 1}}}}},
+                      {"additionalProperties", false},
+                      {"oneOf", Json::array({{{"required", {"x"}}},
+                                             {{"required", {"dofs"}}},
+                                             {{"required", {"node", "component"}}},
+                                             {{"required", {"node", "direction"}}}})}};
+  Json types = {"object"};
+  if (field.plain) types.push_back("number");
+  if (field.nullable) types.push_back("null");
+  return {{"type", types}, {"if", {{"type", "object"}}}, {"then", place}};
+}
+
+}  // namespace ricochet

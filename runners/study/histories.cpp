@@ -1,0 +1,219 @@
+#include "runners/study/histories.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ricochet/scene/history/random_load.hpp>
+
+#include "runners/json/json_text.hpp"
+#include "runners/study/study_files.hpp"
+
+namespace ricochet {
+namespace {
+
+using namespace keys;
+
+std::vector<Field> table_fields(const char* unit, std::vector<std::string> between, std::vector<std::string> beyond) {
+  const std::string value = std::string("Column of the values, in ") + unit + ".";
+  const std::string first = between.front();
+  return {of_form(Field::Form::text, "file", std::nullopt, "CSV with a header, in the folder of the study."),
+          of_form(Field::Form::text, "time", Json("t"), "Column of the instants, in s."),
+          of_form(Field::Form::text, "value", std::nullopt, value.c_str()),
+          single(real("factor", "1", any, 1.0, "What the values are multiplied by.")),
+          word("interpolation", std::move(between), first, "Between entries: straight, a natural spline, or steps."),
+          word("before", beyond, "error", "Before the first entry."),
+          word("after", beyond, "error", "After the last entry.")};
+}
+
+// A formula in t, sampled: motions need what belongs together of displacement, velocity and acceleration.
+ObjectForm sampled(const char* unit) {
+  ObjectForm keys;
+  keys.fields = {single(formula("formula", unit, "t", false, std::nullopt, "In t; taken at the instants.")),
+                 single(real("every", "s", positive, std::nullopt, "Between instants.")),
+                 single(real("until", "s", positive, std::nullopt, "The last instant.")),
+                 word("after", {"error", "zero", "hold"}, "error", "After it.")};
+  return keys;
+}
+
+Field history(const char* key, const char* unit, const char* text, ObjectForm table) {
+  ObjectForm either;
+  either.ways = {std::move(table), sampled(unit)};
+  Field field = object(key, std::nullopt, text, std::move(either));
+  field.spec.unit = unit;
+  return field;
+}
+
+ObjectForm start_form() {
+  ObjectForm keys;
+  keys.fields = {single(real("displacement", "m", any, 0.0, "φ(0).")),
+                 single(real("velocity", "m/s", any, 0.0, "φ'(0)."))};
+  return keys;
+}
+
+TimeTable::Beyond beyond(const std::string& word) {
+  if (word == "zero") return TimeTable::Beyond::zero;
+  return word == "hold" ? TimeTable::Beyond::hold : TimeTable::Beyond::error;
+}
+
+TimeTable::Between between(const std::string& word) {
+  if (word == "cubic") return TimeTable::Between::cubic;
+  return word == "step" ? TimeTable::Between::step : TimeTable::Between::linear;
+}
+
+TimeTable read_table(const Json& json, const std::string& pointer, StudyFiles* files) {
+  if (!files) throw InputError(pointer + "/file", "a scene that names files stands in a study alone");
+  TimeTable table = files->table(json, pointer);
+  const double factor = json.at("factor").get<double>();
+  for (double& value : table.values) value *= factor;
+  table.between = between(json.at("interpolation").get<std::string>());
+  table.before = beyond(json.at("before").get<std::string>());
+  table.after = beyond(json.at("after").get<std::string>());
+  table.check(pointer);
+  return table;
+}
+
+TimeTable sample(const Json& json, const std::string& pointer, TimeTable::Between between) {
+  const Json& given = json.at("formula");
+  const Formula formula =
+      given.is_number() ? Formula(given.get<double>()) : Formula(given.get<std::string>(), pointer + "/formula", "t");
+  const double every = json.at("every").get<double>(), until = json.at("until").get<double>();
+  constexpr double most = 1e7;
+  if (!(until / every >= 1) || until / every > most)
+    throw InputError(pointer + "/every",
+                     fmt::format("{:.6g} s of instants {:.6g} s apart are {:.3g}; expected 1 to {:g}", until, every,
+                                 until / every, most));
+  TimeTable table;
+  table.name = given.is_number() ? given.dump() : given.get<std::string>();
+  const auto count = static_cast<long long>(std::ceil(until / every - 1e-9));
+  for (long long i = 0; i <= count; ++i) {
+    const double t = i == count ? until : static_cast<double>(i) * every;
+    table.times.push_back(t);
+    table.values.push_back(formula(0, t));
+  }
+  table.between = between;
+  table.after = beyond(json.at("after").get<std::string>());
+  return table;
+}
+
+Formula read_spectrum(const Json& json, const std::string& pointer, long long seed, std::size_t number) {
+  SpectrumSpec spectrum;
+  const Json& density = json.at("formula");
+  const std::string text = density.is_number() ? density.dump() : density.get<std::string>();
+  const Formula formula =
+      density.is_number() ? Formula(density.get<double>()) : Formula(text, pointer + "/formula", "f");
+  spectrum.density = [formula](double f) { return formula.value(0, f); };
+  spectrum.from = json.at("from").get<double>();
+  spectrum.to = json.at("to").get<double>();
+  spectrum.lines = json.at("lines").get<int>();
+  spectrum.seed = static_cast<std::uint64_t>(seed);
+  spectrum.load = number;
+  spectrum.pointer = pointer;
+  const auto load = std::make_shared<const RandomLoad>(spectrum);
+  return {[load](double t) { return load->value(t); }, fmt::format("random, S(f) = {}", text), pointer};
+}
+
+}  // namespace
+
+ObjectForm load_history(const char* unit) {
+  ObjectForm table;
+  table.fields = table_fields(unit, {"linear", "cubic", "step"}, {"error", "zero", "hold"});
+  ObjectForm spectrum;
+  const std::string density = std::string("One-sided S(f), (") + unit + ")²/Hz, f in Hz.";
+  spectrum.fields = {of_form(Field::Form::formula, "formula", std::nullopt, density.c_str()),
+                     single(real("from", "Hz", non_negative, std::nullopt, "Where the first band begins.")),
+                     single(real("to", "Hz", positive, std::nullopt, "Where the last band ends.")),
+                     integer("lines", {1, 1000000, false, false}, std::nullopt, "Equal bands, a cosine in each.")};
+  spectrum.fields.front().variables = "f";
+  ObjectForm random;
+  random.fields = {object("psd", std::nullopt, "Random with this spectrum and the scene's seed.", spectrum)};
+  ObjectForm either;
+  either.ways = {table, random};
+  return either;
+}
+
+ObjectForm motion_form() {
+  ObjectForm acceleration;
+  acceleration.fields = table_fields("m/s²", {"linear"}, {"error", "zero", "hold"});
+  ObjectForm displacement;
+  displacement.fields = table_fields("m", {"cubic"}, {"error", "hold"});
+  ObjectForm by_acceleration;
+  by_acceleration.fields = {
+      history("acceleration", "m/s²", "φ''(t), straight between entries, integrated exactly.", acceleration),
+      object("start", Json::object(), "φ and φ' at t = 0.", start_form())};
+  ObjectForm by_displacement;
+  by_displacement.fields = {history("displacement", "m", "φ(t), a natural spline through the entries.", displacement)};
+  Field supports =
+      of_form(Field::Form::words, "supports", Json("all"), "Names of the supports that move so, or \"all\".");
+  supports.spec.type = ParameterSpec::Type::word;
+  ObjectForm keys;
+  keys.fields = {std::move(supports)};
+  keys.ways = {by_acceleration, by_displacement};
+  return keys;
+}
+
+Formula read_load_history(const Json& json, const std::string& pointer, StudyFiles* files, long long seed,
+                          std::size_t number, std::shared_ptr<const TimeTable>& table) {
+  if (json.contains("psd")) return read_spectrum(json.at("psd"), pointer + "/psd", seed, number);
+  table = std::make_shared<const TimeTable>(read_table(json, pointer, files));
+  const auto pieces = std::make_shared<const PiecewiseCubic>(PiecewiseCubic::interpolate(*table));
+  return {[pieces](double t) { return pieces->value(t); }, table->name, pointer};
+}
+
+MotionSpec read_motion(const Json& json, const std::string& pointer, StudyFiles* files) {
+  MotionSpec motion;
+  const Json& supports = json.at("supports");
+  if (supports != Json::array({all_supports})) motion.supports = supports.get<std::vector<std::string>>();
+  const bool accelerates = json.contains("acceleration");
+  const std::string key = accelerates ? "acceleration" : "displacement", here = pointer + "/" + key;
+  const Json& given = json.at(key);
+  const TimeTable::Between way = accelerates ? TimeTable::Between::linear : TimeTable::Between::cubic;
+  motion.table = std::make_shared<const TimeTable>(given.contains("file") ? read_table(given, here, files)
+                                                                          : sample(given, here, way));
+  motion.text = motion.table->name;
+  motion.accelerates = accelerates;
+  if (accelerates) {
+    const Json& start = json.at("start");
+    motion.history = std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(
+        *motion.table, start.at("displacement").get<double>(), start.at("velocity").get<double>()));
+  } else {
+    motion.history = std::make_shared<const PiecewiseCubic>(PiecewiseCubic::interpolate(*motion.table));
+  }
+  return motion;
+}
+
+void check_tables(const SceneSpec& scene, double duration) {
+  const auto check = [&](const std::shared_ptr<const TimeTable>& table, const std::string& pointer) {
+    if (!table || table->covers(0, duration, 1e-9 * duration)) return;
+    if (!table->covers(0, 0, 0) && table->times.front() > 0)
+      throw InputError(pointer + "/before", fmt::format("{} begins at {:.9g} s, and the run at 0: expected \"zero\" or "
+                                                        "\"hold\"",
+                                                        table->name, table->times.front()));
+    throw InputError(pointer + "/after", fmt::format("{} ends at {:.9g} s, the run at {:.9g} s: expected \"zero\" or "
+                                                     "\"hold\", or a duration of at most {:.9g} s",
+                                                     table->name, table->times.back(), duration, table->times.back()));
+  };
+  for (std::size_t i = 0; i < scene.load.terms.size(); ++i)
+    check(scene.load.terms[i].table, fmt::format("/scene/load/{}/{}", i, scene.load.terms[i].force ? "force" : "time"));
+  for (std::size_t i = 0; i < scene.motions.size(); ++i)
+    check(scene.motions[i].table,
+          fmt::format("/scene/motions/{}/{}", i, scene.motions[i].accelerates ? "acceleration" : "displacement"));
+}
+
+std::vector<std::pair<std::string, Json*>> histories_with_files(Json& scene) {
+  std::vector<std::pair<std::string, Json*>> found;
+  const auto look = [&](const char* list, std::initializer_list<const char*> keys) {
+    if (!scene.contains(list) || !scene[list].is_array()) return;
+    for (std::size_t i = 0; i < scene[list].size(); ++i)
+      for (const char* key : keys) {
+        if (!scene[list][i].is_object() || !scene[list][i].contains(key)) continue;
+        Json& one = scene[list][i][key];
+        if (one.is_object() && one.contains("file"))
+          found.emplace_back(fmt::format("/scene/{}/{}/{}", list, i, key), &one);
+      }
+  };
+  look("load", {"force", "time"});
+  look("motions", {"acceleration", "displacement"});
+  return found;
+}
+
+}  // namespace ricochet

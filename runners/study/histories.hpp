@@ -1,0 +1,32 @@
+#pragma once
+#include <ricochet/scene/scene.hpp>
+#include <string>
+#include <vector>
+
+#include "runners/study/fields.hpp"
+
+/// \file
+/// Quantities over time that a scene gives otherwise than by a formula: tables, random loads, motions of supports.
+namespace ricochet {
+
+class StudyFiles;
+
+/// What may stand in the place of a load's formula in t: a table in a file, or a spectrum.
+ObjectForm load_history(const char* unit);
+/// One entry of scene.motions.
+ObjectForm motion_form();
+
+/// A checked history of a load; `number` tells random loads of one seed apart. Throws InputError for a table that is
+/// none, a spectrum that is none.
+Formula read_load_history(const Json& json, const std::string& pointer, StudyFiles* files, long long seed,
+                          std::size_t number, std::shared_ptr<const TimeTable>& table);
+MotionSpec read_motion(const Json& json, const std::string& pointer, StudyFiles* files);
+
+/// Throws InputError where a table of the scene begins after t = 0 or ends before `duration` (s) and does not say what
+/// holds there.
+void check_tables(const SceneSpec& scene, double duration);
+
+/// Every history of a scene that names a file, with its pointer.
+std::vector<std::pair<std::string, Json*>> histories_with_files(Json& scene);
+
+}  // namespace ricochet

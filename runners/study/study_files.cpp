@@ -1,0 +1,165 @@
+#include "runners/study/study_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ricochet/scene/files/csv_file.hpp>
+#include <ricochet/scene/files/text_file.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
+#include <set>
+
+#include "runners/study/histories.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr const char* structure_keys[] = {"dofs", "stiffness", "mass"};
+
+std::string structure_pointer(const char* key) {
+  return std::string("/scene/structure/") + key;
+}
+
+/// The name of a file of the structure, its folder before it.
+std::string name_of(const Json& structure, const char* key) {
+  return (std::filesystem::path(structure.value("folder", "")) / structure.at(key).get<std::string>()).string();
+}
+
+}  // namespace
+
+StudyFiles::StudyFiles(std::filesystem::path folder, const Json& known)
+    : folder_(std::filesystem::absolute(folder.empty() ? "." : folder).lexically_normal()), known_(known) {
+  if (known_.is_object()) folder_ = known_.at("folder").get<std::string>();
+}
+
+const StudyFiles::File& StudyFiles::file(const std::string& name, const std::string& pointer) {
+  const std::filesystem::path path = name;
+  bool leaves = path.is_absolute();
+  for (const auto& part : path) leaves = leaves || part == "..";
+  if (leaves)
+    throw InputError(pointer,
+                     fmt::format("\"{}\" is outside the folder of the study; expected a file in it", shortened(name)));
+  File& one = files_[name];
+  if (!one.content.empty()) return one;
+  try {
+    one.content = read_file(folder_, name);
+  } catch (const FileError& error) {
+    throw InputError(pointer, error.what());
+  }
+  const std::string digest = file_digest(one.content);
+  const Json digests = known_.is_object() ? known_.at("digests") : Json::object();
+  const std::string before = one.digest.empty() ? digests.value(name, digest) : one.digest;
+  if (before != digest) throw InputError(pointer, name + " has changed since the run began");
+  one.digest = digest;
+  return one;
+}
+
+std::shared_ptr<const AssembledStructure> StudyFiles::assembled(const Json& structure) {
+  const std::lock_guard lock(mutex_);
+  const double unit = structure.at("length_unit").get<double>();
+  std::string id = fmt::format("{}", unit);
+  for (const char* key : structure_keys) id += "\n" + name_of(structure, key);
+  const auto known = structures_.find(id);
+  if (known != structures_.end()) return known->second;
+  const char* reading = "dofs";
+  const auto content = [&](const char* key) -> const std::string& {
+    return file(name_of(structure, reading = key), structure_pointer(key)).content;
+  };
+  try {
+    AssembledFiles files;
+    files.stiffness_name = structure.at("stiffness").get<std::string>();
+    files.mass_name = structure.at("mass").get<std::string>();
+    files.length_unit = unit;
+    const std::string table = structure.at("dofs").get<std::string>();
+    files.table = read_dof_table(content("dofs"), table);
+    const auto dofs = static_cast<int>(files.table.dofs.size());
+    files.stiffness = read_matrix_market(content("stiffness"), files.stiffness_name, dofs, table);
+    files.mass = read_matrix_market(content("mass"), files.mass_name, dofs, table);
+    reading = "";
+    const auto made = std::make_shared<const AssembledStructure>(assemble_structure(files));
+    for (const char* key : structure_keys) std::string().swap(files_[name_of(structure, key)].content);
+    return structures_[id] = made;
+  } catch (const FileError& error) {
+    throw InputError(*reading == '\0' ? "/scene/structure" : structure_pointer(reading), error.what());
+  }
+}
+
+TimeTable StudyFiles::table(const Json& history, const std::string& pointer) {
+  const std::lock_guard lock(mutex_);
+  const auto name = history.at("file").get<std::string>(), time = history.at("time").get<std::string>(),
+             value = history.at("value").get<std::string>();
+  const std::string id = name + "\n" + time + "\n" + value;
+  if (const auto known = tables_.find(id); known != tables_.end()) return known->second;
+  try {
+    const CsvFile csv = read_csv(file(name, pointer + "/file").content, name);
+    const std::size_t t = csv.column(time), v = csv.column(value);
+    TimeTable table;
+    table.name = name;
+    for (const CsvFile::Row& row : csv.rows) {
+      table.times.push_back(csv.number(row, t));
+      table.values.push_back(csv.number(row, v));
+      const std::size_t n = table.times.size();
+      if (n > 1 && !(table.times[n - 1] > table.times[n - 2]))
+        csv.fail(row,
+                 fmt::format("t = {:.9g} after {:.9g}; times must increase", table.times[n - 1], table.times[n - 2]));
+    }
+    std::string().swap(files_[name].content);
+    return tables_[id] = std::move(table);
+  } catch (const FileError& error) {
+    throw InputError(pointer, error.what());
+  }
+}
+
+std::vector<DofState> StudyFiles::initial(const Json& initial, const Json& structure) {
+  const std::string name = initial.at("file").get<std::string>(), pointer = "/scene/initial/file";
+  if (structure.at("type") != "assembled")
+    throw InputError(pointer, "the file of an initial state is one of an assembled structure; expected formulas in x");
+  const std::shared_ptr<const AssembledStructure> made = assembled(structure);
+  const std::lock_guard lock(mutex_);
+  try {
+    const CsvFile table = read_csv(file(name, pointer).content, name);
+    const bool numbered = std::find(table.columns.begin(), table.columns.end(), "dof") != table.columns.end();
+    const std::size_t displacement = table.column("displacement"), velocity = table.column("velocity"),
+                      node = table.column(numbered ? "dof" : "node"),
+                      component = numbered ? node : table.column("component");
+    std::vector<DofState> out;
+    std::set<int> met;
+    for (const CsvFile::Row& row : table.rows) {
+      const auto known = made->nodes.find(row.cells[node]);
+      int dof = 0;
+      if (numbered)
+        dof = static_cast<int>(std::min<long long>(whole_number(row.cells[node]).value_or(0), 1LL << 30U));
+      else if (known != made->nodes.end() && known->second.dofs.contains(row.cells[component]))
+        dof = known->second.dofs.at(row.cells[component]);
+      if (dof < 1 || dof > static_cast<int>(made->where.size()))
+        table.fail(row, fmt::format("no dof {}{}{} in {}", row.cells[node], numbered ? "" : " ",
+                                    numbered ? "" : row.cells[component], made->table_name));
+      if (!met.insert(dof).second) table.fail(row, fmt::format("dof {} stands a second time", dof));
+      out.push_back({dof, table.number(row, displacement), table.number(row, velocity)});
+    }
+    return out;
+  } catch (const FileError& error) {
+    throw InputError(pointer, error.what());
+  }
+}
+
+void StudyFiles::add_digests(Json& scene) const {
+  const std::lock_guard lock(mutex_);
+  const auto digest = [&](const std::string& name) { return files_.at(name).digest; };
+  for (const auto& [pointer, history] : histories_with_files(scene))
+    (*history)["digest"] = digest(history->at("file").get<std::string>());
+  Json& structure = scene["structure"];
+  if (structure.at("type") != "assembled") return;
+  for (const char* key : structure_keys) structure["digests"][key] = digest(name_of(structure, key));
+  if (Json& initial = scene["initial"]; initial.contains("file"))
+    initial["digest"] = digest(initial.at("file").get<std::string>());
+}
+
+Json StudyFiles::said() const {
+  const std::lock_guard lock(mutex_);
+  if (files_.empty()) return nullptr;
+  Json digests = Json::object();
+  for (const auto& [name, one] : files_) digests[name] = one.digest;
+  return {{"folder", folder_.string()}, {"digests", std::move(digests)}};
+}
+
+}  // namespace ricochet

@@ -1,0 +1,50 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <ricochet/scene/scene.hpp>
+#include <string>
+#include <vector>
+
+#include "runners/json/json_text.hpp"
+
+namespace ricochet {
+
+/// The files that the scenes of a study name, each read once. Names are relative to the study's folder and stay in it.
+/// Safe for several threads.
+class StudyFiles {
+ public:
+  /// `known`: the key "files" of a study that was opened before, {"folder", "digests"}, or null. Its folder is then the
+  /// one, and a file whose digest differs is an InputError.
+  StudyFiles(std::filesystem::path folder, const Json& known);
+
+  /// The structure of a checked scene of type assembled. Throws InputError below /scene/structure.
+  std::shared_ptr<const AssembledStructure> assembled(const Json& structure);
+  /// Two columns of a CSV file that a checked history names: {"file", "time", "value"}. Throws InputError below
+  /// `pointer`.
+  TimeTable table(const Json& history, const std::string& pointer);
+  /// How the dofs of such a structure begin: the file of a checked initial state. Throws InputError below
+  /// /scene/initial.
+  std::vector<DofState> initial(const Json& initial, const Json& structure);
+  /// Adds to a scene the digests of the files that it names: they determine its results.
+  void add_digests(Json& scene) const;
+  /// What a stored study keeps: the folder, and the digest of each file by its name; null where no file was read.
+  Json said() const;
+
+ private:
+  struct File {
+    std::string content, digest;
+  };
+  /// The file of this name, read; `pointer` names it in the study.
+  const File& file(const std::string& name, const std::string& pointer);
+
+  std::filesystem::path folder_;
+  Json known_;
+  mutable std::mutex mutex_;
+  std::map<std::string, File> files_;  ///< content is dropped once it has been understood
+  std::map<std::string, std::shared_ptr<const AssembledStructure>> structures_;
+  std::map<std::string, TimeTable> tables_;
+};
+
+}  // namespace ricochet
