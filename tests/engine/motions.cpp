@@ -1,4 +1,5 @@
 // Supports that move by histories: as the harmonic support does, as closed forms say, and as forces of inertia.
+#include <Eigen/Eigenvalues>
 #include <array>
 #include <numbers>
 #include <ricochet/scene/history/random_load.hpp>
@@ -210,4 +211,76 @@ TEST_CASE("the response to a random load has the root mean square of its spectru
     // Newmark lowers the frequency by (ωh)²/24, 1.6e-4; a transient of e^{−50} is left.
     CHECK(std::sqrt(squares / steps) == Approx(std::sqrt(exact)).epsilon(1e-3));
   }
+}
+
+namespace {
+
+/// A steam generator tube on four plates 1 m apart (structures of a study, example of a tube between plates).
+SceneSpec tube_on_plates() {
+  BeamSpec beam;
+  beam.length = 3;
+  beam.young = 2e11;
+  beam.density = 8470;
+  beam.section.type = Section::Type::tube;
+  beam.section.outer_diameter = 0.01905;
+  beam.section.wall = 0.00109;
+  beam.damping = {4.566e-5, 7.95};
+  beam.supports.emplace();
+  for (int i = 0; i < 4; ++i)
+    beam.supports->push_back({"plate" + std::to_string(i + 1), static_cast<double>(i), BeamSupport::Type::pinned});
+  SceneSpec scene;
+  scene.structure = beam;
+  return scene;
+}
+
+std::shared_ptr<const PiecewiseCubic> shock() {
+  TimeTable table;
+  table.times = {0, 0.01, 0.02, 0.035, 0.05, 1};
+  table.values = {0, 3, -2, 2.5, 0, 0};
+  return std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(table, 0, 0));
+}
+
+}  // namespace
+
+TEST_CASE("a tube on four plates: frequencies, static modes, and what all of them sum to") {
+  const auto problem = problem_of(tube_on_plates(), 48, {"consistent"});
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(Eigen::MatrixXd(problem->stiffness),
+                                                                        dense_mass(problem->inertia));
+  // Three spans of 1 m on pins, EI and ρS of the section; 16 elements a span leave 1e-6 of them.
+  const std::array<double, 3> frequencies{48.5572, 62.2268, 90.8641};
+  for (int k = 0; k < 3; ++k)
+    CHECK(std::sqrt(modes.eigenvalues()[k]) / (2 * pi) ==
+          Approx(frequencies[static_cast<std::size_t>(k)]).epsilon(2e-6));
+  const Eigen::MatrixXd shapes = support_shapes(*problem, {0, 0.5, 1, 1.7, 3});
+  CHECK(shapes(1, 1) == Approx(0.725).epsilon(1e-10));
+  CHECK(shapes(2, 1) == Approx(1).epsilon(1e-12));
+  CHECK(std::abs(shapes(2, 0)) < 1e-12);
+  for (int i = 0; i < shapes.rows(); ++i) CHECK(shapes.row(i).sum() == Approx(1).epsilon(1e-10));
+  CHECK((problem->support_loads.rowwise().sum() - problem->support_shape).norm() <=
+        1e-10 * problem->support_shape.norm());
+}
+
+TEST_CASE("supports that move apart by one and the same history move a beam as all together do") {
+  SceneSpec together = tube_on_plates();
+  together.stops.lower = Formula(-1e-5);
+  together.stops.upper = Formula(1e-5);
+  together.stops.place = StopsSpec::Place::positions;
+  together.stops.positions = {0.5, 1.5};
+  together.stops.moves_with = "plate2";
+  together.motions = {{{}, shock(), "shock"}};
+  SceneSpec apart = together;
+  apart.motions = {{{"plate1", "plate3"}, shock(), "shock"}, {{"plate2", "plate4"}, shock(), "shock"}};
+  const Methods methods{{"consistent"}, {"penalty", {{"stiffness", 5e5}}}, {"newmark"}};
+  Marcher a = marcher(together, 12, methods, 2e-5), b = marcher(apart, 12, methods, 2e-5);
+  const EnergyAudit first = audited(a, 0.1), second = audited(b, 0.1);
+  CHECK(first.contact(0).impacts > 3);
+  CHECK(first.contact(0).impacts == second.contact(0).impacts);
+  // Round-off of static modes, some 1e-12, and what impacts make of it.
+  CHECK((a.position(0) - b.position(0)).norm() <= 1e-8 * a.position(0).norm());
+  CHECK(b.tip(0) == Approx(a.tip(0)).epsilon(1e-9));
+  // The tip is shown absolute, in the middle of a span: with its motion less that of the plates.
+  together.from_supports = true;
+  Marcher relative = marcher(together, 12, methods, 2e-5);
+  audited(relative, 0.1);
+  CHECK(a.tip(0) - relative.tip(0) == Approx(shock()->value(0.1)).epsilon(1e-9));
 }

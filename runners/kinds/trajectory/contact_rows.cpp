@@ -130,7 +130,7 @@ Table curves_head() {
   return {"curves",
           "One sample of the motion of one case; the name of the file is the case.",
           {{"t", "s", "Time of the sample."},
-           {"tip_displacement", "m", "Absolute displacement of the tip, the motion of the support included."},
+           {"tip_displacement", "m", "Displacement of the tip: absolute, unless scene.frame is supports."},
            {"tip_velocity", "m/s", "Absolute velocity of the tip, the mean over the last sub-step."},
            {"kinetic", "J", "Kinetic energy ½vᵀMv in the frame of the clamp, where the scheme's velocity stands."},
            {"elastic", "J", "Elastic energy ½qᵀKq."},
