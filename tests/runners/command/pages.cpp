@@ -140,6 +140,31 @@ TEST_CASE("pages: every study key is written down as the program has it") {
   CHECK(written == keys.str());
 }
 
+TEST_CASE("pages: the script of own structures writes what the study beside it reads") {
+  std::string python;
+  for (const std::string one : {"python3", "/usr/bin/python3"})
+    if (python.empty() && std::system((one + " -c 'import scipy' >/dev/null 2>&1").c_str()) == 0) python = one;
+  if (python.empty()) {
+    WARN("not tried: no python3 here has SciPy");
+    return;
+  }
+  std::string script, study;
+  for (const Block& block : blocks_of(root / "runners/own-structure.md")) {
+    std::string* text = block.info == "python" ? &script : block.info == "json" ? &study : nullptr;
+    if (!text || !text->empty()) continue;
+    for (const std::string& line : block.lines) *text += line + "\n";
+  }
+  const ScratchFolder folder;
+  write_text(folder / "chain.py", script);
+  write_text(folder / "chain.json", study);
+  const std::string line = "cd '" + folder.path().string() + "' && " + python +
+                           " chain.py && RICOCHET_PLUGIN_PATH= '" RICOCHET_COMMAND "' plan chain.json >plan.txt 2>&1";
+  CHECK(std::system(line.c_str()) == 0);
+  // Ten masses of 2 kg on springs of 1e6 N/m, one end held: ω_k = 2 √(k/m) sin((2k − 1)π/42).
+  CHECK_THAT(read_text(folder / "plan.txt"), Catch::Contains("free dofs 10, held dofs 1") &&
+                                                 Catch::Contains("stop end: N10 ux") && Catch::Contains("16.8 Hz"));
+}
+
 TEST_CASE("pages: the README is short, its study is one, and what it points at is there") {
   const std::string readme = read_text(root / "README.md");
   std::istringstream stream(readme);
