@@ -103,6 +103,27 @@ std::string at_steps(const Compared& study, const Cases& cases) {
 
 }  // namespace
 
+namespace {
+
+/// References that the study names and that refuse: errors are those against the others.
+void add_refused_references(const Compared& study, std::vector<Sentence>& out) {
+  InOrderMet<std::string, std::size_t> counts;
+  const std::string begins = refused_reference;
+  for (const CaseRecord& record : study.results().cases)
+    for (const std::string& note : record.notes)
+      if (note.starts_with(begins)) ++counts[note.substr(begins.size())];
+  const std::size_t total = study.results().cases.size();
+  for (const auto& [refusal, cases] : counts.list()) {
+    const std::string name = refusal.substr(0, refusal.find(": "));
+    out.push_back({fmt::format("The reference {} does not apply{}: {}.", name,
+                               cases == total ? "" : fmt::format(" to {} of {} cases", cases, total),
+                               shortened(refusal.substr(std::min(refusal.size(), name.size() + 2)))),
+                   {status_clause("reference refused", name, cases, total)}});
+  }
+}
+
+}  // namespace
+
 std::vector<Sentence> ended(const Compared& study) {
   std::vector<Sentence> out;
   const Listed methods = methods_of(study);
@@ -131,6 +152,7 @@ std::vector<Sentence> ended(const Compared& study) {
     if (!text.ends_with('.') && !text.ends_with("…")) text += ".";
     out.push_back({text, {status_clause(status, who, cases.size(), total)}});
   }
+  add_refused_references(study, out);
   return out;
 }
 

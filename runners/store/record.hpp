@@ -38,6 +38,9 @@ struct CaseRecord {
   bool partial = false;    ///< saved while the case was running: what it had by then
 };
 
+/// How a note of a case begins that names a reference that does not apply, and says why.
+inline constexpr const char* refused_reference = "reference that does not apply: ";
+
 /// The entry of an environment that is the time at which its run began.
 inline constexpr const char* kStarted = "started";
 

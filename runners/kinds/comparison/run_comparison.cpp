@@ -29,7 +29,7 @@ void say_references(CaseRecord& record, const ReferenceSet& set) {
         fmt::format("{} {}: {}", i == 0 ? "reference" : "second reference", known.name, known.found.how));
     for (const std::string& note : known.found.notes) record.notes.push_back(known.name + ": " + note);
   }
-  for (const std::string& refusal : set.refusals) record.notes.push_back("reference that does not apply: " + refusal);
+  for (const std::string& refusal : set.refusals) record.notes.push_back(refused_reference + refusal);
   record.notes.push_back(fmt::format("compared up to t = {:g} s: {}", set.horizon, set.horizon_why));
 }
 

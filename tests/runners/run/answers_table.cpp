@@ -251,6 +251,13 @@ TEST_CASE("cases that gave no result are told by what sets them apart, where all
              Catch::Contains("Not run: 3 of 12 cases (the heavy mass with soft): no impact measure.\n"));
   results.cases.back().reason = "no step";
   CHECK_THAT(said(answers_table(results)), Catch::Contains("no impact measure (2 of these; 1 other reason).\n"));
+  // A reference that refuses is named.
+  for (CaseRecord& record : results.cases)
+    record.notes = {"reference that does not apply: exact: the beam is held twice"};
+  CHECK_THAT(said(answers_table(results)),
+             Catch::Contains("The reference exact does not apply: the beam is held twice.\n"));
+  results.cases.back().notes.clear();
+  CHECK_THAT(said(answers_table(results)), Catch::Contains("The reference exact does not apply to 11 of 12 cases: "));
   // What becomes of cases, first.
   results.study = {{"observe", {"status", "energy_left"}}};
   CHECK_THAT(said(answers_table(results)), Catch::StartsWith("Everything that applies runs: 9 of 12 cases"));
