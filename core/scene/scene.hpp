@@ -187,6 +187,7 @@ struct LoadTerm {
   Formula history;                              ///< g(t), 1; of a force F(t), N
   std::optional<ricochet::Place> place = {};    ///< of a force on matrices that are given, in the place of `at`
   std::shared_ptr<const TimeTable> table = {};  ///< that the history was made of, where it was
+  double period = 0;                            ///< s, after which a random history repeats; 0: none
 };
 
 /// What pushes the structure, beside its support: a formula, and terms that are added to it.

@@ -79,6 +79,17 @@ long long whole_steps(const StudyCase& study_case, std::vector<std::string>& not
   return steps;
 }
 
+// Random loads that say the same twice.
+void note_repeats(const StudyCase& study_case, std::vector<std::string>& notes) {
+  const std::vector<LoadTerm>& terms = study_case.scene.load.terms;
+  for (std::size_t k = 0; k < terms.size(); ++k)
+    if (terms[k].period > 0 && study_case.duration > terms[k].period)
+      notes.push_back(
+          fmt::format("the random load {} repeats after {:.6g} s, and the run takes {:.6g} s: {:.2g} times as "
+                      "many lines would last",
+                      k, terms[k].period, study_case.duration, study_case.duration / terms[k].period));
+}
+
 // What has no mass and no viscosity is known to a step as the highest frequencies are.
 bool is_marginal(const SemiDiscrete& problem, const StepPlan& plan) {
   if (problem.inertia.kernel_dimension == 0 || problem.damping.stiffness != 0) return false;
@@ -126,6 +137,7 @@ std::optional<double> scheme_restitution(const StudyCase& study_case, const Regi
 Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
   Prepared prepared;
   prepared.steps = whole_steps(study_case, prepared.notes);
+  note_repeats(study_case, prepared.notes);
   const auto mass = make_mass(study_case, registry);
   auto law = make_law(study_case, registry);
   const auto scheme = make_scheme(study_case, registry);

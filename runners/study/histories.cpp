@@ -95,7 +95,7 @@ TimeTable sample(const Json& json, const std::string& pointer, TimeTable::Betwee
   return table;
 }
 
-Formula read_spectrum(const Json& json, const std::string& pointer, long long seed, std::size_t number) {
+void read_spectrum(const Json& json, const std::string& pointer, long long seed, std::size_t number, LoadTerm& term) {
   SpectrumSpec spectrum;
   const Json& density = json.at("formula");
   const std::string text = density.is_number() ? density.dump() : density.get<std::string>();
@@ -109,7 +109,8 @@ Formula read_spectrum(const Json& json, const std::string& pointer, long long se
   spectrum.load = number;
   spectrum.pointer = pointer;
   const auto load = std::make_shared<const RandomLoad>(spectrum);
-  return {[load](double t) { return load->value(t); }, fmt::format("random, S(f) = {}", text), pointer};
+  term.history = {[load](double t) { return load->value(t); }, fmt::format("random, S(f) = {}", text), pointer};
+  term.period = 2 * load->period();
 }
 
 }  // namespace
@@ -151,12 +152,12 @@ ObjectForm motion_form() {
   return keys;
 }
 
-Formula read_load_history(const Json& json, const std::string& pointer, StudyFiles* files, long long seed,
-                          std::size_t number, std::shared_ptr<const TimeTable>& table) {
-  if (json.contains("psd")) return read_spectrum(json.at("psd"), pointer + "/psd", seed, number);
-  table = std::make_shared<const TimeTable>(read_table(json, pointer, files));
-  const auto pieces = std::make_shared<const PiecewiseCubic>(PiecewiseCubic::interpolate(*table));
-  return {[pieces](double t) { return pieces->value(t); }, table->name, pointer};
+void read_load_history(const Json& json, const std::string& pointer, StudyFiles* files, long long seed,
+                       std::size_t number, LoadTerm& term) {
+  if (json.contains("psd")) return read_spectrum(json.at("psd"), pointer + "/psd", seed, number, term);
+  term.table = std::make_shared<const TimeTable>(read_table(json, pointer, files));
+  const auto pieces = std::make_shared<const PiecewiseCubic>(PiecewiseCubic::interpolate(*term.table));
+  term.history = {[pieces](double t) { return pieces->value(t); }, term.table->name, pointer};
 }
 
 MotionSpec read_motion(const Json& json, const std::string& pointer, StudyFiles* files) {

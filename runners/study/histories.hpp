@@ -16,10 +16,10 @@ ObjectForm load_history(const char* unit);
 /// One entry of scene.motions.
 ObjectForm motion_form();
 
-/// A checked history of a load; `number` tells random loads of one seed apart. Throws InputError for a table that is
-/// none, a spectrum that is none.
-Formula read_load_history(const Json& json, const std::string& pointer, StudyFiles* files, long long seed,
-                          std::size_t number, std::shared_ptr<const TimeTable>& table);
+/// The history of a term of the load, as it was checked; `number` tells random loads of one seed apart. Throws
+/// InputError for a table that is none, a spectrum that is none.
+void read_load_history(const Json& json, const std::string& pointer, StudyFiles* files, long long seed,
+                       std::size_t number, LoadTerm& term);
 MotionSpec read_motion(const Json& json, const std::string& pointer, StudyFiles* files);
 
 /// Throws InputError where a table of the scene begins after t = 0 or ends before `duration` (s) and does not say what

@@ -45,8 +45,10 @@ LoadSpec read_load(const Json& value, const std::string& pointer, StudyFiles* fi
     if (!term.force) term.shape = read_formula(value[i].at("shape"), here + "/shape", "x");
     const char* history = term.force ? "force" : "time";
     const Json& given = value[i].at(history);
-    term.history = given.is_object() ? read_load_history(given, here + "/" + history, files, seed, i, term.table)
-                                     : read_formula(given, here + "/" + history, "t");
+    if (given.is_object())
+      read_load_history(given, here + "/" + history, files, seed, i, term);
+    else
+      term.history = read_formula(given, here + "/" + history, "t");
   }
   return load;
 }

@@ -122,6 +122,23 @@ TEST_CASE("random loads: a seed is an axis, and each seed is another load") {
   CHECK(ends.size() == 3);
 }
 
+TEST_CASE("a random load that repeats within the run is told") {
+  Studies studies;
+  Json study = with_force({{"psd", {{"formula", 4}, {"from", 0}, {"to", 20}, {"lines", 100}}}});
+  study["duration"] = 15;
+  const auto notes = [&] {
+    std::string all;
+    const std::vector<CaseRecord> records = studies.run(study);
+    for (const std::string& note : records.front().notes) all += note + "\n";
+    return all;
+  };
+  // Lines 0.2 Hz apart repeat after 10 s.
+  CHECK_THAT(notes(),
+             Contains("the random load 0 repeats after 10 s, and the run takes 15 s: 1.5 times as many lines"));
+  study["duration"] = 10;
+  CHECK_THAT(notes(), !Contains("repeats"));
+}
+
 TEST_CASE("a table is part of what a case is: another content makes another case, another time another one too") {
   Studies studies;
   const Study before = studies.parse(shaken_study());
