@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numeric>
 #include <ricochet/measure/statistics/tiers.hpp>
+#include <utility>
 
 namespace ricochet {
 namespace {
@@ -47,6 +48,7 @@ Tiers tiers_of(const std::vector<Limit>& limits, double tolerance) {
   }
   out.tiers = separated(firm, intervals, tolerance);
   const std::vector<Members> of_firm = out.tiers;
+  Members apart;  // loose ones away of every firm tier
   for (const std::size_t k : loose) {
     Members touched;
     for (std::size_t t = 0; t < of_firm.size(); ++t) {
@@ -62,8 +64,9 @@ Tiers tiers_of(const std::vector<Limit>& limits, double tolerance) {
     else if (touched.size() == 1)
       out.tiers[touched.front()].push_back(k);
     else
-      out.tiers.push_back({k});
+      apart.push_back(k);
   }
+  for (Members& tier : separated(apart, intervals, tolerance)) out.tiers.push_back(std::move(tier));
   const auto least_of = [&](const Members& tier) {
     double value = limits[tier.front()].value;
     for (const std::size_t k : tier) value = std::min(value, limits[k].value);

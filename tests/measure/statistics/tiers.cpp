@@ -43,6 +43,13 @@ TEST_CASE("one that is not firm joins the tier that it touches alone, makes its 
   CHECK(tiers_of({at(1, 0.5), at(1.1, 0.6)}, 0.01).none_firm);
 }
 
+TEST_CASE("those that are not firm and overlap are one tier of their own") {
+  const Tiers found = tiers_of({at(1.0, 1e-5), at(1.0001, 1e-5), at(0.7, 0.26), at(0.7001, 0.27), at(0.2, 0.25)}, 1e-3);
+  REQUIRE(found.tiers.size() == 2);
+  CHECK(found.tiers[0] == Members{4, 3, 2});
+  CHECK(found.tiers[1].size() == 2);
+}
+
 TEST_CASE("the order of methods leaves their tiers") {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform;
