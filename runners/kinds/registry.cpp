@@ -6,6 +6,7 @@
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/stability/stability.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
+#include "runners/kinds/trajectory/stop_measures.hpp"
 #include "runners/kinds/trajectory/trajectory.hpp"
 #include "runners/kinds/work-precision/work_precision.hpp"
 
@@ -81,7 +82,7 @@ const std::vector<MeasureInfo>& all_measures() {
 const MeasureInfo* measure_info(const std::string& name) {
   const auto& all = all_measures();
   const auto found = std::find_if(all.begin(), all.end(), [&](const MeasureInfo& info) { return name == info.name; });
-  return found == all.end() ? nullptr : &*found;
+  return found == all.end() ? stop_measure_info(name) : &*found;
 }
 
 std::vector<std::string> standing_measures(const std::string& kind) {

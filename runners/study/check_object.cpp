@@ -98,6 +98,14 @@ Json check_places(const Json& value, const std::string& pointer) {
   return result;
 }
 
+// "impulse[bar-a]": a word of these, and a name in brackets.
+bool names_one_of(const Field& field, const Json& value) {
+  const std::string text = value.is_string() ? value.get<std::string>() : "";
+  return text.ends_with("]") && std::any_of(field.of_each.begin(), field.of_each.end(), [&](const std::string& word) {
+           return text.starts_with(word + "[") && text.size() > word.size() + 2;
+         });
+}
+
 Json check_words(const Field& field, const Json& value, const std::string& pointer) {
   if (field.nullable && value.is_null()) return value;
   Json result = Json::array();
@@ -110,7 +118,7 @@ Json check_words(const Field& field, const Json& value, const std::string& point
     const std::string here = list ? pointer_to(pointer, i) : pointer;
     const Json& one = list ? value[i] : value;
     if (names && !one.is_string()) throw InputError(here, "expected a name, found " + quote(one));
-    result.push_back(names ? one : check_scalar(field, one, here));
+    result.push_back(names || names_one_of(field, one) ? one : check_scalar(field, one, here));
     for (std::size_t j = 0; j < i; ++j)
       if (result[j] == result[i]) throw InputError(here, "repeats " + quote(result[i]));
   }
@@ -276,10 +284,8 @@ const ObjectForm& find_way(const ObjectForm& form, const Json& object, const std
                                                      " (keys here: " + quoted_list(all) + ")");
   for (const ObjectForm& way : form.ways)
     for (const Field& field : way.fields) {
-      const bool shared = std::count_if(form.ways.begin(), form.ways.end(), [&](const ObjectForm& one) {
-                            const std::vector<std::string> keys = keys_of(one.fields);
-                            return std::find(keys.begin(), keys.end(), field.key()) != keys.end();
-                          }) > 1;
+      // A key that several ways have tells none of them.
+      const bool shared = std::count(all.begin(), all.end(), field.key()) > 1;
       if (!object.contains(field.key()) || shared) continue;
       if (found && found != &way)
         throw InputError(pointer_to(pointer, field.key()),

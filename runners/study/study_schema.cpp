@@ -1,6 +1,7 @@
 #include "runners/study/study_schema.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <functional>
@@ -153,7 +154,7 @@ class SchemaWriter {
       case Field::Form::numbers:
         return one_or_list(scalar(field.spec));
       case Field::Form::words:
-        return or_null(field, one_or_list(scalar(field.spec)));
+        return or_null(field, one_or_list(words(field)));
       case Field::Form::starts:
         return one_or_list(either("object", object(field.nested.front()), scalar(field.spec)));
       case Field::Form::methods:
@@ -194,6 +195,13 @@ class SchemaWriter {
   static Json bound(double value) {
     constexpr double largest = 1e15;
     return std::floor(value) == value && std::abs(value) < largest ? Json(static_cast<long long>(value)) : Json(value);
+  }
+
+  static Json words(const Field& field) {
+    if (field.of_each.empty()) return scalar(field.spec);
+    return {{"anyOf", Json::array({scalar(field.spec),
+                                   {{"type", "string"},
+                                    {"pattern", fmt::format("^({})\\[.+\\]$", fmt::join(field.of_each, "|"))}}})}};
   }
 
   static Json scalar(const ParameterSpec& spec) {

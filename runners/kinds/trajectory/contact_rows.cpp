@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "runners/kinds/trajectory/stop_measures.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
@@ -102,6 +103,9 @@ void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const March
                             totals.normal_work, totals.impacts > 0 ? Cell(totals.fastest) : Cell()});
       if (named) stops.rows.back().push_back(problem.stops[static_cast<std::size_t>(point)]);
     }
+  for (int point = 0; named && point < problem.points(); ++point)
+    put_stop_measures(record, problem.stops[static_cast<std::size_t>(point)],
+                      recorder.totals(0, point, StopSide::lower), recorder.totals(0, point, StopSide::upper));
   put_measure(record, "peak_contact_force", peak);
   put_measure(record, "contact_time", time);
   add_impacts(record, recorder, problem);

@@ -11,6 +11,7 @@
 #include "runners/kinds/trajectory/energy_tables.hpp"
 #include "runners/kinds/trajectory/page/page.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/kinds/trajectory/stop_measures.hpp"
 #include "runners/kinds/trajectory/window_means.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/snapshots.hpp"
@@ -251,7 +252,11 @@ StudyKind trajectory_format(const std::vector<MeasureInfo>& measures) {
                  snapshots_key(),
                  keys::budget(),
                  keys::observe(measure_names(measures))};
-  format.check = check_window;
+  format.keys.back().of_each = measures_of_stops();
+  format.check = [](const Json& study) {
+    check_window(study);
+    check_observed_stops(study);
+  };
   format.settings = [](const nlohmann::ordered_json& resolved) {
     return given_settings(resolved, {"window", "snapshots", "budget"});
   };

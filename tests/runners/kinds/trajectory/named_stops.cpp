@@ -57,3 +57,45 @@ TEST_CASE("names stand in the last column of impacts and stops, the rest is that
   for (const Row& row : stops->rows)
     CHECK(row.back().text() == (row[find_column(stops->columns, "point").value()].number() == 0.0 ? "plate" : "end"));
 }
+
+TEST_CASE("each stop that has a name has measures of its own, which sum to those of the case") {
+  CaseRuns runs;
+  Json study = beam_between(Json::parse(
+      R"([{"name": "plate", "at": {"x": 0.75}, "lower": -0.01, "upper": 0.01},
+          {"name": "end", "at": {"x": 1.5}, "lower": -0.01, "upper": 0.01}])"));
+  study["observe"] = {"impulse[end]", "impacts"};
+  const CaseRecord record = runs.first_of(study);
+  const auto of = [&](const char* name) { return measure(record, name).value(); };
+  CHECK(of("impulse[plate]") + of("impulse[end]") == Approx(of("impulse")).epsilon(1e-12));
+  CHECK(of("impacts[plate]") + of("impacts[end]") == of("impacts"));
+  CHECK(of("contact_time[plate]") + of("contact_time[end]") == Approx(of("contact_time")).epsilon(1e-12));
+  CHECK(std::max(of("peak_force[plate]"), of("peak_force[end]")) == of("peak_contact_force"));
+  CHECK(of("rms_force[end]") > 0);
+  CHECK(of("rms_force[end]") <= of("peak_force[end]"));
+  const MeasureInfo* info = measure_info("impulse[end]");
+  REQUIRE(info);
+  CHECK(std::string(info->unit) == "N s");
+  CHECK(std::string(info->reading.words) == "impulse at end");
+  CHECK_FALSE(measure_info("impulse[]"));
+  CHECK_FALSE(measure_info("energy_left[end]"));
+}
+
+TEST_CASE("an observed measure of a stop that is not there is refused with the nearest name") {
+  CaseRuns runs;
+  Json study = beam_between(Json::parse(R"([{"name": "plate", "at": {"x": 0.75}, "lower": -0.01, "upper": 0.01}])"));
+  const auto refusal = [&](const char* measure) {
+    study["observe"] = measure;
+    try {
+      runs.study(study);
+    } catch (const InputError& error) {
+      return error.pointer() + ": " + error.what();
+    }
+    return std::string("none");
+  };
+  CHECK(refusal("impulse[plate]") == "none");
+  CHECK_THAT(refusal("impulse[plato]"),
+             Catch::Contains("/observe/0: no stop \"plato\"") && Catch::Contains("did you mean \"plate\"?"));
+  CHECK_THAT(refusal("energy_left[plate]"), Catch::Contains("/observe"));
+  study["scene"]["stops"] = {{"lower", -0.01}, {"at", "tip"}};
+  CHECK_THAT(refusal("impulse[plate]"), Catch::Contains("the scene has no stops with names"));
+}
