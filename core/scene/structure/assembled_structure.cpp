@@ -262,9 +262,9 @@ PlaceRow AssembledStructure::row(const Place& place, const std::string& pointer)
   } else {
     const auto found = nodes.find(place.node);
     if (found == nodes.end()) {
-      std::vector<std::string> names;
-      for (const auto& [name, ignored] : nodes) names.push_back(name);
-      const std::string nearest = nearest_name(place.node, names);
+      std::vector<std::string> known;
+      for (const auto& [name, ignored] : nodes) known.push_back(name);
+      const std::string nearest = nearest_name(place.node, known);
       throw InputError(pointer + "/node",
                        fmt::format("\"{}\": no such node{}", shortened(place.node),
                                    nearest.empty() ? fmt::format("; {} has {} nodes", table_name, nodes.size())

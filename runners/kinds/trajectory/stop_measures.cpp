@@ -68,14 +68,13 @@ const MeasureInfo* stop_measure_info(const std::string& name) {
   if (const auto found = known.find(name); found != known.end()) return &found->second->info;
   const auto parts = parts_of(name);
   if (!parts) return nullptr;
-  const auto& [measure, stop] = *parts;
   const auto one = std::find_if(std::begin(table), std::end(table),
-                                [&](const StopMeasure& candidate) { return measure == candidate.name; });
+                                [&](const StopMeasure& candidate) { return parts->first == candidate.name; });
   if (one == std::end(table)) return nullptr;
   auto made = std::make_unique<Described>();
   made->name = name;
-  made->text = fmt::format(fmt::runtime(one->text), stop);
-  made->words = fmt::format(fmt::runtime(one->words), stop);
+  made->text = fmt::format(fmt::runtime(one->text), parts->second);
+  made->words = fmt::format(fmt::runtime(one->words), parts->second);
   made->info = {made->name.c_str(), one->unit, made->text.c_str()};
   made->info.reading.words = made->words.c_str();
   return &(known[name] = std::move(made))->info;

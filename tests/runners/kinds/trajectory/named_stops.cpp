@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "runners/store/record_values.hpp"
 #include "tests/runners/kinds/trajectory/case_runs.hpp"
 
 using namespace ricochet;
