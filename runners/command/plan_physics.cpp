@@ -105,8 +105,8 @@ std::string place_text(const Json& place) {
   return place.dump();
 }
 
-/// Name, place and bounds of each stop that has a name.
-std::string stops_text(const Json& scene) {
+/// Name, place and bounds of each stop that has a name, and how stiff the structure is there (N/m).
+std::string stops_text(const Json& scene, const std::vector<double>& stiffness) {
   constexpr std::size_t most_stops = 12;
   const Json& stops = scene.at("stops");
   if (!stops.is_array()) return "";
@@ -117,6 +117,8 @@ std::string stops_text(const Json& scene) {
                         stop["to"].is_null() ? "" : " less " + place_text(stop["to"]));
     for (const char* side : {"lower", "upper"})
       if (!stop[side].is_null()) text += fmt::format(", {} {:.6g} m", side, stop[side].get<double>());
+    if (i < stiffness.size() && std::isfinite(stiffness[i]))
+      text += fmt::format("; the structure has {:.4g} N/m there", stiffness[i]);
     text += "\n";
   }
   if (stops.size() > most_stops) text += fmt::format("    and {} more stops\n", stops.size() - most_stops);
@@ -141,7 +143,7 @@ std::string structure_text(const StudyCase& one, const std::vector<double>& step
     text += "    no frequencies: the structure has more dofs than plan finds modes of\n";
   else
     text += modes_text(*physics, steps);
-  return text + stops_text(one.scene_json);
+  return text + stops_text(one.scene_json, physics->point_stiffness);
 }
 
 }  // namespace

@@ -161,6 +161,20 @@ struct Details {
   }
 };
 
+std::vector<double> point_stiffness(const SemiDiscrete& problem) {
+  constexpr int most_points = 100;
+  std::vector<double> out;
+  SparseLdlt ldlt;
+  if (!problem.held || problem.points() > most_points || !ldlt.factorise(problem.stiffness)) return out;
+  for (int i = 0; i < problem.points(); ++i) {
+    const VectorXd row = problem.contact.row(i).transpose();
+    VectorXd moved = row;
+    ldlt.solve(moved.data(), moved.data());
+    out.push_back(1 / row.dot(moved));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<double> StructurePhysics::damping_ratio(std::size_t mode) const {
@@ -191,6 +205,7 @@ std::variant<StructurePhysics, Refusal> structure_physics(const SceneSpec& scene
   out.details = std::visit(Details{out.elements, problem.dofs()}, scene.structure);
   if (out.damping.stiffness != 0) out.numbers.push_back({"α", out.damping.stiffness, "s"});
   if (out.damping.mass != 0) out.numbers.push_back({"η", out.damping.mass, "1/s"});
+  out.point_stiffness = point_stiffness(problem);
   if (problem.space.given && problem.dofs() > most_given_dofs) return out;
   const StructureModes modes = open_modes(problem);
   for (int i = 0; i < modes.regular; ++i) out.pulsations.push_back(modes.pulsation(i));

@@ -51,6 +51,9 @@ struct StructurePhysics {
   /// Of a beam with supports, sections or masses of its own: one line each on what holds it, what it is made of, the
   /// mesh between its breaks, the dofs held.
   std::vector<std::string> details;
+  /// 1/(h K⁻¹ hᵀ) of each contact point, N/m: the force that moves it by 1 m at rest. Empty where K has no inverse, or
+  /// where there are many points.
+  std::vector<double> point_stiffness;
 
   /// ζ_i = (αω_i + η/ω_i)/2 of C = αK + ηM; nothing where nothing is damped, or for a rigid motion.
   std::optional<double> damping_ratio(std::size_t mode) const;

@@ -86,6 +86,26 @@ TEST_CASE("physics: a step resolves the modes that have so many steps in their p
   CHECK(physics.resolved(100, 20) == 0);
 }
 
+TEST_CASE("physics: at its stops a cantilever has 3EI/x³, and one that nothing holds has no stiffness") {
+  BeamSpec beam;
+  beam.section.type = Section::Type::given;
+  beam.section.EI = 1;
+  beam.section.rhoS = 1;
+  SceneSpec scene;
+  scene.structure = beam;
+  scene.stops.upper = Formula(1.0);
+  scene.stops.place = StopsSpec::Place::positions;
+  scene.stops.positions = {0.5, 1};
+  const std::vector<double> stiffness = physics_of(scene, 4).point_stiffness;
+  REQUIRE(stiffness.size() == 2);
+  CHECK(stiffness[0] == Approx(24).epsilon(1e-10));
+  CHECK(stiffness[1] == Approx(3).epsilon(1e-10));
+  BarSpec bar;
+  bar.fixed = BarSpec::Fixed::none;
+  scene.structure = bar;
+  CHECK(physics_of(scene, 4).point_stiffness.empty());
+}
+
 TEST_CASE(
     "physics: an oscillator has one mode, a bar held nowhere a rigid one, and a fine mesh is looked at on fewer") {
   SceneSpec scene;
