@@ -73,15 +73,20 @@ Sentence TierSpeaker::no_difference(const Members& firm, std::optional<double> u
 }
 
 Sentence TierSpeaker::cannot_tell(const Members& firm, std::optional<double> u, double spread) const {
+  std::vector<Clause> clauses = {clause("open", firm), spread_clause(firm, spread)};
+  if (!u)
+    return {fmt::format("{} differs by {} between methods at {}, the only step: it lies in {}. What a finer step would "
+                        "change is not known.",
+                        capitalised(words_.words), percent(spread / scale_), finest_words(firm), values_of(firm)),
+            std::move(clauses)};
   const std::string refined = refined_words(firm);
   const double target = std::max(spread, tolerance * scale_) / 3;
-  std::vector<Clause> clauses = {clause("open", firm), spread_clause(firm, spread)};
   const std::string more = more_needed(firm, target, clauses);
   return {
       fmt::format("These steps cannot tell: {} differs by {} between methods, but {} still move{} it by up to {}{}; "
                   "it lies in {}.",
                   words_.words, percent(spread / scale_), refined, plural_s(refined == "step and mesh"),
-                  percent(u.value_or(0) / scale_), more, values_of(firm)),
+                  percent(*u / scale_), more, values_of(firm)),
       std::move(clauses)};
 }
 

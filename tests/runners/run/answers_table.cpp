@@ -235,6 +235,17 @@ TEST_CASE("two levels have no share, nor does what round-off explains") {
   CHECK(shares(study([](int, int, double step) { return 0.5 + 1e-10 * step; })).empty());
 }
 
+TEST_CASE(
+    "at the only step methods whose values chain into one another differ by what is measured, no finer step asked") {
+  const std::string text =
+      said(answers_table(study([](int mass, int law, double) { return 0.25 + 0.009 * law + 1e-4 * mass; }, {1e-4}, 3)));
+  INFO(text);
+  CHECK_THAT(text, Catch::Contains(
+                       "differs by 1.8 % between methods at h = 1e-4 s, the only step: it lies in 25.0 to 26.8 %") &&
+                       Catch::Contains("What a finer step would change is not known."));
+  CHECK_THAT(text, !Catch::Contains("up to 0 %"));
+}
+
 TEST_CASE("cases that gave no result are told by what sets them apart, where all are done nothing is said of it") {
   StudyResults results = study([](int mass, int, double step) { return (mass ? 0.6 : 0.4) + step; });
   CHECK(said(answers_table(results)).find("iverged") == std::string::npos);
