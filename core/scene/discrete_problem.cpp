@@ -21,7 +21,7 @@ SparseRows place_rows(const SemiDiscrete& problem, const std::vector<double>& pl
   for (std::size_t i = 0; i < places.size(); ++i)
     for (SparseRows::InnerIterator it(problem.tip, 0); it; ++it)
       entries.emplace_back(static_cast<int>(i), static_cast<int>(it.col()), it.value());
-  SparseRows rows(static_cast<Eigen::Index>(places.size()), problem.dofs());
+  SparseRows rows(static_cast<Eigen::Index>(places.size()), problem.space.dofs);
   rows.setFromTriplets(entries.begin(), entries.end());
   return rows;
 }

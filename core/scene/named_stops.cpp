@@ -6,10 +6,10 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/scene/assembly.hpp>
-#include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
+#include <ricochet/scene/supports.hpp>
 
 namespace ricochet {
 namespace {
@@ -32,31 +32,6 @@ void check_stop_name(const std::string& name, std::size_t number) {
     throw InputError(
         stop_pointer(number, "/name"),
         fmt::format("\"{}\"; expected a name of 1 to {} letters, digits, '-' or '_'", shortened(name), longest));
-}
-
-std::size_t support_count(const SceneSpec& scene) {
-  if (const AssembledStructure* assembled = assembled_of(scene)) return assembled->supports.size();
-  if (const auto* beam = std::get_if<BeamSpec>(&scene.structure)) return supports_of(*beam).size();
-  const auto* bar = std::get_if<BarSpec>(&scene.structure);
-  return bar && bar->fixed == BarSpec::Fixed::none ? 0 : 1;
-}
-
-// What supports add to the displacement at x by themselves: number and weight.
-std::vector<std::pair<int, double>> held_by(const SceneSpec& scene, const FiniteElementSpace& space, double x) {
-  std::vector<std::pair<int, double>> held;
-  const auto* beam = std::get_if<BeamSpec>(&scene.structure);
-  const std::vector<BeamSupport> supports = beam ? supports_of(*beam) : std::vector<BeamSupport>(1);
-  for (const auto& [where, weight] : held_row(space, x)) {
-    std::size_t nearest = 0;
-    double away = infinity;
-    for (std::size_t j = 0; j < supports.size(); ++j)
-      if (supports[j].holds_displacement() && std::abs(supports[j].x - where) < away) {
-        away = std::abs(supports[j].x - where);
-        nearest = j;
-      }
-    held.emplace_back(static_cast<int>(nearest), weight);
-  }
-  return held;
 }
 
 void check_bounds(const NamedStop& stop, std::size_t number) {
@@ -84,7 +59,7 @@ PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, cons
   PlaceRow out;
   out.free = displacement_row(space, x);
   std::sort(out.free.begin(), out.free.end());
-  out.held = held_by(scene, space, x);
+  out.held = held_by(support_places(scene.structure), space, x);
   out.x = x;
   return out;
 }
@@ -96,15 +71,16 @@ PlaceRow stop_row(const SceneSpec& scene, const FiniteElementSpace& space, const
 
 ContactPoints contact_points(const SceneSpec& scene, const FiniteElementSpace& space, int elements) {
   ContactPoints out;
-  const auto supports = static_cast<Eigen::Index>(support_count(scene));
+  const auto supports = static_cast<Eigen::Index>(support_names(scene.structure).size());
   if (scene.stops.named.empty()) {
     out.x = contact_positions(scene, elements);
     out.rows = displacement_rows(space, out.x);
     out.lower = stop_values(scene.stops.lower, out.x, -infinity);
     out.upper = stop_values(scene.stops.upper, out.x, infinity);
     out.on_supports = Eigen::MatrixXd::Zero(out.rows.rows(), supports);
+    const std::vector<double> places = support_places(scene.structure);
     for (std::size_t i = 0; i < out.x.size(); ++i)
-      for (const auto& [support, weight] : held_by(scene, space, out.x[i]))
+      for (const auto& [support, weight] : held_by(places, space, out.x[i]))
         out.on_supports(static_cast<Eigen::Index>(i), support) += weight;
     return out;
   }

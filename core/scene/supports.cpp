@@ -6,6 +6,7 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>
+#include <ricochet/scene/discrete_problem.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/supports.hpp>
@@ -14,9 +15,7 @@ namespace ricochet {
 namespace {
 
 // One support that holds the structure as a whole: its static mode is the translation.
-void hold_rigidly(SemiDiscrete& problem, const char* name, double x) {
-  problem.supports = {name};
-  problem.support_x = {x};
+void hold_rigidly(SemiDiscrete& problem) {
   problem.static_modes = Eigen::MatrixXd::Zero(problem.space.dofs, 1);
   const std::vector<DofPlace> places = dof_places(problem.space);
   for (Eigen::Index i = 0; i < problem.space.dofs; ++i)
@@ -26,25 +25,20 @@ void hold_rigidly(SemiDiscrete& problem, const char* name, double x) {
 
 void hold(const BeamSpec& beam, int elements, SemiDiscrete& problem) {
   problem.held = rigid_freedom(beam).held();
-  if (!beam.supports && beam.foundation == 0) return hold_rigidly(problem, "clamp", 0);
+  if (!beam.supports && beam.foundation == 0) return hold_rigidly(problem);
   StaticModes found = static_modes(beam, elements);
-  problem.supports = std::move(found.supports);
   problem.static_modes = std::move(found.modes);
   problem.support_loads = std::move(found.loads);
-  for (const BeamSupport& support : supports_of(beam))
-    problem.support_x.push_back(support.holds_displacement() ? support.x : std::numeric_limits<double>::quiet_NaN());
 }
 
 void hold(const BarSpec& bar, int, SemiDiscrete& problem) {
   problem.held = bar.fixed != BarSpec::Fixed::none;
-  if (problem.held) return hold_rigidly(problem, "clamp", bar.fixed == BarSpec::Fixed::left ? 0 : bar.length);
+  if (problem.held) return hold_rigidly(problem);
   problem.static_modes.resize(problem.space.dofs, 0);
   problem.support_loads.resize(problem.space.dofs, 0);
 }
 
 void hold(const OscillatorSpec&, int, SemiDiscrete& problem) {
-  problem.supports = {"base"};
-  problem.support_x = {std::numeric_limits<double>::quiet_NaN()};
   problem.static_modes = Eigen::MatrixXd::Ones(1, 1);
   problem.support_loads = problem.support_shape;
 }
@@ -52,21 +46,8 @@ void hold(const OscillatorSpec&, int, SemiDiscrete& problem) {
 void hold(const AssembledSpec& spec, int, SemiDiscrete& problem) {
   const AssembledStructure& structure = *spec.structure;
   problem.held = structure.definite;
-  problem.supports = structure.supports;
   problem.static_modes = structure.static_modes;
   problem.support_loads = structure.support_loads;
-}
-
-std::vector<std::string> support_names(const StructureSpec& structure) {
-  if (const auto* beam = std::get_if<BeamSpec>(&structure)) {
-    std::vector<std::string> names;
-    for (const BeamSupport& support : supports_of(*beam)) names.push_back(support.name);
-    return names;
-  }
-  if (const auto* assembled = std::get_if<AssembledSpec>(&structure)) return assembled->structure->supports;
-  if (const auto* bar = std::get_if<BarSpec>(&structure))
-    return bar->fixed == BarSpec::Fixed::none ? std::vector<std::string>{} : std::vector<std::string>{"clamp"};
-  return {"base"};
 }
 
 // The number of a support; throws InputError with the nearest name.
@@ -126,6 +107,48 @@ const std::string& carrier_of(const SceneSpec& scene, std::size_t stop) {
 
 }  // namespace
 
+std::vector<std::string> support_names(const StructureSpec& structure) {
+  if (const auto* beam = std::get_if<BeamSpec>(&structure)) {
+    std::vector<std::string> names;
+    for (const BeamSupport& support : supports_of(*beam)) names.push_back(support.name);
+    return names;
+  }
+  if (const auto* assembled = std::get_if<AssembledSpec>(&structure)) return assembled->structure->supports;
+  if (const auto* bar = std::get_if<BarSpec>(&structure))
+    return bar->fixed == BarSpec::Fixed::none ? std::vector<std::string>{} : std::vector<std::string>{"clamp"};
+  return {"base"};
+}
+
+std::vector<double> support_places(const StructureSpec& structure) {
+  constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
+  if (const auto* beam = std::get_if<BeamSpec>(&structure)) {
+    std::vector<double> places;
+    for (const BeamSupport& support : supports_of(*beam))
+      places.push_back(support.holds_displacement() ? support.x : nowhere);
+    return places;
+  }
+  const auto* bar = std::get_if<BarSpec>(&structure);
+  return std::vector<double>(support_names(structure).size(), !bar                                 ? nowhere
+                                                              : bar->fixed == BarSpec::Fixed::left ? 0.0
+                                                                                                   : bar->length);
+}
+
+std::vector<std::pair<int, double>> held_by(const std::vector<double>& supports, const FiniteElementSpace& space,
+                                            double x) {
+  std::vector<std::pair<int, double>> held;
+  for (const auto& [where, weight] : held_row(space, x)) {
+    std::size_t nearest = 0;
+    double away = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < supports.size(); ++j)
+      if (std::abs(supports[j] - where) < away) {
+        away = std::abs(supports[j] - where);
+        nearest = j;
+      }
+    held.emplace_back(static_cast<int>(nearest), weight);
+  }
+  return held;
+}
+
 void check_motions(const SceneSpec& scene) {
   const std::size_t stops = std::max<std::size_t>(1, scene.stops.named.size());
   if (scene.motions.empty()) {
@@ -145,36 +168,35 @@ void check_motions(const SceneSpec& scene) {
 }
 
 void hold_by_supports(const StructureSpec& structure, int elements, SemiDiscrete& problem) {
+  problem.supports = support_names(structure);
+  problem.support_x = support_places(structure);
   std::visit([&](const auto& spec) { hold(spec, elements, problem); }, structure);
 }
 
 Eigen::MatrixXd support_shapes(const SemiDiscrete& problem, const std::vector<double>& x) {
-  const auto places = static_cast<Eigen::Index>(x.size());
-  if (problem.supports.empty()) return Eigen::MatrixXd::Zero(places, 0);
-  Eigen::MatrixXd shapes = displacement_rows(problem.space, x) * problem.static_modes;
-  for (Eigen::Index i = 0; i < places; ++i)
-    for (const auto& [where, share] : held_row(problem.space, x[static_cast<std::size_t>(i)])) {
-      std::size_t nearest = 0;
-      double away = std::numeric_limits<double>::infinity();
-      for (std::size_t j = 0; j < problem.support_x.size(); ++j)
-        if (std::abs(problem.support_x[j] - where) < away) {
-          away = std::abs(problem.support_x[j] - where);
-          nearest = j;
-        }
-      shapes(i, static_cast<Eigen::Index>(nearest)) += share;
-    }
+  if (problem.supports.empty()) return Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(x.size()), 0);
+  Eigen::MatrixXd shapes = place_rows(problem, x) * problem.static_modes;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (const auto& [support, weight] : held_by(problem.support_x, problem.space, x[i]))
+      shapes(static_cast<Eigen::Index>(i), support) += weight;
   return shapes;
 }
 
-Eigen::MatrixXd motion_shapes(const SemiDiscrete& problem, const std::vector<double>& x) {
-  const auto count = static_cast<Eigen::Index>(problem.motions.supports.size());
-  Eigen::MatrixXd shares = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(x.size()), count);
-  if (count == 0) return shares;
-  const Eigen::MatrixXd shapes = support_shapes(problem, x);
-  for (Eigen::Index k = 0; k < count; ++k)
-    for (const std::size_t j : problem.motions.supports[static_cast<std::size_t>(k)])
-      shares.col(k) += shapes.col(static_cast<Eigen::Index>(j));
+namespace {
+
+// Columns of supports to columns of motions: the sum over those that each moves.
+Eigen::MatrixXd of_motions(const SupportMotions& motions, const Eigen::MatrixXd& shapes) {
+  Eigen::MatrixXd shares = Eigen::MatrixXd::Zero(shapes.rows(), static_cast<Eigen::Index>(motions.supports.size()));
+  for (std::size_t k = 0; k < motions.supports.size(); ++k)
+    for (const std::size_t j : motions.supports[k])
+      shares.col(static_cast<Eigen::Index>(k)) += shapes.col(static_cast<Eigen::Index>(j));
   return shares;
+}
+
+}  // namespace
+
+Eigen::MatrixXd motion_shapes(const SemiDiscrete& problem, const std::vector<double>& x) {
+  return of_motions(problem.motions, support_shapes(problem, x));
 }
 
 void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, SemiDiscrete& problem,
@@ -184,27 +206,15 @@ void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, Sem
   const Moved moved = moved_supports(scene);
   motions.supports = moved.supports;
   motions.from_supports = scene.from_supports;
-  const auto count = static_cast<Eigen::Index>(scene.motions.size());
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const MotionSpec& motion = scene.motions[static_cast<std::size_t>(k)];
-    motions.histories.push_back(motion.history);
+  for (std::size_t k = 0; k < scene.motions.size(); ++k) {
+    const std::shared_ptr<const PiecewiseCubic>& history = motions.histories.emplace_back(scene.motions[k].history);
     Eigen::VectorXd push = Eigen::VectorXd::Zero(problem.space.dofs);
-    for (const std::size_t j : moved.supports[static_cast<std::size_t>(k)])
-      push -= problem.support_loads.col(static_cast<Eigen::Index>(j));
-    load.add(push, Formula([history = motion.history](double t) { return history->acceleration(t); },
-                           "motion of " + motion.text, fmt::format("/scene/motions/{}", k)));
+    for (const std::size_t j : moved.supports[k]) push -= problem.support_loads.col(static_cast<Eigen::Index>(j));
+    load.add(push, Formula([history](double t) { return history->acceleration(t); }, "motion of supports",
+                           fmt::format("/scene/motions/{}", k)));
   }
-  const auto shared = [&](const Eigen::MatrixXd& shapes) {
-    Eigen::MatrixXd shares = Eigen::MatrixXd::Zero(shapes.rows(), count);
-    for (Eigen::Index k = 0; k < count; ++k)
-      for (const std::size_t j : moved.supports[static_cast<std::size_t>(k)])
-        shares.col(k) += shapes.col(static_cast<Eigen::Index>(j));
-    return shares;
-  };
-  motions.at_points = shared(problem.contact * problem.static_modes + on_supports);
-  // Of places that lie on elements the space knows what supports add by themselves.
-  motions.at_tip = shared(problem.space.elements.empty() ? Eigen::MatrixXd(problem.tip * problem.static_modes)
-                                                         : support_shapes(problem, {tip_position(scene)}));
+  motions.at_points = of_motions(motions, problem.contact * problem.static_modes + on_supports);
+  motions.at_tip = motion_shapes(problem, {tip_position(scene)});
   if (scene.from_supports) motions.at_tip.setZero();
   for (Eigen::Index i = 0; i < problem.points(); ++i) {
     const auto stop = static_cast<std::size_t>(i);

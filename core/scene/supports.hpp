@@ -1,10 +1,22 @@
 #pragma once
 #include <ricochet/scene/semi_discrete.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace ricochet {
 
 /// Fills names, static modes, loads and places of what holds the structure, and whether it is held.
 void hold_by_supports(const StructureSpec& structure, int elements, SemiDiscrete& problem);
+
+/// Names of what holds the structure, in the order of its static modes.
+std::vector<std::string> support_names(const StructureSpec& structure);
+/// Where each of them holds the displacement of a beam or bar, m; NaN where it holds none.
+std::vector<double> support_places(const StructureSpec& structure);
+
+/// What supports that stand at these places add to the displacement at x by themselves: number and weight.
+std::vector<std::pair<int, double>> held_by(const std::vector<double>& supports, const FiniteElementSpace& space,
+                                            double x);
 
 /// Throws InputError for an unknown support, one that two motions move, a stop that would move with supports that move
 /// apart or rest, a frame without motions.

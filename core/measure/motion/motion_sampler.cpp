@@ -262,9 +262,9 @@ bool MotionSampler::next() {
   motion_.energy.push_back(energy);
   motion_.impulse.push_back(impulse);
   Eigen::VectorXd u = (places_ * w).array() + support, velocity = (places_ * v).array() + rate;
-  for (Eigen::Index i = 0; i < shares_.rows(); ++i) {
-    u[i] += problem.motions.sum(shares_.row(i), t, false);
-    velocity[i] += problem.motions.sum(shares_.row(i), t, true);
+  if (shares_.rows() > 0) {
+    u += shares_ * problem.motions.values(t, false);
+    velocity += shares_ * problem.motions.values(t, true);
   }
   const Eigen::VectorXd strain = strains_ * w;
   motion_.displacement.insert(motion_.displacement.end(), u.begin(), u.end());

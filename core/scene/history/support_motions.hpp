@@ -24,6 +24,14 @@ struct SupportMotions {
   double tip(double t) const { return empty() ? 0.0 : sum(at_tip, t, false); }
   double tip_rate(double t) const { return empty() ? 0.0 : sum(at_tip, t, true); }
 
+  /// φ_j(t), r numbers, or their rates. Allocates.
+  Eigen::VectorXd values(double t, bool rate) const {
+    Eigen::VectorXd out(static_cast<Eigen::Index>(histories.size()));
+    for (std::size_t j = 0; j < histories.size(); ++j)
+      out[static_cast<Eigen::Index>(j)] = rate ? histories[j]->rate(t) : histories[j]->value(t);
+    return out;
+  }
+
   /// Σ_j a_j φ_j(t), or its rate.
   double sum(const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& a, double t, bool rate) const {
     double total = 0;

@@ -56,9 +56,13 @@ SnapshotTaker::SnapshotTaker(const Marcher& marcher, long long steps, int count)
   given_.assign(static_cast<std::size_t>(points), 0);
   // Displacements are drawn as the stops see them.
   if (!problem.motions.empty() && !problem.motions.carry_stops) {
-    std::vector<double> places = shape_.x;
-    places.push_back(problem.support_x.front());
-    shares_ = motion_shapes(problem, places);
+    const std::vector<std::vector<std::size_t>>& moved = problem.motions.supports;
+    shares_ = motion_shapes(problem, shape_.x);
+    shares_.conservativeResize(shares_.rows() + 1, Eigen::NoChange);
+    // The clamp is the first support, which moves by one motion at most.
+    for (std::size_t k = 0; k < moved.size(); ++k)
+      shares_.bottomRows(1)(0, static_cast<Eigen::Index>(k)) =
+          std::count(moved[k].begin(), moved[k].end(), 0U) > 0 ? 1 : 0;
   }
   take(problem, problem.position, marcher.support(0, 0), 0);
   asks_.next_shown = step_of(next_);
@@ -93,9 +97,11 @@ void SnapshotTaker::interval(Marcher& marcher, const StepInterval& steps) {
 
 void SnapshotTaker::take(const SemiDiscrete& problem, const Eigen::VectorXd& position, double support, double time) {
   Eigen::VectorXd u = (at_ * position).array() + support;
-  for (Eigen::Index i = 0; i < u.size() && shares_.rows() > 0; ++i)
-    u[i] += problem.motions.sum(shares_.row(i), time, false);
-  if (shares_.rows() > 0) support += problem.motions.sum(shares_.row(u.size()), time, false);
+  if (shares_.rows() > 0) {
+    const Eigen::VectorXd lift = shares_ * problem.motions.values(time, false);
+    u += lift.head(u.size());
+    support += lift[u.size()];
+  }
   if (!u.allFinite()) return;
   const double since = t_.empty() ? 0 : time - t_.back();
   const auto points = shape_.point.size();

@@ -2,8 +2,11 @@
 #include "runners/study/histories.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <set>
 
+#include "runners/store/record_values.hpp"
+#include "runners/store/snapshots.hpp"
 #include "tests/runners/kinds/trajectory/case_runs.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
@@ -290,4 +293,28 @@ TEST_CASE("two masses that meet, shaken against each other") {
   CHECK(value_at(record, "tip_displacement", 0.05) == Approx(-3.5801e-4).margin(2e-7));
   CHECK(value_at(record, "tip_displacement", 0.25) == Approx(-1.8873e-4).margin(2e-7));
   CHECK(value_at(record, "tip_displacement", 0.4) == Approx(-1.8985e-4).margin(2e-7));
+}
+
+TEST_CASE("the film of given matrices has the first support as its clamp, where that moves") {
+  Studies studies;
+  studies.write("K.mtx", std::string(coordinates) + "2 2 3\n1 1 1e4\n2 1 -1e4\n2 2 1e4\n");
+  studies.write("M.mtx", std::string(coordinates) + "2 2 1\n2 2 10\n");
+  studies.write("dofs.csv", dof_header + "1,L,ux,0,0,0,left\n2,A,ux,1,0,0,\n");
+  const CaseRecord record = studies
+                                .run(Json::parse(R"json({
+    "name": "film", "kind": "trajectory",
+    "scene": {"structure": {"type": "assembled", "stiffness": "K.mtx", "mass": "M.mtx", "dofs": "dofs.csv"},
+              "motions": [{"displacement": {"formula": "1e-3*sin(20*pi*t)", "every": 1e-4, "until": 0.1}}],
+              "stops": [{"name": "wall", "at": {"node": "A", "component": "ux"}, "upper": 1}]},
+    "mesh": {"elements": 1},
+    "methods": {"mass": "consistent", "contact": "signorini", "time": "newmark"},
+    "step": 1e-4, "duration": 0.1, "samples": 10, "snapshots": 8})json"))
+                                .front();
+  REQUIRE(record.status == "done");
+  const NumberTable* table = find_table(record.numbers, snapshots_name);
+  REQUIRE(table);
+  const Snapshots shots = snapshots_of(*table).value();
+  REQUIRE(shots.t.size() == shots.clamp.size());
+  for (std::size_t k = 0; k < shots.t.size(); ++k)
+    CHECK(shots.clamp[k] == Approx(1e-3 * std::sin(20 * 3.141592653589793 * shots.t[k])).margin(1e-9));
 }
