@@ -220,9 +220,6 @@ bool Formula::is_zero() const {
 const std::string& Formula::text() const {
   return source_->text;
 }
-bool Formula::is_given() const {
-  return static_cast<bool>(source_->given);
-}
 
 namespace {
 

@@ -52,8 +52,6 @@ class Formula {
   /// A constant that equals zero: what it feeds is left out.
   bool is_zero() const;
   const std::string& text() const;
-  /// Whether it is such a function, and not an expression.
-  bool is_given() const;
 
  private:
   struct Source;

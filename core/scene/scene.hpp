@@ -157,7 +157,6 @@ struct SupportSpec {
 struct MotionSpec {
   std::vector<std::string> supports;              ///< their names; empty: all
   std::shared_ptr<const PiecewiseCubic> history;  ///< φ, m
-  std::string text;                               ///< what it was made of, for people: "ground.csv"
   std::shared_ptr<const TimeTable> table = {};    ///< what it was made of; null: of something else
   bool accelerates = true;                        ///< whether the table gives φ'', and not φ
 };

@@ -101,10 +101,6 @@ std::string at_steps(const Compared& study, const Cases& cases) {
   return " at h = " + and_list(words) + " s";
 }
 
-}  // namespace
-
-namespace {
-
 /// References that the study names and that refuse: errors are those against the others.
 void add_refused_references(const Compared& study, std::vector<Sentence>& out) {
   InOrderMet<std::string, std::size_t> counts;

@@ -170,7 +170,6 @@ MotionSpec read_motion(const Json& json, const std::string& pointer, StudyFiles*
   const TimeTable::Between way = accelerates ? TimeTable::Between::linear : TimeTable::Between::cubic;
   motion.table = std::make_shared<const TimeTable>(given.contains("file") ? read_table(given, here, files)
                                                                           : sample(given, here, way));
-  motion.text = motion.table->name;
   motion.accelerates = accelerates;
   if (accelerates) {
     const Json& start = json.at("start");
@@ -200,17 +199,14 @@ void check_tables(const SceneSpec& scene, double duration) {
           fmt::format("/scene/motions/{}/{}", i, scene.motions[i].accelerates ? "acceleration" : "displacement"));
 }
 
-std::vector<std::pair<std::string, Json*>> histories_with_files(Json& scene) {
-  std::vector<std::pair<std::string, Json*>> found;
+std::vector<Json*> histories_with_files(Json& scene) {
+  std::vector<Json*> found;
   const auto look = [&](const char* list, std::initializer_list<const char*> keys) {
     if (!scene.contains(list) || !scene[list].is_array()) return;
-    for (std::size_t i = 0; i < scene[list].size(); ++i)
-      for (const char* key : keys) {
-        if (!scene[list][i].is_object() || !scene[list][i].contains(key)) continue;
-        Json& one = scene[list][i][key];
-        if (one.is_object() && one.contains("file"))
-          found.emplace_back(fmt::format("/scene/{}/{}/{}", list, i, key), &one);
-      }
+    for (Json& entry : scene[list])
+      for (const char* key : keys)
+        if (entry.is_object() && entry.contains(key) && entry[key].is_object() && entry[key].contains("file"))
+          found.push_back(&entry[key]);
   };
   look("load", {"force", "time"});
   look("motions", {"acceleration", "displacement"});

@@ -26,7 +26,7 @@ MotionSpec read_motion(const Json& json, const std::string& pointer, StudyFiles*
 /// holds there.
 void check_tables(const SceneSpec& scene, double duration);
 
-/// Every history of a scene that names a file, with its pointer.
-std::vector<std::pair<std::string, Json*>> histories_with_files(Json& scene);
+/// Every history of a scene that names a file.
+std::vector<Json*> histories_with_files(Json& scene);
 
 }  // namespace ricochet

@@ -145,7 +145,7 @@ std::vector<DofState> StudyFiles::initial(const Json& initial, const Json& struc
 void StudyFiles::add_digests(Json& scene) const {
   const std::lock_guard lock(mutex_);
   const auto digest = [&](const std::string& name) { return files_.at(name).digest; };
-  for (const auto& [pointer, history] : histories_with_files(scene))
+  for (Json* history : histories_with_files(scene))
     (*history)["digest"] = digest(history->at("file").get<std::string>());
   Json& structure = scene["structure"];
   if (structure.at("type") != "assembled") return;

@@ -38,7 +38,7 @@ SceneSpec shaken() {
   TimeTable table;
   table.times = {0, 0.025, 0.05, 10};
   table.values = {0, 9.81, 0, 0};
-  scene.motions = {{{}, std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(table, 0, 0)), "a.csv"}};
+  scene.motions = {{{}, std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(table, 0, 0))}};
   scene.from_supports = true;
   return scene;
 }
@@ -67,7 +67,7 @@ TEST_CASE("a tabulated motion marches as the harmonic support of the same motion
   harmonic.support = {0.01, omega, 0};
   SceneSpec table = scene;
   table.support = {};
-  table.motions = {{{}, sine(0.01, omega, end), "sine"}};
+  table.motions = {{{}, sine(0.01, omega, end)}};
   Marcher a = marcher(harmonic, 6, methods, h), b = marcher(table, 6, methods, h);
   const EnergyAudit first = audited(a, end - h), second = audited(b, end - h);
   CHECK(first.contact(0).impacts > 2);
@@ -267,9 +267,9 @@ TEST_CASE("supports that move apart by one and the same history move a beam as a
   together.stops.place = StopsSpec::Place::positions;
   together.stops.positions = {0.5, 1.5};
   together.stops.moves_with = "plate2";
-  together.motions = {{{}, shock(), "shock"}};
+  together.motions = {{{}, shock()}};
   SceneSpec apart = together;
-  apart.motions = {{{"plate1", "plate3"}, shock(), "shock"}, {{"plate2", "plate4"}, shock(), "shock"}};
+  apart.motions = {{{"plate1", "plate3"}, shock()}, {{"plate2", "plate4"}, shock()}};
   const Methods methods{{"consistent"}, {"penalty", {{"stiffness", 5e5}}}, {"newmark"}};
   Marcher a = marcher(together, 12, methods, 2e-5), b = marcher(apart, 12, methods, 2e-5);
   const EnergyAudit first = audited(a, 0.1), second = audited(b, 0.1);

@@ -91,7 +91,10 @@ void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const March
   const bool named = !problem.stops.empty();
   if (named) stops.columns.push_back(stop_column);
   double peak = 0, time = 0;
-  for (int point = 0; point < problem.points(); ++point)
+  for (int point = 0; point < problem.points(); ++point) {
+    if (named)
+      put_stop_measures(record, problem.stops[static_cast<std::size_t>(point)],
+                        recorder.totals(0, point, StopSide::lower), recorder.totals(0, point, StopSide::upper));
     for (const StopSide side : {StopSide::lower, StopSide::upper}) {
       const StopTotals& totals = recorder.totals(0, point, side);
       if (totals.impacts == 0 && totals.contact_time == 0) continue;
@@ -103,9 +106,7 @@ void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const March
                             totals.normal_work, totals.impacts > 0 ? Cell(totals.fastest) : Cell()});
       if (named) stops.rows.back().push_back(problem.stops[static_cast<std::size_t>(point)]);
     }
-  for (int point = 0; named && point < problem.points(); ++point)
-    put_stop_measures(record, problem.stops[static_cast<std::size_t>(point)],
-                      recorder.totals(0, point, StopSide::lower), recorder.totals(0, point, StopSide::upper));
+  }
   put_measure(record, "peak_contact_force", peak);
   put_measure(record, "contact_time", time);
   add_impacts(record, recorder, problem);

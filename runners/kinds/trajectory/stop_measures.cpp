@@ -81,7 +81,7 @@ const MeasureInfo* stop_measure_info(const std::string& name) {
 }
 
 void put_stop_measures(CaseRecord& record, const std::string& stop, const StopTotals& lower, const StopTotals& upper) {
-  for (const StopMeasure& one : table) put_measure(record, name_of(one.name, stop).c_str(), one.value(lower, upper));
+  for (const StopMeasure& one : table) put_measure(record, name_of(one.name, stop), one.value(lower, upper));
 }
 
 void check_observed_stops(const nlohmann::ordered_json& study) {

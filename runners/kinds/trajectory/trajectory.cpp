@@ -236,10 +236,6 @@ std::vector<std::string> observed_energies(const StudyResults& results) {
   return {driven ? "dissipated_at_contact" : "energy_left", "impulse", "tip_displacement_end"};
 }
 
-}  // namespace
-
-namespace {
-
 StudyKind trajectory_format(const std::vector<MeasureInfo>& measures) {
   StudyKind format;
   format.name = "trajectory";
