@@ -11,9 +11,14 @@ namespace ricochet {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// The mass of a structure that is given by its matrices and has no elements.
+/// The mass of a structure that is given by its matrices and has no elements, and what else is known of its dofs.
 struct GivenMass {
-  SparseMatrix mass;  ///< M, n × n, both triangles, positive semidefinite
+  SparseMatrix mass;           ///< M, n × n, both triangles, positive semidefinite
+  SparseMatrix stiffness;      ///< K, n × n: dofs that share an entry are neighbours
+  std::vector<int> direction;  ///< of each dof: 0, 1, 2 a displacement along x, y, z; 3 a rotation; −1 anything else
+  Eigen::MatrixXd rigid;       ///< n × k: the translations of the dofs, then the rotations that K lets be
+  /// Along x, y, z (kg): what a translation of all dofs moves, and the sum of the diagonal of M, held dofs included.
+  std::array<double, 3> translated{}, diagonal{};
 };
 
 /// The displacement space, as mass strategies need it: elements with local shape functions, and point masses.

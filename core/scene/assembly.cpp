@@ -175,7 +175,9 @@ FiniteElementSpace make(const AssembledSpec& spec, int elements) {
   space.structure = "assembled structure";
   space.basis = FiniteElementSpace::Basis::linear;
   space.dofs = spec.structure->dofs();
-  space.given = GivenMass{spec.structure->mass};
+  space.given = spec.structure->dofs_known;
+  space.given->mass = spec.structure->mass;
+  space.given->stiffness = spec.structure->stiffness;
   return space;
 }
 

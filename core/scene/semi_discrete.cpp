@@ -275,8 +275,8 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   problem.space.contact_dofs = touched_dofs(problem.contact);
   if (problem.space.given && !mass.takes_given())
     return Refusal{
-        "this mass is made of elements, and an assembled structure has matrices alone: use one that takes the mass as "
-        "given (consistent)"};
+        "this mass is made of velocities on elements, and an assembled structure has matrices alone: use consistent, "
+        "hrz or redistributed"};
   auto built = mass.build(problem.space);
   if (auto* refusal = std::get_if<Refusal>(&built)) return *refusal;
   problem.inertia = std::get<Inertia>(std::move(built));

@@ -4,6 +4,8 @@
 #include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
 
+#include "neighbour_rings.hpp"
+
 namespace {
 
 using namespace ricochet;
@@ -43,55 +45,94 @@ struct RigidMotions {
   }
 };
 
-/// Takes the mass off the dofs `empty` (sorted), whose neighbours within `reach` of their places get it, in m;
-/// infinite: all. False where they cannot carry it.
-inline bool move_mass(SparseMatrix& mass, const RigidMotions& rigid, const std::vector<int>& empty, double reach) {
-  const double first = rigid.place[empty.front()], last = rigid.place[empty.back()];
-  const double length = std::min(reach, rigid.place.maxCoeff() - rigid.place.minCoeff());
-  const Eigen::MatrixXd X = rigid.about((first + last) / 2, length);
+/// Takes the mass off the dofs `empty` (sorted), whose neighbours in `near` (n) get it, so that XᵀMX stays, X (n × k)
+/// the rigid motions. False where they cannot carry it.
+template <int k>
+bool move_mass(SparseMatrix& mass, const Eigen::Matrix<double, Eigen::Dynamic, k>& X, const std::vector<int>& empty,
+               const std::vector<char>& near) {
+  constexpr int size = k == Eigen::Dynamic ? Eigen::Dynamic : k * (k + 1) / 2, most = 21;
+  using Moments = Eigen::Matrix<double, size, 1, 0, k == Eigen::Dynamic ? most : size, 1>;
+  using Response = Eigen::Matrix<double, size, size, 0, Moments::MaxSizeAtCompileTime, Moments::MaxSizeAtCompileTime>;
+  const Eigen::Index motions = X.cols(), moments = motions * (motions + 1) / 2;
   const Eigen::VectorXd diagonal = mass.diagonal();
   const auto is_empty = [&](Eigen::Index i) {
     return std::binary_search(empty.begin(), empty.end(), static_cast<int>(i));
   };
-  const auto near = [&](Eigen::Index i) {
-    return std::any_of(empty.begin(), empty.end(),
-                       [&](int dof) { return std::abs(rigid.place[i] - rigid.place[dof]) <= reach * (1 + 1e-9); });
-  };
-  // ½(X_a X_bᵀ + X_b X_aᵀ)_ij for ab = 11, 12, 22.
+  const auto takes = [&](Eigen::Index i) { return near[static_cast<std::size_t>(i)] != 0; };
+  // ½(X_a X_bᵀ + X_b X_aᵀ)_ij for ab = 11, 12, …, 22, ….
   const auto share = [&](Eigen::Index i, Eigen::Index j) {
-    return Eigen::Vector3d(X(i, 0) * X(j, 0), 0.5 * (X(i, 0) * X(j, 1) + X(i, 1) * X(j, 0)), X(i, 1) * X(j, 1));
+    Moments s(moments);
+    Eigen::Index p = 0;
+    for (Eigen::Index a = 0; a < motions; ++a) {
+      s[p++] = X(i, a) * X(j, a);
+      for (Eigen::Index b = a + 1; b < motions; ++b) s[p++] = 0.5 * (X(i, a) * X(j, b) + X(i, b) * X(j, a));
+    }
+    return s;
   };
-  Eigen::Vector3d lost = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d response = Eigen::Matrix3d::Zero();
+  Moments lost = Moments::Zero(moments);
+  Response response = Response::Zero(moments, moments);
   const auto each = [&](auto&& use) {
     for (Eigen::Index j = 0; j < mass.outerSize(); ++j)
       for (SparseMatrix::InnerIterator it(mass, j); it; ++it) use(it, is_empty(it.row()) || is_empty(j));
   };
   each([&](const SparseMatrix::InnerIterator& it, bool emptied) {
-    const Eigen::Vector3d s = share(it.row(), it.col());
+    const Moments s = share(it.row(), it.col());
     if (emptied)
       lost += it.value() * s;
-    else if (near(it.row()) && near(it.col()))
+    else if (takes(it.row()) && takes(it.col()))
       response += diagonal[it.row()] * diagonal[it.col()] * s * s.transpose();
   });
-  const Eigen::Vector3d lambda = least_norm_solve(response, lost);
+  const Moments lambda = least_norm_solve(response, lost);
   if (!((response * lambda - lost).norm() <= 1e-9 * lost.norm())) return false;
   each([&](SparseMatrix::InnerIterator& it, bool emptied) {
     if (emptied)
       it.valueRef() = 0;
-    else if (near(it.row()) && near(it.col()))
+    else if (takes(it.row()) && takes(it.col()))
       it.valueRef() += diagonal[it.row()] * diagonal[it.col()] * lambda.dot(share(it.row(), it.col()));
   });
   return true;
 }
 
-/// Whether a mass without the rows `empty` is positive definite on the others.
-inline bool positive_elsewhere(const SparseMatrix& mass, const std::vector<int>& empty) {
+/// The same within `reach` of the places of `empty`, in m; infinite: all.
+bool move_mass(SparseMatrix& mass, const RigidMotions& rigid, const std::vector<int>& empty, double reach) {
+  const double first = rigid.place[empty.front()], last = rigid.place[empty.back()];
+  const double length = std::min(reach, rigid.place.maxCoeff() - rigid.place.minCoeff());
+  std::vector<char> near;
+  for (const double place : rigid.place)
+    near.push_back(std::any_of(empty.begin(), empty.end(),
+                               [&](int dof) { return std::abs(place - rigid.place[dof]) <= reach * (1 + 1e-9); }));
+  return move_mass<2>(mass, rigid.about((first + last) / 2, length), empty, near);
+}
+
+/// The same of matrices that are given. X spans the motions of the neighbourhood, orthonormal in diag(M): those that it
+/// cannot tell apart count once.
+bool move_mass(SparseMatrix& mass, const GivenMass& given, const DofGroup& group) {
+  constexpr double apart = 1e-9;
+  Eigen::VectorXd scale = mass.diagonal();
+  for (Eigen::Index i = 0; i < scale.size(); ++i)
+    scale[i] = scale[i] > 0 && group.near[static_cast<std::size_t>(i)] ? std::sqrt(scale[i]) : 0;
+  Eigen::MatrixXd X(mass.rows(), 0);
+  for (Eigen::Index k = 0; k < given.rigid.cols(); ++k) {
+    Eigen::VectorXd motion = scale.asDiagonal() * given.rigid.col(k);
+    const double before = motion.norm();
+    for (int twice = 0; twice < 2; ++twice) motion -= X * (X.transpose() * motion);
+    if (!(motion.norm() > apart * before)) continue;
+    X.conservativeResize(Eigen::NoChange, X.cols() + 1);
+    X.rightCols(1) = motion / motion.norm();
+  }
+  for (double& one : scale) one = one > 0 ? 1 / one : 0;
+  X = scale.asDiagonal() * X;
+  return move_mass<Eigen::Dynamic>(mass, X, group.dofs, group.near);
+}
+
+/// Whether a mass without the rows `empty` is positive definite on the others; where it may have a `kernel` there, too,
+/// whether it is positive semidefinite.
+inline bool positive_elsewhere(const SparseMatrix& mass, const std::vector<int>& empty, bool kernel = false) {
   Eigen::VectorXd scale = mass.diagonal();
   if (!(scale.minCoeff() >= 0)) return false;
   for (double& value : scale) value = value > 0 ? 1 / std::sqrt(value) : 1;
   SparseMatrix scaled = scale.asDiagonal() * mass * scale.asDiagonal();
-  constexpr double regular = 1e-9;
+  const double regular = kernel ? -1e-11 : 1e-9;
   for (int i = 0; i < scaled.rows(); ++i)
     scaled.coeffRef(i, i) += std::binary_search(empty.begin(), empty.end(), i) ? 1 : -regular;
   SparseLdlt factors;
@@ -107,7 +148,7 @@ class OfTheEnds : public MassStrategy {
   InertiaOrRefusal build(const FiniteElementSpace& space) const override {
     if (space.basis != FiniteElementSpace::Basis::linear || space.elements.empty())
       return Refusal{"the redistributed mass empties the end nodes of a bar; for this " + space.structure +
-                     " use its form projected or the mass singular"};
+                     (space.given ? " use its form projected" : " use its form projected or the mass singular")};
     const int free_ends = (space.left_fixed ? 0 : 1) + (space.right_fixed ? 0 : 1);
     const auto count = static_cast<int>(space.elements.size());
     // Both neighbours of an end must be free nodes, and not those of the other end.
@@ -139,14 +180,16 @@ class OfTheEnds : public MassStrategy {
     inertia.mass.makeCompressed();
     return inertia;
   }
+  bool takes_given() const override { return true; }
 };
 
-/// form projected: consistent mass whose contact dofs carry none (redistribution.hpp).
+/// form projected: consistent mass whose contact dofs carry none.
 class Projected : public MassStrategy {
  public:
   explicit Projected(int reach) : reach_(reach) {}
 
   InertiaOrRefusal build(const FiniteElementSpace& space) const override {
+    if (space.given) return of_given(*space.given, space.contact_dofs);
     if (space.elements.empty())
       return Refusal{"a redistributed mass needs elements to move mass over, and this " + space.structure +
                      " has none: use the mass consistent or lumped"};
@@ -175,7 +218,28 @@ class Projected : public MassStrategy {
     return inertia;
   }
 
+  bool takes_given() const override { return true; }
+
  private:
+  // Over `reach` rings of the graph of the matrices, or all of it.
+  InertiaOrRefusal of_given(const GivenMass& given, const std::vector<int>& contact) const {
+    Inertia inertia;
+    inertia.mass = given.mass;
+    for (const DofGroup& group : ring_groups(given, contact, reach_))
+      if (!move_mass(inertia.mass, given, group))
+        return Refusal{
+            "no dof near the contact points of this assembled structure is left to carry their mass in its rigid "
+            "motions: use a larger reach, fewer stops or the mass consistent"};
+    inertia.mass.prune([](Eigen::Index, Eigen::Index, double value) { return value != 0; });
+    if (!positive_elsewhere(inertia.mass, contact, true))
+      return Refusal{
+          "the mass moved off the contact points of this assembled structure leaves a negative eigenvalue: use another "
+          "reach or the mass consistent"};
+    inertia.mass.makeCompressed();
+    inertia.kernel_dimension = static_cast<int>(inertia.mass.rows()) - semidefinite_rank(inertia.mass);
+    return inertia;
+  }
+
   // Contact dofs whose neighbourhoods overlap: mass, centre and moment of inertia are kept for each group.
   static std::vector<std::vector<int>> groups(const std::vector<int>& dofs, const RigidMotions& rigid, double reach) {
     std::vector<std::vector<int>> found;
@@ -199,10 +263,11 @@ void register_redistributed(Registry& registry) {
           gravity kept; order 2.6. Form projected, of bars and beams: the matrix nearest to the consistent one whose
           contact dofs have no row, with the same total mass, centre and moment of inertia of the free dofs. It
           differs within `reach` elements of a contact point, and frequencies keep their order; reach 0 spreads the
-          mass over the whole mesh, as the paper does, and leaves order 1. A damped beam with a stop at its tip
-          converges with order 2 to 4 (reach 2) and 1 (reach 0) in the element length. Refused where no dof is left to
-          carry the mass (stops at all nodes: singular does that through its velocity space) and where a negative
-          eigenvalue would be left.)";
+          mass over the whole mesh, as the paper does, and leaves order 1. Of an assembled structure, `reach` counts
+          rings of neighbours in K and M, and the translations and rotations of the table of dofs keep their mass. A
+          damped beam with a stop at its tip converges with order 2 to 4 (reach 2) and 1 (reach 0) in the element
+          length. Refused where no dof is left to carry the mass (stops at all nodes: singular does that through its
+          velocity space) and where a negative eigenvalue would be left.)";
   manual.source =
       R"(Khenous, Laborde, Renard 2008, Mass redistribution method for finite element contact problems in
           elastodynamics, Eur. J. Mech. A/Solids 27, 918-932; its diagonal form with two neighbours and the reach:
@@ -213,7 +278,7 @@ void register_redistributed(Registry& registry) {
           R"(lumped: the free ends of a bar, from its diagonal mass; projected: the contact dofs of the scene, from
           the consistent mass)"),
       integer_parameter("reach", 2, {.low = 0, .high = 1000},
-                        "elements over which form projected moves mass; 0: the whole mesh")};
+                        "elements, or rings of neighbours, over which form projected moves mass; 0: the whole mesh")};
   registry.add_mass(std::move(manual), [](const Parameters& p) -> std::unique_ptr<MassStrategy> {
     if (p.word("form") == "lumped") return std::make_unique<OfTheEnds>();
     return std::make_unique<Projected>(static_cast<int>(p.integer("reach")));

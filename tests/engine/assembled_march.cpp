@@ -91,6 +91,14 @@ TEST_CASE("rotations without inertia in the files are those of the beam's own lu
         1e-12);
 }
 
+TEST_CASE("files of a beam march as the beam with masses that are made of the matrices alone") {
+  const Methods scaled{{"hrz"}, {"signorini"}, {"newmark-dumont-paoli"}},
+      moved{{"redistributed", {{"form", std::string("projected")}}}, {"signorini"}, {"newmark-dumont-paoli"}};
+  for (const Methods& methods : {scaled, moved})
+    CHECK(apart(tips(shaken_beam(), elements, methods, OperatorKind::band),
+                tips(shaken_files({}), 1, methods, OperatorKind::band)) < 1e-11);
+}
+
 TEST_CASE("two equal masses that are pushed together are one mass against a wall half the gap away") {
   // 25 kg on springs of 98696 N/m; the stop between them is twice as far and half as stiff as the wall.
   const std::string head = "%%MatrixMarket matrix coordinate real symmetric\n";

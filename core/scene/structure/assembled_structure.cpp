@@ -7,6 +7,7 @@
 #include <ricochet/scene/files/text_file.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/structure/band_order.hpp>
+#include <ricochet/scene/structure/rigid_motions.hpp>
 
 namespace ricochet {
 namespace {
@@ -111,6 +112,13 @@ class StructureMaker {
     out_.mass = picked(M, free_, free_);
     out_.half_width = std::max(half_bandwidth(out_.stiffness), half_bandwidth(out_.mass));
     check_matrices();
+    const TranslatedMass carried = translated_mass(files_.table, M);
+    out_.dofs_known = {.mass = {},
+                       .stiffness = {},
+                       .direction = dof_directions(files_.table, free_),
+                       .rigid = rigid_motions(files_.table, K, files_.length_unit, free_),
+                       .translated = carried.whole,
+                       .diagonal = carried.diagonal};
     find_static_modes(picked(K, free_, held_), picked(M, free_, held_));
     return std::move(out_);
   }

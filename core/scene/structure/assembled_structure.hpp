@@ -31,6 +31,7 @@ struct AssembledStructure {
   SparseMatrix stiffness;      ///< K, n × n, both triangles
   SparseMatrix mass;           ///< M, n × n, both triangles, positive semidefinite
   std::vector<DofName> names;  ///< of the free dofs, in their order here; places in m
+  GivenMass dofs_known;        ///< of the free dofs, for mass strategies; its matrices are empty
   std::vector<std::string> supports;
   Eigen::MatrixXd static_modes;   ///< ψ, n × r
   Eigen::MatrixXd support_loads;  ///< s (kg), n × r

@@ -1,0 +1,25 @@
+#pragma once
+#include <ricochet/contract/mass_strategy.hpp>
+#include <ricochet/scene/files/dof_table.hpp>
+#include <vector>
+
+namespace ricochet {
+
+/// Of each dof in `order` (of the table, from 0): 0, 1, 2 a displacement along x, y, z; 3 a rotation; −1 another word.
+std::vector<int> dof_directions(const DofTable& table, const std::vector<int>& order);
+
+/// Rigid motions of the dofs in `order`, as columns: each translation that a dof has, then each rotation
+/// u = ω × (x − x₀), x₀ the mean place, that K (all dofs of the table, in m) lets be: (K u)_i is zero to 1e-6 of its
+/// terms in every row that no ground holds. Rows that a ground holds are those where K resists a translation. `unit`: m
+/// per unit of the table's places.
+Eigen::MatrixXd rigid_motions(const DofTable& table, const SparseMatrix& stiffness, double unit,
+                              const std::vector<int>& order);
+
+/// What a translation along x, y, z of all dofs moves of M (all dofs of the table), and the sum of its diagonal along
+/// each, kg.
+struct TranslatedMass {
+  std::array<double, 3> whole{}, diagonal{};
+};
+TranslatedMass translated_mass(const DofTable& table, const SparseMatrix& mass);
+
+}  // namespace ricochet
