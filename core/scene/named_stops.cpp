@@ -182,8 +182,9 @@ Eigen::VectorXd initial_dofs(const AssembledStructure& structure, const InitialS
 }
 
 void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond) {
-  if (scene.support.amplitude != 0)
-    throw InputError("/scene/support/amplitude", "an assembled structure has no clamp; expected an amplitude of 0");
+  if (scene.support.amplitude != 0 && assembled_of(scene)->supports.empty())
+    throw InputError("/scene/support/amplitude",
+                     "the table of dofs names no support that could move; expected an amplitude of 0");
   if (scene.stops.lower || scene.stops.upper)
     throw InputError("/scene/stops", "an assembled structure has no x; expected a list of stops with name and place");
   if (!scene.load.formula.is_zero())
@@ -216,6 +217,8 @@ void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, co
       throw InputError("/scene/initial/file",
                        fmt::format("dof {} is held, and would begin at {:.6g} with {:.6g}; expected 0 and 0", state.dof,
                                    state.displacement, state.velocity));
+  if (!scene.motions.empty() || scene.support.amplitude != 0)
+    return;  // discretise() knows where the stops are at t = 0
   const ContactPoints points = contact_points(scene, space, 1);
   const Eigen::VectorXd start = points.rows * initial_dofs(structure, scene.initial, &DofState::displacement);
   check_between_stops(points.x, start, points.lower, points.upper,

@@ -155,10 +155,10 @@ struct SupportSpec {
 
 /// A motion φ(t) that some supports have, given as a function of time.
 struct MotionSpec {
-  std::vector<std::string> supports;              ///< their names; empty: all
-  std::shared_ptr<const PiecewiseCubic> history;  ///< φ, m
-  std::shared_ptr<const TimeTable> table = {};    ///< what it was made of; null: of something else
-  bool accelerates = true;                        ///< whether the table gives φ'', and not φ
+  std::vector<std::string> supports;            ///< their names; empty: all
+  std::shared_ptr<const TimeHistory> history;   ///< φ, m
+  std::shared_ptr<const TimeTable> table = {};  ///< what it was made of; null: of something else
+  bool accelerates = true;                      ///< whether the table gives φ'', and not φ
 };
 
 /// The word for all supports together, where a name may stand.

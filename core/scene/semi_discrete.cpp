@@ -90,6 +90,11 @@ void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem) {
   if (const auto* spec = std::get_if<AssembledSpec>(&scene.structure)) {
     problem.position = initial_dofs(*spec->structure, scene.initial, &DofState::displacement);
     problem.velocity = initial_dofs(*spec->structure, scene.initial, &DofState::velocity);
+    if (problem.support.amplitude != 0) {
+      const Eigen::VectorXd lift = problem.static_modes.rowwise().sum();
+      problem.position -= support.position * lift;
+      problem.velocity -= support.velocity * lift;
+    }
   }
   const SupportMotions& motions = problem.motions;
   if (!motions.empty() && !motions.from_supports)
@@ -292,7 +297,7 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   problem.lower = std::move(points.lower);
   problem.upper = std::move(points.upper);
   problem.tip = tip_row(scene, problem.space);
-  add_motions(scene, points.on_supports, problem, *load);
+  add_support(scene, points.on_supports, problem, *load);
   problem.load = std::move(load);
   if (const std::string chosen = tip_choice(scene); !chosen.empty()) problem.notes.push_back("the tip is " + chosen);
   if (law && law->changes_problem() && problem.points() > 0) {

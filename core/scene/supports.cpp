@@ -7,6 +7,7 @@
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/discrete_problem.hpp>
+#include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/supports.hpp>
@@ -207,7 +208,7 @@ void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, Sem
   motions.supports = moved.supports;
   motions.from_supports = scene.from_supports;
   for (std::size_t k = 0; k < scene.motions.size(); ++k) {
-    const std::shared_ptr<const PiecewiseCubic>& history = motions.histories.emplace_back(scene.motions[k].history);
+    const std::shared_ptr<const TimeHistory>& history = motions.histories.emplace_back(scene.motions[k].history);
     Eigen::VectorXd push = Eigen::VectorXd::Zero(problem.space.dofs);
     for (const std::size_t j : moved.supports[k]) push -= problem.support_loads.col(static_cast<Eigen::Index>(j));
     load.add(push, Formula([history](double t) { return history->acceleration(t); }, "motion of supports",
@@ -222,6 +223,45 @@ void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, Sem
     const int motion = carried_by(carrier_of(scene, stop), scene, moved, carrier_pointer(scene, stop));
     if (motion >= 0) motions.at_points(i, motion) -= 1;
   }
+}
+
+namespace {
+
+// Whether the supports, moved together by 1, lift the stops and the tip by 1.
+bool lift_alike(const SemiDiscrete& problem, const Eigen::MatrixXd& on_supports, const Eigen::MatrixXd& at_tip) {
+  constexpr double alike = 1e-9;  // round-off of static modes
+  const Eigen::VectorXd points = (problem.contact * problem.static_modes + on_supports).rowwise().sum();
+  return (points.size() == 0 || (points.array() - 1).abs().maxCoeff() <= alike) && std::abs(at_tip.sum() - 1) <= alike;
+}
+
+}  // namespace
+
+void add_support(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, SemiDiscrete& problem,
+                 DistributedLoad& load) {
+  if (!problem.space.given || scene.support.amplitude == 0) return add_motions(scene, on_supports, problem, load);
+  if (lift_alike(problem, on_supports, support_shapes(problem, {tip_position(scene)}))) {
+    problem.support_shape = problem.support_loads.rowwise().sum();
+    return;
+  }
+  const SupportSpec& support = scene.support;
+  SceneSpec moved = scene;
+  moved.support.amplitude = problem.support.amplitude = 0;
+  moved.motions = {
+      {.supports = {},
+       .history = std::make_shared<const HarmonicMotion>(support.amplitude, support.pulsation, support.phase)}};
+  add_motions(moved, on_supports, problem, load);
+}
+
+bool support_bends(const SceneSpec& scene) {
+  const auto* spec = std::get_if<AssembledSpec>(&scene.structure);
+  if (!spec || scene.support.amplitude == 0) return false;
+  SemiDiscrete problem;
+  problem.space = make_space(scene.structure, 1);
+  ContactPoints points = contact_points(scene, problem.space, 1);
+  problem.contact = std::move(points.rows);
+  problem.tip = tip_row(scene, problem.space);
+  hold_by_supports(scene.structure, 1, problem);
+  return !lift_alike(problem, points.on_supports, support_shapes(problem, {tip_position(scene)}));
 }
 
 }  // namespace ricochet

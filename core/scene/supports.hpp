@@ -27,4 +27,12 @@ void check_motions(const SceneSpec& scene);
 void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, SemiDiscrete& problem,
                  DistributedLoad& load);
 
+/// The same, and the harmonic motion of all supports of matrices that are given: where these lift the stops and the tip
+/// alike, it stays the support of the problem, whose shape is Σ s_j. Else it is a motion of them all.
+void add_support(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, SemiDiscrete& problem,
+                 DistributedLoad& load);
+
+/// Whether the harmonic support of a scene becomes such a motion. Throws InputError for places that are not there.
+bool support_bends(const SceneSpec& scene);
+
 }  // namespace ricochet

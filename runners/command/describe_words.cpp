@@ -69,6 +69,7 @@ std::string type_of(const Field& field) {
       return field.plain ? "number or place" : "place";
     case Field::Form::object:
       return field.listed.empty() ? "object" : "object, or a list of objects";
+    case Field::Form::named:
     case Field::Form::files:
       return "object";
     case Field::Form::objects:

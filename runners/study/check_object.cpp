@@ -176,16 +176,6 @@ Json check_listed(const Field& field, const Json& value, const std::string& poin
   return result;
 }
 
-// What the program wrote of the files that a study names.
-Json check_files(const Json& value, const std::string& pointer) {
-  const auto is_text = [](const Json& one) { return one.is_string(); };
-  if (value.is_null()) return value;
-  if (!value.is_object() || !value.contains("folder") || !value["folder"].is_string() || !value.contains("digests") ||
-      !value["digests"].is_object() || !std::all_of(value["digests"].begin(), value["digests"].end(), is_text))
-    throw InputError(pointer, R"(expected {"folder": path, "digests": {file: digest}}, found )" + quote(value));
-  return value;
-}
-
 Json check_objects(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
   const std::string expected = field.count == 0 ? "expected a list of objects"
                                                 : "expected a list of " + std::to_string(field.count) + " objects";
@@ -238,6 +228,8 @@ Json check_value(const Field& field, const Json& value, const std::string& point
       return check_formula(field, value, pointer, axes);
     case Field::Form::place:
       return check_place(field, value, pointer);
+    case Field::Form::named:
+      return check_named(field, value, pointer);
     case Field::Form::files:
       return check_files(value, pointer);
     case Field::Form::places:

@@ -97,4 +97,22 @@ Json place_schema(const Field& field) {
   return {{"type", types}, {"if", {{"type", "object"}}}, {"then", place}};
 }
 
+Json check_files(const Json& value, const std::string& pointer) {
+  const auto is_text = [](const Json& one) { return one.is_string(); };
+  if (value.is_null()) return value;
+  if (!value.is_object() || !value.contains("folder") || !value["folder"].is_string() || !value.contains("digests") ||
+      !value["digests"].is_object() || !std::all_of(value["digests"].begin(), value["digests"].end(), is_text))
+    throw InputError(pointer, R"(expected {"folder": path, "digests": {file: digest}}, found )" + quote(value));
+  return value;
+}
+
+Json check_named(const Field& field, const Json& value, const std::string& pointer) {
+  if (!value.is_object()) throw InputError(pointer, R"(expected {"name": file, …}, found )" + quote(value));
+  for (const auto& [name, text] : value.items())
+    if (name.empty() || !text.is_string())
+      throw InputError(pointer_to(pointer, name),
+                       "expected a name and a text for " + field.key() + ", found " + quote(text));
+  return value;
+}
+
 }  // namespace ricochet

@@ -12,4 +12,9 @@ Json check_place(const Field& field, const Json& value, const std::string& point
 /// Its JSON Schema.
 Json place_schema(const Field& field);
 
+/// Checks what the program wrote of the files that a study names, Field::Form::files, or null.
+Json check_files(const Json& value, const std::string& pointer);
+/// Checks an object of any names, each with a text, Field::Form::named.
+Json check_named(const Field& field, const Json& value, const std::string& pointer);
+
 }  // namespace ricochet

@@ -33,6 +33,7 @@ struct Field {
     text,      ///< any string
     formula,   ///< a number or a formula in `variables`; where there is a nested object, also a list of such objects
     place,     ///< one place of the structure (check_place.hpp)
+    named,     ///< an object of any names, each with a text
     files,     ///< the folder of the files that a study names, and their digests
     places,    ///< where stops act: "nodes", "tip" or a list of positions
     object,    ///< a nested object

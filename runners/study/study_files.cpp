@@ -13,15 +13,39 @@
 namespace ricochet {
 namespace {
 
-constexpr const char* structure_keys[] = {"dofs", "stiffness", "mass"};
+/// Keys of a structure that name its files: "influence/ground" for a key of an object of names.
+std::vector<std::string> file_keys(const Json& structure) {
+  std::vector<std::string> keys = {"dofs", "stiffness", "mass"};
+  const Json influence = structure.value("influence", Json::object());
+  for (const auto& [support, ignored] : influence.items()) keys.push_back(pointer_to("influence", support));
+  return keys;
+}
 
-std::string structure_pointer(const char* key) {
-  return std::string("/scene/structure/") + key;
+std::string structure_pointer(const std::string& key) {
+  return "/scene/structure/" + key;
 }
 
 /// The name of a file of the structure, its folder before it.
-std::string name_of(const Json& structure, const char* key) {
-  return (std::filesystem::path(structure.value("folder", "")) / structure.at(key).get<std::string>()).string();
+std::string file_of(const Json& structure, const std::string& key) {
+  const Json& name = structure.at(Json::json_pointer("/" + key));
+  return (std::filesystem::path(structure.value("folder", "")) / name.get<std::string>()).string();
+}
+
+/// How the dofs of a table follow a support: columns dof and value, those left out 0.
+AssembledFiles::Influence read_influence(const std::string& content, const std::string& support,
+                                         const std::string& name, std::size_t dofs) {
+  const CsvFile table = read_csv(content, name);
+  const std::size_t dof = table.column("dof"), value = table.column("value");
+  AssembledFiles::Influence out{support, name, {}};
+  std::set<long long> met;
+  for (const CsvFile::Row& row : table.rows) {
+    const long long number = whole_number(row.cells[dof]).value_or(0);
+    if (number < 1 || number > static_cast<long long>(dofs))
+      table.fail(row, fmt::format("\"{}\" for dof; expected 1 to {}", shortened(row.cells[dof]), dofs));
+    if (!met.insert(number).second) table.fail(row, fmt::format("dof {} stands a second time", number));
+    out.values.emplace_back(static_cast<int>(number), table.number(row, value));
+  }
+  return out;
 }
 
 }  // namespace
@@ -57,12 +81,13 @@ std::shared_ptr<const AssembledStructure> StudyFiles::assembled(const Json& stru
   const std::lock_guard lock(mutex_);
   const double unit = structure.at("length_unit").get<double>();
   std::string id = fmt::format("{}", unit);
-  for (const char* key : structure_keys) id += "\n" + name_of(structure, key);
+  const std::vector<std::string> keys = file_keys(structure);
+  for (const std::string& key : keys) id += "\n" + key + "\n" + file_of(structure, key);
   const auto known = structures_.find(id);
   if (known != structures_.end()) return known->second;
-  const char* reading = "dofs";
-  const auto content = [&](const char* key) -> const std::string& {
-    return file(name_of(structure, reading = key), structure_pointer(key)).content;
+  std::string reading = "dofs";
+  const auto content = [&](const std::string& key) -> const std::string& {
+    return file(file_of(structure, reading = key), structure_pointer(key)).content;
   };
   try {
     AssembledFiles files;
@@ -74,12 +99,16 @@ std::shared_ptr<const AssembledStructure> StudyFiles::assembled(const Json& stru
     const auto dofs = static_cast<int>(files.table.dofs.size());
     files.stiffness = read_matrix_market(content("stiffness"), files.stiffness_name, dofs, table);
     files.mass = read_matrix_market(content("mass"), files.mass_name, dofs, table);
+    const Json influence = structure.value("influence", Json::object());
+    for (const auto& [support, name] : influence.items())
+      files.influences.push_back(read_influence(content(pointer_to("influence", support)), support,
+                                                name.get<std::string>(), files.table.dofs.size()));
     reading = "";
     const auto made = std::make_shared<const AssembledStructure>(assemble_structure(files));
-    for (const char* key : structure_keys) std::string().swap(files_[name_of(structure, key)].content);
+    for (const std::string& key : keys) std::string().swap(files_[file_of(structure, key)].content);
     return structures_[id] = made;
   } catch (const FileError& error) {
-    throw InputError(*reading == '\0' ? "/scene/structure" : structure_pointer(reading), error.what());
+    throw InputError(reading.empty() ? "/scene/structure" : structure_pointer(reading), error.what());
   }
 }
 
@@ -149,7 +178,7 @@ void StudyFiles::add_digests(Json& scene) const {
     (*history)["digest"] = digest(history->at("file").get<std::string>());
   Json& structure = scene["structure"];
   if (structure.at("type") != "assembled") return;
-  for (const char* key : structure_keys) structure["digests"][key] = digest(name_of(structure, key));
+  for (const std::string& key : file_keys(structure)) structure["digests"][key] = digest(file_of(structure, key));
   if (Json& initial = scene["initial"]; initial.contains("file"))
     initial["digest"] = digest(initial.at("file").get<std::string>());
 }

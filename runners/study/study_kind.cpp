@@ -58,6 +58,9 @@ ObjectForm assembled(const ObjectForm& damping) {
       file("stiffness", "K, Matrix Market, all dofs of the table."),
       file("mass", "M, Matrix Market, all dofs of the table."),
       file("dofs", "CSV with the columns dof,node,component,x,y,z,held."),
+      quiet(
+          of_form(Field::Form::named, "influence", Json::object(),
+                  "Supports whose dofs the matrices have lost, each with its CSV dof,value: how the dofs follow it.")),
       single(real("length_unit", "m", positive, 1.0, "Unit of length of the files; 0.001: mm, t, s.")),
       object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping),
       place("tip", Json(nullptr), "Displacement that is shown; null: the first stop's, else the first load's.")};

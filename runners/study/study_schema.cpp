@@ -138,6 +138,8 @@ class SchemaWriter {
                                        {{"type", "array"}, {"items", position_schema}, {"minItems", 1}}})}};
       case Field::Form::place:
         return place_schema(field);
+      case Field::Form::named:
+        return {{"type", "object"}, {"additionalProperties", {{"type", "string"}}}};
       case Field::Form::files:
         return {{"type", Json::array({"object", "null"})}};
       case Field::Form::object:

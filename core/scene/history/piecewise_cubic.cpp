@@ -94,7 +94,8 @@ PiecewiseCubic PiecewiseCubic::integrate_twice(const TimeTable& acceleration, do
 PiecewiseCubic::PiecewiseCubic(std::vector<double> starts, std::vector<Piece> pieces)
     : starts_(std::move(starts)), pieces_(std::move(pieces)) {}
 
-PiecewiseCubic::PiecewiseCubic(const PiecewiseCubic& other) : starts_(other.starts_), pieces_(other.pieces_) {}
+PiecewiseCubic::PiecewiseCubic(const PiecewiseCubic& other)
+    : TimeHistory(other), starts_(other.starts_), pieces_(other.pieces_) {}
 
 std::size_t PiecewiseCubic::piece(double t) const {
   std::size_t i = near_.load(std::memory_order_relaxed);

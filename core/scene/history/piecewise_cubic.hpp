@@ -2,6 +2,7 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <ricochet/scene/history/time_history.hpp>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,7 @@ struct TimeTable {
 
 /// A function of t in pieces, each a polynomial of degree 3: f(t) = Σ_k c_k (t − t_i)^k from t_i to t_{i+1}. The first
 /// piece reaches to −∞, the last to +∞. At an instant t_i the piece behind it holds. Any number of threads may ask.
-class PiecewiseCubic {
+class PiecewiseCubic : public TimeHistory {
  public:
   using Piece = std::array<double, 4>;
 
@@ -46,9 +47,9 @@ class PiecewiseCubic {
   PiecewiseCubic(const PiecewiseCubic& other);
   PiecewiseCubic& operator=(const PiecewiseCubic&) = delete;
 
-  double value(double t) const;
-  double rate(double t) const;
-  double acceleration(double t) const;
+  double value(double t) const override;
+  double rate(double t) const override;
+  double acceleration(double t) const override;
 
  private:
   std::size_t piece(double t) const;

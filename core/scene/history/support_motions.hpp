@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <memory>
-#include <ricochet/scene/history/piecewise_cubic.hpp>
+#include <ricochet/scene/history/time_history.hpp>
 #include <vector>
 
 namespace ricochet {
@@ -9,8 +9,8 @@ namespace ricochet {
 /// What supports do by histories, beside the harmonic φ of all: u = w + Σ_j ψ_j φ_j(t), ψ_j the static shape of the
 /// supports that move by φ_j. A stop that moves with a support sees u less the motion of that support.
 struct SupportMotions {
-  std::vector<std::shared_ptr<const PiecewiseCubic>> histories;  ///< φ_j, m; r of them
-  std::vector<std::vector<std::size_t>> supports;                ///< that each moves
+  std::vector<std::shared_ptr<const TimeHistory>> histories;  ///< φ_j, m; r of them
+  std::vector<std::vector<std::size_t>> supports;             ///< that each moves
   Eigen::MatrixXd at_points;   ///< m × r: (Hψ)_j at the contact points, less 1 where the stop moves by φ_j
   Eigen::RowVectorXd at_tip;   ///< 1 × r: (ψ_j) at the tip; zero where displacements count from the supports
   bool from_supports = false;  ///< whether displacements that are shown do

@@ -120,6 +120,7 @@ class StructureMaker {
                        .translated = carried.whole,
                        .diagonal = carried.diagonal};
     find_static_modes(picked(K, free_, held_), picked(M, free_, held_));
+    add_influences();
     return std::move(out_);
   }
 
@@ -207,6 +208,29 @@ class StructureMaker {
       mode += step;
       out_.static_modes.col(j) = mode;
       out_.support_loads.col(j) = out_.mass * mode + M_held * moved;
+    }
+  }
+
+  void add_influences() {
+    for (const AssembledFiles::Influence& one : files_.influences) {
+      if (std::find(out_.supports.begin(), out_.supports.end(), one.support) != out_.supports.end())
+        throw FileError(fmt::format("{} holds dofs by the support {}, whose static mode is computed; expected no {}",
+                                    files_.table.name, one.support, one.file));
+      Eigen::VectorXd mode = Eigen::VectorXd::Zero(out_.dofs());
+      for (const auto& [number, value] : one.values) {
+        const int row = out_.where[static_cast<std::size_t>(number) - 1].free;
+        if (row < 0 && value != 0)
+          throw FileError(fmt::format("{}: dof {} ({}) is held, and would follow by {:.6g}; expected 0", one.file,
+                                      number, dof(number - 1).text(), value));
+        // Rotations are per unit of length.
+        if (row >= 0) mode[row] = dof(number - 1).rotation() ? value / files_.length_unit : value;
+      }
+      const Eigen::Index r = out_.static_modes.cols();
+      out_.static_modes.conservativeResize(out_.dofs(), r + 1);
+      out_.support_loads.conservativeResize(out_.dofs(), r + 1);
+      out_.static_modes.col(r) = mode;
+      out_.support_loads.col(r) = out_.mass * mode;
+      out_.supports.push_back(one.support);
     }
   }
 

@@ -15,13 +15,21 @@ struct AssembledFiles {
   FileMatrix stiffness, mass;             ///< K (N/m), M (kg)
   DofTable table;
   double length_unit = 1;  ///< m: K and M of a consistent mm–t–s model have 0.001
+  /// How the dofs follow a support whose held dofs the matrices do not have any more: ψ by dof, from 1, in units of the
+  /// files; those left out are 0.
+  struct Influence {
+    std::string support, file;
+    std::vector<std::pair<int, double>> values;
+  };
+  std::vector<Influence> influences = {};
 };
 
 /// A structure given by its matrices, held dofs eliminated: n free dofs, r supports that may move,
 ///
 ///     M q'' + K q = F − Σ_j s_j φ_j'',     w = q + Σ_j ψ_j φ_j,     K ψ_j = −K_fs e_j,     s_j = M ψ_j + M_fs e_j
 ///
-/// with e_j = 1 on the displacements that support j holds, 0 on its rotations. Dofs stand in the order that makes the
+/// with e_j = 1 on the displacements that support j holds, 0 on its rotations. Of a support that is given by its
+/// influence ψ, s = M ψ. Dofs stand in the order that makes the
 /// band narrow (reverse Cuthill–McKee, where it is narrower than the order of the file).
 struct AssembledStructure {
   std::string stiffness_name, mass_name, table_name;

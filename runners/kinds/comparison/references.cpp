@@ -11,6 +11,7 @@
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/discrete_problem.hpp>
+#include <ricochet/scene/supports.hpp>
 #include <set>
 
 #include "runners/march/bytes.hpp"
@@ -188,7 +189,7 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
         "the load has a force at a point, and this reference knows loads that are spread: use a reference of the mesh";
     return known;
   }
-  if (!study_case.scene.motions.empty()) {
+  if (!study_case.scene.motions.empty() || support_bends(study_case.scene)) {
     known.refusal = "supports move by motions, and references know the harmonic support: use the reference self";
     return known;
   }

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
+#include <ricochet/scene/supports.hpp>
 
 #include "runners/json/json_text.hpp"
 #include "runners/store/record_values.hpp"
@@ -191,6 +192,10 @@ void check_forcing(const SceneSpec& scene) {
     throw InputError("/scene/motions",
                      "motions by tables have no period, and steps per period need one: expected the "
                      "harmonic `support`");
+  if (support_bends(scene))
+    throw InputError("/scene/support",
+                     "the supports do not lift the stops and the tip alike, and steps per period need that they do: "
+                     "expected stops on the ground whose displacement follows the supports");
   const double pulsation = forcing_pulsation(scene);
   const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
   if (!(pulsation > 0))

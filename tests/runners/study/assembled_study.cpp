@@ -142,7 +142,7 @@ TEST_CASE("files that are missing, outside or wrong, and places that are none, a
   CHECK(with_value("/scene/stops", Json::array()) == "/scene/stops: an empty list; leave stops out for none");
   CHECK_THAT(with_value("/scene/stops", Json::parse(R"({"upper": 0.1})")), Contains("expected a list of stops"));
   CHECK_THAT(with_value("/scene/support", Json::parse(R"({"amplitude": 0.1, "pulsation": 3})")),
-             Contains("/scene/support/amplitude: an assembled structure has no clamp"));
+             Contains("/scene/support/amplitude: the table of dofs names no support that could move"));
   write_text(files.folder / "M.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1\n");
   CHECK(refused(assembled_study(), files.folder.path()) ==
         "/scene/structure/mass: M.mtx, line 3: end of file after 1 of 2 entries");
