@@ -13,6 +13,7 @@
 #include "runners/study/product.hpp"
 #include "runners/study/read_methods.hpp"
 #include "runners/study/read_scene.hpp"
+#include "runners/study/scene_size.hpp"
 #include "runners/study/study_kind.hpp"
 
 namespace ricochet {
@@ -185,6 +186,7 @@ std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis
     }
     try {
       option.scene = read_scene(option.json, &files);
+      check_size(option.scene.structure);
       files.add_digests(option.json);
       check_scene(option.scene, finest, beyond ? anywhere_beyond() : ForceBeyond());
       if (duration > 0) check_tables(option.scene, duration);
@@ -262,7 +264,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   const bool ways = given.contains("march");
   if (!ways) resolved.erase("march");
   if (!given.contains("compare")) resolved.erase("compare");
-  const auto files = std::make_shared<StudyFiles>(folder, resolved["files"]);
+  const auto files = std::make_shared<StudyFiles>(folder, resolved["files"], resolved.value("outside", false));
   resolved.erase("files");
   if (kind.check) kind.check(resolved);
   const std::vector<int> meshes = list_of<int>(resolved["mesh"]["elements"]);

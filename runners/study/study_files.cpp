@@ -50,8 +50,10 @@ AssembledFiles::Influence read_influence(const std::string& content, const std::
 
 }  // namespace
 
-StudyFiles::StudyFiles(std::filesystem::path folder, const Json& known)
-    : folder_(std::filesystem::absolute(folder.empty() ? "." : folder).lexically_normal()), known_(known) {
+StudyFiles::StudyFiles(std::filesystem::path folder, const Json& known, bool outside)
+    : folder_(std::filesystem::absolute(folder.empty() ? "." : folder).lexically_normal()),
+      known_(known),
+      outside_(outside) {
   if (known_.is_object()) folder_ = known_.at("folder").get<std::string>();
 }
 
@@ -59,9 +61,11 @@ const StudyFiles::File& StudyFiles::file(const std::string& name, const std::str
   const std::filesystem::path path = name;
   bool leaves = path.is_absolute();
   for (const auto& part : path) leaves = leaves || part == "..";
-  if (leaves)
+  if (leaves && !outside_)
     throw InputError(pointer,
-                     fmt::format("\"{}\" is outside the folder of the study; expected a file in it", shortened(name)));
+                     fmt::format("\"{}\" is outside the folder of the study; expected a file in it, or a study "
+                                 "that says \"outside\": true",
+                                 shortened(name)));
   File& one = files_[name];
   if (!one.content.empty()) return one;
   try {

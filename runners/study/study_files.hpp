@@ -11,13 +11,15 @@
 
 namespace ricochet {
 
-/// The files that the scenes of a study name, each read once. Names are relative to the study's folder and stay in it.
+/// The files that the scenes of a study name, each read once. Names are relative to the study's folder and stay in it,
+/// unless the study says that they may lie outside.
 /// Safe for several threads.
 class StudyFiles {
  public:
   /// `known`: the key "files" of a study that was opened before, {"folder", "digests"}, or null. Its folder is then the
   /// one, and a file whose digest differs is an InputError.
-  StudyFiles(std::filesystem::path folder, const Json& known);
+  /// `outside`: files may lie outside the folder.
+  StudyFiles(std::filesystem::path folder, const Json& known, bool outside = false);
 
   /// The structure of a checked scene of type assembled. Throws InputError below /scene/structure.
   std::shared_ptr<const AssembledStructure> assembled(const Json& structure);
@@ -41,6 +43,7 @@ class StudyFiles {
 
   std::filesystem::path folder_;
   Json known_;
+  bool outside_;
   mutable std::mutex mutex_;
   std::map<std::string, File> files_;  ///< content is dropped once it has been understood
   std::map<std::string, std::shared_ptr<const AssembledStructure>> structures_;

@@ -263,6 +263,9 @@ ObjectForm study() {
                    methods("contact", Role::contact, "The contact law."),
                    methods("time", Role::time, "The time scheme.")};
 
+  Field outside =
+      of_form(Field::Form::scalar, "outside", Json(false), "Whether files may lie outside the study's folder.");
+  outside.spec.type = ParameterSpec::Type::boolean;
   ObjectForm keys;
   keys.fields = {
       of_form(Field::Form::text, "name", std::nullopt,
@@ -275,6 +278,7 @@ ObjectForm study() {
       object("mesh", Json{{"elements", 1}}, "The meshes; only an oscillator does without.", mesh),
       object("methods", std::nullopt, "The methods that are combined.", chosen),
       of_form(Field::Form::excludes, "exclude", Json::array(), "Combinations left out, each with its reason."),
+      quiet(std::move(outside)),
       of_form(Field::Form::files, "files", Json(nullptr),
               "Written by the program into a stored study: folder and digests of the files that its scene names.")};
   keys.discriminator = "/kind";
