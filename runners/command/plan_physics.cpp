@@ -8,6 +8,7 @@
 #include <numbers>
 #include <ricochet/measure/stability/structure_physics.hpp>
 
+#include "runners/march/table_steps.hpp"
 #include "runners/run/plan_cases.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/text.hpp"
@@ -143,6 +144,7 @@ std::string structure_text(const StudyCase& one, const std::vector<double>& step
     text += "    no frequencies: the structure has more dofs than plan finds modes of\n";
   else
     text += modes_text(*physics, steps);
+  for (const std::string& line : coarse_tables(one.scene, physics->pulsations)) text += "    " + line + "\n";
   return text + stops_text(one.scene_json, physics->point_stiffness);
 }
 

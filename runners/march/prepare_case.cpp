@@ -9,6 +9,7 @@
 #include <ricochet/measure/stability/stability.hpp>
 
 #include "runners/march/seconds.hpp"
+#include "runners/march/table_steps.hpp"
 
 namespace ricochet {
 namespace {
@@ -138,6 +139,7 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
   Prepared prepared;
   prepared.steps = whole_steps(study_case, prepared.notes);
   note_repeats(study_case, prepared.notes);
+  for (std::string& note : table_notes(study_case)) prepared.notes.push_back(std::move(note));
   const auto mass = make_mass(study_case, registry);
   auto law = make_law(study_case, registry);
   const auto scheme = make_scheme(study_case, registry);
