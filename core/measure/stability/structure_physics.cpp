@@ -7,6 +7,7 @@
 #include <ricochet/kernels/sparse_ldlt.hpp>
 #include <ricochet/measure/stability/no_contact.hpp>
 #include <ricochet/measure/stability/structure_physics.hpp>
+#include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 
@@ -155,11 +156,38 @@ struct Details {
     lines.push_back(fmt::format("dofs: {}, held {}", dofs, 2 * (count + 1) - dofs));
     return lines;
   }
+  std::vector<std::string> operator()(const AssembledSpec& spec) const {
+    const std::vector<std::string>& supports = spec.structure->supports;
+    if (supports.empty()) return {};
+    return {fmt::format("supports: {}", fmt::join(supports, ", "))};
+  }
   template <class Other>
   std::vector<std::string> operator()(const Other&) const {
     return {};
   }
 };
+
+// Whether the columns of static modes sum to a translation, where a structure says its supports.
+std::optional<std::string> static_modes_text(const SceneSpec& scene, const SemiDiscrete& problem) {
+  const auto* beam = std::get_if<BeamSpec>(&scene.structure);
+  const bool own = problem.space.given || (beam && beam->supports);
+  if (!own || problem.static_modes.cols() == 0) return std::nullopt;
+  const VectorXd sums = problem.static_modes.rowwise().sum();
+  const std::vector<DofPlace> places = problem.space.given ? std::vector<DofPlace>() : dof_places(problem.space);
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (Index i = 0; i < sums.size(); ++i) {
+    const auto dof = static_cast<std::size_t>(i);
+    constexpr int rotation = 3;
+    if (problem.space.given ? problem.space.given->direction[dof] == rotation : places[dof].slope) continue;
+    least = std::min(least, sums[i]);
+    most = std::max(most, sums[i]);
+  }
+  if (least > most) return std::nullopt;
+  constexpr double round_off = 1e-9;
+  if (std::abs(least - 1) <= round_off && std::abs(most - 1) <= round_off)
+    return "static modes of the supports sum to 1: moved together they carry every point along";
+  return fmt::format("static modes of the supports sum to {:.4g} to {:.4g}; a translation has 1", least, most);
+}
 
 std::vector<double> point_stiffness(const SemiDiscrete& problem) {
   constexpr int most_points = 100;
@@ -206,9 +234,12 @@ std::variant<StructurePhysics, Refusal> structure_physics(const SceneSpec& scene
   if (out.damping.stiffness != 0) out.numbers.push_back({"α", out.damping.stiffness, "s"});
   if (out.damping.mass != 0) out.numbers.push_back({"η", out.damping.mass, "1/s"});
   out.point_stiffness = point_stiffness(problem);
+  if (auto sums = static_modes_text(scene, problem)) out.details.push_back(*std::move(sums));
   if (problem.space.given && problem.dofs() > most_given_dofs) return out;
   const StructureModes modes = open_modes(problem);
   for (int i = 0; i < modes.regular; ++i) out.pulsations.push_back(modes.pulsation(i));
+  const auto rigid = std::count(out.pulsations.begin(), out.pulsations.end(), 0.0);
+  if (problem.space.given && rigid > 0) out.numbers.push_back({"rigid motions", static_cast<double>(rigid), ""});
   return out;
 }
 
