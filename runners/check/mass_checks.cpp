@@ -24,8 +24,9 @@ FiniteElementSpace unit_space(const SpaceBench& bench) {
   std::vector<int> first(static_cast<std::size_t>(bench.elements) + 1, -1);
   for (int node = 0; node <= bench.elements; ++node) {
     if ((node == 0 && bench.left_fixed) || (node == bench.elements && bench.right_fixed)) continue;
-    first[static_cast<std::size_t>(node)] = space.dofs;
-    space.dofs += per_node;
+    const bool pin = bench.pinned && node == bench.elements / 3;
+    first[static_cast<std::size_t>(node)] = pin ? space.dofs - 1 : space.dofs;
+    space.dofs += pin ? per_node - 1 : per_node;
   }
   const double length = 1.0 / bench.elements;
   for (int e = 0; e < bench.elements; ++e) {
@@ -33,14 +34,16 @@ FiniteElementSpace unit_space(const SpaceBench& bench) {
     for (int end = 0; end < 2; ++end) {
       const int dof = first[static_cast<std::size_t>(e + end)];
       for (int k = 0; k < per_node; ++k)
-        element.dof[static_cast<std::size_t>(end * per_node + k)] = dof < 0 ? -1 : dof + k;
+        element.dof[static_cast<std::size_t>(end * per_node + k)] =
+            dof < 0 || (k == 0 && bench.pinned && e + end == bench.elements / 3) ? -1 : dof + k;
     }
     space.elements.push_back(element);
   }
   for (int node = 0; node <= bench.elements; ++node) {
     const int dof = first[static_cast<std::size_t>(node)];
     const bool end = node == 0 || node == bench.elements;
-    if (dof >= 0 && (bench.stops == SpaceBench::Stops::nodes || (bench.stops == SpaceBench::Stops::ends && end)))
+    if (dof >= 0 && !(bench.pinned && node == bench.elements / 3) &&
+        (bench.stops == SpaceBench::Stops::nodes || (bench.stops == SpaceBench::Stops::ends && end)))
       space.contact_dofs.push_back(dof);
   }
   if (bench.point_mass) space.point_masses = {{first[static_cast<std::size_t>(bench.elements / 2)], 0.3}};
@@ -55,8 +58,8 @@ std::string space_text(const SpaceBench& bench) {
   const char* stops = bench.stops == SpaceBench::Stops::ends    ? ", with stops at its free ends"
                       : bench.stops == SpaceBench::Stops::nodes ? ", with stops at all nodes"
                                                                 : "";
-  return fmt::format("a {} of {} elements, {}{}{}", bench.beam ? "beam" : "bar", bench.elements, ends, stops,
-                     bench.point_mass ? ", with a point mass" : "");
+  return fmt::format("a {} of {} elements, {}{}{}{}", bench.beam ? "beam" : "bar", bench.elements, ends,
+                     bench.pinned ? ", pinned between" : "", stops, bench.point_mass ? ", with a point mass" : "");
 }
 
 FiniteElementSpace oscillator_space() {
@@ -134,6 +137,17 @@ std::vector<SpaceBench> accepted(const Mass& mass, int elements) {
   return all;
 }
 
+std::vector<SpaceBench> accepted_pinned(const Mass& mass, int elements) {
+  using Stops = SpaceBench::Stops;
+  std::vector<SpaceBench> all;
+  for (const bool right : {false, true})
+    for (const auto stops : {Stops::none, right ? Stops::nodes : Stops::ends}) {
+      const SpaceBench bench{true, elements, true, right, false, stops, true};
+      if (std::holds_alternative<Inertia>(ask_mass(mass, unit_space(bench)))) all.push_back(bench);
+    }
+  return all;
+}
+
 namespace {
 
 constexpr int elements = 6;
@@ -142,7 +156,9 @@ constexpr int elements = 6;
 Eigen::MatrixXd scaled(Eigen::MatrixXd M, const SpaceBench& bench) {
   if (!bench.beam) return M;
   Eigen::VectorXd unit = Eigen::VectorXd::Ones(M.rows());
-  for (Eigen::Index i = 1; i < unit.size(); i += 2) unit[i] = bench.elements;
+  const std::vector<DofPlace> places = dof_places(unit_space(bench));
+  for (Eigen::Index i = 0; i < unit.size(); ++i)
+    if (places[static_cast<std::size_t>(i)].slope) unit[i] = bench.elements;
   return unit.asDiagonal() * M * unit.asDiagonal();
 }
 
@@ -150,7 +166,9 @@ Eigen::MatrixXd scaled(Eigen::MatrixXd M, const SpaceBench& bench) {
 Verdict everywhere(const Mass& mass, std::string (*wrong)(const Inertia&, const Eigen::MatrixXd&, std::string& found)) {
   std::string found;
   int count = 0;
-  for (SpaceBench bench : accepted(mass, elements))
+  std::vector<SpaceBench> all = accepted(mass, elements);
+  for (const SpaceBench& bench : accepted_pinned(mass, elements)) all.push_back(bench);
+  for (SpaceBench bench : all)
     for (const bool point : {false, true}) {
       bench.point_mass = point;
       const FiniteElementSpace space = unit_space(bench);
@@ -240,8 +258,9 @@ Eigen::MatrixXd matrix(const Mass& mass, const SpaceBench& bench) {
 double translated(const Mass& mass, const SpaceBench& bench) {
   const Eigen::MatrixXd M = matrix(mass, bench);
   Eigen::VectorXd rigid = Eigen::VectorXd::Ones(M.rows());
-  if (bench.beam)
-    for (Eigen::Index i = 1; i < rigid.size(); i += 2) rigid[i] = 0;
+  const std::vector<DofPlace> places = dof_places(unit_space(bench));
+  for (Eigen::Index i = 0; i < rigid.size(); ++i)
+    if (places[static_cast<std::size_t>(i)].slope) rigid[i] = 0;
   return rigid.dot(M * rigid);
 }
 
@@ -306,7 +325,9 @@ std::string frequency_orders(const Mass& mass, SpaceBench bench) {
 
 Verdict total_mass_is_right(const Mass& mass) {
   std::string found;
-  for (SpaceBench bench : accepted(mass, 8)) {
+  std::vector<SpaceBench> all = accepted(mass, 8);
+  for (const SpaceBench& bench : accepted_pinned(mass, 8)) all.push_back(bench);
+  for (SpaceBench bench : all) {
     // Fixed nodes take mass with them in proportion to the element: the limit is what counts.
     const double coarse = translated(mass, bench);
     const bool free = !bench.left_fixed && !bench.right_fixed;

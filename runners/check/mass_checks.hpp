@@ -18,6 +18,7 @@ struct SpaceBench {
   bool left_fixed = false, right_fixed = false;
   bool point_mass = false;  ///< 0.3 kg in the middle
   Stops stops = Stops::none;
+  bool pinned = false;  ///< the displacement of a beam is held at a node at a third of its length, too
 };
 /// Where stops may stand.
 std::vector<SpaceBench::Stops> stops_of(bool no_free_end);
@@ -34,8 +35,10 @@ InertiaOrRefusal ask_mass(const Mass& mass, const FiniteElementSpace& space);
 Eigen::MatrixXd dense(const Inertia& inertia, const FiniteElementSpace& space);
 /// K of EI = 1 or EA = 1.
 Eigen::MatrixXd unit_stiffness(const FiniteElementSpace& space);
-/// The spaces (of beams and bars, with any stops) that the strategy does not refuse.
+/// The spaces (of beams and bars, with any stops) that the strategy does not refuse; those of beams with a support
+/// between their ends behind the others.
 std::vector<SpaceBench> accepted(const Mass& mass, int elements);
+std::vector<SpaceBench> accepted_pinned(const Mass& mass, int elements);
 
 // What is looked at in a mass strategy (mass_matrix.cpp, mass_structure.cpp).
 

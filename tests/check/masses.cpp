@@ -72,6 +72,32 @@ void caught_at_contact(ContactChange change, const std::string& check, const std
 
 }  // namespace
 
+// Rotations without inertia, and a kernel counted as if every node had a displacement.
+class HeldEndsAlone final : public MassStrategy {
+ public:
+  InertiaOrRefusal build(const FiniteElementSpace& space) const override {
+    if (space.elements.empty()) return Refusal{"an oscillator has no elements: use another mass"};
+    Inertia inertia;
+    Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(space.dofs);
+    const bool hermite = space.basis == FiniteElementSpace::Basis::hermite;
+    for (const auto& element : space.elements)
+      for (const int a : {0, hermite ? 2 : 1})
+        if (element.dof[static_cast<std::size_t>(a)] >= 0)
+          diagonal[element.dof[static_cast<std::size_t>(a)]] += element.line_density * element.length / 2;
+    for (const auto& point : space.point_masses) diagonal[point.dof] += point.mass;
+    inertia.mass = SparseMatrix(Eigen::MatrixXd(diagonal.asDiagonal()).sparseView());
+    inertia.kernel_dimension = hermite ? space.dofs / 2 : 0;
+    return inertia;
+  }
+};
+
+TEST_CASE("check: a mass that thinks of supports at the ends alone is caught by one between them") {
+  Entry<MassStrategy> entry{full_manual("made-here"), {}, ""};
+  entry.make = [](const Parameters&) { return std::make_unique<HeldEndsAlone>(); };
+  caught(entry, "kernel",
+         "a beam of 6 elements, fixed at its left end, pinned between: declares a kernel of dimension 5");
+}
+
 TEST_CASE("check: a mass that is what it says passes every check") {
   for (const auto& check : checking::mass_checks()) {
     const CheckResult result = one_check(checking::mass_checks(), mass_entry({}), check.name);
