@@ -167,6 +167,7 @@ void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, c
   NumberTable points = points_type().head(), impacts = impacts_type().head();
   points.words = {{start_name, starts}};
   impacts.words = {{start_name, starts}, {"side", {"lower", "upper"}}};
+  std::vector<double> stops;
   for (const OrbitView& view : views) {
     values.rows.push_back(type.row(orbit_row(view, starts[view.start], plan)));
     if (!view.complete()) continue;
@@ -178,6 +179,12 @@ void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, c
     for (const ImpactPoint& impact : impacts_shown(view))
       impacts.add({view.value, start, impact.phase, static_cast<double>(impact.side), impact.speed,
                    view.problem->contact_x[static_cast<std::size_t>(impact.point)], impact.time});
+    for (const ImpactPoint& impact : impacts_shown(view)) stops.push_back(static_cast<double>(impact.point));
+  }
+  if (!views.empty() && views.front().problem && !views.front().problem->stops.empty()) {
+    impacts.columns.push_back(stop_column);
+    impacts.values.emplace_back(std::move(stops));
+    impacts.words.emplace_back(stop_column.name, views.front().problem->stops);
   }
   record.tables.push_back(std::move(values));
   record.tables.push_back(changes(views, starts));

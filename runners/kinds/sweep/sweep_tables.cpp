@@ -367,8 +367,10 @@ void describe_sweep(CaseRecord& record, const SweptColumns& swept) {
     for (const Table& head : {values_head(columns, swept), bifurcations_head(swept), cells_type(swept).head()})
       if (head.name == table.name) describe(table, head);
   }
+  NumberTable impacts = impacts_type(swept).head();
+  impacts.columns.push_back(stop_column);
   for (NumberTable& table : record.numbers)
-    for (const NumberTable& head : {points_type(swept).head(), impacts_type(swept).head(), portraits_type(swept).head(),
+    for (const NumberTable& head : {points_type(swept).head(), impacts, portraits_type(swept).head(),
                                     entries_type(swept).head(), cell_points_type().head(), contact_law_type().head()})
       if (head.name == table.name) {
         table.text = head.text;

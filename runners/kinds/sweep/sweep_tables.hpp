@@ -174,6 +174,8 @@ Table bifurcations_head(const SweptColumns& swept = {});
 TableType<CellRow> cells_type(const SweptColumns& swept = {});
 NumberType<SectionColumns> points_type(const SweptColumns& swept = {});
 NumberType<ImpactColumns> impacts_type(const SweptColumns& swept = {});
+/// The last column of impacts, where stops have names.
+inline const Column stop_column{"stop", "", "Name of the stop."};
 NumberType<PortraitColumns> portraits_type(const SweptColumns& swept = {});
 NumberType<EntryColumns> entries_type(const SweptColumns& swept = {});
 NumberType<SectionColumns> cell_points_type();
