@@ -1,0 +1,78 @@
+// Whatever bytes a file has, it is read or told. RICOCHET_FUZZ sets the number of files.
+#include <cstdlib>
+#include <random>
+#include <ricochet/scene/files/csv_file.hpp>
+#include <ricochet/scene/files/dof_table.hpp>
+#include <ricochet/scene/files/matrix_market.hpp>
+#include <ricochet/scene/files/text_file.hpp>
+
+#include "tests/scene/structure/beam_files.hpp"
+#include "tests/scene/working_set.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+
+namespace changed_bytes_tests {
+namespace {
+
+/// One to three changes: a byte, a piece cut out, bytes put in, the end cut off.
+void change(std::string& text, std::mt19937& random) {
+  static const std::string bytes = "0123456789 .,-+eE%\n\r\t\"naif\xEF\xFF" + std::string(1, '\0');
+  for (std::uint32_t k = 0, count = 1 + random() % 3; k < count && !text.empty(); ++k) {
+    const std::size_t at = random() % text.size();
+    switch (random() % 4) {
+      case 0:
+        text[at] = bytes[random() % bytes.size()];
+        break;
+      case 1:
+        text.erase(at, 1 + random() % 9);
+        break;
+      case 2:
+        text.insert(at, 1 + random() % 4, bytes[random() % bytes.size()]);
+        break;
+      default:
+        text.resize(at + 1);
+    }
+  }
+}
+
+/// Of so many changed files, how many can still be read. What else is thrown, or touched, ends the test.
+template <class Read>
+long readable(const std::string& file, long count, std::mt19937& random, Read read) {
+  long found = 0;
+  std::string text;
+  for (long k = 0; k < count; ++k) {
+    text = file;
+    change(text, random);
+    try {
+      read(text);
+      ++found;
+    } catch (const FileError&) {
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("whatever bytes a file has, it is read or told") {
+  constexpr long files = 1000000;
+  const char* asked = std::getenv("RICOCHET_FUZZ");
+  const long each = (asked ? std::atol(asked) : files) / 4;
+  std::mt19937 random(20261126);
+  const BeamFiles beam = beam_files(beam_of(*std::make_unique<SceneSpec>(unit_beam())), 1);
+  const std::string array = "%%MatrixMarket matrix array real general\n3 3\n4\n-1\n0\n-1\n4\n-1.5\n0\n-1.5e0\n4\n";
+  const auto matrix = [](int dofs) {
+    return [dofs](const std::string& text) { read_matrix_market(text, "K.mtx", dofs, "dofs.csv"); };
+  };
+  for (const long found :
+       {readable(beam.stiffness, each, random, matrix(4)), readable(array, each, random, matrix(3)),
+        readable(beam.dofs, each, random, [](const std::string& text) { read_dof_table(text, "dofs.csv"); }),
+        readable("t,a\n0,0\n0.025,9.81\n0.05,0\n", each, random,
+                 [](const std::string& text) { read_csv(text, "a.csv"); })}) {
+    CHECK(found > 0);
+    CHECK(found < each);
+  }
+}
+
+}  // namespace changed_bytes_tests
