@@ -86,6 +86,7 @@ class GuardedMass final : public Guard<MassStrategy> {
     return answer;
   }
   bool takes_given() const override { RICOCHET_FORWARD(takes_given); }
+  bool takes_modes() const override { RICOCHET_FORWARD(takes_modes); }
 };
 
 class GuardedLaw final : public Guard<ContactLaw> {

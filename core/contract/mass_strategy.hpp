@@ -11,7 +11,8 @@ namespace ricochet {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// The mass of a structure that is given by its matrices and has no elements, and what else is known of its dofs.
+/// The mass of a structure that is given by its matrices, or marched in its modes, and has no elements, and what else is
+/// known of its dofs.
 struct GivenMass {
   SparseMatrix mass;           ///< M, n × n, both triangles, positive semidefinite
   SparseMatrix stiffness;      ///< K, n × n: dofs that share an entry are neighbours
@@ -19,6 +20,9 @@ struct GivenMass {
   Eigen::MatrixXd rigid;       ///< n × k: the translations of the dofs, then the rotations that K lets be
   /// Along x, y, z (kg): what a translation of all dofs moves, and the sum of the diagonal of M, held dofs included.
   std::array<double, 3> translated{}, diagonal{};
+  bool modes = false;              ///< whether the dofs are coordinates of modes: nothing but `mass` is known then
+  std::vector<int> attached = {};  ///< of those, the coordinates of the residual flexibility of stops
+  bool attached_mass = true;       ///< whether `mass` says what inertia these have
 };
 
 /// The displacement space, as mass strategies need it: elements with local shape functions, and point masses.
@@ -110,6 +114,8 @@ class MassStrategy {
   virtual InertiaOrRefusal build(const FiniteElementSpace& space) const = 0;
   /// Whether it makes a mass of matrices that are given (FiniteElementSpace::given); where not, it is not asked.
   virtual bool takes_given() const { return false; }
+  /// The same of matrices in coordinates of modes (GivenMass::modes).
+  virtual bool takes_modes() const { return false; }
 };
 
 /// M_ij = ∫ρS φ_i φ_j + ρI θ_i θ_j dx: the consistent matrix of the space, point masses included; of matrices that are

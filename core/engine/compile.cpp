@@ -64,6 +64,8 @@ std::optional<Refusal> read_impulse(StageProgram& program, const Stage& stage, c
   const FoldedStage R = fold(stage.impulse->R, damping), feed = fold(stage.impulse->feed, damping);
   if (R.mass == 0 && feed.mass != 0)
     return Refusal{"the scheme's impulse feeds its step with mass and R has none: let R weigh M, or the feed K alone"};
+  if (damping.by_modes() && (R.damping != 0 || feed.damping != 0))
+    return Refusal{"the scheme's impulse weighs C, which damping ratios do not make of K and M: use α and η"};
   ImpulseProgram& impulse = program.impulse;
   const double mass = R.mass != 0 ? feed.mass / R.mass : 0.0;
   impulse.weight = weight;

@@ -73,8 +73,8 @@ double visit_seconds(const SemiDiscrete& problem, const StepWork& work) {
 
 bool kind_applies(OperatorKind kind, const SemiDiscrete& problem) {
   // The modal form divides by φᵀKφ; the dense eigenproblem is cubic.
-  if (kind == OperatorKind::modal) return problem.dofs() <= 1000 && problem.held;
-  return true;
+  if (kind == OperatorKind::modal) return problem.dofs() <= 1000 && (problem.held || problem.asks_for_modes());
+  return !problem.damping.by_modes();
 }
 
 Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork& work, int width) {
@@ -94,7 +94,7 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork
     if (assembled) nanoseconds += n * n / lanes;
   } else {
     double w = half_bandwidth(problem.stiffness);
-    if (problem.space.given) w = std::max<double>(w, half_bandwidth(inertia.mass));
+    if (problem.space.given || problem.basis) w = std::max<double>(w, half_bandwidth(inertia.mass));
     const double v = border > 0 ? w + 2 : w;
     nanoseconds += n * (2 * w + 1) * rate.product;
     const double solve = kind == OperatorKind::sparse ? rate.sparse : rate.substitution;
@@ -122,6 +122,7 @@ double predict_visits(const SemiDiscrete& problem, const StepWork& work, double 
 }
 
 OperatorKind cheapest_kind(const SemiDiscrete& problem, const StepWork& work, int width, long long steps) {
+  if (problem.asks_for_modes() && kind_applies(OperatorKind::modal, problem)) return OperatorKind::modal;
   OperatorKind best = OperatorKind::band;
   double best_cost = 0;
   for (const OperatorKind kind : {OperatorKind::band, OperatorKind::modal, OperatorKind::sparse}) {

@@ -1,6 +1,8 @@
+#include <cmath>
 #include <ricochet/engine/march_model.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
 #include <ricochet/kernels/flight_kernels.hpp>
+#include <ricochet/scene/basis/lowest_modes.hpp>
 
 namespace ricochet {
 namespace {
@@ -21,6 +23,15 @@ RowMatrix dense_rows(const Eigen::MatrixXd& matrix) {
     rows.start.push_back(static_cast<int>(rows.index.size()));
   }
   return rows;
+}
+
+// 2 ζ_k √(μ_k κ_k) of elastic modes in the order of their frequencies; μ ascends, so that they stand last first.
+Eigen::VectorXd damping_of_modes(const Damping& damping, const Eigen::VectorXd& mu, const Eigen::VectorXd& stiff) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(mu.size());
+  std::size_t number = 0;
+  for (Eigen::Index i = mu.size(); i-- > 0;)
+    if (mu[i] > 0 && stiff[i] > 0) out[i] = 2 * damping.ratio(number++) * std::sqrt(mu[i] * stiff[i]);
+  return out;
 }
 
 }  // namespace
@@ -50,11 +61,16 @@ MarchModel::MarchModel(std::shared_ptr<const SemiDiscrete> problem, bool modal)
     return;
   }
   const Eigen::MatrixXd K(p.stiffness), M = dense_mass(p.inertia);
-  const SymmetricModes modes = symmetric_modes(M, K);
+  if (!p.held && p.asks_for_modes()) shift_ = elastic_shift(p.stiffness, M.sparseView(), p.inertia.kernel_dimension);
+  const SymmetricModes modes = symmetric_modes(M, shift_ == 0 ? K : K + shift_ * M);
   modes_ = modes.vectors;
   Eigen::VectorXd mu = modes.values;
   for (int i = 0; i < p.inertia.kernel_dimension; ++i) mu[i] = 0;
-  stiffness_ = diagonal(Eigen::VectorXd::Ones(rows_));
+  Eigen::VectorXd stiff = Eigen::VectorXd::Ones(rows_);
+  if (shift_ != 0)
+    for (int i = 0; i < rows_; ++i) stiff[i] = std::abs(1 - shift_ * mu[i]) < rigid_mode ? 0 : 1 - shift_ * mu[i];
+  stiffness_ = diagonal(stiff);
+  if (p.damping.by_modes()) damping_ = damping_of_modes(p.damping, mu, stiff);
   inertia_.mass = diagonal(mu);
   inertia_.kernel_dimension = p.inertia.kernel_dimension;
   contact_ = dense_rows(p.contact * modes_);
@@ -69,8 +85,11 @@ double MarchModel::times_full(const RowMatrix& rows, int row, const double* x) c
 }
 
 Eigen::VectorXd MarchModel::to_model(const Eigen::VectorXd& nodal) const {
-  // φᵀKφ = 1, hence Φ⁻¹ = ΦᵀK.
-  return modal() ? Eigen::VectorXd(modes_.transpose() * (problem_->stiffness * nodal)) : nodal;
+  if (!modal()) return nodal;
+  // φᵀ(K + σM)φ = 1, hence Φ⁻¹ = Φᵀ(K + σM).
+  Eigen::VectorXd push = problem_->stiffness * nodal;
+  if (shift_ != 0) push += shift_ * apply_mass(problem_->inertia, nodal);
+  return modes_.transpose() * push;
 }
 
 Eigen::VectorXd MarchModel::to_nodal(const Eigen::VectorXd& model) const {

@@ -26,8 +26,9 @@ struct RowMatrix {
 
 /// The coordinates in which a program marches: nodal (q itself), or modal (q = Φ η with ΦᵀKΦ and ΦᵀMΦ diagonal).
 ///
-/// Modes solve M φ = μ K φ (K SPD) with φᵀKφ = 1, so that the kernel of a singular mass is μ = 0 and slow modes are
-/// accurate.
+/// Modes solve M φ = μ (K + σM) φ with φᵀ(K + σM)φ = 1, so that the kernel of a singular mass is μ = 0 and slow modes
+/// are accurate. σ = 0, unless a structure that is not held asks_for_modes(): then σ = elastic_shift(), and ΦᵀKΦ = 1 −
+/// σμ.
 class MarchModel {
  public:
   MarchModel(std::shared_ptr<const SemiDiscrete> problem, bool modal);
@@ -47,6 +48,8 @@ class MarchModel {
     return modal() ? times_full(rows, row, x) : rows.times(row, x);
   }
   const Eigen::VectorXd& support_shape() const { return shape_; }
+  /// Diagonal of ΦᵀCΦ where damping goes by modes; else empty.
+  const Eigen::VectorXd& modal_damping() const { return damping_; }
 
   Eigen::VectorXd to_model(const Eigen::VectorXd& nodal) const;  ///< coordinates of a displacement
   Eigen::VectorXd to_nodal(const Eigen::VectorXd& model) const;
@@ -58,6 +61,8 @@ class MarchModel {
 
   std::shared_ptr<const SemiDiscrete> problem_;
   Eigen::MatrixXd modes_;  // Φ
+  double shift_ = 0;       // σ
+  Eigen::VectorXd damping_;
   int rows_ = 0;
   SparseMatrix stiffness_;
   Inertia inertia_;

@@ -22,13 +22,19 @@ class ModalOperator final : public StageOperator {
         slots_(static_cast<int>(stage.mass_history.size())),
         lanes_(lanes) {
     const Eigen::VectorXd K = model.stiffness().diagonal(), M = model.inertia().mass.diagonal();
+    const Eigen::VectorXd& C = model.modal_damping();
     zero_scale_ = Block(1, lanes);
     unknown_ = Block(rows_, lanes);
     for (int i = 0; i < rows_; ++i) {
-      const double inverse = 1 / (stage.mass * M[i] + stage.stiffness * K[i]);
+      double weight = stage.mass * M[i] + stage.stiffness * K[i];
+      if (C.size() > 0) weight += stage.damping * C[i];
+      const double inverse = 1 / weight;
       inverse_.push_back(inverse);
-      for (std::size_t j = 0; j < stage.mass_history.size(); ++j)
-        coefficient_.push_back((stage.mass_history[j] * M[i] + stage.stiffness_history[j] * K[i]) * inverse);
+      for (std::size_t j = 0; j < stage.mass_history.size(); ++j) {
+        double history = stage.mass_history[j] * M[i] + stage.stiffness_history[j] * K[i];
+        if (C.size() > 0) history += stage.damping_history[j] * C[i];
+        coefficient_.push_back(history * inverse);
+      }
       coefficient_.push_back(model.support_shape()[i] * inverse);
     }
     if (lanes == 1 && slots_ == 2) columns_ = mode_columns(rows_, coefficient_);

@@ -323,6 +323,7 @@ FoldedStage fold(const OperatorWeights& weights, const Damping& damping) {
   FoldedStage folded;
   folded.mass = weights.M + damping.mass * weights.C;
   folded.stiffness = weights.K + damping.stiffness * weights.C;
+  folded.damping = weights.C;
   return folded;
 }
 
@@ -330,15 +331,20 @@ FoldedStage fold(const Stage& stage, const Damping& damping, int slots) {
   FoldedStage folded = fold(stage.matrix, damping);
   folded.mass_history.assign(static_cast<std::size_t>(slots), 0.0);
   folded.stiffness_history.assign(static_cast<std::size_t>(slots), 0.0);
+  folded.damping_history.assign(static_cast<std::size_t>(slots), 0.0);
   for (std::size_t j = 0; j < stage.history.size(); ++j) {
     folded.mass_history[j] = stage.history[j].M + damping.mass * stage.history[j].C;
     folded.stiffness_history[j] = stage.history[j].K + damping.stiffness * stage.history[j].C;
+    folded.damping_history[j] = stage.history[j].C;
   }
   return folded;
 }
 
 OperatorOrRefusal make_operator(OperatorKind kind, const MarchModel& model, const FoldedStage& stage, int lanes) {
   if (kind == OperatorKind::modal) return make_modal_operator(model, stage, lanes);
+  if (model.problem().damping.by_modes())
+    return Refusal{std::string("damping ratios are those of modes, and the operator ") + operator_name(kind) +
+                   " has none: leave it out"};
   const Inertia& inertia = model.inertia();
   if (inertia.inverted() && stage.stiffness == 0) return std::make_unique<InverseOperator>(model, stage, lanes);
   if (!inertia.assembled() && stage.mass < 0)

@@ -15,10 +15,12 @@ enum class OperatorKind { automatic, diagonal, modal, band, sparse };
 const char* operator_name(OperatorKind kind);
 
 /// The coefficients of one stage with C = αK + ηM folded into K and M: S = s_M M + s_K K, b = Σ_j (β^M_j M + β^K_j K)
-/// x_j + …
+/// x_j + … Those of C itself stand beside them, for damping by modes.
 struct FoldedStage {
   double mass = 0, stiffness = 0;
   std::vector<double> mass_history, stiffness_history;  ///< one per slot
+  double damping = 0;
+  std::vector<double> damping_history;
   bool uses_mass() const;
   /// Whether the slots drive it.
   bool driven() const;

@@ -16,14 +16,24 @@ Eigen::MatrixXd marched_mass(const Inertia& inertia) {
 }  // namespace
 
 SparseRows place_rows(const SemiDiscrete& problem, const std::vector<double>& places) {
-  if (!problem.space.given) return displacement_rows(problem.space, places);
+  if (!problem.space.given) return problem.on_unknowns(displacement_rows(problem.space, places));
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t i = 0; i < places.size(); ++i)
     for (SparseRows::InnerIterator it(problem.tip, 0); it; ++it)
       entries.emplace_back(static_cast<int>(i), static_cast<int>(it.col()), it.value());
-  SparseRows rows(static_cast<Eigen::Index>(places.size()), problem.space.dofs);
+  SparseRows rows(static_cast<Eigen::Index>(places.size()), problem.dofs());
   rows.setFromTriplets(entries.begin(), entries.end());
   return rows;
+}
+
+SparseRows strain_rows(const SemiDiscrete& problem, const std::vector<double>& places) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (const auto& [dof, value] : strain_row(problem.space, places[i]))
+      entries.emplace_back(static_cast<int>(i), dof, value);
+  SparseRows rows(static_cast<Eigen::Index>(places.size()), problem.space.dofs);
+  rows.setFromTriplets(entries.begin(), entries.end());
+  return problem.on_unknowns(std::move(rows));
 }
 
 DiscreteProblem discrete_problem(const SemiDiscrete& problem, const std::vector<double>& places) {
@@ -40,10 +50,7 @@ DiscreteProblem discrete_problem(const SemiDiscrete& problem, const std::vector<
   if (!problem.load->absent()) problem.load->assemble(0, discrete.load_constant.data());
   discrete.tip = Eigen::MatrixXd(problem.tip).row(0);
   discrete.places = Eigen::MatrixXd(place_rows(problem, places));
-  discrete.strains = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(places.size()), problem.dofs());
-  for (std::size_t i = 0; i < places.size(); ++i)
-    for (const auto& [dof, value] : strain_row(problem.space, places[i]))
-      discrete.strains(static_cast<Eigen::Index>(i), dof) = value;
+  discrete.strains = Eigen::MatrixXd(strain_rows(problem, places));
   return discrete;
 }
 

@@ -13,4 +13,7 @@ DiscreteProblem discrete_problem(const SemiDiscrete& problem, const std::vector<
 /// tip.
 SparseRows place_rows(const SemiDiscrete& problem, const std::vector<double>& places);
 
+/// The strains that the elastic energy integrates, at `places` (x, m), as rows (places × n); zero without elements.
+SparseRows strain_rows(const SemiDiscrete& problem, const std::vector<double>& places);
+
 }  // namespace ricochet

@@ -127,6 +127,11 @@ SparseRows tip_row(const SceneSpec& scene, const FiniteElementSpace& space) {
                    "missing; without stops and loads expected the place whose displacement is shown");
 }
 
+void show_tip(const SceneSpec& scene, SemiDiscrete& problem) {
+  problem.tip = tip_row(scene, problem.space);
+  problem.tip_on_supports = problem.tip * problem.static_modes;
+}
+
 std::string tip_choice(const SceneSpec& scene) {
   const auto* spec = std::get_if<AssembledSpec>(&scene.structure);
   if (!spec || spec->tip) return "";

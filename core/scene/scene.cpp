@@ -85,6 +85,26 @@ bool LoadSpec::is_zero() const {
          std::all_of(terms.begin(), terms.end(), [](const LoadTerm& term) { return ricochet::is_zero(term); });
 }
 
+namespace {
+
+Damping damping(const OscillatorSpec& oscillator) {
+  return {.mass = oscillator.damping / oscillator.mass};
+}
+template <class Spec>
+Damping damping(const Spec& spec) {
+  return spec.damping;
+}
+
+}  // namespace
+
+Damping damping_of(const StructureSpec& structure) {
+  return std::visit([](const auto& spec) { return damping(spec); }, structure);
+}
+
+double Damping::rate(double square, std::size_t k) const {
+  return by_modes() ? 2 * ratio(k) * std::sqrt(square) : stiffness * square + mass;
+}
+
 bool LoadSpec::uses_t() const {
   return formula.uses_t() || std::any_of(terms.begin(), terms.end(), [](const LoadTerm& term) {
            return !ricochet::is_zero(term) && term.history.uses_t();
@@ -149,14 +169,22 @@ void DistributedLoad::integrate(const Formula& load, double t, double* out) cons
   }
 }
 
+void DistributedLoad::project(const Eigen::MatrixXd& basis) {
+  basis_ = std::make_shared<const Eigen::MatrixXd>(basis);
+  nodal_.resize(size_);
+  for (Term& term : terms_) term.shape = basis.transpose() * term.shape;
+}
+
 void DistributedLoad::assemble_formula(double t, double* out) const {
-  std::fill(out, out + size_, 0.0);
-  if (has_formula()) integrate(formula_, t, out);
+  double* nodal = basis_ ? nodal_.data() : out;
+  std::fill(nodal, nodal + size_, 0.0);
+  if (has_formula()) integrate(formula_, t, nodal);
+  if (basis_) Eigen::Map<Eigen::VectorXd>(out, unknowns()).noalias() = basis_->transpose() * nodal_;
 }
 
 void DistributedLoad::assemble(double t, double* out) const {
   assemble_formula(t, out);
-  for (int k = 0; k < terms(); ++k) Eigen::Map<Eigen::VectorXd>(out, size_) += scale(k, t) * shape(k);
+  for (int k = 0; k < terms(); ++k) Eigen::Map<Eigen::VectorXd>(out, unknowns()) += scale(k, t) * shape(k);
 }
 
 }  // namespace ricochet

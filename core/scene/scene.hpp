@@ -34,10 +34,20 @@ SectionProperties section_properties(const Section& section, double young, doubl
 /// 6(1+ν)(1+m²)²/((7+6ν)(1+m²)² + (20+12ν)m²).
 double shear_factor(const Section& section, double poisson);
 
-/// C = α K + η M.
+/// C = α K + η M; or by modes, C φ_k = 2 ζ_k ω_k M φ_k on the modes of the matrices that are marched. Modes without
+/// mass and rigid ones have none then.
 struct Damping {
-  double stiffness = 0;  ///< α, s
-  double mass = 0;       ///< η, 1/s
+  double stiffness = 0;               ///< α, s
+  double mass = 0;                    ///< η, 1/s
+  std::vector<double> ratios = {};    ///< ζ_k, slowest elastic mode first
+  std::optional<double> beyond = {};  ///< ζ of the modes after these
+
+  bool by_modes() const { return !ratios.empty() || beyond; }
+  /// Of the elastic mode number k, from 0; of a mode that no ratio is given for, 0.
+  double ratio(std::size_t k) const { return k < ratios.size() ? ratios[k] : beyond.value_or(0.0); }
+  /// C on an elastic mode of unit mass, ω² its square (s⁻²) and k its number, 1/s.
+  double rate(double square, std::size_t k) const;
+  bool operator==(const Damping&) const = default;
 };
 
 /// What holds a beam at x. An elastic support stands on springs, whose ground end is what it holds.
@@ -123,6 +133,8 @@ struct AssembledSpec {
   std::optional<Place> tip;  ///< the displacement shown to people; none: that of the first stop, else of the first load
 };
 using StructureSpec = std::variant<BeamSpec, OscillatorSpec, BarSpec, AssembledSpec>;
+/// How it is damped; that of an oscillator is one of mass.
+Damping damping_of(const StructureSpec& structure);
 
 /// A stop of its own name: lower ≤ u(at) − u(to) ≤ upper, m.
 struct NamedStop {
@@ -172,7 +184,7 @@ struct DofState {
 
 /// u(x,0) and u_t(x,0), absolute or from the supports as the scene's frame says.
 struct InitialSpec {
-  enum class Projection { none, constraint };
+  enum class Projection { none, constraint, least_squares };
   Formula displacement, velocity;
   Projection projection = Projection::none;
   std::vector<DofState> dofs = {};  ///< of matrices that are given: those that do not begin at rest at 0
@@ -203,6 +215,14 @@ struct LoadSpec {
   double spread(double x, double t) const;
 };
 
+/// The structure in its N slowest modes, in the place of its mesh.
+struct BasisSpec {
+  int modes = 1;         ///< N
+  bool residual = true;  ///< whether the static shapes of its stops stand beside them
+
+  bool operator==(const BasisSpec&) const = default;
+};
+
 struct SceneSpec {
   StructureSpec structure;
   StopsSpec stops;
@@ -212,6 +232,7 @@ struct SceneSpec {
   std::vector<MotionSpec> motions;  ///< beside `support`, which is at rest then
   /// Whether the initial state, and the displacements that are shown, count from the supports that move by `motions`.
   bool from_supports = false;
+  std::optional<BasisSpec> basis;  ///< none: all dofs of the mesh
 };
 
 }  // namespace ricochet

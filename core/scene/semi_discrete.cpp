@@ -6,6 +6,7 @@
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/basis/modal_basis.hpp>
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/massless_part.hpp>
@@ -260,6 +261,43 @@ Eigen::VectorXd pushed_at_start(ContactLaw& law, const Parameters& parameters, c
   return problem.measured().transpose() * p;
 }
 
+InertiaOrRefusal build_mass(const SemiDiscrete& problem, const MassStrategy& mass) {
+  if (!problem.in_modes()) {
+    if (problem.space.given && !mass.takes_given())
+      return Refusal{
+          "this mass is made of velocities on elements, and an assembled structure has matrices alone: use consistent, "
+          "hrz or redistributed"};
+    return mass.build(problem.space);
+  }
+  if (!mass.takes_modes())
+    return Refusal{
+        "a structure in modes has the mass of its modes: use consistent or singular, or leave mesh.modes out"};
+  if (!problem.basis) return mass.build(problem.space);
+  FiniteElementSpace space;
+  space.structure = problem.space.structure;
+  space.basis = FiniteElementSpace::Basis::linear;
+  space.dofs = problem.basis->dofs();
+  space.given = GivenMass{.mass = problem.basis->mass, .modes = true, .attached = problem.basis->stops()};
+  space.contact_dofs = touched_dofs(SparseRows(problem.basis->at_points.sparseView()));
+  return mass.build(space);
+}
+
+// What was made on the dofs of the mesh, in the coordinates of the basis.
+void march_in_basis(const SceneSpec& scene, SemiDiscrete& problem, DistributedLoad& load) {
+  const ModalBasis& basis = *problem.basis;
+  const SparseMatrix mass = consistent_mass(problem.space);
+  const bool least_squares = scene.initial.projection == InitialSpec::Projection::least_squares;
+  for (Eigen::VectorXd* state : {&problem.position, &problem.velocity})
+    *state = least_squares ? in_basis_by_least_squares(basis, *state) : in_basis(basis, mass, problem.contact, *state);
+  SparseMatrix stiffness(basis.dofs(), basis.dofs());
+  for (int i = 0; i < basis.dofs(); ++i) stiffness.insert(i, i) = basis.stiffness[i];
+  problem.stiffness = std::move(stiffness);
+  problem.contact = basis.at_points.sparseView();
+  problem.tip = problem.on_unknowns(std::move(problem.tip));
+  problem.support_shape = basis.shapes.transpose() * problem.support_shape;
+  load.project(basis.shapes);
+}
+
 }  // namespace
 
 SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const MassStrategy& mass, ContactLaw* law,
@@ -278,37 +316,38 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   problem.contact = std::move(points.rows);
   problem.stops = std::move(points.names);
   problem.space.contact_dofs = touched_dofs(problem.contact);
-  if (problem.space.given && !mass.takes_given())
-    return Refusal{
-        "this mass is made of velocities on elements, and an assembled structure has matrices alone: use consistent, "
-        "hrz or redistributed"};
-  auto built = mass.build(problem.space);
-  if (auto* refusal = std::get_if<Refusal>(&built)) return *refusal;
-  problem.inertia = std::get<Inertia>(std::move(built));
-
   std::visit([&](const auto& structure) { add_stiffness(structure, problem); }, scene.structure);
   problem.support = scene.support;
   problem.support_shape = rigid_motion_load(problem.space);
   hold_by_supports(scene.structure, elements, problem);
+  // The modes of K with the consistent or given mass, whatever mass is marched.
+  if (scene.basis)
+    problem.basis = std::make_shared<const ModalBasis>(
+        modal_basis(problem.stiffness, consistent_mass(problem.space), problem.contact, problem.held, *scene.basis));
+  auto built = build_mass(problem, mass);
+  if (auto* refusal = std::get_if<Refusal>(&built)) return *refusal;
+  problem.inertia = std::get<Inertia>(std::move(built));
+
   const auto* assembled = std::get_if<AssembledSpec>(&scene.structure);
   auto load = std::make_shared<DistributedLoad>(whole_load(scene), problem.space,
                                                 assembled ? assembled->structure.get() : nullptr);
 
   problem.lower = std::move(points.lower);
   problem.upper = std::move(points.upper);
-  problem.tip = tip_row(scene, problem.space);
-  add_support(scene, points.on_supports, problem, *load);
-  problem.load = std::move(load);
+  show_tip(scene, problem);
   if (const std::string chosen = tip_choice(scene); !chosen.empty()) problem.notes.push_back("the tip is " + chosen);
+  if (tip_position(scene) != structure_length(scene) && std::holds_alternative<BeamSpec>(scene.structure))
+    problem.notes.push_back(
+        fmt::format("the displacement shown as that of the tip is at x = {:.6g} m", tip_position(scene)));
+  add_support(scene, points.on_supports, problem, *load);
+  interpolate_initial(scene, problem);
+  if (problem.basis) march_in_basis(scene, problem, *load);
+  problem.load = std::move(load);
   if (law && law->changes_problem() && problem.points() > 0) {
     if (auto refusal = change_by(*law, problem)) return *refusal;
     if (law_decides) beyond = force_beyond(*law, *parameters);
   }
 
-  if (tip_position(scene) != structure_length(scene) && std::holds_alternative<BeamSpec>(scene.structure))
-    problem.notes.push_back(
-        fmt::format("the displacement shown as that of the tip is at x = {:.6g} m", tip_position(scene)));
-  interpolate_initial(scene, problem);
   check_start(problem, "/scene/initial/displacement", "the initial displacement", beyond);
   Eigen::VectorXd pushed;
   if (law_decides && problem.inertia.kernel_dimension > 0) pushed = pushed_at_start(*law, *parameters, problem);
@@ -326,6 +365,10 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
 } catch (const BeyondStop& error) {
   if (!law || !parameters) throw;
   return Refusal{error.what()};
+}
+
+SparseRows SemiDiscrete::on_unknowns(SparseRows rows) const {
+  return basis ? SparseRows((rows * basis->shapes).sparseView()) : std::move(rows);
 }
 
 void show_problem(ContactLaw& law, const SemiDiscrete& problem) {

@@ -14,6 +14,7 @@
 namespace ricochet {
 
 class ContactLaw;
+struct ModalBasis;
 
 /// Assembles the load vector F_i(t) = ∫f(x,t) φ_i dx (N, N m) by 4-point Gauss quadrature per element; without
 /// elements, the force f(0,t) (N) itself. Terms are assembled once, f_k into F_k by the same quadrature and a force at
@@ -21,6 +22,8 @@ class ContactLaw;
 class DistributedLoad {
  public:
   DistributedLoad(const LoadSpec& load, const FiniteElementSpace& space, const AssembledStructure* assembled = nullptr);
+  /// From now on QᵀF in the place of F, Q n × n̂.
+  void project(const Eigen::MatrixXd& basis);
   /// One more term: g(t) times F_k (n).
   void add(Eigen::VectorXd shape, Formula history);
   bool absent() const { return formula_.is_zero() && terms_.empty(); }
@@ -44,6 +47,7 @@ class DistributedLoad {
     Formula history;
   };
   void integrate(const Formula& load, double t, double* out) const;
+  int unknowns() const { return basis_ ? static_cast<int>(basis_->cols()) : size_; }
 
   Formula formula_;
   std::vector<Term> terms_;
@@ -53,15 +57,20 @@ class DistributedLoad {
   std::vector<std::array<int, 4>> dofs_;
   std::vector<std::array<double, 16>> weights_;  ///< per element: weight·φ_a at each Gauss point
   int size_ = 0;
+  std::shared_ptr<const Eigen::MatrixXd> basis_;  ///< Q, where there is one
+  mutable Eigen::VectorXd nodal_;
 };
 
 /// The semi-discrete problem for w = u − φ:
 ///     M q'' + C q' + K q = F(t) − φ''(t) s + Hᵀ p,     lower − φ(t) ≤ H q ≤ upper − φ(t),     C = αK + ηM
 /// with s_i = ∫ρS φ_i (whatever the mass strategy). φ moves all supports and the ground of a foundation together.
 /// Motions φ_j of supports by histories: w = u − Σ ψ_j φ_j, F holds −Σ s_j φ_j'', and bounds are less Σ (Hψ)_j φ_j. Of
-/// a contact law that changes the problem, K is the K' and H the G of ContactStructure; `contact` stays H.
+/// a contact law that changes the problem, K is the K' and H the G of ContactStructure; `contact` stays H. Of a basis,
+/// q is q̂ and what is n × n, m × n or n holds in its coordinates; what supports do (static_modes, support_loads) and
+/// `space` stay those of the mesh.
 struct SemiDiscrete {
   FiniteElementSpace space;
+  std::shared_ptr<const ModalBasis> basis;  ///< null: q are the dofs of the mesh
   Inertia inertia;
   double rigidity = 0;     ///< EI (N m²), EA (N), k (N/m)
   SparseMatrix stiffness;  ///< K, both triangles, n × n
@@ -89,6 +98,7 @@ struct SemiDiscrete {
   std::vector<std::string> stops;                    ///< name of each contact point's stop; empty where they have none
   Eigen::VectorXd lower, upper;                      ///< g1, g2 at the contact points; ±∞ where absent
   Eigen::SparseMatrix<double, Eigen::RowMajor> tip;  ///< 1 × n: the displacement shown to people
+  Eigen::RowVectorXd tip_on_supports;                ///< 1 × r: ψ_j there, of matrices that are given
   Eigen::VectorXd position, velocity;                ///< q₀, v₀ of w
   double projection_energy = 0;  ///< ½qᵀKq + ½vᵀMv after projection minus before (J); 0 without projection
   /// ½ rᵀZ(ZᵀKZ)⁻¹Zᵀr, r = Kq₀ − F(0) − Hᵀp(q₀), Z = Ker M: what an initial state off the constraint of a singular mass
@@ -101,7 +111,13 @@ struct SemiDiscrete {
   bool changed_by_law() const { return own_stiffness.rows() > 0; }
   int dofs() const { return static_cast<int>(position.size()); }
   int points() const { return static_cast<int>(contact.rows()); }
-  bool damped() const { return damping.stiffness != 0 || damping.mass != 0; }
+  /// Whether q counts coordinates of modes.
+  bool in_modes() const { return basis || (space.given && space.given->modes); }
+  /// Rows on the dofs of the mesh as rows on q.
+  SparseRows on_unknowns(SparseRows rows) const;
+  bool damped() const { return damping.stiffness != 0 || damping.mass != 0 || damping.by_modes(); }
+  /// Whether only modes march it.
+  bool asks_for_modes() const { return in_modes() || damping.by_modes(); }
 };
 
 using SemiDiscreteOrRefusal = std::variant<SemiDiscrete, Refusal>;

@@ -176,7 +176,8 @@ void hold_by_supports(const StructureSpec& structure, int elements, SemiDiscrete
 
 Eigen::MatrixXd support_shapes(const SemiDiscrete& problem, const std::vector<double>& x) {
   if (problem.supports.empty()) return Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(x.size()), 0);
-  Eigen::MatrixXd shapes = place_rows(problem, x) * problem.static_modes;
+  if (problem.space.given) return problem.tip_on_supports.replicate(static_cast<Eigen::Index>(x.size()), 1);
+  Eigen::MatrixXd shapes = displacement_rows(problem.space, x) * problem.static_modes;
   for (std::size_t i = 0; i < x.size(); ++i)
     for (const auto& [support, weight] : held_by(problem.support_x, problem.space, x[i]))
       shapes(static_cast<Eigen::Index>(i), support) += weight;
@@ -259,8 +260,8 @@ bool support_bends(const SceneSpec& scene) {
   problem.space = make_space(scene.structure, 1);
   ContactPoints points = contact_points(scene, problem.space, 1);
   problem.contact = std::move(points.rows);
-  problem.tip = tip_row(scene, problem.space);
   hold_by_supports(scene.structure, 1, problem);
+  show_tip(scene, problem);
   return !lift_alike(problem, points.on_supports, support_shapes(problem, {tip_position(scene)}));
 }
 

@@ -22,6 +22,7 @@ class Singular : public MassStrategy {
   explicit Singular(bool continuous) : continuous_(continuous) {}
 
   InertiaOrRefusal build(const FiniteElementSpace& space) const override {
+    if (space.given) return without_residual_mass(*space.given);
     if (space.elements.empty())
       return Refusal{"a singular mass needs elements to spread velocities over, and this " + space.structure +
                      " has none: use the mass consistent or lumped"};
@@ -33,7 +34,31 @@ class Singular : public MassStrategy {
     return assembled(space);
   }
 
+  bool takes_given() const override { return true; }
+  bool takes_modes() const override { return true; }
+
  private:
+  /// Of modes: what touches, the residual flexibility of the stops, has no inertia.
+  static InertiaOrRefusal without_residual_mass(const GivenMass& given) {
+    if (!given.modes)
+      return Refusal{
+          "this mass is made of velocities on elements, and an assembled structure has matrices alone: use consistent "
+          "or redistributed"};
+    if (given.attached.empty())
+      return Refusal{
+          "the modes carry no residual flexibility, so that nothing without inertia is left at the stops: give it, or "
+          "use the mass consistent"};
+    std::vector<bool> attached(static_cast<std::size_t>(given.mass.rows()), false);
+    for (const int dof : given.attached) attached[static_cast<std::size_t>(dof)] = true;
+    Inertia inertia;
+    inertia.mass = given.mass;
+    inertia.mass.prune([&](int row, int column, double) {
+      return !attached[static_cast<std::size_t>(row)] && !attached[static_cast<std::size_t>(column)];
+    });
+    inertia.kernel_dimension = static_cast<int>(given.attached.size());
+    return inertia;
+  }
+
   /// P1: hat functions at the nodes, without those where the displacement is imposed. C_v⁻¹ is full: M stays in
   /// factors.
   static InertiaOrRefusal factored(const FiniteElementSpace& space) {
@@ -120,7 +145,7 @@ void register_singular(Registry& registry) {
           Frequencies converge with order 4 (P1) and 2 (P0). Initial data that do not satisfy Zᵀ(K q − F) = 0, Z = Ker
           M, lose energy in the first steps: see the scene's projection. P1 must vanish at the clamp, and
           discontinuous P1 or P2 velocities fail the rank condition of contact at all nodes. A point mass keeps its
-          inertia.)";
+          inertia. Of a structure in modes, the residual flexibility of its stops has no mass.)";
   manual.source =
       R"(Renard 2010, The singular dynamic method for constrained second order hyperbolic equations, J. Comput. Appl.
           Math. 234, 906-923; after Khenous, Laborde, Renard 2008, Mass redistribution method for finite element

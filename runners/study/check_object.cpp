@@ -135,7 +135,7 @@ Json check_numbers(const Field& field, const Json& value, const std::string& poi
     result.back() = result.back().get<double>();
   }
   std::map<double, std::size_t> seen;
-  for (std::size_t i = 0; i < result.size(); ++i)
+  for (std::size_t i = 0; i < result.size() && !field.repeats; ++i)
     if (const auto [first, fresh] = seen.emplace(result[i].get<double>(), i); !fresh)
       throw InputError(pointer_to(pointer, i), "repeats the value " + quote(value[i]) + " of " +
                                                    shortened(pointer_to(pointer, first->second)) +

@@ -58,6 +58,7 @@ struct Field {
   bool plain = false;                     ///< of Form::place: a number is x
   std::vector<ObjectForm> given = {};     ///< of Form::formula: an object that may stand for it (histories.hpp)
   std::vector<std::string> of_each = {};  ///< of Form::words: words that a name in brackets may follow
+  bool repeats = false;                   ///< of Form::numbers: one number may stand several times
   bool quiet = false;  ///< absent or its default, it is not written out: older studies keep their identity
   std::string unless;  ///< another key of the object in whose presence this one is not given
 

@@ -102,8 +102,27 @@ void check_steps(const Json& steps, double duration) {
 // An oscillator has one dof whatever the mesh: its study need not speak of one. Any other must.
 void require_mesh(const Json& study) {
   const Json::json_pointer type("/scene/structure/type");
-  if (!study.is_object() || study.contains("mesh") || !study.contains(type)) return;
-  if (study.at(type) == "beam" || study.at(type) == "bar") throw InputError("/mesh", "missing; this key is required");
+  if (!study.is_object() || !study.contains(type)) return;
+  if (study.at(type) != "beam" && study.at(type) != "bar") return;
+  if (!study.contains("mesh")) throw InputError("/mesh", "missing; this key is required");
+  if (!study.at("mesh").contains("elements")) throw InputError("/mesh/elements", "missing; this key is required");
+}
+
+// The bases of modes that a study marches in; one that is empty without mesh.modes.
+std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh) {
+  if (!mesh.contains("modes")) {
+    if (mesh.contains("residual"))
+      throw InputError("/mesh/residual", "there is no mesh.modes whose residual it could be; expected modes too");
+    return {std::nullopt};
+  }
+  std::vector<std::optional<BasisSpec>> bases;
+  for (const Json& modes : mesh["modes"].is_array() ? mesh["modes"] : Json::array({mesh["modes"]}))
+    for (const std::string& residual : list_of<std::string>(mesh.value("residual", Json("stops"))))
+      if (!modes.is_null())
+        bases.push_back(BasisSpec{modes.get<int>(), residual == "stops"});
+      else if (std::find(bases.begin(), bases.end(), std::nullopt) == bases.end())
+        bases.emplace_back();
+  return bases;
 }
 
 // References: plugins, or the method itself marched finer.
@@ -294,6 +313,9 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
     everything.add(size);
   everything.refuse_above(largest_study, "");
 
+  const std::vector<std::optional<BasisSpec>> bases = bases_of(resolved["mesh"]);
+  everything.add(bases.size());
+  everything.refuse_above(largest_study, "");
   const int finest = *std::max_element(meshes.begin(), meshes.end());
   const std::vector<bool> beyond = start_beyond(contacts, catalogue, registry);
   const std::vector<SceneOption> scenes =
@@ -309,6 +331,8 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   for (const MethodOptions& role : methods)
     for (const MethodOption& option : role.options) add_columns(option.axes, study.columns);
   add_columns({{"elements", nullptr}}, study.columns);
+  for (const char* key : {"modes", "residual"})
+    if (resolved["mesh"].contains(key)) add_columns({{key, nullptr}}, study.columns);
   if (stepped) add_columns({{"step", nullptr}}, study.columns);
   if (by_period) add_columns({{"steps_per_period", nullptr}}, study.columns);
   if (ways) add_columns({{"march", nullptr}}, study.columns);
@@ -317,7 +341,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   CaseIds ids;
   Product product;
   for (const std::size_t size : {scenes.size(), masses.size(), contacts.size(), times.size(), meshes.size(),
-                                 steps.size(), per_period.size(), marches.size()})
+                                 steps.size(), per_period.size(), marches.size(), bases.size()})
     product.add(size);
   for (; !product.ended(); product.next()) {
     StudyCase one;
@@ -333,6 +357,13 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
     one.elements = meshes[product[4]];
     one.step = steps[product[5]];
     one.axes.emplace_back("elements", one.elements);
+    if (const std::optional<BasisSpec>& basis = bases[product[8]]; resolved["mesh"].contains("modes")) {
+      one.scene.basis = basis;
+      const Json residual = !basis ? Json(nullptr) : Json(basis->residual ? "stops" : "none");
+      one.axes.emplace_back("modes", basis ? Json(basis->modes) : Json(nullptr));
+      if (resolved["mesh"].contains("residual")) one.axes.emplace_back("residual", residual);
+      if (basis) one.scene_json["basis"] = {{"modes", basis->modes}, {"residual", residual}};
+    }
     if (stepped) one.axes.emplace_back("step", one.step);
     one.steps_per_period = per_period[product[6]];
     if (by_period) one.axes.emplace_back("steps_per_period", one.steps_per_period);

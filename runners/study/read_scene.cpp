@@ -76,7 +76,19 @@ Section read_section(const Json& json) {
 }
 
 Damping read_damping(const Json& json) {
-  return {json.at("stiffness").get<double>(), json.at("mass").get<double>()};
+  Damping damping{json.at("stiffness").get<double>(), json.at("mass").get<double>()};
+  const auto given = [&](const char* key) { return json.contains(key) && !json.at(key).is_null(); };
+  if (given("ratios")) damping.ratios = json.at("ratios").get<std::vector<double>>();
+  if (given("beyond")) damping.beyond = json.at("beyond").get<double>();
+  if (given("ratio")) damping.beyond = json.at("ratio").get<double>();
+  if (given("ratio") && (given("ratios") || given("beyond")))
+    throw InputError("/scene/structure/damping/ratio", "stands beside ratios; expected one of both");
+  if (given("beyond") && !given("ratios"))
+    throw InputError("/scene/structure/damping/beyond", "has no ratios before it; expected ratios, or ratio alone");
+  if (damping.by_modes() && (damping.stiffness != 0 || damping.mass != 0))
+    throw InputError("/scene/structure/damping",
+                     "α or η stand beside damping ratios; expected one of both, C = αK + ηM or ratios");
+  return damping;
 }
 
 /// What a beam, or a length of one, is made of.
@@ -197,8 +209,9 @@ SceneSpec read_scene(const Json& scene, StudyFiles* files) {
   const Json& initial = scene.at("initial");
   spec.initial.displacement = read_formula(initial.at("displacement"), "/scene/initial/displacement", "x");
   spec.initial.velocity = read_formula(initial.at("velocity"), "/scene/initial/velocity", "x");
-  spec.initial.projection =
-      initial.at("projection") == "constraint" ? InitialSpec::Projection::constraint : InitialSpec::Projection::none;
+  spec.initial.projection = initial.at("projection") == "constraint"      ? InitialSpec::Projection::constraint
+                            : initial.at("projection") == "least-squares" ? InitialSpec::Projection::least_squares
+                                                                          : InitialSpec::Projection::none;
   if (initial.contains("file") && files) spec.initial.dofs = files->initial(initial, scene.at("structure"));
   return spec;
 }

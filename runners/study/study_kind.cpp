@@ -129,10 +129,26 @@ std::vector<Field> beam_extras() {
       quiet(object("shear", Json(nullptr), "Deformation in shear; absent: Euler–Bernoulli.", beam_shear()))};
 }
 
-ObjectForm structure() {
+/// C = αK + ηM, or ratios of the modes of the matrices that are marched.
+ObjectForm damping_form() {
+  const Range ratio{-1, 1, true, true};
+  Field ratios = of_form(Field::Form::numbers, "ratios", Json(nullptr),
+                         "ζ_k of the modes, slowest elastic one first, in the place of α and η.");
+  ratios.spec.range = ratio;
+  ratios.spec.unit = "1";
+  ratios.repeats = true;
+  Field all = real("ratio", "1", ratio, std::nullopt, "ζ of every mode, in the place of α and η.");
+  all.fallback = Json(nullptr);
   ObjectForm damping;
   damping.fields = {real("stiffness", "s", non_negative, 0.0, "α of C = αK + ηM."),
-                    real("mass", "1/s", non_negative, 0.0, "η of C = αK + ηM.")};
+                    real("mass", "1/s", non_negative, 0.0, "η of C = αK + ηM."), quiet(std::move(all)),
+                    quiet(std::move(ratios)),
+                    quiet(real("beyond", "1", ratio, 0.0, "ζ of the modes after those of `ratios`."))};
+  return damping;
+}
+
+ObjectForm structure() {
+  const ObjectForm damping = damping_form();
   ObjectForm beam;
   beam.fields = {
       real("length", "m", positive, std::nullopt, "Length L; clamped at x = 0, free at x = L, unless `supports` say."),
@@ -206,8 +222,8 @@ ObjectForm scene() {
       formula("displacement", "m", "x", false, Json("0"),
               "Absolute displacement u(x,0); beyond a stop under compliant laws only."),
       formula("velocity", "m/s", "x", false, Json("0"), "Absolute velocity u_t(x,0)."),
-      word("projection", {"none", "constraint"}, "none",
-           "\"constraint\" projects the initial data on Zᵀ(Kq − F) = 0, Z the kernel of a singular mass.")};
+      word("projection", {"none", "constraint", "least-squares"}, "none",
+           "\"constraint\": on Zᵀ(Kq − F) = 0, Z the kernel of a singular mass; \"least-squares\": on `mesh.modes`.")};
   initial.fields.back().axis = true;
   initial.fields.push_back(
       of_form(Field::Form::text, "file", Json(""),
@@ -255,8 +271,16 @@ std::vector<std::string> kind_names() {
 
 ObjectForm study() {
   ObjectForm mesh;
-  mesh.fields = {integer("elements", {1, 100000, false, false}, std::nullopt, "Number of equal elements.")};
-  mesh.fields.back().axis = true;
+  Field modes = integer("modes", {1, 100000, false, false}, std::nullopt,
+                        "March the N slowest modes of the structure in the place of its dofs; null: all dofs.");
+  modes.fallback = Json(nullptr);
+  modes.axis = modes.nullable = true;
+  Field residual = word("residual", {"stops", "none"}, "stops",
+                        "With `modes`: whether the static shapes of the stops stand beside them.");
+  residual.axis = true;
+  mesh.fields = {integer("elements", {1, 100000, false, false}, 1, "Number of equal elements of a beam or a bar."),
+                 quiet(std::move(modes)), quiet(std::move(residual))};
+  mesh.fields.front().axis = true;
 
   ObjectForm chosen;
   chosen.fields = {methods("mass", Role::mass, "How velocities are discretised."),

@@ -112,6 +112,7 @@ StageWorks::StageWorks(const Marcher& marcher, const QuadraticForm& mass, const 
       stiffness_form_(stiffness),
       damping_(model_.problem().damping),
       damped_(damping_.stiffness != 0 || damping_.mass != 0),
+      by_modes_(model_.modal_damping().size() > 0),
       projected_(marcher.program().support),
       T_(marcher.width()),
       displacement_(model_.rows(), 1),
@@ -125,7 +126,7 @@ StageWorks::StageWorks(const Marcher& marcher, const QuadraticForm& mass, const 
   for (std::size_t k = 0; k < plan.start.size(); ++k)
     start_.push_back(describe_start(plan, k, marcher.program().start[k].facts, pulsation, h));
   for (const Stage& stage : plan.stages) stages_.push_back(describe(stage, pulsation, h));
-  if (T_ > 1 || marcher.program().load) return;
+  if (T_ > 1 || marcher.program().load || by_modes_) return;
   squares_alone_ = stages_.size() == 1 && stages_.front().losses.empty();
   if (!projected_ && !damped_) return;
   for (std::size_t k = 0; k < stages_.size(); ++k)
@@ -203,6 +204,17 @@ StageWorks::StageTerms StageWorks::describe_start(const StepPlan& plan, std::siz
   return terms;
 }
 
+namespace {
+
+// Σ c_i s_i r_i.
+double way_in(const Eigen::VectorXd& c, const double* s, const double* r) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < c.size(); ++i) sum += c[i] * s[i] * r[i];
+  return sum;
+}
+
+}  // namespace
+
 void StageWorks::add_all(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, bool losses,
                          bool contact, Works& works) {
   const auto sum = [&](const WeighedTerms& terms) { return LaneSum(terms, view.slots, view.z, view.w, T_, lane); };
@@ -214,8 +226,8 @@ void StageWorks::add_all(const Marcher& marcher, const StageView& view, const St
   if (stage.impulsive && contact)
     add_contact(marcher, view, stage, lane, sum(stage.displacement).write(displacement_), works);
   if (!view.plan->work) return;
-  const bool load = marcher.program().load, across = damped_ && stage.along == 0;
-  if (!projected_ && !damped_ && !load && !contact) return;
+  const bool load = marcher.program().load, across = (damped_ && stage.along == 0) || by_modes_;
+  if (!projected_ && !damped_ && !by_modes_ && !load && !contact) return;
   const LaneSum s = sum(stage.displacement);
   const bool passes = projected_ || (damped_ && !across), numbers = contact || load || across;
   if (passes) {
@@ -230,6 +242,7 @@ void StageWorks::add_all(const Marcher& marcher, const StageView& view, const St
     const double* rate = sum(stage.rate).write(rate_);
     if (damping_.stiffness != 0) works.damping += damping_.stiffness * stiffness_(way, rate);
     if (damping_.mass != 0) works.damping += damping_.mass * mass_(way, rate);
+    if (by_modes_) works.damping += way_in(model_.modal_damping(), way, rate);
   }
   if (load) {
     const double* F = const_cast<Marcher&>(marcher).distributed_load(view.plan->work->load, view.time);

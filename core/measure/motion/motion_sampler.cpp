@@ -9,17 +9,6 @@
 namespace ricochet {
 namespace {
 
-using StrainRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-
-StrainRows strain_rows(const FiniteElementSpace& space, const std::vector<double>& places) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    for (const auto& [dof, value] : strain_row(space, places[i])) entries.emplace_back(static_cast<int>(i), dof, value);
-  StrainRows rows(static_cast<Eigen::Index>(places.size()), space.dofs);
-  rows.setFromTriplets(entries.begin(), entries.end());
-  return rows;
-}
-
 // The share of motions at the places; none where displacements count from the supports.
 Eigen::MatrixXd shown_shapes(const SemiDiscrete& problem, const std::vector<double>& places) {
   const SupportMotions& motions = problem.motions;
@@ -184,7 +173,7 @@ MotionSampler::MotionSampler(Marcher& marcher, const SampleGrid& grid, StepObser
       mass_(QuadraticForm::of(marcher.program().problem->inertia)),
       stiffness_(marcher.program().problem->stiffness),
       places_(place_rows(*marcher.program().problem, grid.places)),
-      strains_(strain_rows(marcher.program().problem->space, grid.places)),
+      strains_(strain_rows(*marcher.program().problem, grid.places)),
       shares_(shown_shapes(*marcher.program().problem, grid.places)),
       offset_(marcher.program().velocity_offset) {
   const std::size_t times = grid_.times.size(), fields = times * grid_.places.size();

@@ -155,7 +155,7 @@ std::optional<EquivalentViscosity> equivalent_viscosity(const SemiDiscrete& prob
     if (!delta) return std::nullopt;
     decays.push_back(*delta);
     scheme += 2 * *delta * square;
-    structure += (problem.damping.stiffness * square + problem.damping.mass) * square;
+    structure += problem.damping.rate(square, decays.size() - 1) * square;
     fourth += square * square;
   }
   EquivalentViscosity out{scheme / fourth, structure / fourth, 0, static_cast<int>(squares.size())};

@@ -18,6 +18,7 @@ std::optional<LinearResponse> linear_response(const SemiDiscrete& problem, const
   const MarchModel model(std::make_shared<SemiDiscrete>(problem), true);
   const int slots = static_cast<int>(plan.slots.size());
   const Eigen::VectorXd K = model.stiffness().diagonal(), M = model.inertia().mass.diagonal();
+  const Eigen::VectorXd& C = model.modal_damping();
   const Complex turn = std::polar(1.0, omega * h);
   // u = φ + w, φ = A Im(e^{iωt}): with A = 1 the phasor of φ is −i, that of −φ'' is −iω².
   const Complex clamp(0, -1), push = clamp * omega * omega;
@@ -31,12 +32,15 @@ std::optional<LinearResponse> linear_response(const SemiDiscrete& problem, const
       Eigen::RowVectorXcd z = Eigen::RowVectorXcd::Zero(slots);
       Complex z0 = 0;
       if (folded.solves()) {
-        const double S = folded.mass * M[mode] + folded.stiffness * K[mode];
+        double S = folded.mass * M[mode] + folded.stiffness * K[mode];
+        if (C.size() > 0) S += folded.damping * C[mode];
         if (S == 0) return std::nullopt;
         Eigen::RowVectorXcd history = Eigen::RowVectorXcd::Zero(slots);
-        for (int j = 0; j < slots; ++j)
+        for (int j = 0; j < slots; ++j) {
           history[j] = folded.mass_history[static_cast<std::size_t>(j)] * M[mode] +
                        folded.stiffness_history[static_cast<std::size_t>(j)] * K[mode];
+          if (C.size() > 0) history[j] += folded.damping_history[static_cast<std::size_t>(j)] * C[mode];
+        }
         Complex load = 0;
         for (const Level& level : stage.load) load += level.weight * std::polar(1.0, omega * level.at * h);
         z = history * A / S;

@@ -207,7 +207,11 @@ std::vector<double> point_stiffness(const SemiDiscrete& problem) {
 
 std::optional<double> StructurePhysics::damping_ratio(std::size_t mode) const {
   const double pulsation = pulsations.at(mode);
-  if (pulsation == 0 || (damping.stiffness == 0 && damping.mass == 0)) return std::nullopt;
+  if (pulsation == 0 || (damping.stiffness == 0 && damping.mass == 0 && !damping.by_modes())) return std::nullopt;
+  if (damping.by_modes()) {
+    const auto rigid = std::count(pulsations.begin(), pulsations.end(), 0.0);
+    return damping.ratio(mode - static_cast<std::size_t>(rigid));
+  }
   return (damping.stiffness * pulsation + damping.mass / pulsation) / 2;
 }
 
@@ -220,7 +224,7 @@ int StructurePhysics::resolved(double h, double steps_per_period) const {
 std::variant<StructurePhysics, Refusal> structure_physics(const SceneSpec& scene, int elements,
                                                           const MassStrategy& mass) {
   StructurePhysics out;
-  out.elements = std::min(elements, most_elements);
+  out.elements = scene.basis ? elements : std::min(elements, most_elements);
   // Nor where the structure begins.
   NoContact nothing;
   const Parameters none;

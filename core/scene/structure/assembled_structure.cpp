@@ -94,6 +94,21 @@ std::optional<NegativePivot> negative_pivot(const SparseMatrix& matrix) {
   return worst;
 }
 
+/// Whether the slowest motion, by inverse iteration with a factor of K, has an energy that is round-off of its own
+/// terms: a pivot that vanishes may come out as one of either sign.
+bool moves_rigidly(const SparseMatrix& stiffness, SparseLdlt& ldlt) {
+  constexpr int iterations = 4;
+  constexpr double round_off = 1e-15;
+  Eigen::VectorXd x(stiffness.rows());
+  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = 1 + 0.5 * std::sin(1.7 * static_cast<double>(i));
+  for (int k = 0; k < iterations; ++k) {
+    ldlt.solve(x.data(), x.data());
+    x.normalize();
+  }
+  const double terms = x.cwiseAbs().dot(SparseMatrix(stiffness.cwiseAbs()) * x.cwiseAbs());
+  return x.dot(stiffness * x) <= round_off * terms;
+}
+
 class StructureMaker {
  public:
   explicit StructureMaker(const AssembledFiles& files) : files_(files) {
@@ -177,7 +192,7 @@ class StructureMaker {
       throw FileError(fmt::format("{} has a negative pivot {:.3g} at {}: expected a structure in stable equilibrium",
                                   files_.stiffness_name, found->value, dof_text(found->row)));
     SparseLdlt ldlt;
-    out_.definite = ldlt.factorise(out_.stiffness);
+    out_.definite = ldlt.factorise(out_.stiffness) && !moves_rigidly(out_.stiffness, ldlt);
     if (out_.definite) return;
     const double sigma = (heavy.maxCoeff() > 0 && stiff.maxCoeff() > 0) ? stiff.maxCoeff() / heavy.maxCoeff() : 1.0;
     if (!ldlt.factorise(out_.stiffness + sigma * out_.mass))

@@ -62,10 +62,11 @@ Marched march(const StudyCase& study_case, const Registry& registry, const Sampl
 }
 
 // A case of the same scene and methods at another step and mesh.
-StudyCase at(const StudyCase& study_case, double step, int elements) {
+StudyCase at(const StudyCase& study_case, double step, int elements, const std::optional<BasisSpec>& basis) {
   StudyCase other = study_case;
   other.step = step;
   other.elements = elements;
+  other.scene.basis = basis;
   return other;
 }
 
@@ -86,7 +87,15 @@ References::References(const Study& study, const Registry& registry, CheckpointS
     smallest_step_ = std::min(smallest_step_, one.step);
     coarsest_ = std::min(coarsest_, one.elements);
     finest_ = std::max(finest_, one.elements);
+    if (std::find(bases_.begin(), bases_.end(), one.scene.basis) == bases_.end()) bases_.push_back(one.scene.basis);
   }
+  // All dofs first, then by the number of modes.
+  std::sort(bases_.begin(), bases_.end(), [](const auto& a, const auto& b) {
+    const auto richness = [](const std::optional<BasisSpec>& one) {
+      return one ? std::pair(one->modes, one->residual) : std::pair(std::numeric_limits<int>::max(), true);
+    };
+    return richness(a) > richness(b);
+  });
 }
 
 template <class Value>
@@ -131,6 +140,9 @@ std::string References::key(const StudyCase& study_case, const MethodChoice& cho
       content["libraries"].push_back(file_hash(file));
     content["elements"] = study_case.elements;
     content["refined"] = {smallest_step_, coarsest_, finest_};
+    if (bases_.size() > 1)
+      for (const std::optional<BasisSpec>& basis : {bases_[0], bases_[1]})
+        content["bases"].push_back(basis ? Json{basis->modes, basis->residual} : Json(nullptr));
   } else if (of_the_mesh) {
     content["elements"] = study_case.elements;
     content["restitution"] = reference_problem(study_case, registry_).restitution;
@@ -149,8 +161,9 @@ KnownReference References::march_finer(const StudyCase& study_case, const std::a
   const bool several = finest_ != coarsest_;
   const int elements = several ? 2 * finest : study_case.elements;
   const SampleGrid grid = comparison_grid(study_case.scene, study_case.duration, study_case.samples);
-  const Marched coarse = march(at(study_case, smallest / 4, elements), registry_, grid, nullptr, stop);
-  const Marched fine = march(at(study_case, smallest / 8, elements), registry_, grid, nullptr, stop);
+  const std::optional<BasisSpec>& richest = bases_.front();
+  const Marched coarse = march(at(study_case, smallest / 4, elements, richest), registry_, grid, nullptr, stop);
+  const Marched fine = march(at(study_case, smallest / 8, elements, richest), registry_, grid, nullptr, stop);
   for (const Marched* one : {&coarse, &fine})
     if (!one->motion) {
       known.refusal = one->refusal;
@@ -161,18 +174,20 @@ KnownReference References::march_finer(const StudyCase& study_case, const std::a
   known.found.coarser = *fine.motion;
   known.found.how = fmt::format("the method itself at h = {:g} and {:g} s on {} elements, extrapolated with order {:g}",
                                 smallest / 4, smallest / 8, elements, order);
-  if (several) {
-    const Marched other = march(at(study_case, smallest / 4, finest), registry_, grid, nullptr, stop);
-    if (other.motion) {
-      const auto size = [&](const SampledMotion& motion) {
-        return *motion_errors(motion, known.found.motion, grid, grid.times.back(), {"tip-linf"})[0].value;
-      };
-      if (size(*other.motion) > size(known.found.coarser)) {
-        known.found.coarser = *other.motion;
-        known.found.how += fmt::format("; its gap is that to {} elements", finest);
-      }
-    }
-  }
+  if (richest && bases_.size() > 1) known.found.how += fmt::format(", {} modes", richest->modes);
+  const auto widen = [&](const StudyCase& poorer, const std::string& named) {
+    const Marched other = march(poorer, registry_, grid, nullptr, stop);
+    if (!other.motion) return;
+    const auto size = [&](const SampledMotion& motion) {
+      return *motion_errors(motion, known.found.motion, grid, grid.times.back(), {"tip-linf"})[0].value;
+    };
+    if (!(size(*other.motion) > size(known.found.coarser))) return;
+    known.found.coarser = *other.motion;
+    known.found.how += "; its gap is that to " + named;
+  };
+  if (several) widen(at(study_case, smallest / 4, finest, richest), fmt::format("{} elements", finest));
+  if (bases_.size() > 1)
+    widen(at(study_case, smallest / 4, elements, bases_[1]), fmt::format("{} modes", bases_[1]->modes));
   return known;
 }
 
@@ -187,6 +202,10 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
   if (!solver->of_the_mesh() && study_case.scene.load.has_point_forces()) {
     known.refusal =
         "the load has a force at a point, and this reference knows loads that are spread: use a reference of the mesh";
+    return known;
+  }
+  if (damping_of(study_case.scene.structure).by_modes()) {
+    known.refusal = "damping goes by the ratios of modes, and references know C = αK + ηM: use the reference self";
     return known;
   }
   if (!study_case.scene.motions.empty() || support_bends(study_case.scene)) {

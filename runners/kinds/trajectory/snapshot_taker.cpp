@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ricochet/engine/flight/step_interval.hpp>
 #include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/discrete_problem.hpp>
 
 namespace ricochet {
 namespace {
@@ -44,7 +45,7 @@ SnapshotTaker::SnapshotTaker(const Marcher& marcher, long long steps, int count)
   const SemiDiscrete& problem = *marcher.program().problem;
   shape_.along = problem.space.basis == FiniteElementSpace::Basis::linear && !problem.space.elements.empty();
   shape_.x = drawn_places(problem.space);
-  at_ = problem.space.elements.empty() ? problem.tip : displacement_rows(problem.space, shape_.x);
+  at_ = problem.space.elements.empty() ? problem.tip : place_rows(problem, shape_.x);
   const int points = marcher.program().contact ? problem.points() : 0;
   group_ = std::max(1, (points + Snapshots::most_places - 1) / Snapshots::most_places);
   for (int first = 0; first < points; first += group_) {

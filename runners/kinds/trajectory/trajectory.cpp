@@ -316,11 +316,13 @@ Json::json_pointer scene_pointer(std::string column) {
 Json minimal_study(const StudyResults& results, const CaseRecord& record) {
   Json scene = results.study.at("scene"), methods = Json::object();
   for (const std::string& role : roles) methods[role] = Json::object();
-  Json elements = 1, step, march;
+  Json mesh = {{"elements", 1}}, step, march;
   for (const auto& [column, value] : record.axes) {
     const std::string role = column.substr(0, column.find('.'));
-    if (column == "elements")
-      elements = value;
+    if (column == "elements" || ((column == "modes" || column == "residual") && !value.is_null()))
+      mesh[column] = value;
+    else if (column == "modes" || column == "residual")
+      continue;
     else if (column == "step")
       step = value;
     else if (column == "march")
@@ -341,7 +343,7 @@ Json minimal_study(const StudyResults& results, const CaseRecord& record) {
       {"question", fmt::format("Why did this case of {} end as {}? {}", results.name, record.status, record.reason)},
       {"kind", "trajectory"},
       {"scene", scene},
-      {"mesh", {{"elements", elements}}},
+      {"mesh", mesh},
       {"methods", methods},
       {"step", step}};
   for (const char* key : {"duration", "samples", "window", "snapshots", "budget"})

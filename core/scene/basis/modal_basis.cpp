@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <cmath>
+#include <ricochet/contract/errors.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
+#include <ricochet/kernels/sparse_ldlt.hpp>
+#include <ricochet/scene/basis/lowest_modes.hpp>
+#include <ricochet/scene/basis/modal_basis.hpp>
+
+namespace ricochet {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double negligible = 1e-12;
+
+/// K⁻¹ of loads that no mode carries, by a factor of the diagonally scaled K + σM.
+class ElasticSolve {
+ public:
+  ElasticSolve(const SparseMatrix& stiffness, const SparseMatrix& mass, double shift)
+      : stiffness_(stiffness), mass_(mass), shift_(shift) {
+    const SparseMatrix shifted = stiffness + shift * mass;
+    scale_ = shifted.diagonal();
+    for (double& one : scale_) one = one > 0 ? 1 / std::sqrt(one) : 1.0;
+    if (!ldlt_.factorise(SparseMatrix(scale_.asDiagonal() * shifted * scale_.asDiagonal())))
+      throw InputError("/mesh/modes", "the stiffness of the structure has no factor: " + ldlt_.reason());
+  }
+
+  VectorXd operator()(const VectorXd& load) {
+    VectorXd x = once(load);
+    // K x = load where the factor is that of K + σM: x ← x + (K + σM)⁻¹(load − K x), by σ/(σ + ω²) each time. Without a
+    // shift it is the one refinement that takes round-off of the factor away.
+    constexpr int most = 200;
+    for (int k = 0; k < (shift_ == 0 ? 1 : most); ++k) {
+      const VectorXd step = once(load - stiffness_ * x);
+      x += step;
+      if (step.norm() <= 1e-15 * x.norm()) break;
+    }
+    return x;
+  }
+
+ private:
+  VectorXd once(const VectorXd& load) {
+    VectorXd x = scale_.asDiagonal() * load;
+    ldlt_.solve(x.data(), x.data());
+    return scale_.asDiagonal() * x;
+  }
+
+  const SparseMatrix &stiffness_, &mass_;
+  double shift_;
+  VectorXd scale_;
+  SparseLdlt ldlt_;
+};
+
+// V Λ Vᵀ of the rows of R that count; V has a zero row for the others.
+struct Directions {
+  MatrixXd vectors;
+  VectorXd values;
+};
+
+Directions directions(const MatrixXd& R, const VectorXd& flexibility) {
+  std::vector<Index> kept;
+  for (Index i = 0; i < R.rows(); ++i)
+    if (R(i, i) > negligible * flexibility[i]) kept.push_back(i);
+  Directions out{MatrixXd::Zero(R.rows(), 0), {}};
+  if (kept.empty()) return out;
+  const SymmetricModes found = symmetric_modes(MatrixXd(R(kept, kept)));
+  const Index all = found.values.size();
+  const Index many = (found.values.array() > negligible * found.values[all - 1]).count();
+  out.values = found.values.tail(many).reverse();
+  out.vectors = MatrixXd::Zero(R.rows(), many);
+  out.vectors(kept, Eigen::all) = found.vectors.rightCols(many).rowwise().reverse();
+  return out;
+}
+
+}  // namespace
+
+ModalBasis modal_basis(const SparseMatrix& stiffness, const SparseMatrix& mass, const SparseRows& contact,
+                       bool definite, const BasisSpec& spec) {
+  const auto n = static_cast<int>(stiffness.rows());
+  if (spec.modes > n)
+    throw InputError("/mesh/modes", fmt::format("{} modes; the structure has {} degrees of freedom", spec.modes, n));
+  LowestModes modes = lowest_modes(stiffness, mass, spec.modes, definite);
+  if (!modes.found && modes.with_mass < spec.modes)
+    throw InputError("/mesh/modes",
+                     fmt::format("{} modes; {} of the structure have mass", spec.modes, modes.with_mass));
+  if (!modes.found)
+    throw InputError("/mesh/modes", fmt::format("the {} slowest modes were not found: the iteration did not converge; "
+                                                "expected fewer modes",
+                                                spec.modes));
+  ModalBasis out;
+  out.modes = spec.modes;
+  out.squares = modes.squares;
+  const MatrixXd at_modes = contact * modes.shapes;
+  const Index points = contact.rows();
+  MatrixXd statics = MatrixXd::Zero(n, points);
+  out.left_out = out.flexibility = VectorXd::Zero(points);
+  if (points > 0 && spec.modes < n) {
+    const MatrixXd weighed = mass * modes.shapes;
+    ElasticSolve solve(stiffness, mass, modes.shift);
+    for (Index i = 0; i < points; ++i) {
+      statics.col(i) = solve(VectorXd(contact.row(i).transpose()) - weighed * at_modes.row(i).transpose());
+      statics.col(i) -= modes.shapes * (weighed.transpose() * statics.col(i));
+    }
+  }
+  const MatrixXd moved = contact * statics, R = (moved + moved.transpose()) / 2;
+  out.left_out = R.diagonal();
+  out.flexibility = R.diagonal();
+  for (Index k = 0; k < out.squares.size(); ++k)
+    if (out.squares[k] > 0) out.flexibility += at_modes.col(k).cwiseAbs2() / out.squares[k];
+  const Directions kept = spec.residual ? directions(R, out.flexibility) : Directions{MatrixXd::Zero(points, 0), {}};
+  const Index beside = kept.values.size(), all = spec.modes + beside;
+  const MatrixXd residual = statics * kept.vectors * kept.values.cwiseInverse().asDiagonal();
+  out.shapes.resize(n, all);
+  out.shapes << modes.shapes, residual;
+  out.stiffness.resize(all);
+  out.stiffness << modes.squares, kept.values.cwiseInverse();
+  out.at_points.resize(points, all);
+  out.at_points << at_modes, kept.vectors;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int k = 0; k < spec.modes; ++k) entries.emplace_back(k, k, 1.0);
+  MatrixXd heavy = residual.transpose() * (mass * residual);
+  for (Index i = 0; i < beside; ++i)
+    for (Index j = 0; j < beside; ++j)
+      entries.emplace_back(spec.modes + static_cast<int>(i), spec.modes + static_cast<int>(j),
+                           (heavy(i, j) + heavy(j, i)) / 2);
+  out.mass.resize(all, all);
+  out.mass.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
+VectorXd in_basis(const ModalBasis& basis, const SparseMatrix& mass, const SparseRows& contact,
+                  const VectorXd& displacement) {
+  const auto phi = basis.shapes.leftCols(basis.modes);
+  VectorXd out(basis.dofs());
+  out.head(basis.modes) = phi.transpose() * (mass * displacement);
+  out.tail(basis.dofs() - basis.modes) =
+      basis.at_points.rightCols(basis.dofs() - basis.modes).transpose() *
+      (contact * displacement - basis.at_points.leftCols(basis.modes) * out.head(basis.modes));
+  return out;
+}
+
+VectorXd in_basis_by_least_squares(const ModalBasis& basis, const VectorXd& displacement) {
+  return basis.shapes.colPivHouseholderQr().solve(displacement);
+}
+
+}  // namespace ricochet
