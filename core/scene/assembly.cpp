@@ -172,12 +172,17 @@ FiniteElementSpace make(const AssembledSpec& spec, int elements) {
         "/mesh/elements",
         fmt::format("{} elements; an assembled structure has the mesh of its files: expected 1", elements));
   FiniteElementSpace space;
-  space.structure = "assembled structure";
+  space.structure = spec.structure->modes ? "modal structure" : "assembled structure";
   space.basis = FiniteElementSpace::Basis::linear;
   space.dofs = spec.structure->dofs();
   space.given = spec.structure->dofs_known;
   space.given->mass = spec.structure->mass;
   space.given->stiffness = spec.structure->stiffness;
+  if (const std::optional<ModalPart>& modes = spec.structure->modes) {
+    space.given->modes = true;
+    space.given->attached = modes->attached;
+    space.given->attached_mass = modes->attached_mass;
+  }
   return space;
 }
 

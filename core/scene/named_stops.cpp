@@ -110,26 +110,30 @@ std::vector<double> named_positions(const StopsSpec& stops) {
   return x;
 }
 
+PlaceRow given_tip(const AssembledSpec& spec, const SceneSpec& scene) {
+  if (spec.tip) return spec.structure->row(*spec.tip, "/scene/structure/tip");
+  if (!scene.stops.named.empty()) return spec.structure->row(scene.stops.named.front().at, "/scene/stops/0/at");
+  for (std::size_t k = 0; k < scene.load.terms.size(); ++k)
+    if (scene.load.terms[k].place)
+      return spec.structure->row(*scene.load.terms[k].place, fmt::format("/scene/load/{}/at", k));
+  throw InputError("/scene/structure/tip",
+                   "missing; without stops and loads expected the place whose displacement is shown");
+}
+
 SparseRows tip_row(const SceneSpec& scene, const FiniteElementSpace& space) {
   const auto* spec = std::get_if<AssembledSpec>(&scene.structure);
   if (!spec) return displacement_rows(space, {tip_position(scene)});
   SparseRows row(1, space.dofs);
-  const auto take = [&](const Place& place, const std::string& pointer) {
-    for (const auto& [dof, value] : spec->structure->row(place, pointer).free) row.insert(0, dof) = value;
-    row.makeCompressed();
-    return row;
-  };
-  if (spec->tip) return take(*spec->tip, "/scene/structure/tip");
-  if (!scene.stops.named.empty()) return take(scene.stops.named.front().at, "/scene/stops/0/at");
-  for (std::size_t k = 0; k < scene.load.terms.size(); ++k)
-    if (scene.load.terms[k].place) return take(*scene.load.terms[k].place, fmt::format("/scene/load/{}/at", k));
-  throw InputError("/scene/structure/tip",
-                   "missing; without stops and loads expected the place whose displacement is shown");
+  for (const auto& [dof, value] : given_tip(*spec, scene).free) row.insert(0, dof) = value;
+  row.makeCompressed();
+  return row;
 }
 
 void show_tip(const SceneSpec& scene, SemiDiscrete& problem) {
   problem.tip = tip_row(scene, problem.space);
   problem.tip_on_supports = problem.tip * problem.static_modes;
+  if (const auto* spec = std::get_if<AssembledSpec>(&scene.structure))
+    for (const auto& [support, weight] : given_tip(*spec, scene).held) problem.tip_on_supports[support] += weight;
 }
 
 std::string tip_choice(const SceneSpec& scene) {
@@ -191,25 +195,24 @@ void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, co
     throw InputError("/scene/support/amplitude",
                      "the table of dofs names no support that could move; expected an amplitude of 0");
   if (scene.stops.lower || scene.stops.upper)
-    throw InputError("/scene/stops", "an assembled structure has no x; expected a list of stops with name and place");
+    throw InputError("/scene/stops", "matrices that are given have no x; expected a list of stops with name and place");
   if (!scene.load.formula.is_zero())
     throw InputError("/scene/load",
-                     "an assembled structure has no x; expected a list of entries {\"at\": place, \"force\": F(t)}");
+                     "matrices that are given have no x; expected a list of entries {\"at\": place, \"force\": F(t)}");
   for (const auto& [formula, key] :
        {std::pair(&scene.initial.displacement, "displacement"), {&scene.initial.velocity, "velocity"}})
     if (!formula->is_zero())
       throw InputError(fmt::format("/scene/initial/{}", key),
-                       "an assembled structure has no x; expected 0, or the file of an initial state");
+                       "matrices that are given have no x; expected 0, or the file of an initial state");
   for (std::size_t k = 0; k < scene.load.terms.size(); ++k) {
     const LoadTerm& term = scene.load.terms[k];
     const std::string pointer = fmt::format("/scene/load/{}", k);
     if (!term.force)
       throw InputError(pointer + "/shape",
-                       "an assembled structure has no x; expected {\"at\": place, \"force\": F(t)}");
+                       "matrices that are given have no x; expected {\"at\": place, \"force\": F(t)}");
     if (!term.place)
       throw InputError(pointer + "/at",
-                       "expected the place of the force: node and component, node and direction, or "
-                       "dofs");
+                       "expected the place of the force: node and component, node and direction, dofs, or point");
     if (place_row(scene, space, *term.place, pointer + "/at").free.empty())
       throw InputError(pointer + "/at", "the force acts where the structure is held: nothing there can move");
     term.history(0, 0);

@@ -37,6 +37,8 @@ std::vector<double> named_positions(const StopsSpec& stops);
 SparseRows tip_row(const SceneSpec& scene, const FiniteElementSpace& space);
 /// Fills the tip of a problem whose space and static modes are known, and what supports add to it.
 void show_tip(const SceneSpec& scene, SemiDiscrete& problem);
+/// The same of matrices that are given, with what supports add to it by themselves.
+PlaceRow given_tip(const AssembledSpec& spec, const SceneSpec& scene);
 
 /// What the tip of matrices that are given stands for: "stop a", "load 0"; empty for any other structure, and where the
 /// study says it.

@@ -6,12 +6,14 @@
 
 namespace ricochet {
 
-/// A place of a structure, as a study writes it. Exactly one of: x; node and component; node and direction; dofs.
+/// A place of a structure, as a study writes it. Exactly one of: x; node and component; node and direction; dofs;
+/// point.
 struct Place {
   std::optional<double> x;                   ///< m, along a beam or a bar
   std::string node, component;               ///< of matrices that are given
   std::vector<double> direction;             ///< three numbers, normalised when it is used
   std::vector<std::pair<int, double>> dofs;  ///< dof of the table, from 1, and weight
+  std::string point;                         ///< of a structure in modes
 
   bool operator==(const Place&) const = default;
 };

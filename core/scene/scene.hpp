@@ -217,7 +217,7 @@ struct LoadSpec {
 
 /// The structure in its N slowest modes, in the place of its mesh.
 struct BasisSpec {
-  int modes = 1;         ///< N
+  int modes = 0;         ///< N; 0: all that have mass
   bool residual = true;  ///< whether the static shapes of its stops stand beside them
 
   bool operator==(const BasisSpec&) const = default;

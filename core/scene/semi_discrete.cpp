@@ -277,7 +277,10 @@ InertiaOrRefusal build_mass(const SemiDiscrete& problem, const MassStrategy& mas
   space.structure = problem.space.structure;
   space.basis = FiniteElementSpace::Basis::linear;
   space.dofs = problem.basis->dofs();
-  space.given = GivenMass{.mass = problem.basis->mass, .modes = true, .attached = problem.basis->stops()};
+  space.given = GivenMass{.mass = problem.basis->mass,
+                          .modes = true,
+                          .attached = problem.basis->stops(),
+                          .attached_mass = !problem.space.given || problem.space.given->attached_mass};
   space.contact_dofs = touched_dofs(SparseRows(problem.basis->at_points.sparseView()));
   return mass.build(space);
 }

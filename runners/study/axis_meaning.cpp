@@ -39,7 +39,9 @@ std::optional<ParameterSpec> spec_at(const ObjectForm& form, const Json& value, 
 
 std::optional<ParameterSpec> spec_of(const std::vector<std::string>& path, const Json& resolved) {
   std::vector<std::string> whole = path;
-  if (path.front() == "elements" || path.front() == "modes" || path.front() == "residual")
+  if (path.front() == residual_axis)
+    whole = {"mesh", "residual"};
+  else if (path.front() == "elements" || path.front() == "modes")
     whole.insert(whole.begin(), "mesh");
   else if (path.size() == 1 && std::find(method_roles.begin(), method_roles.end(), path.front()) != method_roles.end())
     whole.insert(whole.begin(), "methods");
@@ -109,7 +111,7 @@ std::string spoken_choice(const std::string& column) {
   if (column == "step") return "the step";
   if (column == "elements") return "the mesh";
   if (column == "modes") return "the number of modes";
-  if (column == "residual") return "the residual of the modes";
+  if (column == residual_axis) return "the residual of the modes";
   if (column == "steps_per_period") return "the number of steps per period";
   static const std::pair<const char*, const char*> scene[] = {
       {"structure.damping.stiffness", "the viscosity α"},

@@ -8,7 +8,7 @@ namespace ricochet {
 namespace {
 
 const char* const place_forms =
-    R"({"x": m}, {"node": name, "component": name}, {"node": name, "direction": [3 numbers]} or {"dofs": [{"dof", "weight"}]})";
+    R"({"x": m}, {"node": name, "component": name}, {"node": name, "direction": [3 numbers]} {"dofs": [{"dof", "weight"}]} or {"point": name})";
 
 void known_keys(const Json& object, const std::vector<std::string>& keys, const std::string& pointer) {
   for (const auto& [key, ignored] : object.items())
@@ -53,13 +53,14 @@ Json check_place(const Field& field, const Json& value, const std::string& point
   if (!value.is_object())
     throw InputError(pointer, std::string("expected ") + (field.plain ? "x in m, or a place: " : "a place: ") +
                                   place_forms + ", found " + quote(value));
-  known_keys(value, {"x", "node", "component", "direction", "dofs"}, pointer);
+  known_keys(value, {"x", "node", "component", "direction", "dofs", "point"}, pointer);
   const auto has = [&](const char* key) { return value.contains(key); };
-  const int ways = has("x") + has("node") + has("dofs");
+  const int ways = has("x") + has("node") + has("dofs") + has("point");
   if (ways != 1 || (has("node") && has("component") == has("direction")) ||
       (!has("node") && (has("component") || has("direction"))))
     throw InputError(pointer, std::string("expected one of ") + place_forms + ", found " + quote(value));
   if (has("x")) return {{"x", number_at(value["x"], pointer_to(pointer, "x"))}};
+  if (has("point")) return {{"point", word_at(value["point"], pointer_to(pointer, "point"))}};
   if (has("dofs")) return {{"dofs", check_dofs(value["dofs"], pointer_to(pointer, "dofs"))}};
   Json out = {{"node", word_at(value["node"], pointer_to(pointer, "node"))}};
   if (has("component")) {
@@ -85,10 +86,12 @@ Json place_schema(const Field& field) {
                         {"node", word},
                         {"component", word},
                         {"direction", {{"type", "array"}, {"items", number}, {"minItems", 3}, {"maxItems", 3}}},
-                        {"dofs", {{"type", "array"}, {"items", dof}, {"minItems", 1}}}}},
+                        {"dofs", {{"type", "array"}, {"items", dof}, {"minItems", 1}}},
+                        {"point", word}}},
                       {"additionalProperties", false},
                       {"oneOf", Json::array({{{"required", {"x"}}},
                                              {{"required", {"dofs"}}},
+                                             {{"required", {"point"}}},
                                              {{"required", {"node", "component"}}},
                                              {{"required", {"node", "direction"}}}})}};
   Json types = {"object"};

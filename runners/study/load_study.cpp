@@ -109,17 +109,18 @@ void require_mesh(const Json& study) {
 }
 
 // The bases of modes that a study marches in; one that is empty without mesh.modes.
-std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh) {
-  if (!mesh.contains("modes")) {
-    if (mesh.contains("residual"))
-      throw InputError("/mesh/residual", "there is no mesh.modes whose residual it could be; expected modes too");
-    return {std::nullopt};
-  }
+std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, bool modal) {
+  if (!mesh.contains("modes") && !mesh.contains("residual")) return {std::nullopt};
+  if (!mesh.contains("modes") && !modal)
+    throw InputError("/mesh/residual", "there is no mesh.modes whose residual it could be; expected modes too");
   std::vector<std::optional<BasisSpec>> bases;
-  for (const Json& modes : mesh["modes"].is_array() ? mesh["modes"] : Json::array({mesh["modes"]}))
+  const Json counts = mesh.value("modes", Json(nullptr));
+  for (const Json& modes : counts.is_array() ? counts : Json::array({counts}))
     for (const std::string& residual : list_of<std::string>(mesh.value("residual", Json("stops"))))
       if (!modes.is_null())
         bases.push_back(BasisSpec{modes.get<int>(), residual == "stops"});
+      else if (modal && residual == "none")
+        bases.push_back(BasisSpec{0, false});
       else if (std::find(bases.begin(), bases.end(), std::nullopt) == bases.end())
         bases.emplace_back();
   return bases;
@@ -313,7 +314,8 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
     everything.add(size);
   everything.refuse_above(largest_study, "");
 
-  const std::vector<std::optional<BasisSpec>> bases = bases_of(resolved["mesh"]);
+  const std::vector<std::optional<BasisSpec>> bases =
+      bases_of(resolved["mesh"], resolved["scene"]["structure"]["type"] == "modal");
   everything.add(bases.size());
   everything.refuse_above(largest_study, "");
   const int finest = *std::max_element(meshes.begin(), meshes.end());
@@ -331,8 +333,8 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   for (const MethodOptions& role : methods)
     for (const MethodOption& option : role.options) add_columns(option.axes, study.columns);
   add_columns({{"elements", nullptr}}, study.columns);
-  for (const char* key : {"modes", "residual"})
-    if (resolved["mesh"].contains(key)) add_columns({{key, nullptr}}, study.columns);
+  for (const auto& [key, column] : {std::pair("modes", "modes"), {"residual", residual_axis}})
+    if (resolved["mesh"].contains(key)) add_columns({{column, nullptr}}, study.columns);
   if (stepped) add_columns({{"step", nullptr}}, study.columns);
   if (by_period) add_columns({{"steps_per_period", nullptr}}, study.columns);
   if (ways) add_columns({{"march", nullptr}}, study.columns);
@@ -357,11 +359,13 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
     one.elements = meshes[product[4]];
     one.step = steps[product[5]];
     one.axes.emplace_back("elements", one.elements);
-    if (const std::optional<BasisSpec>& basis = bases[product[8]]; resolved["mesh"].contains("modes")) {
+    if (const std::optional<BasisSpec>& basis = bases[product[8]]; bases.size() > 1 || basis) {
       one.scene.basis = basis;
-      const Json residual = !basis ? Json(nullptr) : Json(basis->residual ? "stops" : "none");
-      one.axes.emplace_back("modes", basis ? Json(basis->modes) : Json(nullptr));
-      if (resolved["mesh"].contains("residual")) one.axes.emplace_back("residual", residual);
+      const bool modal = resolved["scene"]["structure"]["type"] == "modal";
+      const Json residual = !basis && !modal ? Json(nullptr) : Json(!basis || basis->residual ? "stops" : "none");
+      if (resolved["mesh"].contains("modes"))
+        one.axes.emplace_back("modes", basis && basis->modes > 0 ? Json(basis->modes) : Json(nullptr));
+      if (resolved["mesh"].contains("residual")) one.axes.emplace_back(residual_axis, residual);
       if (basis) one.scene_json["basis"] = {{"modes", basis->modes}, {"residual", residual}};
     }
     if (stepped) one.axes.emplace_back("step", one.step);

@@ -16,6 +16,7 @@ Place read_place(const Json& json) {
   if (json.contains("x")) place.x = json.at("x").get<double>();
   place.node = json.value("node", "");
   place.component = json.value("component", "");
+  place.point = json.value("point", "");
   if (json.contains("direction")) place.direction = json.at("direction").get<std::vector<double>>();
   if (json.contains("dofs"))
     for (const Json& one : json.at("dofs"))
@@ -160,11 +161,20 @@ AssembledSpec read_assembled(const Json& json, StudyFiles* files) {
   return {files->assembled(json), read_damping(json.at("damping")), optional_place(json.at("tip"))};
 }
 
+AssembledSpec read_modal(const Json& json, StudyFiles* files) {
+  if (!files) throw InputError("/scene/structure/type", "a scene that names files stands in a study alone");
+  AssembledSpec spec;
+  spec.structure = files->modal(json, spec.damping.ratios);
+  spec.tip = optional_place(json.at("tip"));
+  return spec;
+}
+
 StructureSpec read_structure(const Json& json, StudyFiles* files) {
   const auto type = json.at("type").get<std::string>();
   if (type == "oscillator") return read_oscillator(json);
   if (type == "bar") return read_bar(json);
   if (type == "assembled") return read_assembled(json, files);
+  if (type == "modal") return read_modal(json, files);
   return read_beam(json);
 }
 

@@ -48,6 +48,9 @@ struct StudyCase {
   std::vector<std::pair<std::string, ParameterSpec>> swept;
 };
 
+/// The column of mesh.residual, whose own name is that of a column of the energy ledger.
+inline constexpr const char* residual_axis = "mode_residual";
+
 struct Study {
   std::string name, question, kind;
   Json resolved;                     ///< the study with every default written out

@@ -6,6 +6,7 @@
 #include <ricochet/scene/files/csv_file.hpp>
 #include <ricochet/scene/files/text_file.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
+#include <ricochet/scene/structure/modal_structure.hpp>
 #include <set>
 
 #include "runners/study/histories.hpp"
@@ -13,9 +14,16 @@
 namespace ricochet {
 namespace {
 
+constexpr const char* modal_keys[] = {"modes", "shapes", "residual", "residual_mass", "static_modes"};
+
 /// Keys of a structure that name its files: "influence/ground" for a key of an object of names.
 std::vector<std::string> file_keys(const Json& structure) {
-  std::vector<std::string> keys = {"dofs", "stiffness", "mass"};
+  std::vector<std::string> keys;
+  if (structure.at("type") == "modal")
+    for (const char* key : modal_keys)
+      if (!structure.value(key, "").empty()) keys.emplace_back(key);
+  if (structure.at("type") != "assembled") return keys;
+  keys = {"dofs", "stiffness", "mass"};
   const Json influence = structure.value("influence", Json::object());
   for (const auto& [support, ignored] : influence.items()) keys.push_back(pointer_to("influence", support));
   return keys;
@@ -116,6 +124,39 @@ std::shared_ptr<const AssembledStructure> StudyFiles::assembled(const Json& stru
   }
 }
 
+std::shared_ptr<const AssembledStructure> StudyFiles::modal(const Json& structure, std::vector<double>& ratios) {
+  const std::lock_guard lock(mutex_);
+  std::string id = "modes";
+  const std::vector<std::string> keys = file_keys(structure);
+  for (const std::string& key : keys) id += "\n" + key + " " + file_of(structure, key);
+  const auto known = structures_.find(id);
+  if (known != structures_.end()) {
+    ratios = ratios_.at(id);
+    return known->second;
+  }
+  std::string reading;
+  try {
+    std::map<std::string, CsvFile> tables;
+    for (const std::string& key : keys) {
+      reading = key;
+      tables[key] =
+          read_csv(file(file_of(structure, key), structure_pointer(key)).content, structure.at(key).get<std::string>());
+    }
+    reading.clear();
+    const auto optional = [&](const char* key) {
+      return tables.contains(key) ? std::optional(tables.at(key)) : std::nullopt;
+    };
+    const ModalFiles files{tables.at("modes"), tables.at("shapes"), optional("residual"), optional("residual_mass"),
+                           optional("static_modes")};
+    const auto made = std::make_shared<const AssembledStructure>(modal_structure(files, ratios));
+    for (const std::string& key : keys) std::string().swap(files_[file_of(structure, key)].content);
+    ratios_[id] = ratios;
+    return structures_[id] = made;
+  } catch (const FileError& error) {
+    throw InputError(reading.empty() ? "/scene/structure" : structure_pointer(reading), error.what());
+  }
+}
+
 TimeTable StudyFiles::table(const Json& history, const std::string& pointer) {
   const std::lock_guard lock(mutex_);
   const auto name = history.at("file").get<std::string>(), time = history.at("time").get<std::string>(),
@@ -144,9 +185,11 @@ TimeTable StudyFiles::table(const Json& history, const std::string& pointer) {
 
 std::vector<DofState> StudyFiles::initial(const Json& initial, const Json& structure) {
   const std::string name = initial.at("file").get<std::string>(), pointer = "/scene/initial/file";
-  if (structure.at("type") != "assembled")
-    throw InputError(pointer, "the file of an initial state is one of an assembled structure; expected formulas in x");
-  const std::shared_ptr<const AssembledStructure> made = assembled(structure);
+  if (file_keys(structure).empty())
+    throw InputError(pointer, "the file of an initial state is one of matrices that are given; expected formulas in x");
+  std::vector<double> ratios;
+  const std::shared_ptr<const AssembledStructure> made =
+      structure.at("type") == "modal" ? modal(structure, ratios) : assembled(structure);
   const std::lock_guard lock(mutex_);
   try {
     const CsvFile table = read_csv(file(name, pointer).content, name);
@@ -181,8 +224,9 @@ void StudyFiles::add_digests(Json& scene) const {
   for (Json* history : histories_with_files(scene))
     (*history)["digest"] = digest(history->at("file").get<std::string>());
   Json& structure = scene["structure"];
-  if (structure.at("type") != "assembled") return;
-  for (const std::string& key : file_keys(structure)) structure["digests"][key] = digest(file_of(structure, key));
+  const std::vector<std::string> keys = file_keys(structure);
+  if (keys.empty()) return;
+  for (const std::string& key : keys) structure["digests"][key] = digest(file_of(structure, key));
   if (Json& initial = scene["initial"]; initial.contains("file"))
     initial["digest"] = digest(initial.at("file").get<std::string>());
 }

@@ -23,6 +23,8 @@ class StudyFiles {
 
   /// The structure of a checked scene of type assembled. Throws InputError below /scene/structure.
   std::shared_ptr<const AssembledStructure> assembled(const Json& structure);
+  /// The structure of a description in modes, made once; the damping of its elastic modes into `ratios`.
+  std::shared_ptr<const AssembledStructure> modal(const Json& structure, std::vector<double>& ratios);
   /// Two columns of a CSV file that a checked history names: {"file", "time", "value"}. Throws InputError below
   /// `pointer`.
   TimeTable table(const Json& history, const std::string& pointer);
@@ -47,6 +49,7 @@ class StudyFiles {
   mutable std::mutex mutex_;
   std::map<std::string, File> files_;  ///< content is dropped once it has been understood
   std::map<std::string, std::shared_ptr<const AssembledStructure>> structures_;
+  std::map<std::string, std::vector<double>> ratios_;  // of those in modes
   std::map<std::string, TimeTable> tables_;
 };
 

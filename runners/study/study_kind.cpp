@@ -68,6 +68,23 @@ ObjectForm assembled(const ObjectForm& damping) {
   return keys;
 }
 
+ObjectForm modal() {
+  const auto file = [](const char* key, std::optional<Json> fallback, const char* text) {
+    return of_form(Field::Form::text, key, std::move(fallback), text);
+  };
+  ObjectForm keys;
+  keys.fields = {
+      file("folder", Json(""), "Folder of the files, in that of the study."),
+      file("modes", std::nullopt, "CSV with the columns mode, frequency (Hz), mass (kg), damping (ratio)."),
+      file("shapes", std::nullopt, "CSV: point, then a column for each mode by its number."),
+      file("residual", Json(""), "CSV: point, then these points: residual flexibility of stops, m/N."),
+      file("residual_mass", Json(""), "CSV, points as in `residual`: inertia of its static shapes, kg."),
+      file("static_modes", Json(""), "CSV: point, then supports: displacement while one moves by 1."),
+      place("tip", Json(nullptr), "Displacement that is shown; null: the first stop's, else the first load's.")};
+  keys.fields.front().axis = true;
+  return keys;
+}
+
 ObjectForm beam_support() {
   ObjectForm keys;
   keys.fields = {of_form(Field::Form::text, "name", std::nullopt, "Its name, for motions and tables."),
@@ -180,9 +197,13 @@ ObjectForm structure() {
                      "The end that is held; the tip is the free one, or x = 0."),
                 object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping)};
   ObjectForm keys;
-  keys.fields = {word("type", {"beam", "oscillator", "bar", "assembled"}, std::nullopt, "What moves.")};
+  keys.fields = {word("type", {"beam", "oscillator", "bar", "assembled", "modal"}, std::nullopt, "What moves.")};
   keys.discriminator = "/type";
-  keys.variants = {{{"beam"}, beam}, {{"oscillator"}, oscillator}, {{"bar"}, bar}, {{"assembled"}, assembled(damping)}};
+  keys.variants = {{{"beam"}, beam},
+                   {{"oscillator"}, oscillator},
+                   {{"bar"}, bar},
+                   {{"assembled"}, assembled(damping)},
+                   {{"modal"}, modal()}};
   return keys;
 }
 

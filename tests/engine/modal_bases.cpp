@@ -6,6 +6,8 @@
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/discrete_problem.hpp>
 #include <ricochet/scene/history/piecewise_cubic.hpp>
+#include <ricochet/scene/structure/modal_structure.hpp>
+#include <ricochet/scene/supports.hpp>
 
 #include "tests/marching.hpp"
 #include "tests/scene/structure/beam_files.hpp"
@@ -257,4 +259,87 @@ TEST_CASE("a tube on four plates under El Centro follows its modes") {
   }
   CHECK(most == Approx(22.4535e-6).epsilon(2e-4));
   CHECK(when == Approx(2.042).margin(5e-4));
+}
+
+namespace {
+
+std::string table(const std::vector<std::string>& rows, const std::vector<std::string>& columns,
+                  const Eigen::MatrixXd& values) {
+  std::string text = fmt::format("point,{}\n", fmt::join(columns, ","));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    text += rows[i];
+    for (std::size_t j = 0; j < columns.size(); ++j)
+      text += fmt::format(",{}", values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a beam described by its modes and its residual moves as the beam in these modes") {
+  constexpr int modes = 5;
+  SceneSpec scene = pushed_beam();
+  beam_of(scene).damping = {.beyond = 0.03};
+  scene.basis = BasisSpec{modes, true};
+  const auto problem = problem_of(scene, 12, {"consistent"});
+  const ModalBasis& basis = *problem->basis;
+  std::string list = "mode,frequency,mass,damping\n";
+  for (int k = 0; k < modes; ++k)
+    list += fmt::format("{},{},1,0.03\n", k + 1, std::sqrt(basis.squares[k]) / (2 * std::numbers::pi));
+  const std::vector<std::string> numbers = {"1", "2", "3", "4", "5"}, points = {"a", "b"};
+  const Eigen::MatrixXd V = basis.at_points.rightCols(2);
+  Eigen::MatrixXd shapes(4, modes);
+  shapes << basis.at_points.leftCols(modes),
+      (basis.shapes.leftCols(modes).transpose() * problem->support_loads).transpose();
+  const auto csv = [](const std::string& text, const char* name) { return read_csv(text, name); };
+  Damping damping;
+  SceneSpec described;
+  const AssembledStructure made = modal_structure(
+      {csv(list, "modes.csv"), csv(table({"a", "b", "left", "right"}, numbers, shapes), "shapes.csv"),
+       csv(table(points, points, V * basis.stiffness.tail(2).cwiseInverse().asDiagonal() * V.transpose()), "R.csv"),
+       csv(table(points, points, V * Eigen::MatrixXd(basis.mass).bottomRightCorner(2, 2) * V.transpose()), "M.csv"),
+       csv(table(points, {"left", "right"}, support_shapes(*problem, {0.3, 0.7})), "static.csv")},
+      damping.ratios);
+  described.structure = AssembledSpec{std::make_shared<const AssembledStructure>(made), damping, {}};
+  for (const char* name : {"a", "b"}) {
+    Place place;
+    place.point = name;
+    const NamedStop& stop = scene.stops.named[described.stops.named.size()];
+    described.stops.named.push_back({name, place, {}, stop.lower, stop.upper});
+  }
+  const TimeTable ground{"ground", {0, 0.3, 0.6, 1}, {0, 3, -2, 0}};
+  const MotionSpec motion{
+      {"left"}, std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(ground, 0, 0)), {}, true};
+  for (const bool shaken : {false, true})
+    for (const char* mass : {"singular", "consistent"}) {
+      SceneSpec beam = scene;
+      beam.load.terms.clear();
+      described.load.terms.clear();
+      beam.motions.clear();
+      if (shaken) beam.motions = {motion};
+      described.motions = beam.motions;
+      const Formula push("sin(40*t)", "", "t");
+      if (!shaken) beam.load.terms = {{true, 0.3, {}, push}};
+      if (!shaken) described.load.terms = {{true, {}, {}, push, described.stops.named[0].at}};
+      const Methods methods{{mass}, {"penalty", {{"stiffness", 500.0}}}, {"newmark-dumont-paoli"}};
+      // Static shapes that have mass have no ratio in a description.
+      if (methods.mass.name == "consistent") beam_of(beam).damping = {.ratios = std::vector<double>(modes, 0.03)};
+      Marcher one = marcher(beam, 12, methods, 1e-3), other = marcher(described, 1, methods, 1e-3);
+      one.start();
+      other.start();
+      double most = 0, gap = 0;
+      for (int n = 0; n < 900; ++n) {
+        one.march(1);
+        other.march(1);
+        const Eigen::VectorXd there = one.program().problem->contact * one.position(0),
+                              here = other.program().problem->contact * other.position(0);
+        most = std::max(most, there.cwiseAbs().maxCoeff());
+        gap = std::max(gap, (there - here).cwiseAbs().maxCoeff());
+      }
+      CHECK(most > 1e-3);
+      // A participation pushes the modes alone: what the ground does to the static shapes, R of the modes left out, is
+      // not in a description.
+      CHECK(gap < (shaken ? 5e-3 * most : 1e-9));
+    }
 }

@@ -8,6 +8,7 @@
 #include <ricochet/measure/stability/no_contact.hpp>
 #include <ricochet/measure/stability/structure_physics.hpp>
 #include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/basis/modal_basis.hpp>
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 
@@ -106,6 +107,9 @@ struct Numbers {
     return {{"EA", bar.EA, "N"}, {"ρA", bar.rhoA, "kg/m"}, {"length", bar.length, "m"}};
   }
   std::vector<PhysicalNumber> operator()(const AssembledSpec& spec) const {
+    if (const std::optional<ModalPart>& modes = spec.structure->modes)
+      return {{"modes", static_cast<double>(modes->modes), ""},
+              {"residual shapes", static_cast<double>(modes->attached.size()), ""}};
     return {{"free dofs", static_cast<double>(spec.structure->dofs()), ""},
             {"held dofs", static_cast<double>(spec.structure->held_dofs), ""},
             {"half-bandwidth", static_cast<double>(spec.structure->half_width), ""}};
@@ -203,6 +207,26 @@ std::vector<double> point_stiffness(const SemiDiscrete& problem) {
   return out;
 }
 
+// What modes are marched, and what they leave out of the flexibility at each stop.
+std::vector<std::string> basis_lines(const SemiDiscrete& problem) {
+  const ModalBasis& basis = *problem.basis;
+  std::vector<std::string> lines{
+      fmt::format("{} mode{} to {:.4g} Hz and {} static shape{} of stops, in the place of {} dofs", basis.modes,
+                  basis.modes == 1 ? "" : "s", std::sqrt(basis.squares[basis.modes - 1]) / (2 * std::numbers::pi),
+                  basis.dofs() - basis.modes, basis.dofs() - basis.modes == 1 ? "" : "s", problem.space.dofs)};
+  constexpr int most_lines = 12;
+  constexpr double percent = 100;
+  for (int i = 0; i < std::min(most_lines, problem.points()); ++i)
+    lines.push_back(fmt::format(
+        "{}: the modes leave out {:.2g} % of the flexibility, {:.3g} m/N",
+        problem.stops.empty() ? fmt::format("contact point at {:.6g} m", problem.contact_x[static_cast<std::size_t>(i)])
+                              : "stop " + problem.stops[static_cast<std::size_t>(i)],
+        percent * basis.left_out[i] / basis.flexibility[i], basis.left_out[i]));
+  if (problem.points() > most_lines)
+    lines.push_back(fmt::format("and {} more contact points", problem.points() - most_lines));
+  return lines;
+}
+
 }  // namespace
 
 std::optional<double> StructurePhysics::damping_ratio(std::size_t mode) const {
@@ -235,6 +259,8 @@ std::variant<StructurePhysics, Refusal> structure_physics(const SceneSpec& scene
   out.structure = problem.space.structure;
   out.numbers = std::visit(Numbers{}, scene.structure);
   out.details = std::visit(Details{out.elements, problem.dofs()}, scene.structure);
+  if (problem.basis)
+    for (std::string& line : basis_lines(problem)) out.details.push_back(std::move(line));
   if (out.damping.stiffness != 0) out.numbers.push_back({"α", out.damping.stiffness, "s"});
   if (out.damping.mass != 0) out.numbers.push_back({"η", out.damping.mass, "1/s"});
   out.point_stiffness = point_stiffness(problem);

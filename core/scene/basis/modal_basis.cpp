@@ -79,10 +79,12 @@ Directions directions(const MatrixXd& R, const VectorXd& flexibility) {
 }  // namespace
 
 ModalBasis modal_basis(const SparseMatrix& stiffness, const SparseMatrix& mass, const SparseRows& contact,
-                       bool definite, const BasisSpec& spec) {
+                       bool definite, const BasisSpec& asked) {
+  BasisSpec spec = asked;
   const auto n = static_cast<int>(stiffness.rows());
   if (spec.modes > n)
     throw InputError("/mesh/modes", fmt::format("{} modes; the structure has {} degrees of freedom", spec.modes, n));
+  if (spec.modes == 0) spec.modes = semidefinite_rank(mass);
   LowestModes modes = lowest_modes(stiffness, mass, spec.modes, definite);
   if (!modes.found && modes.with_mass < spec.modes)
     throw InputError("/mesh/modes",

@@ -283,7 +283,31 @@ PlaceRow difference(const PlaceRow& a, const PlaceRow& b) {
   return out;
 }
 
+namespace {
+
+PlaceRow point_row(const AssembledStructure& structure, const Place& place, const std::string& pointer) {
+  const auto& points = structure.modes->points;
+  std::vector<std::string> known;
+  for (const auto& [name, ignored] : points) known.push_back(name);
+  if (place.point.empty())
+    throw InputError(pointer, "a modal structure has points of shapes alone; expected {\"point\": name}");
+  const auto found = points.find(place.point);
+  if (found != points.end()) return found->second;
+  const std::string nearest = nearest_name(place.point, known);
+  throw InputError(pointer + "/point",
+                   fmt::format("no point \"{}\"{}", shortened(place.point),
+                               nearest.empty() ? fmt::format("; {} has {}", structure.table_name, points.size())
+                                               : "; nearest " + nearest));
+}
+
+}  // namespace
+
 PlaceRow AssembledStructure::row(const Place& place, const std::string& pointer) const {
+  if (modes) return point_row(*this, place, pointer);
+  if (!place.point.empty())
+    throw InputError(pointer,
+                     "points are those of a modal structure; expected node and component, node and direction, "
+                     "or dofs");
   if (place.x)
     throw InputError(pointer,
                      "x has no meaning for matrices that are given; expected node and component, node and "

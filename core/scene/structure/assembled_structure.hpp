@@ -24,6 +24,14 @@ struct AssembledFiles {
   std::vector<Influence> influences = {};
 };
 
+/// What a structure in modes has in the place of nodes (modal_structure.hpp).
+struct ModalPart {
+  int modes = 0;                   ///< the first dofs; those after them belong to the residual flexibility
+  std::vector<int> attached = {};  ///< these
+  bool attached_mass = true;       ///< whether the mass says what inertia they have
+  std::map<std::string, PlaceRow> points = {};
+};
+
 /// A structure given by its matrices, held dofs eliminated: n free dofs, r supports that may move,
 ///
 ///     M q'' + K q = F − Σ_j s_j φ_j'',     w = q + Σ_j ψ_j φ_j,     K ψ_j = −K_fs e_j,     s_j = M ψ_j + M_fs e_j
@@ -57,6 +65,7 @@ struct AssembledStructure {
     std::array<double, 3> place{};
   };
   std::map<std::string, Node> nodes;
+  std::optional<ModalPart> modes = {};  ///< of a structure in modes
 
   int dofs() const { return static_cast<int>(names.size()); }
   /// The displacement at a place. Throws InputError, its pointer below `pointer`, for a place that is not there, with

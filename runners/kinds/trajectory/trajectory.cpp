@@ -319,11 +319,9 @@ Json minimal_study(const StudyResults& results, const CaseRecord& record) {
   Json mesh = {{"elements", 1}}, step, march;
   for (const auto& [column, value] : record.axes) {
     const std::string role = column.substr(0, column.find('.'));
-    if (column == "elements" || ((column == "modes" || column == "residual") && !value.is_null()))
-      mesh[column] = value;
-    else if (column == "modes" || column == "residual")
-      continue;
-    else if (column == "step")
+    if (column == "elements" || column == "modes" || column == residual_axis) {
+      if (!value.is_null()) mesh[column == residual_axis ? "residual" : column] = value;
+    } else if (column == "step")
       step = value;
     else if (column == "march")
       march = value;
