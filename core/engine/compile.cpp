@@ -64,8 +64,8 @@ std::optional<Refusal> read_impulse(StageProgram& program, const Stage& stage, c
   const FoldedStage R = fold(stage.impulse->R, damping), feed = fold(stage.impulse->feed, damping);
   if (R.mass == 0 && feed.mass != 0)
     return Refusal{"the scheme's impulse feeds its step with mass and R has none: let R weigh M, or the feed K alone"};
-  if (damping.by_modes() && (R.damping != 0 || feed.damping != 0))
-    return Refusal{"the scheme's impulse weighs C, which damping ratios do not make of K and M: use α and η"};
+  if (damping.own() && (R.damping != 0 || feed.damping != 0))
+    return Refusal{"the scheme's impulse weighs C, which is not made of K and M here: use α and η"};
   ImpulseProgram& impulse = program.impulse;
   const double mass = R.mass != 0 ? feed.mass / R.mass : 0.0;
   impulse.weight = weight;
@@ -144,8 +144,10 @@ void say_what_is_left_out(Program& program) {
   const auto say = [&](std::string item, std::string reason) {
     program.left_out.push_back({std::move(item), std::move(reason)});
   };
-  say("damping matrix C",
-      problem.damped() ? "C = αK + ηM is folded into the weights of K and M" : "the structure is undamped");
+  say("damping matrix C", problem.damping.by_modes() ? "C is a number for each mode"
+                          : problem.damping.matrix   ? "C is a matrix of its own"
+                          : problem.damped()         ? "C = αK + ηM is folded into the weights of K and M"
+                                                     : "the structure is undamped");
   if (!program.support && problem.motions.empty()) say("inertia load of the support", "the support does not move");
   if (!program.load)
     say("distributed load", "it is zero");

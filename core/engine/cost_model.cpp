@@ -73,7 +73,8 @@ double visit_seconds(const SemiDiscrete& problem, const StepWork& work) {
 
 bool kind_applies(OperatorKind kind, const SemiDiscrete& problem) {
   // The modal form divides by φᵀKφ; the dense eigenproblem is cubic.
-  if (kind == OperatorKind::modal) return problem.dofs() <= 1000 && (problem.held || problem.asks_for_modes());
+  if (kind == OperatorKind::modal)
+    return problem.dofs() <= 1000 && !problem.damping.matrix && (problem.held || problem.asks_for_modes());
   return !problem.damping.by_modes();
 }
 

@@ -26,7 +26,7 @@ Refusal refuse_flight(const std::string& cause) {
 std::string why_grounded(const Program& program, const CompileOptions& options) {
   if (program.lanes.size() > 1) return "several lanes march as one block";
   if (program.load && !program.load_constant) return "the load depends on time";
-  if (program.problem->damping.by_modes()) return "the damping goes by the modes";
+  if (program.problem->damping.own()) return "the damping is not made of K and M";
   if (!program.problem->held || !kind_applies(OperatorKind::modal, *program.problem))
     return "the structure has no modes to fly by: it is not held, or has more than 1000 degrees of freedom";
   if (options.kind != OperatorKind::automatic && options.kind != OperatorKind::modal)

@@ -49,9 +49,7 @@ StageDelassus::StageDelassus(StageOperator& op, const MarchModel& model, const F
 }
 
 HeldBand* StageDelassus::held() {
-  if (band_)
-    held_ = HeldBand::make(weighted_system(band_->stiffness, model_.stiffness(), band_->mass, model_.inertia()),
-                           contact_.view());
+  if (band_) held_ = HeldBand::make(stage_system(model_, *band_), contact_.view());
   band_ = nullptr;
   return held_.get();
 }

@@ -38,6 +38,12 @@ class Assembly {
         for (double& value : coupling_.value) value /= std::sqrt(stage.mass);
       }
     }
+    if (const SparseMatrix* C = model.problem().damping.matrix.get(); C && any(stage.damping_history)) {
+      damping_weights_ = stage.damping_history;
+      damping_width_ = half_bandwidth(*C);
+      C_ = band_storage(*C, damping_width_, by_diagonals);
+      c_ = Block(rows_, lanes, damping_width_);
+    }
     b_ = Block(rows_ + border_, lanes);
   }
 
@@ -45,7 +51,7 @@ class Assembly {
   bool mass_through_border() const { return coupling_.rows() > 0; }
   bool keeps_combination() const { return !K_.empty(); }
   /// Whether b is K k and loads, without M.
-  bool stiffness_alone() const { return !K_.empty() && m_.rows() == 0; }
+  bool stiffness_alone() const { return !K_.empty() && m_.rows() == 0 && c_.rows() == 0; }
   const double* shape() const { return shape_; }
   Block& right_hand_side() { return b_; }
 
@@ -58,9 +64,14 @@ class Assembly {
         kernels_.measure(coupling_.view(), 1, &m, &one, nullptr, b_.row(rows_));
       }
     }
+    if (c_.rows() > 0)
+      kernels_.combine(static_cast<long>(c_.size()), slots_, input.slots, damping_weights_.data(), c_.data());
     BandStep step;
     step.rows = rows_;
     step.product_width = width_;
+    step.damping_width = damping_width_;
+    step.C = C_.empty() ? nullptr : C_.data();
+    step.c = c_.data();
     step.K = K_.empty() ? nullptr : K_.data();
     step.k = input.k;
     step.M = M_.empty() ? nullptr : M_.data();
@@ -74,11 +85,11 @@ class Assembly {
 
  private:
   const LaneKernels& kernels_;
-  int rows_, slots_, width_ = 0, border_ = 0;
-  std::vector<double> mass_weights_, K_, M_;
+  int rows_, slots_, width_ = 0, border_ = 0, damping_width_ = 0;
+  std::vector<double> mass_weights_, damping_weights_, K_, M_, C_;
   RowMatrix coupling_;
   const double* shape_;
-  Block m_, b_;
+  Block m_, c_, b_;
 };
 
 /// Band L D Lᵀ, in place of any dense or general sparse structure: half-bandwidth 3 for Hermite, 5 with the interleaved
@@ -316,14 +327,14 @@ bool FoldedStage::uses_mass() const {
 }
 
 bool FoldedStage::driven() const {
-  return any(mass_history) || any(stiffness_history);
+  return any(mass_history) || any(stiffness_history) || any(damping_history);
 }
 
 FoldedStage fold(const OperatorWeights& weights, const Damping& damping) {
   FoldedStage folded;
   folded.mass = weights.M + damping.mass * weights.C;
   folded.stiffness = weights.K + damping.stiffness * weights.C;
-  folded.damping = weights.C;
+  if (damping.own()) folded.damping = weights.C;
   return folded;
 }
 
@@ -335,9 +346,15 @@ FoldedStage fold(const Stage& stage, const Damping& damping, int slots) {
   for (std::size_t j = 0; j < stage.history.size(); ++j) {
     folded.mass_history[j] = stage.history[j].M + damping.mass * stage.history[j].C;
     folded.stiffness_history[j] = stage.history[j].K + damping.stiffness * stage.history[j].C;
-    folded.damping_history[j] = stage.history[j].C;
+    if (damping.own()) folded.damping_history[j] = stage.history[j].C;
   }
   return folded;
+}
+
+QuasiDefinite stage_system(const MarchModel& model, const FoldedStage& stage) {
+  const std::shared_ptr<const SparseMatrix>& C = model.problem().damping.matrix;
+  if (!C || stage.damping == 0) return weighted_system(stage.stiffness, model.stiffness(), stage.mass, model.inertia());
+  return weighted_system(1, stage.stiffness * model.stiffness() + stage.damping * *C, stage.mass, model.inertia());
 }
 
 OperatorOrRefusal make_operator(OperatorKind kind, const MarchModel& model, const FoldedStage& stage, int lanes) {
@@ -346,13 +363,14 @@ OperatorOrRefusal make_operator(OperatorKind kind, const MarchModel& model, cons
     return Refusal{std::string("damping ratios are those of modes, and the operator ") + operator_name(kind) +
                    " has none: leave it out"};
   const Inertia& inertia = model.inertia();
-  if (inertia.inverted() && stage.stiffness == 0) return std::make_unique<InverseOperator>(model, stage, lanes);
+  if (inertia.inverted() && stage.stiffness == 0 && !model.problem().damping.matrix)
+    return std::make_unique<InverseOperator>(model, stage, lanes);
   if (!inertia.assembled() && stage.mass < 0)
     return Refusal{"the step weights a mass negatively that is not assembled: use the mass consistent or lumped"};
   if (!inertia.assembled() && stage.mass == 0 && stage.uses_mass())
     return Refusal{
         "a stage without inertia multiplies by a mass that is not assembled: use the mass consistent or lumped"};
-  const QuasiDefinite matrix = weighted_system(stage.stiffness, model.stiffness(), stage.mass, inertia);
+  const QuasiDefinite matrix = stage_system(model, stage);
   if (kind == OperatorKind::sparse) return factorised(std::make_unique<SparseOperator>(model, stage, lanes), matrix);
   return factorised(std::make_unique<BandOperator>(model, stage, lanes), matrix);
 }

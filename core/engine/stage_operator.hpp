@@ -3,6 +3,7 @@
 #include <optional>
 #include <ricochet/contract/step_plan.hpp>
 #include <ricochet/engine/march_model.hpp>
+#include <ricochet/kernels/band_ldlt.hpp>
 #include <ricochet/kernels/block.hpp>
 #include <ricochet/kernels/lane_kernels.hpp>
 #include <string>
@@ -15,7 +16,7 @@ enum class OperatorKind { automatic, diagonal, modal, band, sparse };
 const char* operator_name(OperatorKind kind);
 
 /// The coefficients of one stage with C = αK + ηM folded into K and M: S = s_M M + s_K K, b = Σ_j (β^M_j M + β^K_j K)
-/// x_j + … Those of C itself stand beside them, for damping by modes.
+/// x_j + … Those of a C that is not made of K and M stand beside them, else 0.
 struct FoldedStage {
   double mass = 0, stiffness = 0;
   std::vector<double> mass_history, stiffness_history;  ///< one per slot
@@ -24,11 +25,14 @@ struct FoldedStage {
   bool uses_mass() const;
   /// Whether the slots drive it.
   bool driven() const;
-  bool solves() const { return mass != 0 || stiffness != 0; }
+  bool solves() const { return mass != 0 || stiffness != 0 || damping != 0; }
 };
 FoldedStage fold(const Stage& stage, const Damping& damping, int slots);
 /// The same of a single operator, which has no history.
 FoldedStage fold(const OperatorWeights& weights, const Damping& damping);
+
+/// S of a stage, with a C of its own too.
+QuasiDefinite stage_system(const MarchModel& model, const FoldedStage& stage);
 
 /// What the marcher hands over for a free step. All blocks have the width that the operator was made for.
 struct FreeStepInput {

@@ -136,7 +136,7 @@ RICOCHET_INLINE void solve_body(const BandStep& step) {
 template <int T>
 RICOCHET_INLINE void band_step_body(const BandStep& step) {
   if constexpr (T >= 2)
-    if (step.factor && step.K && !step.M && !step.load && !step.from && step.product_width == 3 &&
+    if (step.factor && step.K && !step.M && !step.C && !step.load && !step.from && step.product_width == 3 &&
         step.solve_width == 3) {
       fused_forward<T, 3, 3>(step);
       return backward<T, 3>(step.rows, 3, step.factor, step.z);
@@ -146,6 +146,7 @@ RICOCHET_INLINE void band_step_body(const BandStep& step) {
   else
     for (long i = 0; i < static_cast<long>(step.rows) * Row<T>::lanes; ++i) step.b[i] = 0;
   if (step.M) product_any<T, true>(step.rows, step.product_width, step.M, step.m, step.b);
+  if (step.C) product_any<T, true>(step.rows, step.damping_width, step.C, step.c, step.b);
   if (step.shape) add_column_body<T>(step.rows, step.shape, step.scale, step.b);
   if (step.load)
     for (long i = 0; i < step.rows; ++i)

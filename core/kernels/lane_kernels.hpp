@@ -5,8 +5,8 @@
 /// \file
 /// The inner loops of marching, on blocks of lanes. A block is rows × T doubles, lanes contiguous, 64-byte aligned and
 /// padded to a multiple of 64 bytes; T is one of 1, 2, 4, 8, 16, 32. Every kernel does the same sequence of operations
-/// for each lane whatever T is, so a lane's result does not depend on the other lanes of its block. Instruction sets are
-/// chosen when the table is asked for, never by the ABI.
+/// for each lane whatever T is, so a lane's result does not depend on the other lanes of its block. Instruction sets
+/// are chosen when the table is asked for, never by the ABI.
 namespace ricochet {
 
 /// The most blocks that a kernel combines: the slots of a plan, and one more where the unknown z is measured with them.
@@ -23,6 +23,9 @@ struct BandStep {
   const double* k = nullptr;  ///< n × T block, w zero rows before and after
   const double* M = nullptr;  ///< like K; null: no product
   const double* m = nullptr;
+  int damping_width = 0;      ///< half-bandwidth of C
+  const double* C = nullptr;  ///< like K, of a C that is not made of K and M; null: no product
+  const double* c = nullptr;
   const double* shape = nullptr;  ///< n; null: none
   const double* scale = nullptr;  ///< T
   const double* load = nullptr;   ///< n, the same for every lane; null: none

@@ -90,6 +90,11 @@ namespace {
 Damping damping(const OscillatorSpec& oscillator) {
   return {.mass = oscillator.damping / oscillator.mass};
 }
+Damping damping(const AssembledSpec& spec) {
+  Damping out = spec.damping;
+  if (spec.structure->damping.rows() > 0) out.matrix = {spec.structure, &spec.structure->damping};
+  return out;
+}
 template <class Spec>
 Damping damping(const Spec& spec) {
   return spec.damping;

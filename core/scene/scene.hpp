@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <optional>
+#include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/scene/formula.hpp>
 #include <ricochet/scene/history/piecewise_cubic.hpp>
 #include <ricochet/scene/place.hpp>
@@ -34,15 +35,19 @@ SectionProperties section_properties(const Section& section, double young, doubl
 /// 6(1+ν)(1+m²)²/((7+6ν)(1+m²)² + (20+12ν)m²).
 double shear_factor(const Section& section, double poisson);
 
-/// C = α K + η M; or by modes, C φ_k = 2 ζ_k ω_k M φ_k on the modes of the matrices that are marched. Modes without
-/// mass and rigid ones have none then.
+/// C = α K + η M; or by modes, C φ_k = 2 ζ_k ω_k M φ_k on the modes of the matrices that are marched: modes without
+/// mass and rigid ones have none then; or a matrix of its own.
 struct Damping {
   double stiffness = 0;               ///< α, s
   double mass = 0;                    ///< η, 1/s
   std::vector<double> ratios = {};    ///< ζ_k, slowest elastic mode first
   std::optional<double> beyond = {};  ///< ζ of the modes after these
 
+  std::shared_ptr<const SparseMatrix> matrix = {};  ///< C, n × n, both triangles
+
   bool by_modes() const { return !ratios.empty() || beyond; }
+  /// Whether C is something else than αK + ηM.
+  bool own() const { return by_modes() || matrix; }
   /// Of the elastic mode number k, from 0; of a mode that no ratio is given for, 0.
   double ratio(std::size_t k) const { return k < ratios.size() ? ratios[k] : beyond.value_or(0.0); }
   /// C on an elastic mode of unit mass, ω² its square (s⁻²) and k its number, 1/s.

@@ -182,6 +182,7 @@ void add_stiffness(const AssembledSpec& spec, SemiDiscrete& problem) {
   const AssembledStructure& structure = *spec.structure;
   problem.stiffness = structure.stiffness;
   problem.damping = spec.damping;
+  if (structure.damping.rows() > 0) problem.damping.matrix = {spec.structure, &structure.damping};
   problem.notes = structure.notes;
 }
 
@@ -295,6 +296,11 @@ void march_in_basis(const SceneSpec& scene, SemiDiscrete& problem, DistributedLo
   SparseMatrix stiffness(basis.dofs(), basis.dofs());
   for (int i = 0; i < basis.dofs(); ++i) stiffness.insert(i, i) = basis.stiffness[i];
   problem.stiffness = std::move(stiffness);
+  if (const auto& C = problem.damping.matrix) {
+    const Eigen::MatrixXd damping = basis.shapes.transpose() * (*C * basis.shapes);
+    problem.damping.matrix =
+        std::make_shared<const SparseMatrix>(((damping + damping.transpose()) / 2).eval().sparseView());
+  }
   problem.contact = basis.at_points.sparseView();
   problem.tip = problem.on_unknowns(std::move(problem.tip));
   problem.support_shape = basis.shapes.transpose() * problem.support_shape;

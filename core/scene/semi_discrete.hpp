@@ -115,7 +115,7 @@ struct SemiDiscrete {
   bool in_modes() const { return basis || (space.given && space.given->modes); }
   /// Rows on the dofs of the mesh as rows on q.
   SparseRows on_unknowns(SparseRows rows) const;
-  bool damped() const { return damping.stiffness != 0 || damping.mass != 0 || damping.by_modes(); }
+  bool damped() const { return damping.stiffness != 0 || damping.mass != 0 || damping.own(); }
   /// Whether only modes march it.
   bool asks_for_modes() const { return in_modes() || damping.by_modes(); }
 };

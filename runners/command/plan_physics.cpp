@@ -103,6 +103,7 @@ std::string place_text(const Json& place) {
   if (place.contains("x")) return fmt::format("x = {:.6g} m", place["x"].get<double>());
   if (place.contains("component"))
     return place["node"].get<std::string>() + " " + place["component"].get<std::string>();
+  if (place.contains("point")) return place["point"].get<std::string>();
   return place.dump();
 }
 

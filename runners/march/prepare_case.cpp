@@ -93,7 +93,7 @@ void note_repeats(const StudyCase& study_case, std::vector<std::string>& notes) 
 
 // What has no mass and no viscosity is known to a step as the highest frequencies are.
 bool is_marginal(const SemiDiscrete& problem, const StepPlan& plan) {
-  if (problem.inertia.kernel_dimension == 0 || problem.damping.stiffness != 0) return false;
+  if (problem.inertia.kernel_dimension == 0 || problem.damping.stiffness != 0 || problem.damping.matrix) return false;
   constexpr double round_off = 1e-6;  // roots that coincide are known to its square root or less
   const auto root = root_at_infinity(plan);
   return root && std::abs(*root - 1) < round_off;

@@ -86,6 +86,10 @@ Damping read_damping(const Json& json) {
     throw InputError("/scene/structure/damping/ratio", "stands beside ratios; expected one of both");
   if (given("beyond") && !given("ratios"))
     throw InputError("/scene/structure/damping/beyond", "has no ratios before it; expected ratios, or ratio alone");
+  const bool file = !json.value("file", "").empty();
+  if (file && (damping.by_modes() || damping.stiffness != 0 || damping.mass != 0))
+    throw InputError("/scene/structure/damping/file",
+                     "C of a file stands beside other damping; expected one of both, a file or numbers");
   if (damping.by_modes() && (damping.stiffness != 0 || damping.mass != 0))
     throw InputError("/scene/structure/damping",
                      "α or η stand beside damping ratios; expected one of both, C = αK + ηM or ratios");

@@ -14,6 +14,7 @@
 namespace ricochet {
 namespace {
 
+constexpr const char* damping_key = "damping/file";
 constexpr const char* modal_keys[] = {"modes", "shapes", "residual", "residual_mass", "static_modes"};
 
 /// Keys of a structure that name its files: "influence/ground" for a key of an object of names.
@@ -26,6 +27,7 @@ std::vector<std::string> file_keys(const Json& structure) {
   keys = {"dofs", "stiffness", "mass"};
   const Json influence = structure.value("influence", Json::object());
   for (const auto& [support, ignored] : influence.items()) keys.push_back(pointer_to("influence", support));
+  if (!structure.at("damping").value("file", "").empty()) keys.emplace_back(damping_key);
   return keys;
 }
 
@@ -115,6 +117,10 @@ std::shared_ptr<const AssembledStructure> StudyFiles::assembled(const Json& stru
     for (const auto& [support, name] : influence.items())
       files.influences.push_back(read_influence(content(pointer_to("influence", support)), support,
                                                 name.get<std::string>(), files.table.dofs.size()));
+    if (keys.back() == damping_key) {
+      files.damping_name = structure.at("damping").at("file").get<std::string>();
+      files.damping = read_matrix_market(content(damping_key), files.damping_name, dofs, table);
+    }
     reading = "";
     const auto made = std::make_shared<const AssembledStructure>(assemble_structure(files));
     for (const std::string& key : keys) std::string().swap(files_[file_of(structure, key)].content);

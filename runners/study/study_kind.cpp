@@ -48,6 +48,12 @@ ObjectForm section() {
   return keys;
 }
 
+ObjectForm with_file(ObjectForm damping) {
+  damping.fields.push_back(
+      quiet(of_form(Field::Form::text, "file", Json(""), "C, Matrix Market, all dofs of the table, alone.")));
+  return damping;
+}
+
 ObjectForm assembled(const ObjectForm& damping) {
   const auto file = [](const char* key, const char* text) {
     return of_form(Field::Form::text, key, std::nullopt, text);
@@ -62,7 +68,7 @@ ObjectForm assembled(const ObjectForm& damping) {
           of_form(Field::Form::named, "influence", Json::object(),
                   "Supports whose dofs the matrices have lost, each with its CSV dof,value: how the dofs follow it.")),
       single(real("length_unit", "m", positive, 1.0, "Unit of length of the files; 0.001: mm, t, s.")),
-      object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping),
+      object("damping", Json::object(), "Viscous damping C = αK + ηM, ratios, or C itself.", with_file(damping)),
       place("tip", Json(nullptr), "Displacement that is shown; null: the first stop's, else the first load's.")};
   keys.fields.front().axis = true;
   return keys;

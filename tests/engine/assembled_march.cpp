@@ -141,3 +141,32 @@ TEST_CASE("two masses without springs that meet share the momentum of a constant
     CHECK(std::abs(tip[static_cast<std::size_t>(std::llround(t / h)) - 1] - exact) < h * meet);
   }
 }
+
+TEST_CASE("a damping matrix of a file that is αK + ηM marches as α and η, in every operator and in a basis") {
+  const BeamSpec beam = beam_of(*std::make_unique<SceneSpec>(unit_beam()));
+  const BeamFiles files = beam_files(beam, elements);
+  SceneSpec numbers = shaken_files({});
+  std::get<AssembledSpec>(numbers.structure).damping = {1e-3, 0.3};
+  const FiniteElementSpace space = free_space(beam, elements);
+  const SparseMatrix C = 1e-3 * bending_stiffness(space, 1) + 0.3 * consistent_mass(space);
+  SceneSpec given = numbers;
+  AssembledStructure structure = assembled(files, 1, matrix_market(C));
+  CHECK(structure.notes.empty());
+  given.structure = AssembledSpec{std::make_shared<const AssembledStructure>(std::move(structure)), {}, {}};
+  for (const Choice& law : {Choice{"signorini"}, Choice{"penalty", {{"stiffness", 1e3}}}})
+    for (const char* scheme : {"newmark-dumont-paoli", "moreau-jean", "generalised-alpha"}) {
+      const Methods methods{{"consistent"}, law, {scheme}};
+      INFO(law.name << ", " << scheme);
+      const std::vector<double> expected = tips(numbers, 1, methods, OperatorKind::band);
+      // Round-off of C grows over the impacts.
+      CHECK(apart(expected, tips(given, 1, methods, OperatorKind::band)) < 1e-9);
+      CHECK(apart(expected, tips(given, 1, methods, OperatorKind::sparse)) < 1e-9);
+      SceneSpec whole = given;
+      whole.basis = BasisSpec{2 * elements, true};
+      CHECK(apart(expected, tips(whole, 1, methods, OperatorKind::automatic)) < 1e-8);
+    }
+  Marcher made = marcher(given, 1, {{"consistent"}, {"signorini"}, {"newmark-dumont-paoli"}}, 1e-3, {});
+  const EnergyAudit audit = audited(made, 1.5);
+  CHECK(audit.totals(0).work_of_damping > 0.01 * audit.totals(0).work_of_loads);
+  CHECK(std::abs(audit.totals(0).balance_residual()) < 1e-10 * audit.totals(0).work_of_loads);
+}

@@ -112,11 +112,14 @@ StageWorks::StageWorks(const Marcher& marcher, const QuadraticForm& mass, const 
       stiffness_form_(stiffness),
       damping_(model_.problem().damping),
       damped_(damping_.stiffness != 0 || damping_.mass != 0),
-      by_modes_(model_.modal_damping().size() > 0),
       projected_(marcher.program().support),
       T_(marcher.width()),
       displacement_(model_.rows(), 1),
       rate_(model_.rows(), 1) {
+  if (model_.modal_damping().size() > 0)
+    own_damping_ = QuadraticForm(SparseMatrix(model_.modal_damping().asDiagonal()));
+  else if (damping_.matrix)
+    own_damping_ = QuadraticForm(*damping_.matrix);
   const double* shape = projected_ ? model_.support_shape().data() : nullptr;
   const SparseMatrix nothing(model_.rows(), model_.rows());
   const QuadraticForm first = damping_.stiffness != 0 ? stiffness : damped_ ? mass : QuadraticForm(nothing);
@@ -126,7 +129,7 @@ StageWorks::StageWorks(const Marcher& marcher, const QuadraticForm& mass, const 
   for (std::size_t k = 0; k < plan.start.size(); ++k)
     start_.push_back(describe_start(plan, k, marcher.program().start[k].facts, pulsation, h));
   for (const Stage& stage : plan.stages) stages_.push_back(describe(stage, pulsation, h));
-  if (T_ > 1 || marcher.program().load || by_modes_) return;
+  if (T_ > 1 || marcher.program().load || own_damping_) return;
   squares_alone_ = stages_.size() == 1 && stages_.front().losses.empty();
   if (!projected_ && !damped_) return;
   for (std::size_t k = 0; k < stages_.size(); ++k)
@@ -204,17 +207,6 @@ StageWorks::StageTerms StageWorks::describe_start(const StepPlan& plan, std::siz
   return terms;
 }
 
-namespace {
-
-// Σ c_i s_i r_i.
-double way_in(const Eigen::VectorXd& c, const double* s, const double* r) {
-  double sum = 0;
-  for (Eigen::Index i = 0; i < c.size(); ++i) sum += c[i] * s[i] * r[i];
-  return sum;
-}
-
-}  // namespace
-
 void StageWorks::add_all(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, bool losses,
                          bool contact, Works& works) {
   const auto sum = [&](const WeighedTerms& terms) { return LaneSum(terms, view.slots, view.z, view.w, T_, lane); };
@@ -226,8 +218,8 @@ void StageWorks::add_all(const Marcher& marcher, const StageView& view, const St
   if (stage.impulsive && contact)
     add_contact(marcher, view, stage, lane, sum(stage.displacement).write(displacement_), works);
   if (!view.plan->work) return;
-  const bool load = marcher.program().load, across = (damped_ && stage.along == 0) || by_modes_;
-  if (!projected_ && !damped_ && !by_modes_ && !load && !contact) return;
+  const bool load = marcher.program().load, across = (damped_ && stage.along == 0) || own_damping_;
+  if (!projected_ && !damped_ && !own_damping_ && !load && !contact) return;
   const LaneSum s = sum(stage.displacement);
   const bool passes = projected_ || (damped_ && !across), numbers = contact || load || across;
   if (passes) {
@@ -242,7 +234,7 @@ void StageWorks::add_all(const Marcher& marcher, const StageView& view, const St
     const double* rate = sum(stage.rate).write(rate_);
     if (damping_.stiffness != 0) works.damping += damping_.stiffness * stiffness_(way, rate);
     if (damping_.mass != 0) works.damping += damping_.mass * mass_(way, rate);
-    if (by_modes_) works.damping += way_in(model_.modal_damping(), way, rate);
+    if (own_damping_) works.damping += (*own_damping_)(way, rate);
   }
   if (load) {
     const double* F = const_cast<Marcher&>(marcher).distributed_load(view.plan->work->load, view.time);

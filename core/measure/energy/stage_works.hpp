@@ -217,7 +217,8 @@ class StageWorks {
   CombinedForm first_;              // what damps, K before M, and the shape of the clamp's load
   CombinedForm mass_form_, stiffness_form_;
   Damping damping_;
-  bool damped_, by_modes_, projected_, squares_alone_ = false;
+  std::optional<QuadraticForm> own_damping_;  // of a C that is not made of K and M
+  bool damped_, projected_, squares_alone_ = false;
   int T_;
   std::vector<StageTerms> start_, stages_;
   Block displacement_, rate_;  // of one lane

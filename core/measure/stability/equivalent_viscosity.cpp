@@ -147,7 +147,7 @@ std::optional<double> decay(const StepPlan& plan, double square, double h) {
 std::optional<EquivalentViscosity> equivalent_viscosity(const SemiDiscrete& problem, const StepPlan& undamped_plan,
                                                         double h, int modes) {
   const std::vector<double> squares = squared_pulsations(problem, modes);
-  if (squares.empty()) return std::nullopt;
+  if (squares.empty() || problem.damping.matrix) return std::nullopt;
   std::vector<double> decays;
   double scheme = 0, structure = 0, fourth = 0;
   for (const double square : squares) {

@@ -15,6 +15,7 @@ using Complex = std::complex<double>;
 std::optional<LinearResponse> linear_response(const SemiDiscrete& problem, const StepPlan& plan, double h) {
   const double omega = problem.support.pulsation;
   if (omega == 0 || (problem.load && !problem.load->absent())) return std::nullopt;
+  if (problem.damping.matrix) return std::nullopt;
   const MarchModel model(std::make_shared<SemiDiscrete>(problem), true);
   const int slots = static_cast<int>(plan.slots.size());
   const Eigen::VectorXd K = model.stiffness().diagonal(), M = model.inertia().mass.diagonal();

@@ -153,6 +153,10 @@ StabilityPredictor::StabilityPredictor(std::shared_ptr<const SemiDiscrete> probl
                                  problem_->dofs(), most_modal_dofs));
     return;
   }
+  if (problem_->damping.own()) {
+    notes_.emplace_back("no step is predicted: the damping is not made of K and M");
+    return;
+  }
   modes_ = std::make_unique<StructureModes>(open_modes(*problem_));
   choose_sets();
 }

@@ -258,7 +258,7 @@ std::variant<StructurePhysics, Refusal> structure_physics(const SceneSpec& scene
   out.damping = problem.damping;
   out.structure = problem.space.structure;
   out.numbers = std::visit(Numbers{}, scene.structure);
-  out.details = std::visit(Details{out.elements, problem.dofs()}, scene.structure);
+  out.details = std::visit(Details{out.elements, problem.space.dofs}, scene.structure);
   if (problem.basis)
     for (std::string& line : basis_lines(problem)) out.details.push_back(std::move(line));
   if (out.damping.stiffness != 0) out.numbers.push_back({"α", out.damping.stiffness, "s"});
@@ -270,6 +270,13 @@ std::variant<StructurePhysics, Refusal> structure_physics(const SceneSpec& scene
   for (int i = 0; i < modes.regular; ++i) out.pulsations.push_back(modes.pulsation(i));
   const auto rigid = std::count(out.pulsations.begin(), out.pulsations.end(), 0.0);
   if (problem.space.given && rigid > 0) out.numbers.push_back({"rigid motions", static_cast<double>(rigid), ""});
+  if (!out.damping.matrix) return out;
+  // What C does to each mode by itself.
+  for (int i = 0; i < modes.regular; ++i) {
+    const VectorXd shape = modes.shapes.col(i);
+    if (modes.pulsation(i) > 0)
+      out.damping.ratios.push_back(shape.dot(*out.damping.matrix * shape) / (2 * modes.pulsation(i) * modes.mass[i]));
+  }
   return out;
 }
 

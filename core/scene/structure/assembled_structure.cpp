@@ -136,6 +136,7 @@ class StructureMaker {
                        .diagonal = carried.diagonal};
     find_static_modes(picked(K, free_, held_), picked(M, free_, held_));
     add_influences();
+    if (!files_.damping_name.empty()) take_damping();
     return std::move(out_);
   }
 
@@ -198,6 +199,25 @@ class StructureMaker {
     if (!ldlt.factorise(out_.stiffness + sigma * out_.mass))
       throw FileError(fmt::format("{} and {} have a motion that neither holds nor moves: {}", files_.stiffness_name,
                                   files_.mass_name, ldlt.reason()));
+  }
+
+  void take_damping() {
+    check_symmetry(files_.damping, files_.damping_name, files_.table, out_.notes);
+    const SparseMatrix C = in_metres(files_.damping.matrix, files_.table, files_.length_unit);
+    out_.damping = picked(C, free_, free_);
+    const SparseMatrix across = picked(C, free_, held_);
+    constexpr double negligible = 1e-12;
+    for (Eigen::Index j = 0; j < out_.static_modes.cols(); ++j) {
+      Eigen::VectorXd moved = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held_.size()));
+      for (std::size_t i = 0; i < held_.size(); ++i)
+        if (out_.where[static_cast<std::size_t>(held_[i])].support == j) moved[static_cast<Eigen::Index>(i)] = 1;
+      const Eigen::VectorXd own = out_.damping * out_.static_modes.col(j), all = own + across * moved;
+      if (all.norm() > negligible * own.norm())
+        out_.notes.push_back(
+            fmt::format("{} damps the static mode of the support {} by {:.2g} of its own force: it is "
+                        "left out, as C acts on relative velocities",
+                        files_.damping_name, out_.supports[static_cast<std::size_t>(j)], all.norm() / own.norm()));
+    }
   }
 
   void find_static_modes(const SparseMatrix& K_held, const SparseMatrix& M_held) {

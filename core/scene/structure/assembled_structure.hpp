@@ -13,6 +13,8 @@ namespace ricochet {
 struct AssembledFiles {
   std::string stiffness_name, mass_name;  ///< of files, for sentences
   FileMatrix stiffness, mass;             ///< K (N/m), M (kg)
+  std::string damping_name = {};          ///< empty: none
+  FileMatrix damping = {};                ///< C, N s/m
   DofTable table;
   double length_unit = 1;  ///< m: K and M of a consistent mm–t–s model have 0.001
   /// How the dofs follow a support whose held dofs the matrices do not have any more: ψ by dof, from 1, in units of the
@@ -46,6 +48,7 @@ struct AssembledStructure {
   int half_width = 0;          ///< largest |i − j| of the entries of K and M
   SparseMatrix stiffness;      ///< K, n × n, both triangles
   SparseMatrix mass;           ///< M, n × n, both triangles, positive semidefinite
+  SparseMatrix damping;        ///< C of a file, n × n, both triangles; empty: none
   std::vector<DofName> names;  ///< of the free dofs, in their order here; places in m
   GivenMass dofs_known;        ///< of the free dofs, for mass strategies; its matrices are empty
   std::vector<std::string> supports;

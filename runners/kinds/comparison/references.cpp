@@ -204,8 +204,8 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
         "the load has a force at a point, and this reference knows loads that are spread: use a reference of the mesh";
     return known;
   }
-  if (damping_of(study_case.scene.structure).by_modes()) {
-    known.refusal = "damping goes by the ratios of modes, and references know C = αK + ηM: use the reference self";
+  if (damping_of(study_case.scene.structure).own()) {
+    known.refusal = "damping is not made of K and M, and references know C = αK + ηM: use the reference self";
     return known;
   }
   if (!study_case.scene.motions.empty() || support_bends(study_case.scene)) {

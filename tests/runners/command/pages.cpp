@@ -140,7 +140,7 @@ TEST_CASE("pages: every study key is written down as the program has it") {
   CHECK(written == keys.str());
 }
 
-TEST_CASE("pages: the script of own structures writes what the study beside it reads") {
+TEST_CASE("pages: the scripts of own structures write what the studies beside them read") {
   std::string python;
   for (const std::string one : {"python3", "/usr/bin/python3"})
     if (python.empty() && std::system((one + " -c 'import scipy' >/dev/null 2>&1").c_str()) == 0) python = one;
@@ -149,12 +149,18 @@ TEST_CASE("pages: the script of own structures writes what the study beside it r
     return;
   }
   std::string script, study;
+  const ScratchFolder folder;
   for (const Block& block : blocks_of(root / "runners/own-structure.md")) {
-    std::string* text = block.info == "python" ? &script : block.info == "json" ? &study : nullptr;
+    std::string named;
+    const std::size_t space = block.info.find(' ');
+    std::string* text = space != std::string::npos ? &named
+                        : block.info == "python"   ? &script
+                        : block.info == "json"     ? &study
+                                                   : nullptr;
     if (!text || !text->empty()) continue;
     for (const std::string& line : block.lines) *text += line + "\n";
+    if (!named.empty()) write_text(folder.path() / block.info.substr(space + 1), named);
   }
-  const ScratchFolder folder;
   write_text(folder / "chain.py", script);
   write_text(folder / "chain.json", study);
   const std::string line = "cd '" + folder.path().string() + "' && " + python +
@@ -163,6 +169,12 @@ TEST_CASE("pages: the script of own structures writes what the study beside it r
   // Ten masses of 2 kg on springs of 1e6 N/m, one end held: ω_k = 2 √(k/m) sin((2k − 1)π/42).
   CHECK_THAT(read_text(folder / "plan.txt"), Catch::Contains("free dofs 10, held dofs 1") &&
                                                  Catch::Contains("stop end: N10 ux") && Catch::Contains("16.8 Hz"));
+  const std::string modes = "cd '" + folder.path().string() + "' && " + python +
+                            " modes.py && RICOCHET_PLUGIN_PATH= '" RICOCHET_COMMAND "' plan modes.json >modes.txt 2>&1";
+  CHECK(std::system(modes.c_str()) == 0);
+  CHECK_THAT(read_text(folder / "modes.txt"), Catch::Contains("modes 2, residual shapes 2") &&
+                                                  Catch::Contains("16.8 Hz") &&
+                                                  Catch::Contains("stop end: N10, lower -0.001 m"));
 }
 
 TEST_CASE("pages: the README is short, its study is one, and what it points at is there") {

@@ -81,7 +81,7 @@ inline BeamFiles beam_files(const BeamSpec& beam, int elements, const BeamFileOp
   return files;
 }
 
-inline AssembledStructure assembled(const BeamFiles& files, double unit = 1) {
+inline AssembledStructure assembled(const BeamFiles& files, double unit = 1, const std::string& damping = "") {
   AssembledFiles read;
   read.stiffness_name = "K.mtx";
   read.mass_name = "M.mtx";
@@ -90,6 +90,10 @@ inline AssembledStructure assembled(const BeamFiles& files, double unit = 1) {
   const auto dofs = static_cast<int>(read.table.dofs.size());
   read.stiffness = read_matrix_market(files.stiffness, "K.mtx", dofs, "dofs.csv");
   read.mass = read_matrix_market(files.mass, "M.mtx", dofs, "dofs.csv");
+  if (!damping.empty()) {
+    read.damping_name = "C.mtx";
+    read.damping = read_matrix_market(damping, "C.mtx", dofs, "dofs.csv");
+  }
   return assemble_structure(read);
 }
 
