@@ -10,6 +10,7 @@
 #include "runners/answers/set_names.hpp"
 #include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
+#include "runners/kinds/comparison/order_runs.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet {
@@ -51,53 +52,6 @@ std::string error_unit(const std::string& error) {
   return error == "impulse" ? "N s" : "";
 }
 
-/// One method's errors along a refinement, at the finest of the other.
-struct MethodRun {
-  Cases cases;
-  const CaseRecord* finest = nullptr;
-  OrderRun run;
-  std::optional<double> declared, motion;  ///< what the scheme declares; what a motion at rest would err by
-};
-
-std::vector<MethodRun> runs_of(const Compared& study, const std::string& error, const std::string& refined) {
-  InOrderMet<std::string, Cases> methods;
-  for (const CaseRecord& record : study.results().cases) methods[study.key(record)].push_back(&record);
-  const bool step = refined == "step";
-  const auto size = [&](const CaseRecord& record) {
-    return step                     ? study.step(record)
-           : study.elements(record) ? std::optional(1 / *study.elements(record))
-                                    : std::nullopt;
-  };
-  const auto other = [&](const CaseRecord& record) {
-    return step ? 1 / study.elements(record).value_or(1) : study.step(record).value_or(1);
-  };
-  std::vector<MethodRun> out;
-  for (const auto& [key, cases] : methods.list()) {
-    std::optional<double> finest_other;
-    for (const CaseRecord* record : cases)
-      if (record->status == "done" && measure(*record, "error." + error))
-        finest_other = std::min(finest_other.value_or(other(*record)), other(*record));
-    MethodRun one;
-    std::vector<SizedValue> errors;
-    double floor = 0;
-    for (const CaseRecord* record : cases) {
-      const auto value = measure(*record, "error." + error);
-      const auto at = size(*record);
-      if (record->status != "done" || !value || !at || other(*record) != *finest_other) continue;
-      errors.push_back({*at, *value});
-      floor = std::max(floor, measure(*record, "floor." + error).value_or(0));
-      if (!one.finest || *at < *size(*one.finest)) one.finest = record;
-    }
-    if (errors.size() < 2) continue;
-    one.cases = cases;
-    one.run = *order_run(errors, floor);
-    if (step) one.declared = measure(*one.finest, "declared_order");
-    if (const auto motion = measure(*one.finest, "size." + error); motion && *motion > 0) one.motion = motion;
-    out.push_back(std::move(one));
-  }
-  return out;
-}
-
 class OrderSpeaker {
  public:
   OrderSpeaker(const Compared& study, std::vector<MethodRun> runs, std::string error, std::string refined)
@@ -118,9 +72,12 @@ class OrderSpeaker {
   Members members(Verdict verdict) const {
     Members out;
     for (std::size_t k = 0; k < runs_.size(); ++k)
-      if (runs_[k].run.verdict == verdict) out.push_back(k);
+      if (this->verdict(k) == verdict) out.push_back(k);
     return out;
   }
+  /// Beside orders that last, one met in passing is one of these or none.
+  Verdict verdict(std::size_t k) const;
+  std::vector<Members> order_groups() const;
   Clause clause(const std::string& form, const Members& members) const {
     Clause out{.form = form, .measure = "error." + error_, .choice = refined_, .who = names_.of(members)};
     for (const std::size_t k : members) out.methods += (out.methods.empty() ? "" : " ") + runs_[k].finest->id;
@@ -179,21 +136,62 @@ Clause OrderSpeaker::errors_clause(const Members& members, const char* status) c
   return out;
 }
 
-void OrderSpeaker::say(Answer& answer) const {
-  const std::string word = refined_ == "step" ? "step" : "mesh";
-  const std::string subject = fmt::format("In the {}{}, {}", word, where(), error_words(error_));
-  // Orders that follow each other closely are told together, the highest first.
+Verdict OrderSpeaker::verdict(std::size_t k) const {
+  const OrderRun& run = runs_[k].run;
+  if (run.verdict != Verdict::order || !run.in_passing) return run.verdict;
+  constexpr double steep = 1.5, near = 0.1, near_steep = 0.35;
+  bool others = false, like = false;
+  for (const MethodRun& one : runs_) {
+    if (one.run.verdict != Verdict::order || one.run.in_passing) continue;
+    others = true;
+    like = like || std::abs(one.run.order - run.order) <= (run.order > steep ? near_steep : near);
+  }
+  if (like || !others) return run.verdict;
+  return run.stops_at ? Verdict::stops : Verdict::no_steady_order;
+}
+
+/// Methods whose orders follow each other closely, the highest first. Those that have no name together part where the
+/// orders are farthest apart and both parts have one.
+std::vector<Members> OrderSpeaker::order_groups() const {
   Members sorted = members(Verdict::order);
   std::sort(sorted.begin(), sorted.end(),
             [&](std::size_t a, std::size_t b) { return runs_[a].run.order > runs_[b].run.order; });
   std::vector<Members> groups;
-  constexpr double gap = 0.2, steep = 1.5, steep_gap = 0.35;
+  constexpr double gap = 0.2, steep = 1.5, steep_gap = 0.35, least_gap = 0.04;
   for (const std::size_t k : sorted) {
     const double order = runs_[k].run.order, apart = order > steep ? steep_gap : gap;
     if (groups.empty() || runs_[groups.back().back()].run.order - order > apart) groups.emplace_back();
     groups.back().push_back(k);
   }
+  const auto named = [&](Members of) {
+    std::sort(of.begin(), of.end());
+    return names_.found(of).exact;
+  };
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const Members of = groups[g];
+    if (of.size() < 2 || named(of)) continue;
+    std::vector<std::size_t> cuts;
+    const auto step = [&](std::size_t k) { return runs_[of[k - 1]].run.order - runs_[of[k]].run.order; };
+    for (std::size_t k = 1; k < of.size(); ++k)
+      if (step(k) >= least_gap) cuts.push_back(k);
+    std::sort(cuts.begin(), cuts.end(), [&](std::size_t a, std::size_t b) { return step(a) > step(b); });
+    for (const std::size_t cut : cuts) {
+      const auto middle = of.begin() + static_cast<std::ptrdiff_t>(cut);
+      const Members upper(of.begin(), middle), lower(middle, of.end());
+      if (!named(upper) || !named(lower)) continue;
+      groups[g] = upper;
+      groups.insert(groups.begin() + static_cast<std::ptrdiff_t>(g) + 1, lower);
+      break;
+    }
+  }
   for (Members& of : groups) std::sort(of.begin(), of.end());
+  return groups;
+}
+
+void OrderSpeaker::say(Answer& answer) const {
+  const std::string word = refined_ == "step" ? "step" : "mesh";
+  const std::string subject = fmt::format("In the {}{}, {}", word, where(), error_words(error_));
+  const std::vector<Members> groups = order_groups();
   Sentence orders;
   constexpr std::size_t told = 4;
   std::size_t said = 0;
@@ -246,10 +244,15 @@ void OrderSpeaker::say(Answer& answer) const {
     if (!run.stops_at) continue;
     (runs_[k].motion && run.smallest > far_off * *runs_[k].motion ? lost : stuck).push_back(k);
   }
-  if (!stuck.empty())
+  if (!stuck.empty()) {
+    // Most of all, and without a name: those that are not told by themselves.
+    const SetNames::Name name = names_.found(stuck);
+    const bool most = !name.exact && 2 * stuck.size() > runs_.size();
+    const std::string who = most ? fmt::format("the other {} methods", stuck.size()) : name.text;
     answer.say({fmt::format("{} stops at {} with {}: what is left is not of the {}.", begun ? "It" : subject,
-                            errors_text(stuck, true), names_.of(stuck), word),
+                            errors_text(stuck, true), who, word),
                 {errors_clause(stuck, "stops")}});
+  }
   if (!lost.empty()) {
     const SetNames::Name name = names_.found(lost);
     answer.say({fmt::format("{} {} not converge in the {}: the error is {}.", capitalised(name.text),
@@ -285,7 +288,10 @@ void say_other_errors(const Compared& study, const std::vector<std::string>& err
       if (const auto found = base.find(key); found != base.end()) ++both, equal += found->second == order;
     if (both < 1 || static_cast<double>(both) < enough * static_cast<double>(base.size())) continue;
     const bool alike = static_cast<double>(equal) >= agree * static_cast<double>(both);
-    (alike ? same : others).push_back(quantity_words(error));
+    std::vector<std::string>& list = alike ? same : others;
+    const std::string words = quantity_words(error);
+    if (words != quantity_words(first) && std::find(list.begin(), list.end(), words) == list.end())
+      list.push_back(words);
   }
   const auto clause = [&](const std::vector<std::string>& names, const char* status) {
     Clause out{.form = "order", .measure = "errors", .choice = "step", .who = and_list(names)};
@@ -318,47 +324,6 @@ answers::Answer orders_answer(const Compared& study) {
     answer.say("No case has an error to speak of.", Clause{.form = "status", .status = "none"});
   for (Sentence& one : ended(study)) answer.say(std::move(one));
   return answer;
-}
-
-Table order_runs_table(const Compared& study) {
-  const StudyResults& results = study.results();
-  Table table{
-      "order_runs",
-      "One method, error and refined quantity: the order over the longest run of slopes that agree, and where it "
-      "ends.",
-      {case_column()},
-      {}};
-  for (const std::string& column : study.columns()) table.columns.push_back(axis_column(results, column));
-  for (const Column& column :
-       {Column{"refined", "", "step or elements; at the finest of the other."},
-        {"error", "", "Which error: a quantity of the motion and how its difference is measured."},
-        {"verdict", "", "order, stops, does not fall, no steady order, at the floor, too few."},
-        {"order", "1", "Slope over the whole run; in the step, or in the element's length."},
-        {"least", "1", "Least local slope of the run."},
-        {"most", "1", "Largest local slope of the run."},
-        {"from", "", "The coarsest size of the run: s, or 1 over the elements."},
-        {"to", "", "Its finest size."},
-        {"stops_at", "that of the error", "The smallest error, where the fall ends."},
-        {"left", "1", "That error over what a motion at rest would err by."},
-        {"declared", "1", "The order in the step that the scheme declares; none where it declares none."}})
-    table.columns.push_back(column);
-  for (const std::string refined : {"step", "elements"}) {
-    if (!study.varies(refined)) continue;
-    for (const std::string& error : errors_of(results))
-      for (const MethodRun& one : runs_of(study, error, refined)) {
-        const bool order = one.run.verdict == Verdict::order;
-        Row row = {one.finest->id};
-        for (const std::string& column : study.columns()) row.push_back(axis(*one.finest, column));
-        const auto slope = [&](double value) { return order ? Cell(value) : Cell(); };
-        for (Cell cell :
-             {Cell(refined), Cell(error), Cell(word(one.run.verdict)), slope(one.run.order), slope(one.run.least),
-              slope(one.run.most), slope(one.run.from), slope(one.run.to), Cell(one.run.stops_at),
-              one.run.stops_at && one.motion ? Cell(*one.run.stops_at / *one.motion) : Cell(), Cell(one.declared)})
-          row.push_back(std::move(cell));
-        table.rows.push_back(std::move(row));
-      }
-  }
-  return table;
 }
 
 }  // namespace ricochet

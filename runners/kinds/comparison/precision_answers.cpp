@@ -23,6 +23,25 @@ std::string time_words(double seconds) {
                                  : short_number(micro * seconds, 2) + " µs";
 }
 
+/// The accuracies that a question names, as shares: "a millionth", "0.01 %".
+std::vector<double> accuracies_in(const std::string& question) {
+  constexpr std::pair<const char*, double> words[] = {{"hundredth", 1e-2},         {"ten-thousandth", 1e-4},
+                                                      {"thousandth", 1e-3},        {"millionth", 1e-6},
+                                                      {"hundred-millionth", 1e-8}, {"billionth", 1e-9}};
+  std::vector<double> out;
+  for (const auto& [word, share] : words)
+    for (std::size_t at = question.find(word); at != std::string::npos; at = question.find(word, at + 1))
+      if (at > 0 && question[at - 1] == ' ') out.push_back(share);
+  for (std::size_t at = question.find('%'); at != std::string::npos; at = question.find('%', at + 1)) {
+    std::size_t from = at;
+    while (from > 0 && std::string("0123456789.e- ").find(question[from - 1]) != std::string::npos) --from;
+    std::string number = question.substr(from, at - from);
+    std::erase(number, ' ');
+    if (const auto value = as_number(number); value && *value > 0) out.push_back(*value / 100);
+  }
+  return out;
+}
+
 /// The cheapest case of one method for an accuracy.
 struct Entry {
   const CaseRecord* record = nullptr;
@@ -34,6 +53,14 @@ struct Accuracy {
   std::vector<Entry> entries;  ///< the cheapest first
   Members tied;                ///< of `methods`: those not told apart from the cheapest
 };
+
+/// A compared choice, or the way of marching where that varies; "" where there is neither.
+std::string compared_choice(const Compared& study) {
+  const std::string choice = !study.asked().empty() && study.asked() != "all" ? study.asked()
+                             : study.varies("march")                          ? "march"
+                                                                              : "";
+  return choice.empty() || !study.varies(choice) ? "" : choice;
+}
 
 class PrecisionSpeaker {
  public:
@@ -54,6 +81,8 @@ class PrecisionSpeaker {
   }
   std::optional<Accuracy> cheapest(double accuracy) const;
   Sentence sentence(const std::vector<Accuracy>& same) const;
+  /// "; with every step 25 ms at least": the cheapest of each other level of a compared choice.
+  void say_levels(const Accuracy& accuracy, Sentence& out) const;
   void say_never(Answer& answer) const;
 
   const Compared& study_;
@@ -105,7 +134,9 @@ Sentence PrecisionSpeaker::sentence(const std::vector<Accuracy>& same) const {
     text += others.size() <= few ? fmt::format("; {} cost{} the same within the timing noise", names.of(others),
                                                others.size() == 1 ? "s" : "")
                                  : fmt::format("; within the timing noise of {}", names.of(others));
-  } else if (finest.entries.size() > 1) {
+  } else if (finest.entries.size() > 1 &&
+             (compared_choice(study_).empty() || study_.text(*finest.entries[1].record, compared_choice(study_)) ==
+                                                     study_.text(*first.record, compared_choice(study_)))) {
     const Entry& next = finest.entries[1];
     text += fmt::format("; next {}, {}", study_.name(*next.record), time_words(next.seconds));
   }
@@ -119,7 +150,35 @@ Sentence PrecisionSpeaker::sentence(const std::vector<Accuracy>& same) const {
   clause.status = finest.tied.size() > 1 ? "tie" : "alone";
   clause.at_step = study_.step(*first.record);
   clause.at_mesh = study_.elements(*first.record);
-  return {text + ".", {clause}};
+  Sentence out{text, {clause}};
+  say_levels(finest, out);
+  out.text += ".";
+  return out;
+}
+
+void PrecisionSpeaker::say_levels(const Accuracy& accuracy, Sentence& out) const {
+  const std::string choice = compared_choice(study_);
+  if (choice.empty()) return;
+  const std::string own = study_.text(*accuracy.entries.front().record, choice);
+  InOrderMet<std::string, const Entry*> levels;
+  for (const Entry& entry : accuracy.entries)
+    if (const std::string level = study_.text(*entry.record, choice); level != own && !levels.holds(level))
+      levels[level] = &entry;
+  constexpr std::size_t few = 2;
+  if (levels.list().size() > few) return;
+  for (const auto& [level, entry] : levels.list()) {
+    const std::string who = study_.value_words(choice, level);
+    out.text += fmt::format("; with {} {} at least", who, time_words(entry->seconds));
+    Clause clause{.form = "cheapest", .measure = "error." + error_, .choice = choice, .who = who};
+    clause.methods = entry->record->id;
+    clause.value = entry->seconds;
+    clause.low = entry->low;
+    clause.high = entry->high;
+    clause.uncertainty = accuracy.share;
+    clause.unit = "s";
+    clause.status = "level";
+    out.clauses.push_back(std::move(clause));
+  }
 }
 
 void PrecisionSpeaker::say_never(Answer& answer) const {
@@ -148,38 +207,52 @@ void PrecisionSpeaker::say(Answer& answer) const {
   if (methods_.empty()) return;
   std::vector<std::vector<Accuracy>> told;
   constexpr int finest = 12;
+  std::vector<double> shares = accuracies_in(study_.results().question);
   for (int k = 1; k <= finest; ++k) {
-    const auto one = cheapest(std::pow(10, -k));
+    const double share = std::pow(10, -k);
+    if (std::none_of(shares.begin(), shares.end(), [&](double one) { return std::abs(one / share - 1) < 0.1; }))
+      shares.push_back(share);
+  }
+  std::sort(shares.begin(), shares.end(), std::greater<>());
+  for (const double share : shares) {
+    const auto one = cheapest(share);
     if (!one) break;
     if (!told.empty() && told.back().back().entries.front().record == one->entries.front().record)
       told.back().push_back(*one);
     else
       told.push_back({*one});
   }
-  // Three at most: the finest, then those of 1 % and 0.1 %.
+  // Three at most: those that the question names, the finest, then those of 1 % and 0.1 %.
   std::reverse(told.begin(), told.end());
   constexpr std::size_t most = 3;
-  if (told.size() > most) {
-    std::vector<std::vector<Accuracy>> kept = {told.front()};
-    const auto covers = [](const std::vector<Accuracy>& group, double share) {
-      return std::any_of(group.begin(), group.end(),
-                         [&](const Accuracy& one) { return std::abs(one.share / share - 1) < 0.1; });
-    };
-    for (std::size_t k = 1; k < told.size(); ++k)
-      if (kept.size() < most && (covers(told[k], 1e-2) || covers(told[k], 1e-3))) kept.push_back(told[k]);
-    told = std::move(kept);
-  }
-  for (const auto& group : told) answer.say(sentence(group));
+  const auto covers = [](const std::vector<Accuracy>& group, double share) {
+    return std::any_of(group.begin(), group.end(),
+                       [&](const Accuracy& one) { return std::abs(one.share / share - 1) < 0.1; });
+  };
+  std::vector<double> wanted = accuracies_in(study_.results().question);
+  if (!told.empty()) wanted.push_back(told.front().back().share);
+  wanted.insert(wanted.end(), {1e-2, 1e-3});
+  std::vector<std::size_t> kept;
+  for (const double share : wanted)
+    for (std::size_t k = 0; k < told.size(); ++k)
+      if (kept.size() < most && covers(told[k], share) && std::find(kept.begin(), kept.end(), k) == kept.end())
+        kept.push_back(k);
+  // What the question names is told first.
+  const std::vector<double> named = accuracies_in(study_.results().question);
+  const auto first = [&](std::size_t k) {
+    return std::any_of(named.begin(), named.end(), [&](double share) { return covers(told[k], share); });
+  };
+  std::stable_sort(kept.begin(), kept.end(),
+                   [&](std::size_t a, std::size_t b) { return first(a) != first(b) ? first(a) : a < b; });
+  for (const std::size_t k : kept) answer.say(sentence(told[k]));
   say_never(answer);
 }
 
 /// "Flights cost 0.22 of the time of every step (median of 44 pairs, 0.03 to 1.7)": of a compared choice, or of the way
 /// of marching where that varies.
 void say_factor(const Compared& study, Answer& answer) {
-  const std::string choice = !study.asked().empty() && study.asked() != "all" ? study.asked()
-                             : study.varies("march")                          ? "march"
-                                                                              : "";
-  if (choice.empty() || !study.varies(choice)) return;
+  const std::string choice = compared_choice(study);
+  if (choice.empty()) return;
   std::vector<std::string> others;
   for (const std::string& column : study.columns())
     if (column != choice) others.push_back(column);

@@ -1,0 +1,93 @@
+#include "runners/kinds/comparison/order_runs.hpp"
+
+#include <algorithm>
+
+#include "runners/kinds/comparison/comparison_answers.hpp"
+#include "runners/kinds/comparison/comparison_tables.hpp"
+#include "runners/table/in_order_met.hpp"
+
+namespace ricochet {
+
+using namespace answers;
+
+std::vector<MethodRun> runs_of(const Compared& study, const std::string& error, const std::string& refined) {
+  InOrderMet<std::string, Cases> methods;
+  for (const CaseRecord& record : study.results().cases) methods[study.key(record)].push_back(&record);
+  const bool step = refined == "step";
+  const auto size = [&](const CaseRecord& record) {
+    return step                     ? study.step(record)
+           : study.elements(record) ? std::optional(1 / *study.elements(record))
+                                    : std::nullopt;
+  };
+  const auto other = [&](const CaseRecord& record) {
+    return step ? 1 / study.elements(record).value_or(1) : study.step(record).value_or(1);
+  };
+  std::vector<MethodRun> out;
+  for (const auto& [key, cases] : methods.list()) {
+    std::optional<double> finest_other;
+    for (const CaseRecord* record : cases)
+      if (record->status == "done" && measure(*record, "error." + error))
+        finest_other = std::min(finest_other.value_or(other(*record)), other(*record));
+    MethodRun one;
+    std::vector<SizedValue> errors;
+    double floor = 0;
+    for (const CaseRecord* record : cases) {
+      const auto value = measure(*record, "error." + error);
+      const auto at = size(*record);
+      if (record->status != "done" || !value || !at || other(*record) != *finest_other) continue;
+      errors.push_back({*at, *value});
+      floor = std::max(floor, measure(*record, "floor." + error).value_or(0));
+      if (!one.finest || *at < *size(*one.finest)) one.finest = record;
+    }
+    if (errors.size() < 2) continue;
+    one.cases = cases;
+    one.run = *order_run(errors, floor);
+    if (step) one.declared = measure(*one.finest, "declared_order");
+    if (const auto motion = measure(*one.finest, "size." + error); motion && *motion > 0) one.motion = motion;
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+Table order_runs_table(const Compared& study) {
+  const StudyResults& results = study.results();
+  Table table{
+      "order_runs",
+      "One method, error and refined quantity: the order over the longest run of slopes that agree, and where it "
+      "ends.",
+      {case_column()},
+      {}};
+  for (const std::string& column : study.columns()) table.columns.push_back(axis_column(results, column));
+  for (const Column& column :
+       {Column{"refined", "", "step or elements; at the finest of the other."},
+        {"error", "", "Which error: a quantity of the motion and how its difference is measured."},
+        {"verdict", "", "order, stops, does not fall, no steady order, at the floor, too few."},
+        {"order", "1", "Slope over the whole run; in the step, or in the element's length."},
+        {"least", "1", "Least local slope of the run."},
+        {"most", "1", "Largest local slope of the run."},
+        {"from", "", "The coarsest size of the run: s, or 1 over the elements."},
+        {"to", "", "Its finest size."},
+        {"stops_at", "that of the error", "The smallest error, where the fall ends."},
+        {"left", "1", "That error over what a motion at rest would err by."},
+        {"declared", "1", "The order in the step that the scheme declares; none where it declares none."}})
+    table.columns.push_back(column);
+  for (const std::string refined : {"step", "elements"}) {
+    if (!study.varies(refined)) continue;
+    for (const std::string& error : errors_of(results))
+      for (const MethodRun& one : runs_of(study, error, refined)) {
+        const bool order = one.run.verdict == OrderRun::Verdict::order;
+        Row row = {one.finest->id};
+        for (const std::string& column : study.columns()) row.push_back(axis(*one.finest, column));
+        const auto slope = [&](double value) { return order ? Cell(value) : Cell(); };
+        for (Cell cell :
+             {Cell(refined), Cell(error), Cell(word(one.run.verdict)), slope(one.run.order), slope(one.run.least),
+              slope(one.run.most), slope(one.run.from), slope(one.run.to), Cell(one.run.stops_at),
+              one.run.stops_at && one.motion ? Cell(*one.run.stops_at / *one.motion) : Cell(), Cell(one.declared)})
+          row.push_back(std::move(cell));
+        table.rows.push_back(std::move(row));
+      }
+  }
+  return table;
+}
+
+}  // namespace ricochet
