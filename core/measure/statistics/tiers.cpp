@@ -7,7 +7,7 @@
 namespace ricochet {
 namespace {
 
-constexpr double share_of_spread = 0.3, wide = 2, decade_gap = 3;
+constexpr double share_of_spread = 0.3, wide = 2, decade_gap = 3, widest_tier = 10;
 
 std::vector<Members> separated(Members members, const std::vector<LimitInterval>& intervals, double tolerance) {
   std::stable_sort(members.begin(), members.end(),
@@ -88,6 +88,20 @@ Tiers tiers_over_decades(const std::vector<double>& values, double nothing) {
     if (out.tiers.empty() || value > decade_gap * top) out.tiers.emplace_back();
     out.tiers.back().push_back(k);
     top = std::max(top, value);
+  }
+  const auto size = [&](std::size_t k) { return std::max(std::abs(values[k]), nothing); };
+  for (std::size_t t = 0; t < out.tiers.size();) {
+    const Members tier = out.tiers[t];
+    if (size(tier.back()) <= widest_tier * size(tier.front())) {
+      ++t;
+      continue;
+    }
+    std::size_t cut = 1;
+    for (std::size_t k = 1; k < tier.size(); ++k)
+      if (size(tier[k]) * size(tier[cut - 1]) > size(tier[cut]) * size(tier[k - 1])) cut = k;
+    const auto middle = tier.begin() + static_cast<std::ptrdiff_t>(cut);
+    out.tiers[t] = Members(tier.begin(), middle);
+    out.tiers.insert(out.tiers.begin() + static_cast<std::ptrdiff_t>(t) + 1, Members(middle, tier.end()));
   }
   return out;
 }

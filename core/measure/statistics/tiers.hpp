@@ -23,6 +23,8 @@ struct Tiers {
 Tiers tiers_of(const std::vector<Limit>& limits, double tolerance);
 
 /// Values ≥ 0 over decades: a new tier begins at three times the largest value before; all below `nothing` is one tier.
+/// Values that chain into one another over more than a decade part where their ratio is largest, until no tier spans
+/// more.
 Tiers tiers_over_decades(const std::vector<double>& values, double nothing);
 
 }  // namespace ricochet
