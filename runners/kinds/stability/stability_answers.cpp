@@ -184,7 +184,7 @@ void StepLimits::say_limits(say::Answer& answer) const {
       said.text += fmt::format("{}{} {}", said.text.empty() ? "" : "; ", scheme.empty() ? "the scheme" : scheme, text);
     }
     said.text = fmt::format("Largest step: {}{}.", said.text,
-                            count > told ? fmt::format("; {} more schemes in the table", count - told) : "");
+                            count > told ? fmt::format("; {} more in the table", count - told) : "");
     answer.say(std::move(said));
     // What moves none of them.
     std::vector<std::string> idle;
@@ -291,9 +291,12 @@ void StepLimits::say_marches(say::Answer& answer) const {
     for (const LimitRow* row : {&one.open, &one.closed}) {
       if (row->id.empty() || !row->counted || !row->ratio) continue;
       ++both;
-      if (row->agrees != true) continue;
+      // A scene is open as well as closed: its march may have either limit.
+      const double own = row->observed && row->predicted ? std::abs(*row->observed / *row->predicted - 1) : INFINITY;
+      const double apart = std::min(own, std::abs(*row->ratio - 1));
+      if (apart > limit_tolerance) continue;
       ++agree;
-      worst = std::max(worst, std::abs(*row->ratio - 1));
+      worst = std::max(worst, apart);
     }
   if (both == 0) return;
   Clause one{.form = "limit"};
