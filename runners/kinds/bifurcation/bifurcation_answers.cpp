@@ -8,12 +8,15 @@ answers::Answer bifurcation_answer(const answers::Compared& study) {
   answers::Answer answer;
   const DiagramSpeaker diagram(study);
   if (diagram.known()) {
+    const bool asked = diagram.random_starts();
+    if (asked) diagram.say_coexistence(answer);
     diagram.say_methods(answer);
     diagram.say_steps(answer);
     diagram.say_robust(answer);
     if (!diagram.all_robust()) diagram.say_motions(answer);
     diagram.say_changes(answer);
     diagram.say_speeds(answer);
+    if (!asked) diagram.say_coexistence(answer);
   }
   constexpr std::size_t most = 6;
   answer.keep(most);

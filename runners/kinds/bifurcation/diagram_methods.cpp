@@ -84,7 +84,7 @@ Clause DiagramSpeaker::clause(const char* form, const Likeness& one, const std::
   out.value = one.distance;
   out.low = one.same;
   out.high = one.all;
-  out.status = one.same_diagram() ? "same" : "another";
+  out.status = one.same_diagram() ? "same" : one.nearly_same() ? "nearly" : "another";
   out.unit = "motions";
   out.at_step = study_.step(*one.record);
   out.at_mesh = study_.elements(*one.record);
@@ -97,15 +97,16 @@ void DiagramSpeaker::say_methods(say::Answer& answer) const {
   for (const Likeness& one : others_) finest = std::max(finest, steps(*one.record));
   finest = std::max(finest, steps(*reference_));
   const double mesh = study_.elements(*reference_).value_or(0);
-  std::vector<Likeness> same, other;
+  std::vector<Likeness> same, nearly, other;
   for (const Likeness& one : others_)
     if (!own_method(*one.record) && steps(*one.record) == finest && study_.elements(*one.record).value_or(0) == mesh)
-      (one.same_diagram() ? same : other).push_back(one);
-  if (same.empty() && other.empty()) return;
+      (one.same_diagram() ? same : one.nearly_same() ? nearly : other).push_back(one);
+  if (same.empty() && nearly.empty() && other.empty()) return;
   const auto by_distance = [](const Likeness& a, const Likeness& b) {
     return a.distance.value_or(0) < b.distance.value_or(0);
   };
   std::stable_sort(same.begin(), same.end(), by_distance);
+  std::stable_sort(nearly.begin(), nearly.end(), by_distance);
   std::stable_sort(other.begin(), other.end(), by_distance);
   const std::string at =
       study_.varies("steps_per_period") ? fmt::format(" at {} steps per period", short_number(finest)) : "";
@@ -126,9 +127,16 @@ void DiagramSpeaker::say_methods(say::Answer& answer) const {
     answer.say(std::move(said));
     said = {};
   }
+  if (!nearly.empty()) {
+    said.text = same.empty() ? fmt::format("The diagram of {}{} is nearly that of {}.", reference, at, list(nearly))
+                             : fmt::format("Nearly: {}.", list(nearly));
+    answer.say(std::move(said));
+    said = {};
+  }
   if (!other.empty()) {
-    said.text = same.empty() ? fmt::format("No method gives the diagram of {}{}: {}.", reference, at, list(other))
-                             : fmt::format("Another: {}.", list(other));
+    said.text = same.empty() && nearly.empty()
+                    ? fmt::format("No method gives the diagram of {}{}: {}.", reference, at, list(other))
+                    : fmt::format("Another: {}.", list(other));
     answer.say(std::move(said));
   }
 }

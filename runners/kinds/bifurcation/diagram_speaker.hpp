@@ -23,7 +23,10 @@ struct Likeness {
   std::optional<double> distance;      ///< median over values and starts
   double share() const { return all > 0 ? static_cast<double>(same) / all : 0; }
   /// At least 0.9 of all motions, or 0.01 away with none contradicted.
-  bool same_diagram() const { return share() >= 0.9 || (distance && *distance <= 0.01 && same == decided); }
+  bool same_diagram() const { return share() >= 0.9 || (distance && *distance <= near && same == decided); }
+  /// No more than 0.01 away, and a quarter of what is decided contradicts at most: long periods and chaos part first.
+  bool nearly_same() const { return !same_diagram() && distance && *distance <= near && 4 * same >= 3 * decided; }
+  static constexpr double near = 0.01;
 };
 
 /// Values next to each other with one motion.
@@ -47,6 +50,9 @@ class DiagramSpeaker {
   void say_robust(answers::Answer& answer) const;
   void say_motions(answers::Answer& answer) const;
   void say_changes(answers::Answer& answer) const;
+  void say_coexistence(answers::Answer& answer) const;
+  /// Whether starts are drawn: the study then asks which motions there are beside each other.
+  bool random_starts() const;
   void say_speeds(answers::Answer& answer) const;
   /// Whether every interval is the same in all cases, so that the robust part is all of the diagram.
   bool all_robust() const {
