@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "runners/answers/answer.hpp"
@@ -7,10 +8,15 @@
 namespace ricochet::answers {
 
 /// All choices ranked by what they move, the one asked for first.
-std::vector<Sentence> say_choices(const Compared& study, const MeasureWords& words, std::vector<ChoiceEffect> effects);
+std::vector<Sentence> say_choices(const Compared& study, const MeasureLimits& limits,
+                                  std::vector<ChoiceEffect> effects);
 
-/// Of a compared choice with many levels: which agree with its first level, the reference, and how far the others are.
-/// Empty where it has fewer than five levels, or where none agrees.
+/// What each level of a choice gives, where these values are farther apart than all other choices move any of them:
+/// "1.2 to 1.3 N with penalty, 1.5 N with rigid stops". Nothing otherwise, and of more than six levels.
+std::optional<Sentence> apart_levels(const Compared& study, const MeasureLimits& limits, const std::string& choice);
+
+/// Of a compared choice with five levels or more: which agree with its first level, the reference, and how far the
+/// others are; where none agrees, the levels in tiers of their values. Empty of fewer levels.
 std::vector<Sentence> say_levels(const Compared& study, const MeasureLimits& limits);
 
 }  // namespace ricochet::answers

@@ -49,6 +49,12 @@ std::vector<const Method*> MeasureLimits::with_limit() const {
   return out;
 }
 
+std::vector<const Method*> MeasureLimits::without_gain() const {
+  std::vector<const Method*> out = with_limit();
+  std::erase_if(out, [&](const Method* one) { return gains(*one); });
+  return out;
+}
+
 std::optional<double> scaled_value(const MeasureWords& words, const CaseRecord& record) {
   const auto value = measure(record, words.measure);
   if (!value || words.scale != "energy_brought_in") return value;
@@ -210,20 +216,28 @@ std::string place_of_effect(const Compared& study, const ChoiceEffect& effect, c
   return name.text.find(", and ") == std::string::npos ? " with " + name.text : "";
 }
 
-ChoiceEffect effect_of(const Compared& study, const MeasureLimits& limits, const std::string& choice,
-                       const std::vector<std::string>& own) {
+std::vector<std::string> without(std::vector<std::string> columns, const std::vector<std::string>& own) {
+  std::erase_if(columns, [&](const auto& one) { return std::find(own.begin(), own.end(), one) != own.end(); });
+  return columns;
+}
+
+}  // namespace
+
+ChoiceEffect choice_effect(const Compared& study, const MeasureLimits& limits, const std::string& choice,
+                           const std::vector<std::string>& own) {
   ChoiceEffect out;
   out.choice = choice;
-  std::vector<std::string> others;
-  for (const std::string& column : study.columns())
-    if (std::find(own.begin(), own.end(), column) == own.end()) others.push_back(column);
-  InOrderMet<std::string, std::vector<const Method*>> groups;
-  for (const Method* method : limits.with_limit()) groups[study.key(method->first(), others)].push_back(method);
+  const std::vector<std::string> others = without(study.columns(), own), scene = without(study.scene_columns(), own);
+  InOrderMet<std::string, std::vector<const Method*>> groups, scenes;
+  for (const Method* method : limits.without_gain()) {
+    groups[study.key(method->first(), others)].push_back(method);
+    scenes[study.key(method->first(), scene)].push_back(method);
+  }
   std::vector<double> sizes, uncertainties;
   InOrderMet<std::string, std::size_t> most, least;
   for (const auto& [key, group] : groups.list()) {
     if (group.size() < 2) continue;
-    const double scale = scale_of(limits.words, group);
+    const double scale = scale_of(limits.words, scenes[study.key(group.front()->first(), scene)]);
     if (scale <= 0) continue;
     const Difference difference = farthest(group);
     ChoiceRow row{
@@ -236,10 +250,12 @@ ChoiceEffect effect_of(const Compared& study, const MeasureLimits& limits, const
     };
     row.most = level(difference.high);
     row.least = level(difference.low);
-    ++most[row.most];
-    ++least[row.least];
     sizes.push_back(row.difference);
-    out.matters += row.matters() == Matters::yes ? 1 : 0;
+    if (row.matters() == Matters::yes) {
+      ++out.matters;
+      ++most[row.most];
+      ++least[row.least];
+    }
     out.matters_not += row.matters() == Matters::no ? 1 : 0;
     out.rows.push_back(std::move(row));
   }
@@ -250,7 +266,7 @@ ChoiceEffect effect_of(const Compared& study, const MeasureLimits& limits, const
   constexpr double in_most = 0.8;
   const auto usual = [&](const auto& counts) -> std::string {
     for (const auto& [name, count] : counts.list())
-      if (static_cast<double>(count) >= in_most * static_cast<double>(out.rows.size())) return name;
+      if (static_cast<double>(count) >= in_most * static_cast<double>(out.matters)) return name;
     return "";
   };
   out.most = usual(most);
@@ -259,12 +275,10 @@ ChoiceEffect effect_of(const Compared& study, const MeasureLimits& limits, const
   return out;
 }
 
-}  // namespace
-
 std::vector<ChoiceEffect> choice_effects(const Compared& study, const MeasureLimits& limits) {
   std::vector<ChoiceEffect> out;
   const auto add = [&](const std::string& choice, const std::vector<std::string>& own) {
-    ChoiceEffect effect = effect_of(study, limits, choice, own);
+    ChoiceEffect effect = choice_effect(study, limits, choice, own);
     if (!effect.rows.empty()) out.push_back(std::move(effect));
   };
   // One column of a choice, where that is asked for.

@@ -33,11 +33,18 @@ struct Method {
   std::optional<double> at(double step, double elements) const;
 };
 
+/// What ends above this many times the most that a method without a gain may have gains.
+inline constexpr double gains_above = 1.02;
+
 /// The limits of all methods in one measure.
 struct MeasureLimits {
   MeasureWords words;
   std::vector<Method> methods;  ///< in the study's order
   std::vector<const Method*> with_limit() const;
+  /// Whether it makes energy: its value is above the most that there can be.
+  bool gains(const Method& method) const { return words.most && method.limit->value > gains_above * *words.most; }
+  /// Those of with_limit() that do not gain: a difference of one that does says how far it grew.
+  std::vector<const Method*> without_gain() const;
 };
 
 /// A measure over its scale where that belongs to the case: a share of 1 or of the energy that was brought in.
@@ -89,10 +96,14 @@ struct ChoiceEffect {
   double typical = 0, largest = 0;
   std::optional<double> typical_uncertainty;
   std::size_t matters = 0, matters_not = 0;
-  std::string most, least;  ///< where the same level is an end in four of five combinations
+  std::string most, least;  ///< where the same level is an end in four of five combinations in which it matters
   std::string where;        ///< the combinations in which it matters, where these have a name: "with viscosity 0"
 };
 
+/// What these columns of a choice move, over all combinations of the others. What gains energy is left out; the scale
+/// is one for all methods of a scene.
+ChoiceEffect choice_effect(const Compared& study, const MeasureLimits& limits, const std::string& choice,
+                           const std::vector<std::string>& own);
 /// Every choice that varies, in the study's order, with those asked for by one of their columns first.
 std::vector<ChoiceEffect> choice_effects(const Compared& study, const MeasureLimits& limits);
 

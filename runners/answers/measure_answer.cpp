@@ -77,13 +77,21 @@ MeasureSaid say_measure(const Compared& study, const std::string& name, bool kep
     return out;
   }
   out.kind = "choices";
+  const std::optional<Sentence> gains = TierSpeaker(study, out.limits, study.columns()).gaining();
+  const auto with_gains = [&](std::vector<Sentence> sentences) {
+    if (gains) sentences.insert(sentences.begin() + (sentences.empty() ? 0 : 1), *gains);
+    return sentences;
+  };
   if (asks) out.sentences = say_levels(study, out.limits);
-  if (!out.sentences.empty()) return out;
+  if (!out.sentences.empty()) {
+    out.sentences = with_gains(std::move(out.sentences));
+    return out;
+  }
   const std::vector<ChoiceEffect> effects = choice_effects(study, out.limits);
   for (const ChoiceEffect& one : effects)
     if (one.typical > std::max(out.lead_size, tolerance) && 2 * one.matters > one.rows.size())
       out.lead = one.choice, out.lead_size = one.typical;
-  out.sentences = say_choices(study, words, effects);
+  out.sentences = with_gains(say_choices(study, out.limits, effects));
   return out;
 }
 

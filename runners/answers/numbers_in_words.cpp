@@ -60,6 +60,7 @@ MeasureWords measure_words(const std::string& measure) {
   out.decades = info->reading.decades;
   out.direction = info->reading.direction;
   out.truth = info->reading.truth;
+  if (out.direction > 0) out.most = out.truth;
   out.unit = std::string(info->unit) == "1" ? "" : info->unit;
   if (out.scale == "1" || out.scale == "energy_brought_in") {
     out.unit = out.decades ? "of the energy" : "%";

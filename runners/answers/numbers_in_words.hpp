@@ -18,6 +18,7 @@ struct MeasureWords {
   bool decades = false;         ///< differences are factors
   int direction = 0;            ///< 1: more is better, −1: less is, 0: neither
   std::optional<double> truth;  ///< what an exact method gives, in a conservative scene
+  std::optional<double> most;   ///< what no method without a gain exceeds, in any scene
 };
 /// Of a measure that its kind declares; words of its key where it says none.
 MeasureWords measure_words(const std::string& measure);

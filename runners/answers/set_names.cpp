@@ -13,7 +13,7 @@
 namespace ricochet::answers {
 namespace {
 
-constexpr std::size_t most_searched = 500, few = 3;
+constexpr std::size_t most_searched = 500, most_ruled = 10000, few = 3;
 constexpr double short_rule = 6.6, long_rule = 9, nearly_exact = 0.9;
 
 bool is_role(const std::string& column) {
@@ -104,9 +104,19 @@ SetNames::SetNames(const Compared& study, Cases methods, std::vector<std::string
 }
 
 void SetNames::add(std::string column, bool whole, std::vector<std::string> levels) {
-  Attribute attribute{std::move(column), whole, std::move(levels), {}};
+  Attribute attribute{std::move(column), whole, std::move(levels), {}, {}};
   for (const std::string& level : attribute.levels)
     if (!contains(attribute.all, level)) attribute.all.push_back(level);
+  // "Hunt–Crossley damping 2 s/m": a parameter that one method alone has is told with it.
+  const std::string role = axis_role(attribute.column);
+  if (role != attribute.column && role != "mass") {
+    std::set<std::string> names, owners;
+    for (std::size_t m = 0; m < methods_.size(); ++m) {
+      names.insert(study_.text(*methods_[m], role));
+      if (!attribute.levels[m].empty()) owners.insert(study_.text(*methods_[m], role));
+    }
+    if (names.size() > 1 && owners.size() == 1) attribute.owner = study_.method_words(role, *owners.begin());
+  }
   if (attribute.all.size() > 1) attributes_.push_back(std::move(attribute));
 }
 
@@ -139,6 +149,12 @@ std::optional<std::string> SetNames::end_of_number(const Attribute& attribute,
 
 std::optional<std::string> SetNames::words(const Attribute& attribute, const std::vector<std::string>& levels) const {
   if (levels.empty()) return std::nullopt;
+  if (!attribute.owner.empty()) {
+    Attribute alone = attribute;
+    alone.owner.clear();
+    const auto text = words(alone, levels);
+    return text ? std::optional(attribute.owner + " " + *text) : std::nullopt;
+  }
   if (auto end = end_of_number(attribute, levels)) return end;
   const bool role = is_role(attribute.column);
   if (contains(levels, "") && !role) return std::nullopt;
@@ -192,6 +208,12 @@ std::optional<std::pair<double, std::string>> SetNames::rule(const Picked& chose
     useful.push_back(a);
   }
   const auto attempt = [&](const std::vector<std::size_t>& parts) {
+    // What names its method needs no other rule that does.
+    for (const std::size_t a : parts)
+      for (const std::size_t b : parts)
+        if (!attributes_[a].owner.empty() && attributes_[b].owner.empty() &&
+            axis_role(attributes_[a].column) == axis_role(attributes_[b].column))
+          return;
     for (std::size_t m = 0; m < methods_.size(); ++m) {
       bool in = true;
       for (const std::size_t a : parts) in = in && picks[a][m];
@@ -228,12 +250,18 @@ SetNames::Name SetNames::found(const Members& members, bool may_turn) const {
   for (const std::size_t m : members) chosen[m] = 1;
   if (count == 1 && methods_.size() == 1) return {label(members.front()), false, true};
   if (count == methods_.size()) return {"every method", false, true};
-  if (methods_.size() > most_searched) return {common(chosen, count), count > 1, false};
-  const auto best = rule(chosen);
+  const bool large = methods_.size() > most_searched;
+  const auto best = methods_.size() > most_ruled ? std::nullopt : rule(chosen);
   const bool several = count > 1 && best && best->second.find(" and ") != std::string::npos;
   if (best && best->first <= short_rule) return {best->second, several, true};
+  // Among very many no union is searched.
+  if (large) {
+    const std::string shared = common(chosen, count);
+    if (!without_count(shared).empty()) return {shared, count > 1, false};
+    return {by_levels(chosen).value_or(shared), count > 1, false};
+  }
   if (count > few)
-    if (auto text = cover(chosen, count)) return {*text, true, true};
+    if (auto text = cover(chosen, count, few)) return {*text, true, true};
   const auto labels = [&](const Members& of) {
     std::vector<std::string> out;
     for (const std::size_t m : of) out.push_back(label(m));
@@ -250,6 +278,7 @@ SetNames::Name SetNames::found(const Members& members, bool may_turn) const {
     const Name other = found(rest, false);
     if (other.exact && other.text.size() < longest) return {"all but " + other.text, true, true};
   }
+  if (auto text = cover(chosen, count, few + 1)) return {*text, true, true};
   if (auto text = nearest(chosen, count, nearly_exact)) return {*text, true, false};
   if (auto text = whole_levels(chosen, count)) return {*text, true, false};
   const std::string shared = common(chosen, count);

@@ -16,8 +16,8 @@ class SetNames {
   SetNames(const Compared& study, Cases methods) : SetNames(study, methods, study.columns()) {}
 
   /// A rule of one to three attributes ("the singular mass with β = ½"), an end of a number ("stiffness 1e6 N/m and
-  /// more"), a union of at most three rules, up to three labels, all but such a set, the levels of the largest choice
-  /// that are wholly in, or the nearest rule with its exceptions. Never empty.
+  /// more"), a union of at most three rules (four where nothing else is exact), up to three labels, all but such a set,
+  /// the levels of the largest choice that are wholly in, or the nearest rule with its exceptions. Never empty.
   std::string of(const Members& chosen) const { return found(chosen, true).text; }
   /// The same, with whether it is one thing (a verb then has an s).
   struct Name {
@@ -36,6 +36,7 @@ class SetNames {
     bool whole = false;               // a choice of several columns
     std::vector<std::string> levels;  // of each method, as texts or as labels of a whole choice
     std::vector<std::string> all;     // in order of appearance
+    std::string owner = {};           // of a parameter: the one method among several that has it
   };
   using Picked = std::vector<char>;
 
@@ -44,11 +45,13 @@ class SetNames {
   std::optional<std::string> end_of_number(const Attribute& attribute, const std::vector<std::string>& levels) const;
   /// The cheapest conjunction that picks exactly the set, and its cost.
   std::optional<std::pair<double, std::string>> rule(const Picked& chosen) const;
-  std::optional<std::string> cover(const Picked& chosen, std::size_t count) const;
+  std::optional<std::string> cover(const Picked& chosen, std::size_t count, std::size_t most_rules) const;
   std::optional<std::string> whole_levels(const Picked& chosen, std::size_t count) const;
   std::optional<std::string> nearest(const Picked& chosen, std::size_t count, double least_worth) const;
-  /// Counts by the levels of the choice that tells most: "27 of 44 with averaged evaluation, 9 of 44 with …".
+  /// By the levels of the choice that tells most: "most with the lumped mass (15 of 19); Newmark and WBZ with …".
   std::optional<std::string> by_levels(const Picked& chosen) const;
+  /// The choice of methods with the most levels, as whole as it is; none of fewer than `levels`.
+  const Attribute* widest(std::size_t levels, const std::string& but = "") const;
   std::string common(const Picked& chosen, std::size_t count) const;
 
   const Compared& study_;
@@ -57,7 +60,8 @@ class SetNames {
   std::vector<Attribute> attributes_;
 };
 
-/// A name without its count: "all with explicit evaluation" of "44 of 88 methods, all with …"; "" of a count alone.
+/// A name without its count: "all of them with explicit evaluation" of "44 of 88 methods, all of them with …"; "" of a
+/// count alone.
 std::string without_count(const std::string& name);
 
 /// "a, b and c".

@@ -11,13 +11,15 @@
 namespace ricochet::answers {
 namespace {
 
+constexpr std::size_t most_named = 500;
+
 bool names_a_method(const std::string& column) {
   return column == "mass" || column == "contact" || column == "time";
 }
 
 }  // namespace
 
-std::optional<std::string> SetNames::cover(const Picked& chosen, std::size_t count) const {
+std::optional<std::string> SetNames::cover(const Picked& chosen, std::size_t count, std::size_t most_rules) const {
   struct Part {
     std::vector<std::size_t> attributes;
     std::vector<std::string> levels;
@@ -48,7 +50,7 @@ std::optional<std::string> SetNames::cover(const Picked& chosen, std::size_t cou
   Picked left = chosen;
   std::size_t remaining = count;
   std::vector<const Part*> taken;
-  constexpr std::size_t most_parts = 24, most_rules = 3;
+  constexpr std::size_t most_parts = 24;
   while (remaining > 0) {
     const Part* best = nullptr;
     std::size_t gain = 0;
@@ -68,52 +70,54 @@ std::optional<std::string> SetNames::cover(const Picked& chosen, std::size_t cou
   // Rules that differ in one level alone are said together.
   struct Merged {
     std::vector<std::size_t> attributes;
-    std::size_t open;   // the attribute whose levels are listed
-    std::string fixed;  // the level of the other
-    std::vector<std::string> levels;
+    std::vector<std::vector<std::string>> levels;  // of each; of two attributes one has a single level
   };
   std::vector<Merged> merged;
   for (const Part* part : taken) {
     bool joined = false;
     for (Merged& one : merged) {
       if (one.attributes != part->attributes) continue;
-      const std::size_t fixed = 1 - one.open;
-      if (part->attributes.size() == 2 && part->levels[fixed] != one.fixed) continue;
-      one.levels.push_back(part->levels[part->attributes.size() == 1 ? 0 : one.open]);
-      joined = true;
-      break;
+      const std::size_t parts = part->attributes.size();
+      for (std::size_t open = 0; open < parts && !joined; ++open) {
+        if (parts == 2 && one.levels[1 - open] != std::vector{part->levels[1 - open]}) continue;
+        one.levels[open].push_back(part->levels[open]);
+        joined = true;
+      }
+      if (joined) break;
     }
     if (joined) continue;
-    if (part->attributes.size() == 1)
-      merged.push_back({part->attributes, 0, "", {part->levels[0]}});
-    else
-      merged.push_back({part->attributes, 0, part->levels[1], {part->levels[0]}});
+    Merged& one = merged.emplace_back(Merged{part->attributes, {}});
+    for (const std::string& level : part->levels) one.levels.push_back({level});
   }
   if (merged.size() > most_rules) return std::nullopt;
   std::vector<std::string> said;
   for (const Merged& one : merged) {
     constexpr std::size_t most_levels = 5;
-    if (one.levels.size() > most_levels && !end_of_number(attributes_[one.attributes[one.open]], one.levels))
-      return std::nullopt;
-    const auto open = words(attributes_[one.attributes[one.open]], one.levels);
-    if (!open) return std::nullopt;
-    std::string text = *open;
-    if (one.attributes.size() == 2) {
-      const auto fixed = words(attributes_[one.attributes[1]], {one.fixed});
-      if (!fixed) return std::nullopt;
-      text += " with " + *fixed;
+    std::string text;
+    for (std::size_t k = 0; k < one.attributes.size(); ++k) {
+      const Attribute& attribute = attributes_[one.attributes[k]];
+      if (one.levels[k].size() > most_levels && !end_of_number(attribute, one.levels[k])) return std::nullopt;
+      const auto level = words(attribute, one.levels[k]);
+      if (!level) return std::nullopt;
+      text += (k == 0 ? "" : " with ") + *level;
     }
     said.push_back(std::move(text));
   }
   return and_names(said);
 }
 
-std::optional<std::string> SetNames::whole_levels(const Picked& chosen, std::size_t count) const {
-  const Attribute* widest = nullptr;
+const SetNames::Attribute* SetNames::widest(std::size_t levels, const std::string& but) const {
+  const Attribute* out = nullptr;
   for (const Attribute& attribute : attributes_)
-    if (names_a_method(attribute.column) && (!widest || attribute.all.size() > widest->all.size())) widest = &attribute;
+    if (names_a_method(attribute.column) && attribute.column != but && (!out || attribute.all.size() > out->all.size()))
+      out = &attribute;
+  return out && out->all.size() >= levels ? out : nullptr;
+}
+
+std::optional<std::string> SetNames::whole_levels(const Picked& chosen, std::size_t count) const {
   constexpr std::size_t many = 6, listed = 7;
-  if (!widest || widest->all.size() < many) return std::nullopt;
+  const Attribute* widest = this->widest(many);
+  if (!widest) return std::nullopt;
   std::vector<std::string> full;
   std::size_t inside = 0;
   for (const std::string& level : widest->all) {
@@ -166,6 +170,39 @@ std::optional<std::string> SetNames::nearest(const Picked& chosen, std::size_t c
         for (const std::string& other : attributes_[b].all)
           if (!other.empty()) consider({a, b}, {level, other});
     }
+  if (!best && least_worth == 0) {
+    // All levels that the set has, of the two choices that leave the fewest others in.
+    const auto inside = [&](const Attribute& attribute) {
+      std::vector<std::string> met;
+      for (const std::string& level : attribute.all)
+        for (std::size_t m = 0; m < methods_.size(); ++m)
+          if (chosen[m] && attribute.levels[m] == level) {
+            met.push_back(level);
+            break;
+          }
+      return met;
+    };
+    constexpr std::size_t most_levels = 7;
+    std::size_t fewest = methods_.size();
+    for (const Attribute& a : attributes_)
+      for (const Attribute& b : attributes_) {
+        if (axis_role(a.column) == axis_role(b.column)) continue;
+        const std::vector<std::string> in_a = inside(a), in_b = inside(b);
+        if (in_a.size() == a.all.size() || in_b.size() == b.all.size() || in_a.size() + in_b.size() > most_levels)
+          continue;
+        std::size_t got = 0;
+        for (std::size_t m = 0; m < methods_.size(); ++m)
+          got += std::count(in_a.begin(), in_a.end(), a.levels[m]) > 0 &&
+                         std::count(in_b.begin(), in_b.end(), b.levels[m]) > 0
+                     ? 1
+                     : 0;
+        const auto first = words(a, in_a), second = words(b, in_b);
+        if (got >= fewest || !first || !second || static_cast<double>(count) < pure * static_cast<double>(got))
+          continue;
+        fewest = got;
+        best = {0, fmt::format("{} with {} ({} of {})", *first, *second, count, got)};
+      }
+  }
   return best ? std::optional("mostly " + best->second) : std::nullopt;
 }
 
@@ -190,28 +227,69 @@ std::optional<std::string> SetNames::by_levels(const Picked& chosen) const {
     counts = std::move(own);
   }
   if (!best) return std::nullopt;
-  std::string out;
+  std::stable_sort(counts.begin(), counts.end(),
+                   [](const auto& a, const auto& b) { return a.second.first > b.second.first; });
+  constexpr std::size_t many = 6, listed = 4;
+  constexpr double most_of_them = 0.75;
+  const Attribute* names = methods_.size() <= most_named ? widest(many, axis_role(best->column)) : nullptr;
+  std::vector<std::string> out;
   for (const auto& [level, count] : counts) {
     const auto said = words(*best, {level});
     if (!said) return std::nullopt;
-    out += fmt::format("{}{} of {} with {}", out.empty() ? "" : ", ", count.first, count.second, *said);
+    const auto& [in, all] = count;
+    if (in == all) {
+      out.push_back(fmt::format("all {} with {}", all, *said));
+    } else if (!names || static_cast<double>(in) >= most_of_them * static_cast<double>(all)) {
+      out.push_back(fmt::format("{} of {} with {}", in, all, *said));
+    } else {
+      std::vector<std::string> own;
+      for (std::size_t m = 0; m < methods_.size(); ++m)
+        if (chosen[m] && best->levels[m] == level)
+          own.push_back(names->whole ? names->levels[m] : study_.value_words(names->column, names->levels[m]));
+      const std::size_t more = own.size() > listed ? own.size() - listed : 0;
+      own.resize(std::min(own.size(), listed));
+      out.push_back(fmt::format(
+          "{} with {}", more > 0 ? fmt::format("{} and {} more", fmt::join(own, ", "), more) : and_list(own), *said));
+    }
   }
-  return out;
+  return fmt::format("{}", fmt::join(out, "; "));
 }
 
 std::string SetNames::common(const Picked& chosen, std::size_t count) const {
-  std::vector<std::string> shared;
-  std::string told;  // a choice whose level says its parameters
-  for (const Attribute& attribute : attributes_) {
+  const auto levels_met = [&](const Attribute& attribute) {
     std::set<std::string> met;
     for (std::size_t m = 0; m < methods_.size(); ++m)
       if (chosen[m]) met.insert(attribute.levels[m]);
-    if (met.size() != 1 || met.begin()->empty() || axis_role(attribute.column) == told) continue;
-    if (attribute.whole) told = attribute.column;
-    if (const auto text = words(attribute, {*met.begin()})) shared.push_back(*text);
+    return met;
+  };
+  // A parameter that all methods of those names have alike tells nothing.
+  const auto implied = [&](const Attribute& parameter, const std::string& level) {
+    const std::string role = axis_role(parameter.column);
+    if (role == parameter.column) return false;
+    const auto names = std::find_if(attributes_.begin(), attributes_.end(),
+                                    [&](const Attribute& one) { return !one.whole && one.column == role; });
+    if (names == attributes_.end()) return false;
+    const std::set<std::string> met = levels_met(*names);
+    for (std::size_t m = 0; m < methods_.size(); ++m)
+      if (met.count(names->levels[m]) > 0 && parameter.levels[m] != level) return false;
+    return true;
+  };
+  std::vector<std::string> shared;
+  std::string told;                         // a choice whose level says its parameters
+  constexpr std::size_t two = 2, many = 4;  // two levels of many tell as well
+  for (const Attribute& attribute : attributes_) {
+    const std::set<std::string> met = levels_met(attribute);
+    const bool some = met.size() == two && attribute.all.size() >= many && names_a_method(attribute.column);
+    if ((met.size() != 1 && !some) || met.count("") > 0 || axis_role(attribute.column) == told) continue;
+    if (met.size() == 1 && implied(attribute, *met.begin())) continue;
+    if (attribute.whole || some) told = axis_role(attribute.column);
+    const auto text = words(attribute, {met.begin(), met.end()});
+    if (!text) continue;
+    if (!attribute.owner.empty()) std::erase(shared, attribute.owner);
+    shared.push_back(*text);
   }
   const std::string text = fmt::format("{} of {} methods", count, methods_.size());
-  return shared.empty() ? text : fmt::format("{}, all with {}", text, and_list(shared));
+  return shared.empty() ? text : fmt::format("{}, all of them with {}", text, and_list(shared));
 }
 
 }  // namespace ricochet::answers

@@ -137,8 +137,9 @@ std::vector<Sentence> ended(const Compared& study) {
       for (const CaseRecord* one : methods.cases[k]) whole = whole && one->status == status;
     const std::string who = names.of(members) + (whole ? "" : at_steps(study, cases));
     const Reasons reasons = reasons_of(cases);
+    const std::string shown = without_count(who);
     std::string text = fmt::format("{}: {} of {} case{} ({})", status == "refused" ? "Not run" : capitalised(status),
-                                   cases.size(), total, total == 1 ? "" : "s", who);
+                                   cases.size(), total, total == 1 ? "" : "s", shown.empty() ? who : shown);
     // Where each case says its own figures, none speaks for the others.
     if (!reasons.most.empty() && (reasons.cases > 1 || cases.size() == 1))
       text += fmt::format(": {}{}", shortened(reasons.most),
@@ -169,12 +170,22 @@ std::vector<Sentence> status(const Compared& study) {
                                      done.size(), all.size()),
                    {status_clause("done", "", done.size(), all.size())}});
   else {
-    const std::string who = names.of(members_where(methods, [](const CaseRecord* one) { return went_wrong(*one); })) +
-                            at_steps(study, wrong);
-    out.push_back({fmt::format("{} of {} cases run; {} diverge or fail.", done.size(), all.size(), wrong.size()),
-                   {status_clause("done", "", done.size(), all.size())}});
-    out.push_back({fmt::format("What diverges or fails: {}.", without_count(who).empty() ? who : without_count(who)),
-                   {status_clause("diverged", who, wrong.size(), all.size())}});
+    Sentence said{fmt::format("{} of {} cases run; ", done.size(), all.size()),
+                  {status_clause("done", "", done.size(), all.size())}};
+    std::vector<std::string> parts;
+    for (const auto& [ending, verb] : {std::pair{"diverged", "diverge"}, std::pair{"failed", "fail"}}) {
+      const Cases own = with_status(wrong, ending);
+      if (own.empty()) continue;
+      const std::string who = names.of(members_where(methods, [&](const CaseRecord* one) {
+        return one->status == ending && went_wrong(*one);
+      })) + at_steps(study, own);
+      const std::string shown = without_count(who);
+      parts.push_back(fmt::format("{} {}{}{}", own.size(), verb, own.size() == 1 ? "s" : "",
+                                  shown.empty() ? "" : " (" + shown + ")"));
+      said.clauses.push_back(status_clause(ending, who, own.size(), all.size()));
+    }
+    said.text += and_names(parts) + ".";
+    out.push_back(std::move(said));
   }
   // By reason, without what a colon explains.
   InOrderMet<std::string, Cases> reasons;

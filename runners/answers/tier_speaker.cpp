@@ -8,11 +8,6 @@
 #include <ricochet/measure/statistics/quantiles.hpp>
 
 namespace ricochet::answers {
-namespace {
-
-constexpr double gains_above = 1.02;
-
-}  // namespace
 
 Sentence TierSpeaker::one_method() const {
   const Limit& one = limit(0);
@@ -49,6 +44,7 @@ Sentence TierSpeaker::no_difference(const Members& firm, std::optional<double> u
       if (std::abs(limit(k).value - *words_.truth) > farthest_value)
         farthest_value = std::abs(limit(k).value - *words_.truth), which = k;
     said.form = "keeps";
+    if (auto apart = kept_apart(firm)) return std::move(*apart);
     const std::string left = farthest_value < nothing_gained
                                  ? "all of the energy is left"
                                  : "all of the energy is left, to " + percent(farthest_value);
@@ -168,9 +164,9 @@ Sentence TierSpeaker::gains(const Members& members) const {
                                 ? short_number(high, 2)
                                 : short_number(low, 2) + " to " + short_number(high, 2);
   const std::string rest = !several ? "" : cured ? ", less with finer steps" : ", and finer steps do not cure it";
-  const std::string energy = keeps_energy() ? " energy" : " in " + words_.words;
+  const std::string energy = words_.most ? " energy" : " in " + words_.words;
   return {fmt::format("{} gain{}{}: {}{} at {}{}.", capitalised(name.text), plural_s(name.several), energy, times,
-                      words_.truth          ? " times the start"
+                      words_.most ? " times " + std::string(keeps_energy() ? "the start" : "what was brought in")
                       : words_.unit.empty() ? ""
                                             : " " + words_.unit,
                       finest_words(members), rest),
@@ -204,8 +200,10 @@ TierSpeaker::Sorted TierSpeaker::sorted() const {
   Sorted out;
   Members rest;
   for (std::size_t k = 0; k < methods_.size(); ++k) {
-    const bool grows = (limit(k).status == LimitStatus::blows_up && !words_.decades) ||
-                       (keeps_energy() && limit(k).value > gains_above);
+    // What grows from nothing to next to nothing does not blow up.
+    const bool grows = (limit(k).status == LimitStatus::blows_up && !words_.decades &&
+                        std::abs(limit(k).value) > tolerance * scale_) ||
+                       (words_.most && limit(k).value > gains_above * *words_.most);
     (grows ? out.blown : rest).push_back(k);
   }
   if (rest.empty()) return out;
@@ -228,6 +226,13 @@ TierSpeaker::Sorted TierSpeaker::sorted() const {
   if (words_.direction > 0) std::reverse(tiers.begin(), tiers.end());
   if (keeps_energy() && !tiers.empty()) split_keepers(tiers);
   return out;
+}
+
+std::optional<Sentence> TierSpeaker::gaining() const {
+  Members members;
+  for (std::size_t k = 0; k < methods_.size(); ++k)
+    if (words_.most && limit(k).value > gains_above * *words_.most) members.push_back(k);
+  return members.empty() ? std::nullopt : std::optional(gains(members));
 }
 
 std::vector<std::size_t> TierSpeaker::places() const {

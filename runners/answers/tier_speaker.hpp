@@ -33,6 +33,8 @@ class TierSpeaker {
   double scale() const { return scale_; }
   /// The tier of each method, 1 the best or least; 0 of those that grow or belong to none.
   std::vector<std::size_t> places() const;
+  /// Who gains energy; nothing where none does, and of another measure.
+  std::optional<Sentence> gaining() const;
 
  private:
   /// The tiers, those of all of them, those that grow, and the two of all tiers that are farthest apart.
@@ -95,6 +97,8 @@ class TierSpeaker {
   Sentence one_method() const;
   Sentence no_difference(const Members& firm, std::optional<double> u, double spread) const;
   Sentence together(const Members& firm, const Difference& far, double u) const;
+  /// What keeps the energy, by how well, where that differs by a hundred times and has at most four groups.
+  std::optional<Sentence> kept_apart(const Members& firm) const;
   Sentence cannot_tell(const Members& firm, std::optional<double> u, double spread) const;
   void say_tiers(const std::vector<Members>& tiers, std::vector<Sentence>& out) const;
   Sentence nowhere(const Members& members) const;

@@ -247,6 +247,34 @@ std::string TierSpeaker::kept_values(const Members& members) const {
   return "all of the energy is left, to " + percent(lacking);
 }
 
+std::optional<Sentence> TierSpeaker::kept_apart(const Members& firm) const {
+  std::vector<double> lacking;
+  for (const std::size_t k : firm) lacking.push_back(std::abs(limit(k).value - *words_.truth));
+  constexpr double told = 100, least = 1e-16;
+  const auto [low, high] = std::minmax_element(lacking.begin(), lacking.end());
+  if (*high < told * std::max(*low, least) || *high < nothing_gained) return std::nullopt;
+  std::vector<Members> groups = tiers_over_decades(lacking, nothing_gained).tiers;
+  constexpr std::size_t most = 4;
+  if (groups.size() < 2 || groups.size() > most) return std::nullopt;
+  Sentence out;
+  for (Members& group : groups) {
+    double worst = 0;
+    for (std::size_t& k : group) {
+      worst = std::max(worst, lacking[k]);
+      k = firm[k];
+    }
+    std::sort(group.begin(), group.end());
+    Clause said = clause("keeps", group);
+    said.value = 100 * worst;
+    said.unit = "%";
+    out.text += fmt::format("{}{} with {}", out.text.empty() ? "" : "; ",
+                            worst <= nothing_gained ? "to round-off" : "to " + percent(worst), said.who);
+    out.clauses.push_back(std::move(said));
+  }
+  out.text = "All keep it: all of the energy is left, " + out.text + ".";
+  return out;
+}
+
 /// "with either mass matrix", "whichever method".
 std::string TierSpeaker::whichever() const {
   std::vector<std::string> choices;
