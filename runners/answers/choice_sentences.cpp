@@ -23,7 +23,8 @@ std::string effect_size(const ChoiceEffect& effect) {
 std::string effect_ends(const ChoiceEffect& effect) {
   return effect.matters == 0 || effect.most.empty() || effect.least.empty()
              ? ""
-             : fmt::format(", most with {}, least with {}", effect.most, effect.least);
+             : fmt::format(", most with {}, least with {}", level_phrase(effect.choice, effect.most),
+                           level_phrase(effect.choice, effect.least));
 }
 
 std::string place_in_words(const ChoiceEffect& effect) {
@@ -72,8 +73,12 @@ std::vector<Sentence> say_choices(const Compared& study, const MeasureLimits& li
       case Verdict::none:
         out.push_back(
             {fmt::format("{} does not matter: it moves {} by {}{}.", capitalised(name), words.words,
-                         asked->largest <= tolerance ? "at most " + percent(asked->largest) : effect_size(*asked),
-                         asked->typical_uncertainty ? ", known to " + percent(*asked->typical_uncertainty) : ""),
+                         by_percent(asked->largest) == by_percent(0) ? by_percent(0)
+                         : asked->largest <= tolerance               ? "at most " + percent(asked->largest)
+                                                                     : effect_size(*asked),
+                         asked->typical_uncertainty && by_percent(*asked->typical_uncertainty) != by_percent(0)
+                             ? ", known to " + percent(*asked->typical_uncertainty)
+                             : ""),
              {effect_clause(words, *asked, "does not matter")}});
         break;
       case Verdict::main:

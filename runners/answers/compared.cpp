@@ -265,6 +265,10 @@ std::string spoken(const std::string& choice) {
   return known != choice ? known : report::in_words(last_part(choice));
 }
 
+std::string level_phrase(const std::string& choice, const std::string& level) {
+  return choice == "mass" && !level.empty() ? "the " + level + " mass" : level;
+}
+
 std::string plural_s(bool several) {
   return several ? "" : "s";
 }

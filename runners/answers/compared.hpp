@@ -74,6 +74,8 @@ class Compared {
 
 /// A choice in a sentence: "the mass matrix", "restitution" of "time.restitution".
 std::string spoken(const std::string& choice);
+/// "the singular P1 mass" of its level; other levels as they are.
+std::string level_phrase(const std::string& choice, const std::string& level);
 /// "the energy"; verbs agree: a choice that is several things has none.
 std::string plural_s(bool several);
 

@@ -26,7 +26,7 @@ std::vector<std::string> own_columns(const Compared& study, const std::string& c
 }
 
 std::string level_words(const Compared& study, const CaseRecord& record, const std::string& choice) {
-  return axis_role(choice) == choice ? study.level(record, choice)
+  return axis_role(choice) == choice ? level_phrase(choice, study.level(record, choice))
                                      : study.value_words(choice, study.text(record, choice));
 }
 
@@ -145,6 +145,8 @@ std::optional<Sentence> apart_levels(const Compared& study, const MeasureLimits&
 
 std::vector<Sentence> say_levels(const Compared& study, const MeasureLimits& limits) {
   const std::string& asked = study.asked();
+  // Of a number no level is the reference of the others.
+  if (axis_role(asked) != asked && !study.numbers_of(asked).empty()) return {};
   const std::vector<std::string> own = own_columns(study, asked);
   std::vector<std::string> others = study.columns();
   std::erase_if(others, [&](const auto& one) { return std::find(own.begin(), own.end(), one) != own.end(); });

@@ -95,6 +95,16 @@ MeasureSaid say_measure(const Compared& study, const std::string& name, bool kep
   return out;
 }
 
+/// "Only Dumont–Paoli β = ½ runs: the energy left is 98.3 ± 0.2 %": one method among several that gave nothing.
+void only_one(const Compared& study, MeasureSaid& said) {
+  if (said.kind != "value" || said.limits.methods.size() < 2 || said.sentences.empty()) return;
+  std::string& text = said.sentences.front().text;
+  const std::string begins = capitalised(said.limits.words.words) + ": ";
+  if (!text.starts_with(begins)) return;
+  text = fmt::format("Only {} runs: {} is {}", study.name(said.limits.with_limit().front()->first()),
+                     said.limits.words.words, text.substr(begins.size()));
+}
+
 /// One sentence on the measures after the first that share a verdict.
 void say_others(const std::vector<MeasureSaid>& others, const MeasureSaid& first, std::vector<Sentence>& out) {
   const std::string& first_kind = first.kind;
@@ -189,6 +199,7 @@ Answer measure_answer(const Compared& study, const std::vector<std::string>& mea
         continue;
       }
       if (first.kind.empty()) {
+        only_one(study, said);
         constexpr std::size_t of_first = 3;
         for (std::size_t s = 0; s < std::min(of_first, said.sentences.size()); ++s) body.push_back(said.sentences[s]);
         first = std::move(said);

@@ -279,11 +279,11 @@ SetNames::Name SetNames::found(const Members& members, bool may_turn) const {
     if (other.exact && other.text.size() < longest) return {"all but " + other.text, true, true};
   }
   if (auto text = cover(chosen, count, few + 1)) return {*text, true, true};
-  if (auto text = nearest(chosen, count, nearly_exact)) return {*text, true, false};
+  if (auto text = nearest(chosen, count, nearly_exact)) return {*text, true, !text->starts_with("mostly ")};
   if (auto text = whole_levels(chosen, count)) return {*text, true, false};
   const std::string shared = common(chosen, count);
   if (!without_count(shared).empty()) return {shared, true, false};
-  if (auto text = nearest(chosen, count, 0)) return {*text, true, false};
+  if (auto text = nearest(chosen, count, 0)) return {*text, true, !text->starts_with("mostly ")};
   if (auto text = by_levels(chosen)) return {*text, true, false};
   return {shared, true, false};
 }

@@ -158,9 +158,20 @@ std::optional<std::string> SetNames::nearest(const Picked& chosen, std::size_t c
       if (!said) return;
       text += (k == 0 ? "" : " with ") + *said;
     }
+    constexpr std::size_t named = 2;
+    if (hit == got && count - hit <= named) {
+      std::vector<std::string> others = {text};
+      for (std::size_t m = 0; m < methods_.size(); ++m) {
+        bool in = true;
+        for (std::size_t k = 0; k < parts.size(); ++k) in = in && attributes_[parts[k]].levels[m] == levels[k];
+        if (chosen[m] && !in) others.push_back(label(m));
+      }
+      best = {worth, and_names(others)};
+      return;
+    }
     text += fmt::format(" ({} of {}", hit, got);
-    if (count > hit) text += fmt::format(", and {} others", count - hit);
-    best = {worth, text + ")"};
+    if (count > hit) text += fmt::format(", and {} other{}", count - hit, count - hit == 1 ? "" : "s");
+    best = {worth, "mostly " + text + ")"};
   };
   for (std::size_t a = 0; a < attributes_.size(); ++a)
     for (const std::string& level : attributes_[a].all) {
@@ -200,10 +211,10 @@ std::optional<std::string> SetNames::nearest(const Picked& chosen, std::size_t c
         if (got >= fewest || !first || !second || static_cast<double>(count) < pure * static_cast<double>(got))
           continue;
         fewest = got;
-        best = {0, fmt::format("{} with {} ({} of {})", *first, *second, count, got)};
+        best = {0, fmt::format("mostly {} with {} ({} of {})", *first, *second, count, got)};
       }
   }
-  return best ? std::optional("mostly " + best->second) : std::nullopt;
+  return best ? std::optional(best->second) : std::nullopt;
 }
 
 std::optional<std::string> SetNames::by_levels(const Picked& chosen) const {

@@ -13,10 +13,10 @@ namespace {
 
 constexpr std::size_t longest_reason = 160;
 
-/// The reason of most of these cases, without what holds for one of them alone.
-struct Reasons {
-  std::string most;
-  std::size_t cases = 0, others = 0;
+/// A reason, without what holds for one of its cases alone.
+struct Reason {
+  std::string text;
+  Cases cases;
 };
 
 std::string general(const std::string& reason) {
@@ -25,14 +25,56 @@ std::string general(const std::string& reason) {
   return reason.substr(from, to == std::string::npos ? to : to - from);
 }
 
-Reasons reasons_of(const Cases& cases) {
-  InOrderMet<std::string, std::size_t> counts;
-  for (const CaseRecord* record : cases)
-    if (const std::string reason = general(record->reason); !reason.empty()) ++counts[reason];
-  Reasons out;
-  for (const auto& [reason, count] : counts.list())
-    if (count > out.cases) out.most = reason, out.cases = count;
-  out.others = counts.list().empty() ? 0 : counts.list().size() - 1;
+bool digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// A text in parts: what stands between its numbers, and these.
+std::pair<std::string, std::vector<std::string>> numbers_apart(const std::string& text) {
+  std::pair<std::string, std::vector<std::string>> out;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at;
+    while (end < text.size() &&
+           (digit(text[end]) || (end > at && text[end] == '.' && end + 1 < text.size() && digit(text[end + 1]))))
+      ++end;
+    if (end == at) {
+      out.first += text[at++];
+      continue;
+    }
+    out.first += '\x1f';
+    out.second.push_back(text.substr(at, end - at));
+    at = end;
+  }
+  return out;
+}
+
+/// Reasons by how many cases they stop. `alike`: reasons that differ in numbers alone are one, which says "…" for them.
+std::vector<Reason> reasons_of(const Cases& cases, bool alike) {
+  InOrderMet<std::string, Reason> groups;
+  for (const CaseRecord* record : cases) {
+    const std::string reason = general(record->reason);
+    if (reason.empty()) continue;
+    Reason& one = groups[alike ? numbers_apart(reason).first : reason];
+    if (!one.cases.empty() && one.text != reason) {
+      const auto [between, numbers] = numbers_apart(one.text);
+      const auto own = numbers_apart(reason).second;
+      if (numbers.size() == own.size()) {
+        one.text.clear();
+        std::size_t k = 0;
+        for (const char c : between)
+          if (c != '\x1f')
+            one.text += c;
+          else
+            one.text += numbers[k] == own[k] ? numbers[k] : "…", ++k;
+      }
+    }
+    if (one.cases.empty()) one.text = reason;
+    one.cases.push_back(record);
+  }
+  std::vector<Reason> out;
+  for (auto& [key, reason] : std::move(groups).list()) out.push_back(std::move(reason));
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Reason& a, const Reason& b) { return a.cases.size() > b.cases.size(); });
   return out;
 }
 
@@ -130,24 +172,39 @@ std::vector<Sentence> ended(const Compared& study) {
     for (const CaseRecord& record : study.results().cases)
       if (record.status == status && !record.partial) cases.push_back(&record);
     if (cases.empty()) continue;
-    const Members members =
-        members_where(methods, [&](const CaseRecord* one) { return one->status == status && !one->partial; });
-    bool whole = true;
-    for (const std::size_t k : members)
-      for (const CaseRecord* one : methods.cases[k]) whole = whole && one->status == status;
-    const std::string who = names.of(members) + (whole ? "" : at_steps(study, cases));
-    const Reasons reasons = reasons_of(cases);
-    const std::string shown = without_count(who);
-    std::string text = fmt::format("{}: {} of {} case{} ({})", status == "refused" ? "Not run" : capitalised(status),
-                                   cases.size(), total, total == 1 ? "" : "s", shown.empty() ? who : shown);
+    const bool refused = status == "refused";
+    const std::string verb = refused ? "Not run" : capitalised(status);
+    const auto say = [&](const Cases& some, const std::string& reason) {
+      const std::set<const CaseRecord*> chosen(some.begin(), some.end());
+      const Members members = members_where(methods, [&](const CaseRecord* one) { return chosen.contains(one); });
+      bool whole = true;
+      for (const std::size_t k : members)
+        for (const CaseRecord* one : methods.cases[k]) whole = whole && one->status == status;
+      const std::string who = names.of(members) + (whole ? "" : at_steps(study, some));
+      const std::string shown = without_count(who).empty() ? who : without_count(who);
+      std::string text = fmt::format("{}: {} of {} case{}{}", verb, some.size(), total, total == 1 ? "" : "s",
+                                     some.size() == total ? "" : " (" + shown + ")");
+      if (!reason.empty()) text += ": " + shortened(reason);
+      if (!text.ends_with('.') && !text.ends_with("…")) text += ".";
+      out.push_back({text, {status_clause(status, who, some.size(), total)}});
+    };
     // Where each case says its own figures, none speaks for the others.
-    if (!reasons.most.empty() && (reasons.cases > 1 || cases.size() == 1))
-      text += fmt::format(": {}{}", shortened(reasons.most),
-                          reasons.others > 0 ? fmt::format(" ({} of these; {} other reason{})", reasons.cases,
-                                                           reasons.others, reasons.others == 1 ? "" : "s")
-                                             : "");
-    if (!text.ends_with('.') && !text.ends_with("…")) text += ".";
-    out.push_back({text, {status_clause(status, who, cases.size(), total)}});
+    const std::vector<Reason> reasons = reasons_of(cases, refused);
+    constexpr std::size_t all_told = 3, told = 2;
+    if (!refused || reasons.size() < 2) {
+      const bool shared = !reasons.empty() && (reasons.front().cases.size() > 1 || cases.size() == 1);
+      say(cases, shared ? reasons.front().text : "");
+      continue;
+    }
+    const std::size_t most = reasons.size() <= all_told ? all_told : told;
+    std::size_t left = cases.size();
+    for (std::size_t k = 0; k < std::min(most, reasons.size()); ++k) {
+      say(reasons[k].cases, reasons[k].text);
+      left -= reasons[k].cases.size();
+    }
+    if (left > 0)
+      out.push_back({fmt::format("{} for other reasons: {} of {} cases.", verb, left, total),
+                     {status_clause(status, "", left, total)}});
   }
   add_refused_references(study, out);
   return out;

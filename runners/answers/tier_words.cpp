@@ -222,9 +222,16 @@ std::string TierSpeaker::mark(const Members& members) const {
     return fmt::format(", and what is lacking falls with order {:.1f}", median(orders));
   }
   if (all([](const Limit& l) { return l.status == LimitStatus::wanders; })) return ", wandering";
+  // What still moves by next to nothing is told to as many digits; near the truth that is all there is to tell.
+  constexpr double next_to_nothing = 0.02;
+  const auto still = [&](const Limit& one) {
+    const bool near = keeps_energy() && std::abs(one.value - *words_.truth) <= keeps_within;
+    return one.status == LimitStatus::moves &&
+           (near || one.uncertainty.value_or(0) > next_to_nothing * tolerance * scale_);
+  };
   int rising = 0, falling = 0, moving = 0;
   for (const std::size_t k : members)
-    if (limit(k).status == LimitStatus::moves) ++moving, rising += limit(k).trend > 0, falling += limit(k).trend < 0;
+    if (still(limit(k))) ++moving, rising += limit(k).trend > 0, falling += limit(k).trend < 0;
   if (moving == 0) {
     // Two steps tell methods apart before they tell where each goes.
     const double u = largest_uncertainty(members).value_or(0);

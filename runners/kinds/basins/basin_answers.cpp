@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
-#include "runners/table/in_order_met.hpp"
+#include "runners/study/axis_meaning.hpp"
 
 namespace ricochet {
 namespace {
@@ -22,137 +25,234 @@ std::string motion_of(const FractionRow& row) {
   return row.regime;
 }
 
+constexpr double half_of_them = 0.5, some_of_them = 0.05;
+
+/// What becomes of the starts of one case.
+struct CaseEnds {
+  const CaseRecord* record = nullptr;
+  std::map<int, const FractionRow*> ends;  ///< by attractor
+  double decided = 0, undecided = 0;       ///< cells that are starts
+  double undecided_share() const { return decided + undecided > 0 ? undecided / (decided + undecided) : 0; }
+  double fraction(int attractor) const {
+    const auto found = ends.find(attractor);
+    return found == ends.end() ? 0 : found->second->fraction.value_or(0);
+  }
+  double half(int attractor) const {
+    const auto found = ends.find(attractor);
+    return found == ends.end() ? 0 : 0.5 * (found->second->high.value_or(0) - found->second->low.value_or(0));
+  }
+};
+
 class BasinSpeaker {
  public:
   explicit BasinSpeaker(const say::Compared& study)
       : study_(study), fractions_(basin_fractions_type().read(study.results().derived)) {
-    for (const CaseRecord& record : study.results().cases) by_id_[record.id] = &record;
+    std::map<std::string, CaseEnds> by_id;
+    for (const FractionRow& row : fractions_) by_id[row.id].ends[row.attractor] = &row;
+    for (const CellRow& cell : cells_type().read(study.results().derived))
+      if (cell.status.value_or("done") == "done" && by_id.contains(cell.id))
+        (cell.attractor ? by_id[cell.id].decided : by_id[cell.id].undecided) += 1;
+    for (const CaseRecord& record : study.results().cases)
+      if (const auto found = by_id.find(record.id); found != by_id.end()) {
+        found->second.record = &record;
+        (found->second.undecided_share() > half_of_them ? vague_ : cases_).push_back(found->second);
+      }
   }
+  void say_undecided(say::Answer& answer) const;
   void say_ends(say::Answer& answer) const;
   void say_border(say::Answer& answer) const;
   void say_fractal(say::Answer& answer) const;
 
  private:
   /// A case as its method, step and mesh; never empty.
-  std::string name(const std::string& id) const {
-    const auto found = by_id_.find(id);
-    if (found == by_id_.end()) return id;
-    std::string out = study_.label(*found->second);
-    const auto step = study_.step(*found->second), elements = study_.elements(*found->second);
+  std::string name(const CaseRecord& record) const {
+    std::string out = study_.label(record);
+    const auto step = study_.step(record), elements = study_.elements(record);
     if (study_.varies("steps_per_period") && step) out += (out.empty() ? "" : ", ") + study_.step_words(*step);
     if (study_.varies("elements") && elements) out += (out.empty() ? "" : ", ") + short_number(*elements) + " elements";
     return out.empty() ? "the one method" : out;
   }
+  const CaseEnds* find(const std::string& id) const {
+    const auto found =
+        std::find_if(cases_.begin(), cases_.end(), [&](const CaseEnds& one) { return one.record->id == id; });
+    return found == cases_.end() ? nullptr : &*found;
+  }
+  /// Whether two cases lead as many starts to every end, as far as the grid tells.
+  bool alike(const CaseEnds& a, const CaseEnds& b) const {
+    std::set<int> all;
+    for (const auto* one : {&a, &b})
+      for (const auto& [attractor, row] : one->ends) all.insert(attractor);
+    return std::all_of(all.begin(), all.end(), [&](int attractor) {
+      return std::abs(a.fraction(attractor) - b.fraction(attractor)) <=
+             std::max(2 * std::max(a.half(attractor), b.half(attractor)), 1e-12);
+    });
+  }
+  Sentence ends_of(const std::vector<const CaseEnds*>& group, bool named) const;
+  std::string names(const std::vector<const CaseEnds*>& group) const;
 
   const say::Compared& study_;
   std::vector<FractionRow> fractions_;
-  std::map<std::string, const CaseRecord*> by_id_;
+  std::vector<CaseEnds> cases_, vague_;  ///< those with half of their starts decided, and the others
 };
 
-/// "81.5 ± 1.6 % of the starts end in period 1, 18.5 ± 1.6 % without contact."
-void BasinSpeaker::say_ends(say::Answer& answer) const {
-  InOrderMet<int, std::vector<const FractionRow*>> ends;
-  for (const FractionRow& row : fractions_) ends[row.attractor].push_back(&row);
-  std::vector<std::pair<int, std::vector<const FractionRow*>>> by_size = ends.list();
-  const auto largest = [](const std::vector<const FractionRow*>& rows) {
-    double most = 0;
-    for (const FractionRow* row : rows) most = std::max(most, row->fraction.value_or(0));
-    return most;
+std::string BasinSpeaker::names(const std::vector<const CaseEnds*>& group) const {
+  constexpr std::size_t few = 3;
+  std::vector<std::string> out;
+  for (const CaseEnds* one : group) out.push_back(name(*one->record));
+  return out.size() <= few ? say::and_names(out) : fmt::format("{} of {} cases", out.size(), cases_.size());
+}
+
+/// Of what is not decided nothing is told.
+void BasinSpeaker::say_undecided(say::Answer& answer) const {
+  std::vector<const CaseEnds*> many;
+  double least = 1, most = 0;
+  for (const std::vector<CaseEnds>* list : {&cases_, &vague_})
+    for (const CaseEnds& one : *list)
+      if (const double share = one.undecided_share(); share > some_of_them) {
+        many.push_back(&one);
+        least = std::min(least, share);
+        most = std::max(most, share);
+      }
+  if (many.empty()) return;
+  const std::size_t all = cases_.size() + vague_.size();
+  Clause clause{.form = "basin", .who = many.size() == all ? "every case" : names(many)};
+  clause.low = 100 * least;
+  clause.high = 100 * most;
+  clause.unit = "%";
+  clause.status = "undecided";
+  const std::string share = percent(least) == percent(most) ? percent(most) : percent(least) + " to " + percent(most);
+  answer.say(
+      fmt::format("{} of the starts are undecided{}: more periods are needed before {} told.", share,
+                  many.size() == all ? "" : " with " + clause.who, vague_.empty() ? "these are" : "where they end is"),
+      clause);
+}
+
+/// "81.5 ± 1.6 % of the starts end in period 1, 18.5 ± 1.6 % without contact", the mean over a group of cases.
+Sentence BasinSpeaker::ends_of(const std::vector<const CaseEnds*>& group, bool named) const {
+  struct End {
+    double low = 1, high = 0, half = 0;
+    const FractionRow* row = nullptr;
   };
-  std::stable_sort(by_size.begin(), by_size.end(),
-                   [&](const auto& a, const auto& b) { return largest(a.second) > largest(b.second); });
+  std::map<int, End> ends;
+  for (const CaseEnds* one : group)
+    for (const auto& [attractor, row] : one->ends) ends[attractor].row = row;
+  for (auto& [attractor, end] : ends)
+    for (const CaseEnds* one : group) {
+      end.low = std::min(end.low, one->fraction(attractor));
+      end.high = std::max(end.high, one->fraction(attractor));
+      end.half = std::max(end.half, one->half(attractor));
+    }
+  std::vector<End> by_size;
+  for (const auto& [attractor, end] : ends)
+    if (end.high > 0) by_size.push_back(end);
+  std::stable_sort(by_size.begin(), by_size.end(), [](const End& a, const End& b) { return a.high > b.high; });
   say::MeasureWords words;
   words.unit = "%";
   words.factor = 100;
-  constexpr std::size_t told = 4;
+  const std::size_t told = named ? 2 : 4;
+  const std::string who = names(group);
   Sentence said;
   for (std::size_t k = 0; k < by_size.size(); ++k) {
-    const auto& rows = by_size[k].second;
-    double low = 1, high = 0, half = 0;
-    for (const FractionRow* row : rows) {
-      low = std::min(low, row->fraction.value_or(0));
-      high = std::max(high, row->fraction.value_or(0));
-      half = std::max(half, 0.5 * (row->high.value_or(0) - row->low.value_or(0)));
-    }
-    const std::string motion = motion_of(*rows.front());
-    const std::string in = motion == "no contact" ? "without contact" : "in " + motion;
-    Clause one{.form = "basin", .who = motion};
-    one.value = 50 * (low + high);
-    one.low = 100 * low;
-    one.high = 100 * high;
-    one.uncertainty = 100 * half;
+    const End& end = by_size[k];
+    const std::string motion = motion_of(*end.row);
+    Clause one{.form = "basin", .choice = named ? who : "", .who = motion};
+    one.value = 50 * (end.low + end.high);
+    one.low = 100 * end.low;
+    one.high = 100 * end.high;
+    one.uncertainty = 100 * end.half;
     one.unit = "%";
-    one.status = high - low > 2 * half ? "differ" : "agree";
+    one.status = named ? "differ" : "agree";
     said.clauses.push_back(one);
     if (k >= told) continue;
-    const std::string first = said.text.empty() ? " of the starts end " : " ";
-    std::string text;
-    if (high - low > 2 * half) {
-      // Methods that differ are named each.
-      for (const FractionRow* row : rows)
-        text += fmt::format("{}{} ({})", text.empty() ? "" : ", ",
-                            say::value_text(words, row->fraction.value_or(0), half), name(row->id));
-    } else {
-      text = fmt::format("{} ± {}", say::value_text(words, 0.5 * (low + high), half, false),
-                         say::uncertainty_text(words, half));
-    }
-    said.text += fmt::format("{}{}{}{}", said.text.empty() ? "" : ", ", text, first, in);
+    said.text += fmt::format("{}{} ± {}{}{}", k == 0 ? "" : ", ",
+                             say::value_text(words, 0.5 * (end.low + end.high), end.half, false),
+                             say::uncertainty_text(words, end.half), k == 0 ? " of the starts end " : " ",
+                             motion == "no contact" ? "without contact" : "in " + motion);
   }
-  if (said.text.empty()) return;
   if (by_size.size() > told) said.text += fmt::format("; {} more ends", by_size.size() - told);
+  if (named) said.text = "With " + who + " " + said.text;
   said.text += ".";
-  answer.say(std::move(said));
+  return said;
 }
 
-/// Whether the ends depend on the method, by the cells that differ.
+void BasinSpeaker::say_ends(say::Answer& answer) const {
+  if (cases_.empty()) return;
+  std::vector<std::vector<const CaseEnds*>> groups;
+  for (const CaseEnds& one : cases_) {
+    const auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
+      return std::all_of(group.begin(), group.end(), [&](const CaseEnds* other) { return alike(*other, one); });
+    });
+    if (found == groups.end())
+      groups.push_back({&one});
+    else
+      found->push_back(&one);
+  }
+  constexpr std::size_t most_groups = 3;
+  for (std::size_t k = 0; k < std::min(most_groups, groups.size()); ++k)
+    answer.say(ends_of(groups[k], groups.size() > 1 || !vague_.empty()));
+}
+
+/// Whether the ends depend on each choice, by the cells in which two cases differ that differ in it alone.
 void BasinSpeaker::say_border(say::Answer& answer) const {
-  std::vector<BasinDifferenceRow> rows = basin_differences_type().read(study_.results().derived);
+  const std::vector<BasinDifferenceRow> rows = basin_differences_type().read(study_.results().derived);
   if (rows.empty()) {
     if (study_.results().cases.size() == 1)
       answer.say("One method only: whether another moves the border is not known.",
                  Clause{.form = "basin", .status = "one"});
     return;
   }
-  std::stable_sort(rows.begin(), rows.end(),
-                   [](const auto& a, const auto& b) { return a.share.value_or(0) > b.share.value_or(0); });
-  const BasinDifferenceRow &most = rows.front(), &least = rows.back();
-  const std::string what = study_.choices().size() == 1 && study_.varies(study_.choices().front())
-                               ? say::spoken(study_.choices().front())
-                               : "the method";
-  const auto pair = [&](const BasinDifferenceRow& row) {
-    return fmt::format("{} of {} cells differ between {} and {}", row.differ, row.cells, name(row.id), name(row.other));
-  };
-  const auto clause = [&](const BasinDifferenceRow& row) {
-    Clause out{.form = "basin",
-               .choice = study_.choices().size() == 1 ? study_.choices().front() : "",
-               .methods = row.id + " " + row.other};
-    out.who = name(row.id) + " and " + name(row.other);
-    out.value = row.differ;
-    out.high = row.cells;
-    out.unit = "cells";
-    out.status = row.share.value_or(0) > border_moves ? "moves" : "does not move";
-    return out;
-  };
-  Sentence said;
-  said.clauses.push_back(clause(most));
-  if (most.share.value_or(0) <= border_moves)
-    said.text = fmt::format("{} does not move the border: {}{}.", say::capitalised(what),
-                            rows.size() > 1 ? "at most " : "", pair(most));
-  else
-    said.text = fmt::format(
-        "{} moves the border: {}{}.", say::capitalised(what), pair(most),
-        rows.size() > 1 ? fmt::format(", {} between {} and {}", least.differ, name(least.id), name(least.other)) : "");
-  if (rows.size() > 1) said.clauses.push_back(clause(least));
-  answer.say(std::move(said));
+  std::vector<std::string> columns = study_.columns(), choices = study_.choices();
+  for (const char* refined : {"steps_per_period", "elements"})
+    if (study_.varies(refined) && std::find(columns.begin(), columns.end(), refined) == columns.end()) {
+      columns.emplace_back(refined);
+      choices.emplace_back(refined);
+    }
+  Sentence moves, still;
+  for (const std::string& choice : choices) {
+    std::vector<std::string> others;
+    for (const std::string& column : columns)
+      if (axis_role(column) != choice && column != choice) others.push_back(column);
+    const BasinDifferenceRow* most = nullptr;
+    for (const BasinDifferenceRow& row : rows) {
+      const CaseEnds *one = find(row.id), *other = find(row.other);
+      if (!one || !other || row.cells == 0) continue;
+      if (study_.key(*one->record, others) != study_.key(*other->record, others)) continue;
+      if (!most || row.share.value_or(0) > most->share.value_or(0)) most = &row;
+    }
+    if (!most) continue;
+    const bool moved = most->share.value_or(0) > border_moves;
+    Clause clause{.form = "basin", .choice = choice, .methods = most->id + " " + most->other};
+    clause.who = name(*find(most->id)->record) + " and " + name(*find(most->other)->record);
+    clause.value = most->differ;
+    clause.high = most->cells;
+    clause.unit = "cells";
+    clause.status = moved ? "moves" : "does not move";
+    Sentence& said = moved ? moves : still;
+    const std::string cells = fmt::format("{} of {} cells differ{}", most->differ, most->cells,
+                                          moved               ? " between " + clause.who
+                                          : most->differ == 1 ? "s"
+                                                              : "");
+    said.text += said.text.empty() ? fmt::format("{} {} the border: {}", say::capitalised(say::spoken(choice)),
+                                                 moved ? "moves" : "does not move", cells)
+                                   : fmt::format("; {} does {}: {}", moved ? "so" : "nor", say::spoken(choice), cells);
+    said.clauses.push_back(std::move(clause));
+  }
+  for (Sentence* one : {&moves, &still})
+    if (!one->text.empty()) {
+      one->text += ".";
+      answer.say(std::move(*one));
+    }
 }
 
 void BasinSpeaker::say_fractal(say::Answer& answer) const {
   std::vector<UncertaintyRow> rows = basin_uncertainty_type().read(study_.results().derived);
-  std::erase_if(rows, [](const UncertaintyRow& row) { return !row.exponent || !row.low || !row.high; });
+  std::erase_if(rows,
+                [&](const UncertaintyRow& row) { return !row.exponent || !row.low || !row.high || !find(row.id); });
   if (rows.empty()) return;
   const auto fractal = std::find_if(rows.begin(), rows.end(), [](const UncertaintyRow& row) { return *row.high < 1; });
   const UncertaintyRow& row = fractal == rows.end() ? rows.front() : *fractal;
-  Clause clause{.form = "basin", .measure = "uncertainty exponent", .who = name(row.id), .methods = row.id};
+  Clause clause{
+      .form = "basin", .measure = "uncertainty exponent", .who = name(*find(row.id)->record), .methods = row.id};
   clause.value = row.exponent;
   clause.low = row.low;
   clause.high = row.high;
@@ -169,6 +269,7 @@ void BasinSpeaker::say_fractal(say::Answer& answer) const {
 answers::Answer basins_answer(const answers::Compared& study) {
   answers::Answer answer;
   const BasinSpeaker basins(study);
+  basins.say_undecided(answer);
   basins.say_ends(answer);
   basins.say_border(answer);
   basins.say_fractal(answer);

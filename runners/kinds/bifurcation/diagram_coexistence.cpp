@@ -43,7 +43,9 @@ std::string list_of(const std::vector<std::string>& motions) {
   std::vector<std::string> words;
   for (std::size_t k = 0; k < motions.size();) {
     const auto count = static_cast<std::size_t>(std::count(motions.begin(), motions.end(), motions[k]));
-    words.push_back(count == 1 ? motions[k] : fmt::format("{} of {}", count, motions[k]));
+    static const char* const spoken[] = {"", "", "two", "three", "four"};
+    const std::string number = count < std::size(spoken) ? spoken[count] : std::to_string(count);
+    words.push_back(count == 1 ? motions[k] : number + " of " + motions[k]);
     k += count;
   }
   return and_list(words);
@@ -95,9 +97,9 @@ void DiagramSpeaker::say_coexistence(say::Answer& answer) const {
     part.unit = unit_;
     part.status = "coexist";
     said.clauses.push_back(part);
-    if (k < told) said.text += fmt::format("{}{} {}", k == 0 ? "" : "; ", place(one.from, one.to), list);
+    if (k < told) said.text += fmt::format("{}{} {}", k == 0 ? "" : "; ", list, place(one.from, one.to));
   }
-  said.text = "Motions coexist " + said.text + parameter_unit();
+  said.text = "Motions coexist: " + said.text + parameter_unit();
   if (stretches.size() > told) said.text += fmt::format("; {} more in the table", stretches.size() - told);
   // Elsewhere: the same number in every case.
   std::size_t everywhere = 0, cases = 0;
@@ -116,8 +118,9 @@ void DiagramSpeaker::say_coexistence(say::Answer& answer) const {
     part.unit = "values";
     part.status = "coexist in every case";
     said.clauses.push_back(part);
-    said.text += everywhere == several.size()
-                     ? "; several motions in every case there"
+    said.text += everywhere == several.size() ? "; several in every case at all of these values"
+                 : everywhere == 0
+                     ? "; at none of these values in every case"
                      : fmt::format("; several in every case at {} of these {} values", everywhere, several.size());
   }
   said.text += ".";

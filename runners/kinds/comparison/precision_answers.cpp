@@ -84,6 +84,8 @@ class PrecisionSpeaker {
   /// "; with every step 25 ms at least": the cheapest of each other level of a compared choice.
   void say_levels(const Accuracy& accuracy, Sentence& out) const;
   void say_never(Answer& answer) const;
+  /// An accuracy that the question names and nobody reaches.
+  void say_unreached(Answer& answer) const;
 
   const Compared& study_;
   std::string error_;
@@ -181,6 +183,25 @@ void PrecisionSpeaker::say_levels(const Accuracy& accuracy, Sentence& out) const
   }
 }
 
+void PrecisionSpeaker::say_unreached(Answer& answer) const {
+  const CaseRecord* best = nullptr;
+  for (const Cases& cases : methods_)
+    for (const CaseRecord* record : cases)
+      if (!best || *share(*record) < *share(*best)) best = record;
+  for (const double named : accuracies_in(study_.results().question)) {
+    if (!best || *share(*best) <= named) continue;
+    Clause clause{.form = "cheapest", .measure = "error." + error_, .who = study_.name(*best), .methods = best->id};
+    clause.value = 100 * *share(*best);
+    clause.unit = "%";
+    clause.status = "not reached";
+    clause.at_step = study_.step(*best);
+    answer.say({fmt::format("For {} of the motion: none; the best is {}{}, {}.", percent(named), clause.who,
+                            clause.at_step ? " at " + study_.step_words(*clause.at_step) : "", percent(*share(*best))),
+                {clause}});
+    return;
+  }
+}
+
 void PrecisionSpeaker::say_never(Answer& answer) const {
   constexpr double wanted = 0.01;
   Cases firsts;
@@ -244,6 +265,7 @@ void PrecisionSpeaker::say(Answer& answer) const {
   };
   std::stable_sort(kept.begin(), kept.end(),
                    [&](std::size_t a, std::size_t b) { return first(a) != first(b) ? first(a) : a < b; });
+  say_unreached(answer);
   for (const std::size_t k : kept) answer.say(sentence(told[k]));
   say_never(answer);
 }

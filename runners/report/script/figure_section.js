@@ -6,9 +6,15 @@
     arrow: '<path d="M15 1 L20 10 L10 10 Z"', "triangle-down": '<path d="M10 2 L20 2 L15 11 Z"', cross: '<path stroke="#222" d="M11 2 L19 10 M19 2 L11 10"', diamond: '<path d="M15 1 L20 6 L15 11 L10 6 Z"',
   };
 
+  const mostEntries = 12;   // of a legend at first sight
   function legend(entries, used) {
     if (entries.length < 2) return "";
-    let out = '<div class="legend" role="group" aria-label="Show or hide curves">', heading = "";
+    const rest = entries.slice(mostEntries), more = '<details><summary>' + rest.length + ' more</summary><div class="legend-rest">';
+    return '<div class="legend" role="group" aria-label="Show or hide curves">' + legendEntries(entries.slice(0, mostEntries), used) +
+      (rest.length ? more + legendEntries(rest, used) + "</div></details>" : "") + "</div>";
+  }
+  function legendEntries(entries, used) {
+    let out = "", heading = "";
     for (const entry of entries) {
       if ((entry.heading || "") !== heading) {
         out += (heading ? '<span class="line"></span>' : "") + '<span class="heading">' + escape(entry.heading) + "</span>";
@@ -18,7 +24,7 @@
       const mark = shapes[entry.symbol] ? shapes[entry.symbol] + ' fill="' + entry.colour + '"/>' : "";
       out += '<button type="button" aria-pressed="true" data-name="' + escape(entry.name) + '" title="' + escape(entry.name) + '"><svg width="30" height="12" aria-hidden="true">' + line + mark + "</svg>" + escape(ricochet.shorten(entry.name, used)) + "</button>";
     }
-    return out + "</div>";
+    return out;
   }
   function controls(figure) {
     let out = "";

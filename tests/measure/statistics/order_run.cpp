@@ -42,3 +42,13 @@ TEST_CASE("errors that do not fall, jump about, or lie at the floor have no orde
   CHECK(order_run({{1, 1}, {0.5, 0.5}}, 0)->verdict == OrderRun::Verdict::too_few);
   CHECK_FALSE(order_run({}, 0));
 }
+
+TEST_CASE("two slopes that agree before the finest errors may be chance, and are said to be in passing") {
+  // Slopes 2, 2, 0: the level is met after two.
+  const auto passing = order_run({{1, 1}, {0.5, 0.25}, {0.25, 0.0625}, {0.125, 0.0625}}, 0);
+  CHECK(passing->verdict == OrderRun::Verdict::order);
+  CHECK(passing->in_passing);
+  // To the finest, or over three slopes.
+  CHECK_FALSE(order_run({{1, 1}, {0.5, 0.25}, {0.25, 0.0625}}, 0)->in_passing);
+  CHECK_FALSE(order_run(errors_of(2, 1e-3, 10), 0)->in_passing);
+}

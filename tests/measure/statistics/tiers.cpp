@@ -83,3 +83,20 @@ TEST_CASE("over decades a tier begins at three times the largest before, and not
   CHECK(found.tiers[1] == Members{2, 3});
   CHECK(found.tiers[2] == Members{4});
 }
+
+TEST_CASE("over decades no tier spans more than one, and values that chain part where their ratio is largest") {
+  std::vector<double> values;
+  for (int k = 0; k < 12; ++k) values.push_back(std::pow(2, k) * (k >= 5 ? 1.3 : 1));
+  const Tiers found = tiers_over_decades(values, 1e-11);
+  REQUIRE(found.tiers.size() > 1);
+  std::size_t members = 0;
+  for (const Members& tier : found.tiers) {
+    members += tier.size();
+    CHECK(values[tier.back()] <= 10 * values[tier.front()]);
+  }
+  CHECK(members == values.size());
+  CHECK(tiers_over_decades({1, 2, 4, 8}, 1e-11).tiers.size() == 1);
+  const Tiers apart = tiers_over_decades({1, 2, 5, 10, 20}, 1e-11);
+  REQUIRE(apart.tiers.size() == 2);
+  CHECK(apart.tiers[0] == Members{0, 1});
+}

@@ -260,8 +260,19 @@ TEST_CASE("cases that gave no result are told by what sets them apart, where all
     }
   CHECK_THAT(said(answers_table(results)),
              Catch::Contains("Not run: 3 of 12 cases (the heavy mass with soft): no impact measure.\n"));
+  // Each reason with its own cases; reasons that differ in numbers alone are one.
   results.cases.back().reason = "no step";
-  CHECK_THAT(said(answers_table(results)), Catch::Contains("no impact measure (2 of these; 1 other reason).\n"));
+  CHECK_THAT(said(answers_table(results)),
+             Catch::Contains("Not run: 2 of 12 cases (the heavy mass with soft at h = ") &&
+                 Catch::Contains(": no impact measure.\n") && Catch::Contains("Not run: 1 of 12 cases (") &&
+                 Catch::Contains(": no step.\n"));
+  int number = 0;
+  for (CaseRecord& record : results.cases)
+    if (record.status == "refused") record.reason = "step 0." + std::to_string(++number) + " is beyond 2";
+  CHECK_THAT(said(answers_table(results)),
+             Catch::Contains("Not run: 3 of 12 cases (the heavy mass with soft): step … is beyond 2.\n"));
+  for (CaseRecord& record : results.cases)
+    if (record.status == "refused") record.reason = "no impact measure";
   // A reference that refuses is named.
   for (CaseRecord& record : results.cases)
     record.notes = {"reference that does not apply: exact: the beam is held twice"};
@@ -269,6 +280,12 @@ TEST_CASE("cases that gave no result are told by what sets them apart, where all
              Catch::Contains("The reference exact does not apply: the beam is held twice.\n"));
   results.cases.back().notes.clear();
   CHECK_THAT(said(answers_table(results)), Catch::Contains("The reference exact does not apply to 11 of 12 cases: "));
+  for (CaseRecord& record : results.cases) record.notes.clear();
+  // Of several methods one alone.
+  StudyResults one = study([](int, int, double step) { return 0.6 + step; }, {4e-4, 2e-4, 1e-4}, 1);
+  for (CaseRecord& record : one.cases)
+    if (record.axes[0].second == "light") record.status = "refused";
+  CHECK_THAT(said(answers_table(one)), Catch::StartsWith("Only the heavy mass runs: the energy left is 60.01 "));
   // What becomes of cases, first.
   results.study = {{"observe", {"status", "energy_left"}}};
   CHECK_THAT(said(answers_table(results)), Catch::StartsWith("Everything that applies runs: 9 of 12 cases"));

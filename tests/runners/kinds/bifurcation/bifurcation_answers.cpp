@@ -51,6 +51,26 @@ TEST_CASE("the same diagram is at least nine tenths of all motions, or near with
   CHECK_THAT(text, Contains("whether it converges needs a third number of steps"));
 }
 
+TEST_CASE("a diagram that is near with a quarter contradicted at most is nearly the same") {
+  const std::string text = said(agreements({500, 2000}, {{"a", {0.7, 1}}, {"b", {0.5, 0.8}}, {"c", {0.5, 0.7}}},
+                                           {{"a", {0.2, 0}}, {"b", {0.3, 0.004}}, {"c", {0.3, 0.004}}}));
+  CHECK_THAT(text, Contains("The diagram of a at 2000 steps per period is nearly that of b (80 of 100 motions"));
+  CHECK_THAT(text, Contains("Another: c (70 of 100 motions"));
+}
+
+TEST_CASE("motions that coexist are told with their values") {
+  StudyResults results = agreements({2000}, {{"a", {1}}, {"b", {0.9}}}, {{"a", {0}}, {"b", {0.002}}});
+  Table values{"values", "", named_columns({"case", "parameter", "start", "class", "period", "attractor"}), {}};
+  for (const char* id : {"a0", "b0"})
+    for (const double value : {1.0, 2.0, 3.0}) {
+      values.rows.push_back({id, value, "random-1", "periodic", 1, 1});
+      if (value < 3) values.rows.push_back({id, value, "random-2", "periodic", 2, 2});
+    }
+  results.derived.push_back(values);
+  CHECK_THAT(said(results), Contains("Motions coexist: period 1 and period 2 from 1 to 2") &&
+                                Contains("several in every case at all of these values"));
+}
+
 TEST_CASE("from three numbers of steps on the distance has an order") {
   const std::string text = said(agreements({500, 1000, 2000}, {{"a", {0.7, 0.9, 1}}}, {{"a", {0.16, 0.04, 0}}}));
   CHECK_THAT(text, Contains("the distance falls with order 2.0"));

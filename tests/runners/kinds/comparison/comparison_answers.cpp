@@ -82,6 +82,30 @@ TEST_CASE("the cheapest method of an accuracy is named with its step, and those 
   CHECK_THAT(text, Contains("Never to 1 %: 1 of 2 methods, other"));
 }
 
+TEST_CASE("beside an order that lasts one met in passing is none, where it is not like it") {
+  StudyResults results = two_orders(2, 1, 0);
+  // Three errors of the other fall with order 4 and then stay.
+  int k = 0;
+  for (CaseRecord& record : results.cases)
+    if (record.axes.front().second == "other") record.measures.front().second = std::pow(2, -4 * std::min(k, 2)), ++k;
+  const std::string text = sentences(orders_answer(answers::Compared(results)));
+  CHECK_THAT(text, Contains("order 2 (2.00) with one.") && Contains("It stops at 0.0039 m"));
+}
+
+TEST_CASE("the accuracy that the question names is told first, reached or not") {
+  StudyResults results = two_orders(2, 1, 0);
+  for (CaseRecord& record : results.cases) {
+    const double seconds = 1e-3 / record.axes.back().second.get<double>();
+    for (const char* name : {"timed_seconds", "timed_low", "timed_high"}) record.measures.emplace_back(name, seconds);
+  }
+  results.question = "What does an error of 7 % cost?";
+  CHECK_THAT(sentences(precision_answer(answers::Compared(results))),
+             Catch::Matchers::StartsWith("For 7 % of the motion: one at h = 0.25 s, 4 ms"));
+  results.question = "What does a millionth cost?";
+  CHECK_THAT(sentences(precision_answer(answers::Compared(results))),
+             Catch::Matchers::StartsWith("For 1e-4 % of the motion: none; the best is one at h = 0.03125 s, 0.098 %."));
+}
+
 TEST_CASE("a way of marching is part of the method: both ways of one scene stand against each other") {
   CHECK(is_method("march"));
   CHECK(is_method("mass.velocity"));
