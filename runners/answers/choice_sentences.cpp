@@ -99,6 +99,9 @@ std::vector<Sentence> say_choices(const Compared& study, const MeasureLimits& li
              {effect_clause(words, *asked, "open")}});
         break;
     }
+    if (verdict(*asked) == Verdict::main || verdict(*asked) == Verdict::part)
+      if (auto values = say_level_values(study, limits)) out.push_back(std::move(*values));
+    if (auto steady = say_steady_end(study, limits)) out.push_back(std::move(*steady));
     effects.erase(asked);
     // A column of a method that was asked for speaks for its role.
     std::erase_if(effects, [&](const ChoiceEffect& one) {

@@ -19,4 +19,12 @@ std::optional<Sentence> apart_levels(const Compared& study, const MeasureLimits&
 /// others are; where none agrees, the levels in tiers of their values. Empty of fewer levels.
 std::vector<Sentence> say_levels(const Compared& study, const MeasureLimits& limits);
 
+/// What each level of the compared choice gives, the best first, where the first and the last are apart whatever else
+/// is chosen; of at most eight levels.
+std::optional<Sentence> say_level_values(const Compared& study, const MeasureLimits& limits);
+
+/// Of a compared number with four values or more that matters: the end of its range in which it moves the measure by a
+/// tenth of what matters at most, "from stiffness 1e6 N/m on". Nothing where no two values at an end are so near.
+std::optional<Sentence> say_steady_end(const Compared& study, const MeasureLimits& limits);
+
 }  // namespace ricochet::answers

@@ -143,6 +143,76 @@ std::optional<Sentence> apart_levels(const Compared& study, const MeasureLimits&
   return out;
 }
 
+std::optional<Sentence> say_level_values(const Compared& study, const MeasureLimits& limits) {
+  constexpr std::size_t most_levels = 8;
+  const std::string& asked = study.asked();
+  const std::vector<const Method*> methods = limits.without_gain();
+  std::vector<Level> levels = levels_of(study, methods, own_columns(study, asked));
+  if (levels.size() < 2 || levels.size() > most_levels) return std::nullopt;
+  const bool less = limits.words.direction < 0 || limits.words.decades;
+  std::stable_sort(levels.begin(), levels.end(),
+                   [&](const Level& a, const Level& b) { return less ? a.high < b.high : a.low > b.low; });
+  const Level &best = less ? levels.front() : levels.back(), &worst = less ? levels.back() : levels.front();
+  if (best.high >= worst.low) return std::nullopt;
+  Sentence out;
+  for (const Level& one : levels) {
+    const std::string who = level_words(study, *one.first, asked);
+    out.clauses.push_back(value_clause(limits, asked, who, one.low, one.high));
+    out.text +=
+        fmt::format("{}{} with {}", out.text.empty() ? "" : "; ", range_text(limits.words, one.low, one.high), who);
+  }
+  out.text = capitalised(limits.words.words) + ": " + out.text + ".";
+  return out;
+}
+
+std::optional<Sentence> say_steady_end(const Compared& study, const MeasureLimits& limits) {
+  const std::string& asked = study.asked();
+  const std::vector<double>& numbers = study.numbers_of(asked);
+  constexpr std::size_t several = 4, two = 2;
+  constexpr double steady = 0.1;  // of what matters
+  if (numbers.size() < several) return std::nullopt;
+  std::vector<std::string> others = study.columns();
+  std::erase(others, asked);
+  std::map<std::string, std::map<double, const Method*>> rows;
+  for (const Method* method : limits.without_gain())
+    if (const auto number = as_number(study.text(method->first(), asked)))
+      rows[study.key(method->first(), others)][*number] = method;
+  const double scale = scale_of(limits.words, limits.without_gain());
+  if (scale <= 0) return std::nullopt;
+  /// How far apart two levels within are, at most.
+  const auto spread = [&](double low, double high) {
+    double most = 0;
+    for (const auto& [rest, levels] : rows) {
+      std::vector<const Method*> inside;
+      for (const auto& [number, method] : levels)
+        if (low <= number && number <= high) inside.push_back(method);
+      if (inside.size() > 1) most = std::max(most, farthest(inside).value / scale);
+    }
+    return most;
+  };
+  const auto words = [&](double number) {
+    for (const CaseRecord& record : study.results().cases)
+      if (as_number(study.text(record, asked)) == number) return study.value_words(asked, study.text(record, asked));
+    return short_number(number);
+  };
+  const double first = numbers.front(), last = numbers.back();
+  if (spread(first, last) <= tolerance) return std::nullopt;
+  std::size_t from = numbers.size() - 1, to = 0;
+  while (from > 0 && spread(numbers[from - 1], last) <= steady * tolerance) --from;
+  while (to + 1 < numbers.size() && spread(first, numbers[to + 1]) <= steady * tolerance) ++to;
+  const bool upper = numbers.size() - from >= to + 1;
+  if ((upper ? numbers.size() - from : to + 1) < two) return std::nullopt;
+  const double size = upper ? spread(numbers[from], last) : spread(first, numbers[to]);
+  const std::string who = upper ? "from " + words(numbers[from]) + " on" : "up to " + words(numbers[to]);
+  Clause clause{.form = "matters", .measure = limits.words.measure, .choice = asked, .who = who};
+  clause.high = 100 * size;
+  clause.unit = "%";
+  clause.status = "does not matter";
+  return Sentence{fmt::format("{} it moves {} by {}.", capitalised(who), limits.words.words,
+                              by_percent(size) == by_percent(0) ? by_percent(0) : "at most " + percent(size)),
+                  {clause}};
+}
+
 std::vector<Sentence> say_levels(const Compared& study, const MeasureLimits& limits) {
   const std::string& asked = study.asked();
   // Of a number no level is the reference of the others.

@@ -114,13 +114,17 @@ MeasureLimits limits_of(const Compared& study, const std::string& name, bool con
 }
 
 bool keeps_energy(const StudyResults& results) {
+  return keeps_energy(results, all_cases(results));
+}
+
+bool keeps_energy(const StudyResults& results, const Cases& cases_of_study) {
   // A scheme that declares no work form leaves it open: those that do tell it for the scene that they share.
   std::vector<std::string> scene;
   for (const std::string& column : results.columns)
     if (const std::string role = axis_role(column);
         role != "mass" && role != "contact" && role != "time" && role != "step" && role != "elements")
       scene.push_back(column);
-  for (const Cases& cases : groups_of(with_status(all_cases(results), "done"), scene)) {
+  for (const Cases& cases : groups_of(with_status(cases_of_study, "done"), scene)) {
     bool told = false;
     for (const CaseRecord* record : cases)
       for (const char* work : {"work_of_damping", "work_of_loads"})
@@ -210,10 +214,11 @@ std::string place_of_effect(const Compared& study, const ChoiceEffect& effect, c
     combinations.push_back(effect.rows[k].combination);
     if (effect.rows[k].matters() == Matters::yes) inside.push_back(k);
   }
-  const SetNames::Name name = SetNames(study, combinations, others).found(inside);
-  if (!name.exact)
-    return name.text.starts_with("mostly ") ? ", mostly with " + name.text.substr(7, name.text.rfind(" (") - 7) : "";
-  return name.text.find(", and ") == std::string::npos ? " with " + name.text : "";
+  const SetNames names(study, combinations, others);
+  const SetNames::Name name = names.found(inside);
+  if (name.exact && name.text.find(", and ") == std::string::npos) return " with " + name.text;
+  const std::string near = name.text.starts_with("mostly ") ? name.text : names.mostly(inside);
+  return near.starts_with("mostly ") ? ", mostly with " + near.substr(7, near.rfind(" (") - 7) : "";
 }
 
 std::vector<std::string> without(std::vector<std::string> columns, const std::vector<std::string>& own) {

@@ -55,6 +55,8 @@ MeasureLimits limits_of(const Compared& study, const std::string& measure, bool 
 
 /// Whether nothing but contact and the method changes energies: no case has loads or damping.
 bool keeps_energy(const StudyResults& results);
+/// The same of some of its cases.
+bool keeps_energy(const StudyResults& results, const Cases& cases);
 
 /// Whether the methods are told in tiers: at most a dozen in one scene, or any number where one direction is better;
 /// and nothing is asked to be compared. Otherwise choices are told by what they move.

@@ -25,6 +25,7 @@ struct MeasureSaid {
   double scale = 1;
   std::string lead = {};  ///< of kind choices: what moves it most
   double lead_size = 0;   ///< typically
+  bool by_scene = false;  ///< a sentence for each scene
 };
 
 bool chaotic_means(const StudyResults& results) {
@@ -57,21 +58,26 @@ MeasureSaid say_measure(const Compared& study, const std::string& name, bool kep
                         });
   if (by_scene) {
     out.kind = "differ";
+    out.by_scene = true;
     std::vector<std::string> rest;
     for (const std::string& column : study.columns())
       if (std::find(scene.begin(), scene.end(), column) == scene.end()) rest.push_back(column);
     for (const auto& [key, methods] : scenes.list()) {
       Cases cases;
       for (const Method* method : methods) cases.insert(cases.end(), method->cases.begin(), method->cases.end());
-      const MeasureLimits own = limits_of(study, name, kept, cases);
+      const MeasureLimits own = limits_of(study, name, keeps_energy(study.results(), cases), cases);
       auto [kind, said] = TierSpeaker(study, own, rest).tiers();
       if (said.empty()) continue;
       std::string text = said.front().text;
-      for (const char* article : {"The ", "None ", "No ", "All ", "These ", "Least "})
-        if (text.starts_with(article)) text[0] = static_cast<char>(text[0] - 'A' + 'a');
+      const std::string measure = capitalised(words.words);
+      for (const std::string& begins : {std::string("The "), std::string("None "), std::string("No "),
+                                        std::string("All "), std::string("These "), measure})
+        if (text.starts_with(begins) && text[0] >= 'A' && text[0] <= 'Z')
+          text[0] = static_cast<char>(text[0] - 'A' + 'a');
+      const char* link = text.starts_with(words.words) ? ", " : ": ";
       std::vector<std::string> where;
       for (const std::string& column : scene) where.push_back(study.level(methods.front()->first(), column));
-      said.front().text = "With " + and_list(where) + ": " + text;
+      said.front().text = "With " + and_list(where) + link + text;
       out.sentences.push_back(std::move(said.front()));
     }
     return out;
@@ -166,8 +172,11 @@ void say_others(const std::vector<MeasureSaid>& others, const MeasureSaid& first
         out.push_back(std::move(moves));
       }
     } else {
-      for (const MeasureSaid* one : all)
-        if (!one->sentences.empty()) out.push_back(one->sentences.front());
+      for (const MeasureSaid* one : all) {
+        const std::size_t told =
+            one->by_scene ? one->sentences.size() : std::min<std::size_t>(1, one->sentences.size());
+        out.insert(out.end(), one->sentences.begin(), one->sentences.begin() + static_cast<std::ptrdiff_t>(told));
+      }
     }
   }
 }

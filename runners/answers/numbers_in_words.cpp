@@ -118,7 +118,7 @@ std::string value_to(const MeasureWords& measure, double value, std::optional<do
   constexpr double all_of_it = 5e-5;
   if (measure.unit == "%" && std::abs(v - 100) < all_of_it) return "100" + unit;
   constexpr double negligible = 1e-3;
-  if (std::abs(v) < u && u < negligible) return "0" + unit;
+  if (std::abs(v) < (u < negligible ? u : negligible * u)) return "0" + unit;
   constexpr double small = 1e-3, large = 1e5;
   if (v != 0 && (std::abs(v) < small || std::abs(v) >= large))
     return short_number(v, u > 0 && u < 0.1 * std::abs(v) ? 3 : 2) + unit;

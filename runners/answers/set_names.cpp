@@ -244,6 +244,12 @@ std::optional<std::pair<double, std::string>> SetNames::rule(const Picked& chose
   return best;
 }
 
+std::string SetNames::mostly(const Members& members) const {
+  Picked chosen(methods_.size(), 0);
+  for (const std::size_t m : members) chosen[m] = 1;
+  return methods_.size() > most_searched ? "" : nearest(chosen, members.size(), 0).value_or("");
+}
+
 SetNames::Name SetNames::found(const Members& members, bool may_turn) const {
   const std::size_t count = members.size();
   Picked chosen(methods_.size(), 0);
@@ -267,16 +273,19 @@ SetNames::Name SetNames::found(const Members& members, bool may_turn) const {
     for (const std::size_t m : of) out.push_back(label(m));
     return out;
   };
-  if (count <= few) return {and_names(labels(members)), count > 1, true};
+  if (count <= few && count + 1 < methods_.size()) return {and_names(labels(members)), count > 1, true};
   Members rest;
   for (std::size_t m = 0; m < methods_.size(); ++m)
     if (!chosen[m]) rest.push_back(m);
-  if (rest.size() <= few) return {"all but " + and_list(labels(rest)), true, true};
+  if (rest.size() <= few && count > 1) return {"all but " + and_list(labels(rest)), true, true};
+  if (count <= few) return {and_names(labels(members)), count > 1, true};
   if (best && best->first <= long_rule) return {best->second, several, true};
   constexpr std::size_t longest = 90;
   if (may_turn) {
     const Name other = found(rest, false);
-    if (other.exact && other.text.size() < longest) return {"all but " + other.text, true, true};
+    // Of a rest that has several rules it is not plain where the exception ends.
+    if (other.exact && other.text.size() < longest && other.text.find(", and ") == std::string::npos)
+      return {"all but " + other.text, true, true};
   }
   if (auto text = cover(chosen, count, few + 1)) return {*text, true, true};
   if (auto text = nearest(chosen, count, nearly_exact)) return {*text, true, !text->starts_with("mostly ")};

@@ -16,8 +16,10 @@ constexpr std::size_t longest_reason = 160;
 /// A reason, without what holds for one of its cases alone.
 struct Reason {
   std::string text;
+  std::vector<std::string> numbers;  ///< in it; "…" where cases differ in one
   Cases cases;
 };
+constexpr char number_here = '\x1f';
 
 std::string general(const std::string& reason) {
   const std::string own = "excluded: ";
@@ -32,16 +34,20 @@ bool digit(char c) {
 /// A text in parts: what stands between its numbers, and these.
 std::pair<std::string, std::vector<std::string>> numbers_apart(const std::string& text) {
   std::pair<std::string, std::vector<std::string>> out;
+  const auto digit_at = [&](std::size_t k) { return k < text.size() && digit(text[k]); };
   for (std::size_t at = 0; at < text.size();) {
     std::size_t end = at;
-    while (end < text.size() &&
-           (digit(text[end]) || (end > at && text[end] == '.' && end + 1 < text.size() && digit(text[end + 1]))))
-      ++end;
+    while (digit_at(end) || (end > at && end < text.size() && text[end] == '.' && digit_at(end + 1))) ++end;
+    if (end > at && end < text.size() && text[end] == 'e') {
+      const std::size_t sign = end + 1 < text.size() && (text[end + 1] == '-' || text[end + 1] == '+') ? 1 : 0;
+      if (digit_at(end + 1 + sign))
+        for (end += 1 + sign; digit_at(end);) ++end;
+    }
     if (end == at) {
       out.first += text[at++];
       continue;
     }
-    out.first += '\x1f';
+    out.first += number_here;
     out.second.push_back(text.substr(at, end - at));
     at = end;
   }
@@ -54,21 +60,18 @@ std::vector<Reason> reasons_of(const Cases& cases, bool alike) {
   for (const CaseRecord* record : cases) {
     const std::string reason = general(record->reason);
     if (reason.empty()) continue;
-    Reason& one = groups[alike ? numbers_apart(reason).first : reason];
-    if (!one.cases.empty() && one.text != reason) {
-      const auto [between, numbers] = numbers_apart(one.text);
-      const auto own = numbers_apart(reason).second;
-      if (numbers.size() == own.size()) {
-        one.text.clear();
-        std::size_t k = 0;
-        for (const char c : between)
-          if (c != '\x1f')
-            one.text += c;
-          else
-            one.text += numbers[k] == own[k] ? numbers[k] : "…", ++k;
-      }
-    }
-    if (one.cases.empty()) one.text = reason;
+    const auto [between, numbers] = numbers_apart(reason);
+    Reason& one = groups[alike ? between : reason];
+    if (one.cases.empty()) one.numbers = numbers;
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      if (one.numbers[k] != numbers[k]) one.numbers[k] = "…";
+    std::size_t k = 0;
+    one.text.clear();
+    for (const char c : between)
+      if (c == number_here)
+        one.text += one.numbers[k++];
+      else
+        one.text += c;
     one.cases.push_back(record);
   }
   std::vector<Reason> out;
@@ -181,7 +184,11 @@ std::vector<Sentence> ended(const Compared& study) {
       for (const std::size_t k : members)
         for (const CaseRecord* one : methods.cases[k]) whole = whole && one->status == status;
       const std::string who = names.of(members) + (whole ? "" : at_steps(study, some));
-      const std::string shown = without_count(who).empty() ? who : without_count(who);
+      constexpr std::size_t longest = 120;
+      const std::string own = without_count(who).empty() ? who : without_count(who),
+                        shown = own.size() <= longest
+                                    ? own
+                                    : fmt::format("{} of {} methods", members.size(), methods.firsts.size());
       std::string text = fmt::format("{}: {} of {} case{}{}", verb, some.size(), total, total == 1 ? "" : "s",
                                      some.size() == total ? "" : " (" + shown + ")");
       if (!reason.empty()) text += ": " + shortened(reason);

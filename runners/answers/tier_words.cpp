@@ -241,7 +241,8 @@ std::string TierSpeaker::mark(const Members& members) const {
       return "";
     return fmt::format(", give or take {}", value_text(words_, u, u));
   }
-  return rising == moving ? ", still rising" : falling == moving ? ", still falling" : ", still moving";
+  const std::string word = rising == moving ? "rising" : falling == moving ? "falling" : "moving";
+  return static_cast<std::size_t>(moving) == members.size() ? ", still " + word : ", some still " + word;
 }
 
 /// "99.69 % (P1) and 99.51 % (P0) of the energy is left", "all of the energy is left, to 4e-5 %".

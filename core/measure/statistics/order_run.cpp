@@ -64,7 +64,7 @@ std::optional<OrderRun> order_run(std::vector<SizedValue> errors, double floor) 
     out.most = *most;
     out.from = first.size;
     out.to = last.size;
-    out.in_passing = length == 2 && from + length < slopes.size();
+    out.in_passing = length == 2 && from + length < slopes.size() && 2 * length <= slopes.size();
     if (from + length < slopes.size() && stays) out.stops_at = out.smallest;
     return out;
   }

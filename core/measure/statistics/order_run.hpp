@@ -20,7 +20,8 @@ struct OrderRun {
   Verdict verdict = Verdict::too_few;
   double order = 0, least = 0, most = 0;  ///< slope over the whole run, and of its local slopes
   double from = 0, to = 0;                ///< sizes of its ends
-  /// Whether it has two slopes alone and ends before the finest error above the floor: it may be one of chance.
+  /// Whether it has two slopes alone, half of all at most, and ends before the finest error above the floor: it may be
+  /// one of chance.
   bool in_passing = false;
   std::optional<double> stops_at;  ///< the error at which the fall ends: the smallest that was seen
   double last = 0, last_size = 0;  ///< the error at the finest size

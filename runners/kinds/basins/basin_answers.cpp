@@ -121,10 +121,9 @@ void BasinSpeaker::say_undecided(say::Answer& answer) const {
   clause.unit = "%";
   clause.status = "undecided";
   const std::string share = percent(least) == percent(most) ? percent(most) : percent(least) + " to " + percent(most);
-  answer.say(
-      fmt::format("{} of the starts are undecided{}: more periods are needed before {} told.", share,
-                  many.size() == all ? "" : " with " + clause.who, vague_.empty() ? "these are" : "where they end is"),
-      clause);
+  answer.say(fmt::format("{} of the starts are undecided{}; more periods are needed.", share,
+                         many.size() == all ? "" : " with " + clause.who),
+             clause);
 }
 
 /// "81.5 ± 1.6 % of the starts end in period 1, 18.5 ± 1.6 % without contact", the mean over a group of cases.

@@ -117,7 +117,7 @@ void DiagramSpeaker::say_motions(say::Answer& answer) const {
   const std::string who = results_.cases.size() > 1 && study_.varies("steps_per_period")
                               ? fmt::format("With {} steps per period", short_number(steps(*reference_)))
                           : results_.cases.size() > 1 ? "With " + name(*reference_, false)
-                                                      : "Along " + parameter_;
+                                                      : "Along " + say::spoken(parameter_);
   Clause said{.form = "diagram", .who = name(*reference_, true), .methods = reference_->id};
   said.low = runs_.front().from;
   said.high = runs_.back().to;

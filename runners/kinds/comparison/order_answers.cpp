@@ -139,7 +139,7 @@ Clause OrderSpeaker::errors_clause(const Members& members, const char* status) c
 Verdict OrderSpeaker::verdict(std::size_t k) const {
   const OrderRun& run = runs_[k].run;
   if (run.verdict != Verdict::order || !run.in_passing) return run.verdict;
-  constexpr double steep = 1.5, near = 0.1, near_steep = 0.35;
+  constexpr double steep = 1.5, near = 0.02, near_steep = 0.35;
   bool others = false, like = false;
   for (const MethodRun& one : runs_) {
     if (one.run.verdict != Verdict::order || one.run.in_passing) continue;

@@ -188,7 +188,10 @@ void PrecisionSpeaker::say_unreached(Answer& answer) const {
   for (const Cases& cases : methods_)
     for (const CaseRecord* record : cases)
       if (!best || *share(*record) < *share(*best)) best = record;
-  for (const double named : accuracies_in(study_.results().question)) {
+  constexpr double coarsest = 0.1;
+  std::vector<double> asked = accuracies_in(study_.results().question);
+  asked.push_back(coarsest);
+  for (const double named : asked) {
     if (!best || *share(*best) <= named) continue;
     Clause clause{.form = "cheapest", .measure = "error." + error_, .who = study_.name(*best), .methods = best->id};
     clause.value = 100 * *share(*best);

@@ -228,8 +228,9 @@ void StepLimits::say_mesh(say::Answer& answer) const {
   one.high = *most;
   one.unit = "1";
   one.status = "power";
-  const std::string power =
-      fmt::format("{:.2f}{}", *least, *most - *least > 0.005 ? fmt::format(" to {:.2f}", *most) : "");
+  const std::string power = fmt::format(
+      "{:.2f}{}", *least,
+      fmt::format("{:.2f}", *least) != fmt::format("{:.2f}", *most) ? fmt::format(" to {:.2f}", *most) : "");
   answer.say(fmt::format("They fall with the element's length to the power {}.", power), one);
 }
 
@@ -276,8 +277,9 @@ void StepLimits::say_closed(say::Answer& answer) const {
     }
     if (powers.empty()) continue;
     const auto [least, most] = std::minmax_element(powers.begin(), powers.end());
-    text += fmt::format("; it falls with the {} to the power {:.2f}{}", say::spoken(column), *least,
-                        *most - *least > 0.005 ? fmt::format(" to {:.2f}", *most) : "");
+    text += fmt::format(
+        "; it falls with the {} to the power {:.2f}{}", say::spoken(column), *least,
+        fmt::format("{:.2f}", *least) != fmt::format("{:.2f}", *most) ? fmt::format(" to {:.2f}", *most) : "");
     one.value = 0.5 * (*least + *most);
   }
   answer.say(text + ".", one);
@@ -286,7 +288,7 @@ void StepLimits::say_closed(say::Answer& answer) const {
 /// Whether marches have the limits that the spectra predict.
 void StepLimits::say_marches(say::Answer& answer) const {
   std::size_t both = 0, agree = 0;
-  double worst = 0;
+  double worst = 0, least = INFINITY, most = 0;
   for (const Limits& one : all_)
     for (const LimitRow* row : {&one.open, &one.closed}) {
       if (row->id.empty() || !row->counted || !row->ratio) continue;
@@ -294,7 +296,12 @@ void StepLimits::say_marches(say::Answer& answer) const {
       // A scene is open as well as closed: its march may have either limit.
       const double own = row->observed && row->predicted ? std::abs(*row->observed / *row->predicted - 1) : INFINITY;
       const double apart = std::min(own, std::abs(*row->ratio - 1));
-      if (apart > limit_tolerance) continue;
+      if (apart > limit_tolerance) {
+        const double times = row->predicted && row->observed ? *row->observed / *row->predicted : *row->ratio;
+        least = std::min(least, times);
+        most = std::max(most, times);
+        continue;
+      }
       ++agree;
       worst = std::max(worst, apart);
     }
@@ -305,11 +312,24 @@ void StepLimits::say_marches(say::Answer& answer) const {
   one.uncertainty = 100 * worst;
   one.unit = "limits";
   one.status = agree == both ? "confirmed" : "confirmed in part";
-  answer.say(agree == both
-                 ? fmt::format("Marching confirms all {} limits, to {}.", both, percent(worst))
-                 : fmt::format("Marching confirms {} of {} limits{}; the others are of contacts that open and close.",
-                               agree, both, agree > 0 ? ", to " + percent(worst) : ""),
-             one);
+  if (agree == both) {
+    answer.say(fmt::format("Marching confirms all {} limits, to {}.", both, percent(worst)), one);
+    return;
+  }
+  Sentence said{fmt::format("Marching confirms {} of {} limits{}; contacts that open and close have the others at {} "
+                            "times the prediction.",
+                            agree, both, agree > 0 ? ", to " + percent(worst) : "",
+                            short_number(least, 2) == short_number(most, 2)
+                                ? short_number(most, 2)
+                                : short_number(least, 2) + " to " + short_number(most, 2)),
+                {one}};
+  Clause others{.form = "limit"};
+  others.low = least;
+  others.high = most;
+  others.unit = "1";
+  others.status = "observed over predicted";
+  said.clauses.push_back(std::move(others));
+  answer.say(std::move(said));
 }
 
 /// Who gains energy in marches although no root leaves the circle.

@@ -44,11 +44,12 @@ TEST_CASE("errors that do not fall, jump about, or lie at the floor have no orde
 }
 
 TEST_CASE("two slopes that agree before the finest errors may be chance, and are said to be in passing") {
-  // Slopes 2, 2, 0: the level is met after two.
-  const auto passing = order_run({{1, 1}, {0.5, 0.25}, {0.25, 0.0625}, {0.125, 0.0625}}, 0);
+  // Slopes 2, 2, 0, 0: the level is met after two.
+  const auto passing = order_run({{1, 1}, {0.5, 0.25}, {0.25, 0.0625}, {0.125, 0.0625}, {0.0625, 0.0625}}, 0);
   CHECK(passing->verdict == OrderRun::Verdict::order);
   CHECK(passing->in_passing);
-  // To the finest, or over three slopes.
+  // To the finest, over three slopes, or most of all slopes.
+  CHECK_FALSE(order_run({{1, 1}, {0.5, 0.25}, {0.25, 0.0625}, {0.125, 0.0625}}, 0)->in_passing);
   CHECK_FALSE(order_run({{1, 1}, {0.5, 0.25}, {0.25, 0.0625}}, 0)->in_passing);
   CHECK_FALSE(order_run(errors_of(2, 1e-3, 10), 0)->in_passing);
 }

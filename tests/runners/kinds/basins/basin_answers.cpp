@@ -10,7 +10,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-struct OneCase {
+struct BasinCase {
   std::string mass;
   int steps = 0;
   std::vector<double> fractions;  ///< of attractors 1, 2, …
@@ -18,7 +18,7 @@ struct OneCase {
 };
 
 /// Cases with what becomes of 100 starts each; `differ` gives the cells in which two of them differ.
-StudyResults basins(const std::vector<OneCase>& cases, const std::vector<std::array<int, 3>>& differ) {
+StudyResults basins_of(const std::vector<BasinCase>& cases, const std::vector<std::array<int, 3>>& differ) {
   StudyResults results;
   results.kind = "basins";
   results.columns = {"mass", "steps_per_period"};
@@ -47,7 +47,7 @@ StudyResults basins(const std::vector<OneCase>& cases, const std::vector<std::ar
   return results;
 }
 
-std::string said(const StudyResults& results) {
+std::string basins_said(const StudyResults& results) {
   std::string out;
   const answers::Compared study(results);
   for (const answers::Sentence& one : basins_answer(study).sentences) out += one.text + "\n";
@@ -57,20 +57,23 @@ std::string said(const StudyResults& results) {
 }  // namespace
 
 TEST_CASE("cases that lead as many starts to every end are told together, others by name") {
-  const std::string alike = said(basins({{"full", 200, {0.8, 0.2}}, {"lumped", 200, {0.81, 0.19}}}, {{0, 1, 0}}));
+  const std::string alike =
+      basins_said(basins_of({{"full", 200, {0.8, 0.2}}, {"lumped", 200, {0.81, 0.19}}}, {{0, 1, 0}}));
   INFO(alike);
   CHECK_THAT(alike, Catch::Matchers::StartsWith("80") && Contains("% of the starts end in period 1"));
   CHECK_THAT(alike, Contains("The mass matrix does not move the border: 0 of 100 cells differ."));
-  const std::string apart = said(basins({{"full", 200, {0.8, 0.2}}, {"lumped", 200, {0.3, 0.7}}}, {{0, 1, 50}}));
+  const std::string apart =
+      basins_said(basins_of({{"full", 200, {0.8, 0.2}}, {"lumped", 200, {0.3, 0.7}}}, {{0, 1, 50}}));
   INFO(apart);
   CHECK_THAT(apart, Contains("With full 80") && Contains("With lumped 70"));
   CHECK_THAT(apart, Contains("The mass matrix moves the border: 50 of 100 cells differ between full and lumped."));
 }
 
 TEST_CASE("the choice that moves the border is that in which alone two cases differ") {
-  const std::vector<OneCase> cases = {
+  const std::vector<BasinCase> cases = {
       {"full", 200, {0.8, 0.2}}, {"full", 800, {0.8, 0.2}}, {"lumped", 200, {0.8, 0.2}}, {"lumped", 800, {0.8, 0.2}}};
-  const std::string text = said(basins(cases, {{0, 1, 9}, {2, 3, 8}, {0, 2, 0}, {1, 3, 0}, {0, 3, 9}, {1, 2, 9}}));
+  const std::string text =
+      basins_said(basins_of(cases, {{0, 1, 9}, {2, 3, 8}, {0, 2, 0}, {1, 3, 0}, {0, 3, 9}, {1, 2, 9}}));
   INFO(text);
   CHECK_THAT(text,
              Contains("The number of steps per period moves the border: 9 of 100 cells differ between full, 200"));
@@ -78,7 +81,8 @@ TEST_CASE("the choice that moves the border is that in which alone two cases dif
 }
 
 TEST_CASE("of cases with most starts undecided no end is told") {
-  const std::string text = said(basins({{"full", 200, {0.8, 0.2}, 10}, {"lumped", 200, {1, 0}, 99}}, {{0, 1, 1}}));
+  const std::string text =
+      basins_said(basins_of({{"full", 200, {0.8, 0.2}, 10}, {"lumped", 200, {1, 0}, 99}}, {{0, 1, 1}}));
   INFO(text);
   CHECK_THAT(text, Catch::Matchers::StartsWith("10 % to 99 % of the starts are undecided"));
   CHECK_THAT(text, Contains("With full 80") && !Contains("With lumped"));
