@@ -106,17 +106,19 @@ std::vector<std::pair<int, double>> row_of(const FiniteElementSpace& space, cons
 
 }  // namespace
 
-std::vector<std::pair<int, double>> displacement_row(const FiniteElementSpace& space, double x) {
+std::vector<std::pair<int, double>> displacement_row(const FiniteElementSpace& space, double x, ShapeOf what) {
   if (space.elements.empty()) return {{0, 1.0}};
   const auto [element, xi] = locate(space, x);
+  if (what == ShapeOf::rotation) return row_of(space, *element, shape_rotations(*element, xi));
   return row_of(space, *element, shape_values(space.basis, *element, xi));
 }
 
-std::vector<std::pair<double, double>> held_row(const FiniteElementSpace& space, double x) {
+std::vector<std::pair<double, double>> held_row(const FiniteElementSpace& space, double x, ShapeOf what) {
   std::vector<std::pair<double, double>> row;
   if (space.elements.empty()) return row;
   const auto [element, xi] = locate(space, x);
-  const std::array<double, 4> values = shape_values(space.basis, element->length, xi);
+  const std::array<double, 4> values =
+      what == ShapeOf::rotation ? shape_rotations(*element, xi) : shape_values(space.basis, element->length, xi);
   const int right = space.basis == FiniteElementSpace::Basis::hermite ? 2 : 1;
   for (const int a : {0, right})
     if (element->dof[a] < 0 && values[a] != 0)

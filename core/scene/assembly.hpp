@@ -29,11 +29,15 @@ Eigen::VectorXd rigid_motion_load(const FiniteElementSpace& space);
 
 /// The displacement at x as Σ value·q_dof, eliminated dofs left out. x within 1e-10 of an element's length from a node
 /// is that node: one entry, exactly 1. Without elements the only dof is everywhere.
-std::vector<std::pair<int, double>> displacement_row(const FiniteElementSpace& space, double x);
+/// Or the rotation of a beam's section there, in rad.
+enum class ShapeOf { displacement, rotation };
+std::vector<std::pair<int, double>> displacement_row(const FiniteElementSpace& space, double x,
+                                                     ShapeOf what = ShapeOf::displacement);
 
 /// What displacement_row() leaves out: for each end of an element whose displacement is held, where it is (m) and its
 /// share of the displacement at x.
-std::vector<std::pair<double, double>> held_row(const FiniteElementSpace& space, double x);
+std::vector<std::pair<double, double>> held_row(const FiniteElementSpace& space, double x,
+                                                ShapeOf what = ShapeOf::displacement);
 
 /// Rows of displacement_row() for each x (m × n).
 Eigen::SparseMatrix<double, Eigen::RowMajor> displacement_rows(const FiniteElementSpace& space,

@@ -260,6 +260,10 @@ double tip_position(const SceneSpec& scene) {
   return middle;
 }
 
+double shown_position(const SceneSpec& scene) {
+  return !scene.points.empty() && scene.points.front().at.x ? *scene.points.front().at.x : tip_position(scene);
+}
+
 std::vector<double> mesh_nodes(const SceneSpec& scene, int elements) {
   if (const auto* beam = std::get_if<BeamSpec>(&scene.structure)) return beam_nodes(*beam, elements);
   if (structure_length(scene) == 0) return {};
@@ -339,6 +343,8 @@ void check_scene(const SceneSpec& shared, int elements, const ForceBeyond& beyon
   check_magnitudes(scene, elements);
   check_variables(scene);
   if (!scene.stops.named.empty()) check_named_stops(scene, space);
+  check_points(scene, space);
+  check_tangents(scene, space);
   if (std::holds_alternative<AssembledSpec>(scene.structure)) return check_assembled(scene, space, beyond);
   require(scene.initial.dofs.empty(), "/scene/initial/file",
           fmt::format("a {} begins as formulas in x say; expected displacement and velocity", space.structure));

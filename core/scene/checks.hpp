@@ -16,6 +16,8 @@ double structure_length(const SceneSpec& scene);
 /// Where the displacement shown to people is, m: the free end of a beam or bar, at L before at 0; of a beam held at
 /// both, the middle of its longest span.
 double tip_position(const SceneSpec& scene);
+/// Where the displacement shown to people stands: at the first point of the scene, else at the tip.
+double shown_position(const SceneSpec& scene);
 
 /// Whether something at x can move a beam, a bar or an oscillator there, and how a sentence says where that is.
 bool on_free_part(const SceneSpec& scene, double x);

@@ -23,17 +23,6 @@ std::string stop_pointer(std::size_t number, const char* key) {
   return fmt::format("/scene/stops/{}{}", number, key);
 }
 
-void check_stop_name(const std::string& name, std::size_t number) {
-  const auto allowed = [](unsigned char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
-  };
-  constexpr std::size_t longest = 40;
-  if (name.empty() || name.size() > longest || !std::all_of(name.begin(), name.end(), allowed))
-    throw InputError(
-        stop_pointer(number, "/name"),
-        fmt::format("\"{}\"; expected a name of 1 to {} letters, digits, '-' or '_'", shortened(name), longest));
-}
-
 void check_bounds(const NamedStop& stop, std::size_t number) {
   if (!stop.lower && !stop.upper)
     throw InputError(stop_pointer(number, ""),
@@ -45,6 +34,16 @@ void check_bounds(const NamedStop& stop, std::size_t number) {
 }
 
 }  // namespace
+
+void check_name(const std::string& name, const std::string& pointer) {
+  const auto allowed = [](unsigned char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
+  };
+  constexpr std::size_t longest = 40;
+  if (name.empty() || name.size() > longest || !std::all_of(name.begin(), name.end(), allowed))
+    throw InputError(pointer, fmt::format("\"{}\"; expected a name of 1 to {} letters, digits, '-' or '_'",
+                                          shortened(name), longest));
+}
 
 PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place,
                    const std::string& pointer) {
@@ -61,6 +60,19 @@ PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, cons
   std::sort(out.free.begin(), out.free.end());
   out.held = held_by(support_places(scene.structure), space, x);
   out.x = x;
+  return out;
+}
+
+PlaceRow rotation_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place,
+                      const std::string& pointer) {
+  if (!std::holds_alternative<BeamSpec>(scene.structure) || !place.x)
+    throw InputError(pointer, fmt::format("a place of a {} does not turn; expected a beam and x", space.structure));
+  place_row(scene, space, place, pointer);
+  PlaceRow out;
+  out.free = displacement_row(space, *place.x, ShapeOf::rotation);
+  std::sort(out.free.begin(), out.free.end());
+  out.held = held_by(support_places(scene.structure), space, *place.x, ShapeOf::rotation);
+  out.x = *place.x;
   return out;
 }
 
@@ -111,6 +123,7 @@ std::vector<double> named_positions(const StopsSpec& stops) {
 }
 
 PlaceRow given_tip(const AssembledSpec& spec, const SceneSpec& scene) {
+  if (!scene.points.empty()) return spec.structure->row(scene.points.front().at, "/scene/points/0/at");
   if (spec.tip) return spec.structure->row(*spec.tip, "/scene/structure/tip");
   if (!scene.stops.named.empty()) return spec.structure->row(scene.stops.named.front().at, "/scene/stops/0/at");
   for (std::size_t k = 0; k < scene.load.terms.size(); ++k)
@@ -122,7 +135,7 @@ PlaceRow given_tip(const AssembledSpec& spec, const SceneSpec& scene) {
 
 SparseRows tip_row(const SceneSpec& scene, const FiniteElementSpace& space) {
   const auto* spec = std::get_if<AssembledSpec>(&scene.structure);
-  if (!spec) return displacement_rows(space, {tip_position(scene)});
+  if (!spec) return displacement_rows(space, {shown_position(scene)});
   SparseRows row(1, space.dofs);
   for (const auto& [dof, value] : given_tip(*spec, scene).free) row.insert(0, dof) = value;
   row.makeCompressed();
@@ -138,7 +151,7 @@ void show_tip(const SceneSpec& scene, SemiDiscrete& problem) {
 
 std::string tip_choice(const SceneSpec& scene) {
   const auto* spec = std::get_if<AssembledSpec>(&scene.structure);
-  if (!spec || spec->tip) return "";
+  if (!spec || spec->tip || !scene.points.empty()) return "";
   return scene.stops.named.empty() ? "the place of the first load" : "the place of stop " + scene.stops.named[0].name;
 }
 
@@ -147,7 +160,7 @@ void check_named_stops(const SceneSpec& scene, const FiniteElementSpace& space) 
   std::vector<PlaceRow> rows;
   for (std::size_t i = 0; i < scene.stops.named.size(); ++i) {
     const NamedStop& stop = scene.stops.named[i];
-    check_stop_name(stop.name, i);
+    check_name(stop.name, stop_pointer(i, "/name"));
     if (!names.emplace(stop.name, i).second)
       throw InputError(stop_pointer(i, "/name"), fmt::format("two stops are called \"{}\"", stop.name));
     check_bounds(stop, i);

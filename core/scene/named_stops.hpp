@@ -17,6 +17,13 @@ namespace ricochet {
 PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place,
                    const std::string& pointer);
 
+/// The rotation of a beam's section at a place, rad; pointers as above.
+PlaceRow rotation_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place,
+                      const std::string& pointer);
+
+/// Throws InputError at `pointer` for a name that is not 1 to 40 letters, digits, '-' or '_'.
+void check_name(const std::string& name, const std::string& pointer);
+
 /// The row of a stop: that of `at` less that of `to`. `number`: of the stop in its list, for pointers.
 PlaceRow stop_row(const SceneSpec& scene, const FiniteElementSpace& space, const NamedStop& stop, std::size_t number);
 

@@ -18,6 +18,20 @@ struct Place {
   bool operator==(const Place&) const = default;
 };
 
+/// A point that is shown: its name, its place, and whether its displacement counts from the supports.
+struct PointSpec {
+  std::string name;  ///< letters, digits, '-' and '_'
+  Place at;
+  bool from_supports = false;
+};
+
+/// What moves along the surface of a stop while it is pushed. Exactly one is given.
+struct TangentSpec {
+  double slope_radius = 0;        ///< m: r of r θ, the surface of a tube that bends
+  std::vector<double> direction;  ///< three numbers, at the nodes of the stop
+  std::string component;          ///< of the nodes of the stop
+};
+
 /// The displacement at a place (or the difference of two) as Σ value·q_dof + Σ weight·(displacement of a support).
 struct PlaceRow {
   std::vector<std::pair<int, double>> free;  ///< dof of the marched problem, value; each dof once, in order

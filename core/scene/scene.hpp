@@ -148,6 +148,7 @@ struct NamedStop {
   std::optional<Place> to;  ///< absent: the ground
   std::optional<double> lower, upper;
   std::string moves_with = {};  ///< the support that carries it, or all; empty: it stands still
+  std::optional<TangentSpec> tangent = {};
 };
 
 /// Two rigid stops g1(x) ≤ u ≤ g2(x); a missing formula is an absent stop. Or a list of stops that have names: then
@@ -237,7 +238,8 @@ struct SceneSpec {
   std::vector<MotionSpec> motions;  ///< beside `support`, which is at rest then
   /// Whether the initial state, and the displacements that are shown, count from the supports that move by `motions`.
   bool from_supports = false;
-  std::optional<BasisSpec> basis;  ///< none: all dofs of the mesh
+  std::vector<PointSpec> points = {};  ///< displacements that are shown; the first is where the tip is
+  std::optional<BasisSpec> basis = {};  ///< none: all dofs of the mesh
 };
 
 }  // namespace ricochet

@@ -302,7 +302,8 @@ void march_in_basis(const SceneSpec& scene, SemiDiscrete& problem, DistributedLo
         std::make_shared<const SparseMatrix>(((damping + damping.transpose()) / 2).eval().sparseView());
   }
   problem.contact = basis.at_points.sparseView();
-  problem.tip = problem.on_unknowns(std::move(problem.tip));
+  for (SparseRows* rows : {&problem.tip, &problem.observed.rows, &problem.tangents.rows})
+    *rows = problem.on_unknowns(std::move(*rows));
   problem.support_shape = basis.shapes.transpose() * problem.support_shape;
   load.project(basis.shapes);
 }
@@ -345,10 +346,11 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   problem.upper = std::move(points.upper);
   show_tip(scene, problem);
   if (const std::string chosen = tip_choice(scene); !chosen.empty()) problem.notes.push_back("the tip is " + chosen);
-  if (tip_position(scene) != structure_length(scene) && std::holds_alternative<BeamSpec>(scene.structure))
+  if (shown_position(scene) != structure_length(scene) && std::holds_alternative<BeamSpec>(scene.structure))
     problem.notes.push_back(
-        fmt::format("the displacement shown as that of the tip is at x = {:.6g} m", tip_position(scene)));
+        fmt::format("the displacement shown as that of the tip is at x = {:.6g} m", shown_position(scene)));
   add_support(scene, points.on_supports, problem, *load);
+  observe_rows(scene, problem);
   interpolate_initial(scene, problem);
   if (problem.basis) march_in_basis(scene, problem, *load);
   problem.load = std::move(load);

@@ -6,6 +6,7 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/history/support_motions.hpp>
+#include <ricochet/scene/observed_rows.hpp>
 #include <ricochet/scene/scene.hpp>
 #include <string>
 #include <variant>
@@ -99,6 +100,9 @@ struct SemiDiscrete {
   Eigen::VectorXd lower, upper;                      ///< g1, g2 at the contact points; ±∞ where absent
   Eigen::SparseMatrix<double, Eigen::RowMajor> tip;  ///< 1 × n: the displacement shown to people
   Eigen::RowVectorXd tip_on_supports;                ///< 1 × r: ψ_j there, of matrices that are given
+  ObservedRows observed;                             ///< points that are shown
+  ObservedRows tangents;                             ///< motions along surfaces of stops
+  std::vector<int> tangent_of;                       ///< row of each contact point in them, −1: none; or empty
   Eigen::VectorXd position, velocity;                ///< q₀, v₀ of w
   double projection_energy = 0;  ///< ½qᵀKq + ½vᵀMv after projection minus before (J); 0 without projection
   /// ½ rᵀZ(ZᵀKZ)⁻¹Zᵀr, r = Kq₀ − F(0) − Hᵀp(q₀), Z = Ker M: what an initial state off the constraint of a singular mass

@@ -135,9 +135,9 @@ std::vector<double> support_places(const StructureSpec& structure) {
 }
 
 std::vector<std::pair<int, double>> held_by(const std::vector<double>& supports, const FiniteElementSpace& space,
-                                            double x) {
+                                            double x, ShapeOf what) {
   std::vector<std::pair<int, double>> held;
-  for (const auto& [where, weight] : held_row(space, x)) {
+  for (const auto& [where, weight] : held_row(space, x, what)) {
     std::size_t nearest = 0;
     double away = std::numeric_limits<double>::infinity();
     for (std::size_t j = 0; j < supports.size(); ++j)
@@ -216,7 +216,7 @@ void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, Sem
                            fmt::format("/scene/motions/{}", k)));
   }
   motions.at_points = of_motions(motions, problem.contact * problem.static_modes + on_supports);
-  motions.at_tip = motion_shapes(problem, {tip_position(scene)});
+  motions.at_tip = motion_shapes(problem, {shown_position(scene)});
   if (scene.from_supports) motions.at_tip.setZero();
   for (Eigen::Index i = 0; i < problem.points(); ++i) {
     const auto stop = static_cast<std::size_t>(i);

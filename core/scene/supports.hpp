@@ -1,4 +1,5 @@
 #pragma once
+#include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <string>
 #include <utility>
@@ -16,7 +17,7 @@ std::vector<double> support_places(const StructureSpec& structure);
 
 /// What supports that stand at these places add to the displacement at x by themselves: number and weight.
 std::vector<std::pair<int, double>> held_by(const std::vector<double>& supports, const FiniteElementSpace& space,
-                                            double x);
+                                            double x, ShapeOf what = ShapeOf::displacement);
 
 /// Throws InputError for an unknown support, one that two motions move, a stop that would move with supports that move
 /// apart or rest, a frame without motions.

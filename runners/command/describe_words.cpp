@@ -77,7 +77,7 @@ std::string type_of(const Field& field) {
     case Field::Form::methods:
       return "method, or a list";
     case Field::Form::numbers:
-      return "number, or a list";
+      return field.count == 3 ? "three numbers" : "number, or a list";
     case Field::Form::words:
       return "word, or a list";
     case Field::Form::starts:

@@ -108,7 +108,7 @@ class Kind {
   /// The measures that an answer is made of where the study names none.
   virtual std::vector<std::string> observed(const StudyResults&) const { return {}; }
   /// `curves` without rows: the sampled series that a case leaves in curves/ID.csv. Without columns: none.
-  virtual Table curve() const { return {}; }
+  virtual Table curve(const StudyResults&) const { return {}; }
   /// What a finished case has to say, in the terminal: "tip-l2 1.2e-05". "": nothing.
   virtual std::string outcome(const CaseRecord&) const { return ""; }
   /// What is wrong with a finished case that contradicts itself, for the totals and the exit code: "spectrum and march

@@ -228,7 +228,7 @@ void remove_curve_table(const std::filesystem::path& folder) {
 
 Table curves_head(const StudyResults& results) {
   const Kind* kind = find_kind(results.kind);
-  const Table declared = kind ? kind->curve() : Table();
+  const Table declared = kind ? kind->curve(results) : Table();
   Table curves{"curves", declared.text, {}, {}};
   for (const CaseRecord& record : results.cases)
     for (const std::string& name : record.curve.names)

@@ -241,7 +241,7 @@ Json check_value(const Field& field, const Json& value, const std::string& point
     case Field::Form::objects:
       return check_objects(field, value, pointer, axes);
     case Field::Form::numbers:
-      return check_numbers(field, value, pointer);
+      return field.count == 3 ? check_direction(value, pointer) : check_numbers(field, value, pointer);
     case Field::Form::words:
       return check_words(field, value, pointer);
     case Field::Form::starts:

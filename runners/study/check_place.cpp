@@ -47,6 +47,18 @@ Json check_dofs(const Json& list, const std::string& pointer) {
 
 }  // namespace
 
+Json check_direction(const Json& value, const std::string& pointer) {
+  if (!value.is_array() || value.size() != 3)
+    throw InputError(pointer, "expected three numbers, found " + quote(value));
+  Json out = Json::array();
+  for (std::size_t i = 0; i < 3; ++i) out.push_back(number_at(value[i], pointer_to(pointer, i)));
+  return out;
+}
+
+Json direction_schema() {
+  return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
+}
+
 Json check_place(const Field& field, const Json& value, const std::string& pointer) {
   if (value.is_null() && field.nullable) return value;
   if (value.is_number() && field.plain) return value.get<double>();
@@ -67,11 +79,7 @@ Json check_place(const Field& field, const Json& value, const std::string& point
     out["component"] = word_at(value["component"], pointer_to(pointer, "component"));
     return out;
   }
-  const Json& direction = value["direction"];
-  const std::string here = pointer_to(pointer, "direction");
-  if (!direction.is_array() || direction.size() != 3)
-    throw InputError(here, "expected three numbers, found " + quote(direction));
-  for (std::size_t i = 0; i < 3; ++i) out["direction"].push_back(number_at(direction[i], pointer_to(here, i)));
+  out["direction"] = check_direction(value["direction"], pointer_to(pointer, "direction"));
   return out;
 }
 
@@ -85,7 +93,7 @@ Json place_schema(const Field& field) {
                        {{"x", number},
                         {"node", word},
                         {"component", word},
-                        {"direction", {{"type", "array"}, {"items", number}, {"minItems", 3}, {"maxItems", 3}}},
+                        {"direction", direction_schema()},
                         {"dofs", {{"type", "array"}, {"items", dof}, {"minItems", 1}}},
                         {"point", word}}},
                       {"additionalProperties", false},

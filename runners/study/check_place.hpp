@@ -9,7 +9,11 @@ namespace ricochet {
 /// {"dofs": [{"dof", "weight"}]}, and returns it complete. Throws InputError by pointer.
 Json check_place(const Field& field, const Json& value, const std::string& pointer);
 
-/// Its JSON Schema.
+/// Checks the three numbers of a direction. Throws InputError by pointer.
+Json check_direction(const Json& value, const std::string& pointer);
+
+/// JSON Schemas of a place, and of a direction.
+Json direction_schema();
 Json place_schema(const Field& field);
 
 /// Checks what the program wrote of the files that a study names, Field::Form::files, or null.

@@ -53,7 +53,7 @@ struct Field {
   Role role = Role::mass;                 ///< for methods
   bool marched = false;                   ///< for references: marched_reference is one as well
   std::vector<ObjectForm> nested;         ///< one entry for Form::object, objects, starts and such formulas
-  std::size_t count = 0;                  ///< for Form::objects
+  std::size_t count = 0;                  ///< for Form::objects; 3 for Form::numbers: a direction
   std::vector<ObjectForm> listed = {};    ///< of Form::object: a list of such objects is possible as well, one value
   bool plain = false;                     ///< of Form::place: a number is x
   std::vector<ObjectForm> given = {};     ///< of Form::formula: an object that may stand for it (histories.hpp)

@@ -287,6 +287,8 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   const auto files = std::make_shared<StudyFiles>(folder, resolved["files"], resolved.value("outside", false));
   resolved.erase("files");
   if (kind.check) kind.check(resolved);
+  if (!kind.shows_points && resolved["scene"].contains("points"))
+    throw InputError("/scene/points", "a study of kind " + kind.name + " shows no points; expected kind trajectory");
   const std::vector<int> meshes = list_of<int>(resolved["mesh"]["elements"]);
 
   std::vector<MethodOptions> methods;

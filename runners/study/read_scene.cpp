@@ -2,6 +2,7 @@
 
 #include "runners/json/json_text.hpp"
 #include "runners/study/histories.hpp"
+#include "runners/study/observed_keys.hpp"
 
 namespace ricochet {
 namespace {
@@ -9,19 +10,6 @@ namespace {
 Formula read_formula(const Json& value, const std::string& pointer, const std::string& variables) {
   if (value.is_number()) return Formula(value.get<double>());
   return Formula(value.get<std::string>(), pointer, variables);
-}
-
-Place read_place(const Json& json) {
-  Place place;
-  if (json.contains("x")) place.x = json.at("x").get<double>();
-  place.node = json.value("node", "");
-  place.component = json.value("component", "");
-  place.point = json.value("point", "");
-  if (json.contains("direction")) place.direction = json.at("direction").get<std::vector<double>>();
-  if (json.contains("dofs"))
-    for (const Json& one : json.at("dofs"))
-      place.dofs.emplace_back(one.at("dof").get<int>(), one.at("weight").get<double>());
-  return place;
 }
 
 std::optional<Place> optional_place(const Json& json) {
@@ -190,7 +178,8 @@ StopsSpec read_stops(const Json& json) {
     };
     for (const Json& one : json)
       stops.named.push_back({one.at("name").get<std::string>(), read_place(one.at("at")), optional_place(one.at("to")),
-                             bound(one.at("lower")), bound(one.at("upper")), one.value("moves_with", "")});
+                             bound(one.at("lower")), bound(one.at("upper")), one.value("moves_with", ""),
+                             read_tangent(one)});
     return stops;
   }
   if (!json.at("lower").is_null()) stops.lower = read_formula(json.at("lower"), "/scene/stops/lower", "x");
@@ -226,6 +215,7 @@ SceneSpec read_scene(const Json& scene, StudyFiles* files) {
   spec.initial.projection = initial.at("projection") == "constraint"      ? InitialSpec::Projection::constraint
                             : initial.at("projection") == "least-squares" ? InitialSpec::Projection::least_squares
                                                                           : InitialSpec::Projection::none;
+  spec.points = read_points(scene);
   if (initial.contains("file") && files) spec.initial.dofs = files->initial(initial, scene.at("structure"));
   return spec;
 }

@@ -2,6 +2,7 @@
 
 #include "runners/study/fields.hpp"
 #include "runners/study/histories.hpp"
+#include "runners/study/observed_keys.hpp"
 
 namespace ricochet {
 
@@ -226,6 +227,7 @@ ObjectForm named_stop() {
                  optional(real("lower", "m", any, std::nullopt, "Lower bound; null: none.")),
                  optional(real("upper", "m", any, std::nullopt, "Upper bound; null: none.")),
                  moves_with()};
+  for (Field& field : observed_of_stops()) keys.fields.push_back(std::move(field));
   return keys;
 }
 
@@ -285,7 +287,8 @@ ObjectForm scene() {
       quiet(objects("motions", "Motions of supports by tables, in the place of `support`.", motion_form())),
       quiet(word("frame", {"absolute", "supports"}, "absolute",
                  "What the initial state and the displacements shown count from, with `motions`.")),
-      quiet(seed)};
+      quiet(seed),
+      points_key()};
   keys.fields[1].listed.push_back(named_stop());
   return keys;
 }

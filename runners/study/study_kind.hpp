@@ -12,9 +12,10 @@ namespace ricochet {
 /// A kind that has the key `step` (an axis, s) or `steps_per_period` (an axis) has it as a column of its cases; one
 /// that has `duration`, `samples` or `reference` finds them in StudyCase. All functions but `settings` may be empty.
 struct StudyKind {
-  std::string name;         ///< the word after "kind"
-  std::string text;         ///< what is made of each case, one sentence
-  std::vector<Field> keys;  ///< in addition to those of every study
+  std::string name;           ///< the word after "kind"
+  std::string text;           ///< what is made of each case, one sentence
+  std::vector<Field> keys;    ///< in addition to those of every study
+  bool shows_points = false;  ///< whether it shows the points of a scene
 
   /// What else determines the results of a case, complete and in a fixed order; null where nothing does. It is part of
   /// the case's id.

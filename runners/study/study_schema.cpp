@@ -154,7 +154,7 @@ class SchemaWriter {
                 {"minItems", field.count},
                 {"maxItems", field.count}};
       case Field::Form::numbers:
-        return one_or_list(scalar(field.spec));
+        return field.count == 3 ? direction_schema() : one_or_list(scalar(field.spec));
       case Field::Form::words:
         return or_null(field, one_or_list(words(field)));
       case Field::Form::starts:

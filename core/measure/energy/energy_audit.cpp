@@ -220,16 +220,15 @@ double EnergyAudit::tip_velocity(int lane) const {
   return state.tip_way / state.duration;
 }
 
-// What the tip moved by over the last sub-step, relative to the clamp.
-double EnergyAudit::tip_increment(const Marcher& marcher, int lane) const {
+double EnergyAudit::last_way(const Marcher& marcher, const RowMatrix& rows, int row, int lane) const {
   const int slot = marcher.program().increment_slot;
   const Block& own = lanes_[static_cast<std::size_t>(lane)].increment;
-  if (slot < 0) return model_.times(model_.tip(), 0, own.data());
-  if (T_ == 1) return model_.times(model_.tip(), 0, marcher.slot(slot));
-  const RowMatrix& row = model_.tip();
+  if (slot < 0) return model_.times(rows, row, own.data());
+  if (T_ == 1) return model_.times(rows, row, marcher.slot(slot));
+  const auto i = static_cast<std::size_t>(row);
   double sum = 0;
-  for (std::size_t e = 0; e < row.index.size(); ++e)
-    sum += row.value[e] * marcher.slot(slot)[static_cast<std::ptrdiff_t>(row.index[e]) * T_ + lane];
+  for (auto e = static_cast<std::size_t>(rows.start[i]); e < static_cast<std::size_t>(rows.start[i + 1]); ++e)
+    sum += rows.value[e] * marcher.slot(slot)[static_cast<std::ptrdiff_t>(rows.index[e]) * T_ + lane];
   return sum;
 }
 
@@ -314,7 +313,7 @@ void EnergyAudit::take_sample(Marcher& marcher, int lane) {
   const double t = marcher.time();
   const EnergySample sample = this->sample(marcher, lane);
   if (state.asked)
-    state.tip_way = tip_increment(marcher, lane) + marcher.support(lane, t) -
+    state.tip_way = last_way(marcher, model_.tip(), 0, lane) + marcher.support(lane, t) -
                     marcher.support(lane, t - state.duration) + marcher.motions().tip(t) -
                     marcher.motions().tip(t - state.duration);
   confirm(state, sample.scheme, false);

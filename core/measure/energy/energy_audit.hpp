@@ -109,6 +109,9 @@ class EnergyAudit final : public StepObserver {
   bool balances() const { return balances_; }
   /// Δu_tip/Δt of the last sub-step, absolute, m/s, of the last step whose energies were asked for.
   double tip_velocity(int lane) const;
+  /// What one of these rows moved by over that sub-step, relative to the supports, m; and how long it is, s.
+  double last_way(const Marcher& marcher, const RowMatrix& rows, int row, int lane) const;
+  double last_duration(int lane) const { return lanes_[static_cast<std::size_t>(lane)].duration; }
 
  private:
   struct Lane {
@@ -144,7 +147,6 @@ class EnergyAudit final : public StepObserver {
   void begin_step(const Marcher& marcher, const StageView& view, Lane& state);
   void start_balance(const StageView& view, int lane);
   void follow_position(const StageView& view, int lane, bool moves);
-  double tip_increment(const Marcher& marcher, int lane) const;
   static bool alarms(const Lane& state, double worked);
   void take_sample(Marcher& marcher, int lane);
   void add_marched(const Marcher& marcher, std::span<const FreeStep> steps);

@@ -246,7 +246,7 @@ void ComparisonKind::tables(StudyResults& results) const {
   collect_tables(results);
 }
 
-Table ComparisonKind::curve() const {
+Table ComparisonKind::curve(const StudyResults&) const {
   return curves_head();
 }
 

@@ -44,7 +44,7 @@ class ComparisonKind : public Kind {
   CaseRecord march(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) const override;
   void tables(StudyResults& results) const override;
   bool answers_itself() const override { return true; }
-  Table curve() const override;
+  Table curve(const StudyResults&) const override;
   std::string outcome(const CaseRecord& record) const override { return errors_text(record); }
   nlohmann::ordered_json alone(const StudyResults& results, const CaseRecord& record) const override;
 

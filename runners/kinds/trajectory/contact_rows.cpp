@@ -131,7 +131,10 @@ void describe_contact(std::vector<CaseRecord>& records) {
   }
 }
 
-Table curves_head() {
+namespace {
+
+// What is known of every curve.
+Table common_curves() {
   return {"curves",
           "One sample of the motion of one case; the name of the file is the case.",
           {{"t", "s", "Time of the sample."},
@@ -153,6 +156,18 @@ Table curves_head() {
            {"tip_displacement_high", "m", "Largest displacement of the tip since the sample before."},
            {"penetration_peak", "m", "Largest penetration since the sample before, from every step."}},
           {}};
+}
+
+}  // namespace
+
+Table curves_head(const std::vector<std::string>& points) {
+  Table curves = common_curves();
+  for (const std::string& name : points) {
+    curves.columns.push_back(
+        {name + "_displacement", "m", "Displacement of the point " + name + ", in its own frame."});
+    curves.columns.push_back({name + "_velocity", "m/s", "Its velocity, the mean over the last sub-step."});
+  }
+  return curves;
 }
 
 }  // namespace ricochet

@@ -9,6 +9,7 @@
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
+#include <ricochet/measure/motion/row_readings.hpp>
 
 #include "runners/kinds/trajectory/contact_rows.hpp"
 #include "runners/kinds/trajectory/snapshot_taker.hpp"
@@ -32,8 +33,13 @@ constexpr double held_seconds_per_step = 0.5 * 1.6e-7;
 class Sampler final : public StepObserver {
  public:
   Sampler(const Marcher& marcher, const EnergyAudit& audit, ImpactRecorder& recorder)
-      : audit_(audit), recorder_(recorder), gaps_(marcher) {
-    for (const Column& column : curves_head().columns) curve_.names.push_back(column.name);
+      : audit_(audit),
+        recorder_(recorder),
+        gaps_(marcher),
+        points_(marcher, marcher.program().problem->observed),
+        row_(curves_head(marcher.program().problem->observed.names).columns.size()) {
+    for (const Column& column : curves_head(marcher.program().problem->observed.names).columns)
+      curve_.names.push_back(column.name);
     curve_.columns.resize(curve_.names.size());
     asks_.next_shown = never;
     asks_.tip = true;
@@ -71,12 +77,17 @@ class Sampler final : public StepObserver {
                           low_,
                           high_,
                           deepest_};
+    auto next = std::copy(std::begin(row), std::end(row), row_.begin());
+    for (int i = 0; i < points_.count(); ++i) {
+      *next++ = points_.displacement(marcher, i);
+      *next++ = points_.velocity(marcher, audit_, i);
+    }
     low_ = infinity;
     high_ = -infinity;
     deepest_ = 0;
-    for (const double value : row)
+    for (const double value : row_)
       if (!std::isfinite(value)) return;
-    for (std::size_t c = 0; c < curve_.columns.size(); ++c) curve_.columns[c].push_back(row[c]);
+    for (std::size_t c = 0; c < curve_.columns.size(); ++c) curve_.columns[c].push_back(row_[c]);
   }
   Curve finish() { return std::move(curve_); }
   double largest_tip() const {
@@ -96,6 +107,8 @@ class Sampler final : public StepObserver {
   double low_ = infinity, high_ = -infinity, deepest_ = 0;  // since the last sample
   double largest_tip_ = 0;                                  // until then
   GapWatch gaps_;
+  RowReadings points_;
+  std::vector<double> row_;  // of the curve
   Curve curve_;
 };
 

@@ -236,10 +236,18 @@ std::vector<std::string> observed_energies(const StudyResults& results) {
   return {driven ? "dissipated_at_contact" : "energy_left", "impulse", "tip_displacement_end"};
 }
 
+std::vector<std::string> point_names(const Json& study) {
+  std::vector<std::string> names;
+  if (study.contains("scene") && study.at("scene").contains("points"))
+    for (const auto& point : study.at("scene").at("points")) names.push_back(point.at("name").get<std::string>());
+  return names;
+}
+
 StudyKind trajectory_format(const std::vector<MeasureInfo>& measures) {
   StudyKind format;
   format.name = "trajectory";
   format.text = "Each case marches its scene once.";
+  format.shows_points = true;
   format.keys = {keys::step(),
                  keys::duration(),
                  keys::samples(),
@@ -284,7 +292,7 @@ class TrajectoryKind final : public Kind {
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
   }
   std::vector<std::string> observed(const StudyResults& results) const override { return observed_energies(results); }
-  Table curve() const override { return curves_head(); }
+  Table curve(const StudyResults& results) const override { return curves_head(point_names(results.study)); }
   std::string outcome(const CaseRecord& record) const override { return energies_text(record); }
   bool measures_stand() const override { return true; }
   nlohmann::ordered_json alone(const StudyResults& results, const CaseRecord& record) const override {

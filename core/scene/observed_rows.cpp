@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ricochet/contract/errors.hpp>
+#include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/named_stops.hpp>
+#include <ricochet/scene/observed_rows.hpp>
+#include <ricochet/scene/scene.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
+#include <ricochet/scene/supports.hpp>
+
+namespace ricochet {
+namespace {
+
+// Rows of places as they are gathered.
+class RowMaker {
+ public:
+  RowMaker(const SemiDiscrete& problem, std::size_t count) : problem_(problem) {
+    rows_.on_support = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count));
+    rows_.on_motions = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count),
+                                             static_cast<Eigen::Index>(problem.motions.supports.size()));
+  }
+  /// `on_support`: how much of the motion that all supports share; `moved`: whether motions by histories are seen.
+  void add(const std::string& name, const PlaceRow& row, double on_support, bool moved) {
+    const auto i = static_cast<Eigen::Index>(rows_.names.size());
+    rows_.names.push_back(name);
+    rows_.on_support[i] = on_support;
+    for (const auto& [dof, value] : row.free) entries_.emplace_back(static_cast<int>(i), dof, value);
+    if (!moved) return;
+    Eigen::RowVectorXd shares = Eigen::RowVectorXd::Zero(problem_.static_modes.cols());
+    for (const auto& [dof, value] : row.free) shares += value * problem_.static_modes.row(dof);
+    for (const auto& [support, weight] : row.held) shares[support] += weight;
+    const auto& supports = problem_.motions.supports;
+    for (std::size_t k = 0; k < supports.size(); ++k)
+      for (const std::size_t j : supports[k])
+        rows_.on_motions(i, static_cast<Eigen::Index>(k)) += shares[static_cast<Eigen::Index>(j)];
+  }
+  ObservedRows make() {
+    rows_.rows.resize(static_cast<Eigen::Index>(rows_.names.size()), problem_.space.dofs);
+    rows_.rows.setFromTriplets(entries_.begin(), entries_.end());
+    return std::move(rows_);
+  }
+
+ private:
+  const SemiDiscrete& problem_;
+  ObservedRows rows_;
+  std::vector<Eigen::Triplet<double>> entries_;
+};
+
+std::string point_pointer(std::size_t number, const char* key) {
+  return fmt::format("/scene/points/{}{}", number, key);
+}
+
+std::string tangent_pointer(std::size_t stop) {
+  return fmt::format("/scene/stops/{}/tangent", stop);
+}
+
+// The place of a node with another component or direction.
+Place turned(const Place& place, const TangentSpec& tangent) {
+  Place out;
+  out.node = place.node;
+  out.component = tangent.component;
+  out.direction = tangent.direction;
+  return out;
+}
+
+PlaceRow scaled(PlaceRow row, double factor) {
+  for (auto& [dof, value] : row.free) value *= factor;
+  for (auto& [support, weight] : row.held) weight *= factor;
+  return row;
+}
+
+PlaceRow tangent_row(const SceneSpec& scene, const FiniteElementSpace& space, const NamedStop& stop,
+                     std::size_t number) {
+  const TangentSpec& tangent = *stop.tangent;
+  const std::string pointer = tangent_pointer(number);
+  const auto row = [&](const Place& place) {
+    if (tangent.slope_radius > 0) {
+      if (!place.x)
+        throw InputError(pointer + "/slope_radius",
+                         "the slope is that of a beam; expected direction or component, or a stop at {\"x\"}");
+      return scaled(rotation_row(scene, space, place, pointer), tangent.slope_radius);
+    }
+    if (place.node.empty())
+      throw InputError(pointer, fmt::format("stop {} is not at a node; expected {}", stop.name,
+                                            place.x ? "slope_radius" : "a stop at {\"node\"}"));
+    return place_row(scene, space, turned(place, tangent), pointer);
+  };
+  return stop.to ? difference(row(stop.at), row(*stop.to)) : row(stop.at);
+}
+
+}  // namespace
+
+void check_points(const SceneSpec& scene, const FiniteElementSpace& space) {
+  std::vector<std::string> names;
+  for (const NamedStop& stop : scene.stops.named) names.push_back(stop.name);
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    const PointSpec& point = scene.points[i];
+    check_name(point.name, point_pointer(i, "/name"));
+    if (point.name == "tip")
+      throw InputError(point_pointer(i, "/name"), "\"tip\" is what tables call the first point; expected another name");
+    if (std::find(names.begin(), names.end(), point.name) != names.end())
+      throw InputError(point_pointer(i, "/name"),
+                       fmt::format("another point or stop is called \"{}\"; expected another name", point.name));
+    names.push_back(point.name);
+    place_row(scene, space, point.at, point_pointer(i, "/at"));
+  }
+  const auto* assembled = std::get_if<AssembledSpec>(&scene.structure);
+  if (assembled && assembled->tip && !scene.points.empty())
+    throw InputError("/scene/structure/tip", "does not go together with points: the first point is the tip");
+}
+
+void check_tangents(const SceneSpec& scene, const FiniteElementSpace& space) {
+  for (std::size_t i = 0; i < scene.stops.named.size(); ++i)
+    if (scene.stops.named[i].tangent) tangent_row(scene, space, scene.stops.named[i], i);
+}
+
+void observe_rows(const SceneSpec& scene, SemiDiscrete& problem) {
+  RowMaker points(problem, scene.points.size());
+  // All supports of a beam, a bar or an oscillator move by φ, and what stands between them with them.
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    const PointSpec& point = scene.points[i];
+    points.add(point.name, place_row(scene, problem.space, point.at, point_pointer(i, "/at")),
+               point.from_supports ? 0.0 : 1.0, !point.from_supports);
+  }
+  problem.observed = points.make();
+
+  const std::vector<NamedStop>& stops = scene.stops.named;
+  RowMaker tangents(problem, stops.size());
+  problem.tangent_of.assign(stops.size(), -1);
+  int count = 0;
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    if (!stops[i].tangent) continue;
+    problem.tangent_of[i] = count++;
+    tangents.add(stops[i].name, tangent_row(scene, problem.space, stops[i], i), 0, true);
+  }
+  problem.tangents = tangents.make();
+}
+
+}  // namespace ricochet

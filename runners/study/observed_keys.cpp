@@ -1,0 +1,61 @@
+#include "runners/study/observed_keys.hpp"
+
+namespace ricochet {
+
+using namespace keys;
+
+Field points_key() {
+  ObjectForm point;
+  point.fields = {of_form(Field::Form::text, "name", std::nullopt, "Letters, digits, '-' and '_'; each once."),
+                  place("at", std::nullopt, "Place whose displacement is shown."),
+                  quiet(single(word("frame", {"absolute", "supports"}, "",
+                                    "What it counts from; absent: as `frame` of the scene.")))};
+  return quiet(objects("points", "Places whose motion is shown; the first is where the tip is.", point));
+}
+
+std::vector<Field> observed_of_stops() {
+  ObjectForm radius;
+  radius.fields = {
+      single(real("slope_radius", "m", positive, std::nullopt, "r: the surface of a tube that bends moves by r θ."))};
+  ObjectForm direction;
+  direction.fields = {of_form(Field::Form::numbers, "direction", std::nullopt,
+                              "Direction along the surface, at the nodes of the stop.")};
+  direction.fields.back().count = 3;
+  ObjectForm component;
+  component.fields = {
+      of_form(Field::Form::text, "component", std::nullopt, "Component along it, at the nodes of the stop.")};
+  ObjectForm tangent;
+  tangent.ways = {radius, direction, component};
+  return {quiet(object("tangent", Json(nullptr), "Motion along the surface, for wear; absent: none.", tangent))};
+}
+
+Place read_place(const Json& json) {
+  Place place;
+  if (json.contains("x")) place.x = json.at("x").get<double>();
+  place.node = json.value("node", "");
+  place.component = json.value("component", "");
+  place.point = json.value("point", "");
+  if (json.contains("direction")) place.direction = json.at("direction").get<std::vector<double>>();
+  if (json.contains("dofs"))
+    for (const Json& one : json.at("dofs"))
+      place.dofs.emplace_back(one.at("dof").get<int>(), one.at("weight").get<double>());
+  return place;
+}
+
+std::vector<PointSpec> read_points(const Json& scene) {
+  std::vector<PointSpec> points;
+  const std::string frame = scene.value("frame", "absolute");
+  for (const Json& one : scene.value("points", Json::array()))
+    points.push_back(
+        {one.at("name").get<std::string>(), read_place(one.at("at")), one.value("frame", frame) == "supports"});
+  return points;
+}
+
+std::optional<TangentSpec> read_tangent(const Json& stop) {
+  const Json given = stop.value("tangent", Json());
+  if (given.is_null()) return std::nullopt;
+  return TangentSpec{given.value("slope_radius", 0.0), given.value("direction", std::vector<double>()),
+                     given.value("component", "")};
+}
+
+}  // namespace ricochet

@@ -1,0 +1,120 @@
+// Points and tangents: rows that are read, what supports add to them, and what they may not be.
+#include <ricochet/scene/observed_rows.hpp>
+
+#include "tests/scene/structure/beam_files.hpp"
+#include "tests/scene/working_set.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+
+namespace {
+
+Place at_x(double x) {
+  Place place;
+  place.x = x;
+  return place;
+}
+
+std::string fault(const SceneSpec& scene) {
+  return input_error([&] { check_scene(scene, 4); });
+}
+
+/// Of w = x³ on the unit beam, 4 elements: values and slopes at the free nodes.
+Eigen::VectorXd cube() {
+  Eigen::VectorXd q(8);
+  for (int node = 0; node < 4; ++node) {
+    const double x = 0.25 * (node + 1);
+    q[2 * node] = x * x * x;
+    q[2 * node + 1] = 3 * x * x;
+  }
+  return q;
+}
+
+}  // namespace
+
+TEST_CASE("a point reads the displacement of its place, and the first one is the tip") {
+  SceneSpec scene = unit_beam();
+  scene.stops = {};
+  scene.points = {{"quarter", at_x(0.3)}, {"end", at_x(1), true}};
+  const SemiDiscrete problem = discretised(scene, 4, *mass("consistent"));
+  REQUIRE(problem.observed.count() == 2);
+  const Eigen::VectorXd read = problem.observed.rows * cube();
+  // The elements have every cubic.
+  CHECK(read[0] == Approx(0.027).epsilon(1e-14));
+  CHECK(read[1] == Approx(1).epsilon(1e-14));
+  CHECK((problem.tip * cube())[0] == Approx(0.027).epsilon(1e-14));
+  CHECK(problem.observed.on_support[0] == 1);
+  CHECK(problem.observed.on_support[1] == 0);
+}
+
+TEST_CASE("the surface of a tube moves by the radius times the rotation of its section") {
+  SceneSpec scene = unit_beam();
+  scene.stops = {};
+  NamedStop stop{"bar", at_x(0.6), {}, {}, 1.0};
+  stop.tangent = TangentSpec{0.02, {}, ""};
+  NamedStop between{"between", at_x(0.9), at_x(0.4), {}, 1.0};
+  between.tangent = TangentSpec{0.5, {}, ""};
+  scene.stops.named = {{"bare", at_x(1), {}, {}, 1.0}, stop, between};
+  const SemiDiscrete problem = discretised(scene, 4, *mass("consistent"));
+  CHECK(problem.tangent_of == std::vector<int>{-1, 0, 1});
+  const Eigen::VectorXd read = problem.tangents.rows * cube();
+  CHECK(read[0] == Approx(0.02 * 3 * 0.36).epsilon(1e-13));
+  CHECK(read[1] == Approx(0.5 * 3 * (0.81 - 0.16)).epsilon(1e-13));
+  CHECK(problem.tangents.on_support.isZero(0));
+}
+
+TEST_CASE("supports that move alike turn no section, and lift every point by what they do") {
+  SceneSpec scene = unit_beam();
+  beam_of(scene).supports = {{"left", 0, BeamSupport::Type::pinned, 0, 0},
+                             {"right", 1, BeamSupport::Type::pinned, 0, 0}};
+  scene.stops = {};
+  NamedStop stop{"bar", at_x(0.1), {}, {}, 1.0};
+  stop.tangent = TangentSpec{1, {}, ""};
+  scene.stops.named = {stop};
+  scene.points = {{"near", at_x(0.1)}, {"between", at_x(0.1), true}};
+  TimeTable table;
+  table.times = {0, 1};
+  table.values = {0, 0};
+  scene.motions = {{{}, std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(table, 0, 0))}};
+  const SemiDiscrete problem = discretised(scene, 4, *mass("consistent"));
+  CHECK(problem.observed.on_motions(0, 0) == Approx(1).epsilon(1e-12));
+  CHECK(problem.observed.on_motions(1, 0) == 0);
+  CHECK(problem.tangents.on_motions(0, 0) == Approx(0).margin(1e-12));
+}
+
+TEST_CASE("points and tangents that cannot be are refused by name and pointer") {
+  SceneSpec scene = unit_beam();
+  scene.stops = {};
+  scene.stops.named = {{"bar", at_x(1), {}, {}, 1.0}};
+  const auto with_point = [&](const char* name, const Place& place) {
+    SceneSpec other = scene;
+    other.points = {{name, place}};
+    return fault(other);
+  };
+  CHECK(with_point("a b", at_x(1)) ==
+        "/scene/points/0/name: \"a b\"; expected a name of 1 to 40 letters, digits, '-' or '_'");
+  CHECK(with_point("bar", at_x(1)) ==
+        "/scene/points/0/name: another point or stop is called \"bar\"; expected another name");
+  CHECK(with_point("tip", at_x(1)) ==
+        "/scene/points/0/name: \"tip\" is what tables call the first point; expected another name");
+  CHECK(with_point("mid", at_x(2)) == "/scene/points/0/at/x: 2 m is beyond the beam; expected 0 to 1 m");
+  const auto with_tangent = [&](const TangentSpec& tangent) {
+    SceneSpec other = scene;
+    other.stops.named[0].tangent = tangent;
+    return fault(other);
+  };
+  CHECK(with_tangent({0, {0, 1, 0}, ""}) == "/scene/stops/0/tangent: stop bar is not at a node; expected slope_radius");
+  SceneSpec frame = assembled_scene(assembled(beam_files(beam_of(scene), 4)), {});
+  frame.stops.named = {{"bar", at_node("N4"), {}, {}, 1.0}};
+  frame.stops.named[0].tangent = TangentSpec{0.1, {}, ""};
+  CHECK(fault(frame) ==
+        "/scene/stops/0/tangent/slope_radius: the slope is that of a beam; expected direction or component, or a stop "
+        "at {\"x\"}");
+  frame.stops.named[0].tangent = TangentSpec{0, {}, "uz"};
+  CHECK_THAT(fault(frame),
+             Catch::Contains("/scene/stops/0/tangent/component: node N4 has ") && Catch::Contains("no uz"));
+  frame.stops.named[0].tangent = TangentSpec{0, {}, "rz"};
+  CHECK(fault(frame) == "no error");
+  frame.points = {{"far", at_node("N44")}};
+  CHECK_THAT(fault(frame), Catch::Contains("/scene/points/0/at/node: \"N44\": no such node; nearest N4"));
+}
