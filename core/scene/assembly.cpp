@@ -118,7 +118,7 @@ std::vector<std::pair<double, double>> held_row(const FiniteElementSpace& space,
   if (space.elements.empty()) return row;
   const auto [element, xi] = locate(space, x);
   const std::array<double, 4> values =
-      what == ShapeOf::rotation ? shape_rotations(*element, xi) : shape_values(space.basis, element->length, xi);
+      what == ShapeOf::rotation ? shape_rotations(*element, xi) : shape_values(space.basis, *element, xi);
   const int right = space.basis == FiniteElementSpace::Basis::hermite ? 2 : 1;
   for (const int a : {0, right})
     if (element->dof[a] < 0 && values[a] != 0)

@@ -9,14 +9,14 @@ using namespace ricochet::testing;
 
 namespace {
 
-Place at_x(double x) {
+Place at_position(double x) {
   Place place;
   place.x = x;
   return place;
 }
 
-std::string fault(const SceneSpec& scene) {
-  return input_error([&] { check_scene(scene, 4); });
+std::string scene_fault(const SceneSpec& scene, int elements = 4) {
+  return input_error([&] { check_scene(scene, elements); });
 }
 
 /// Of w = x³ on the unit beam, 4 elements: values and slopes at the free nodes.
@@ -35,7 +35,7 @@ Eigen::VectorXd cube() {
 TEST_CASE("a point reads the displacement of its place, and the first one is the tip") {
   SceneSpec scene = unit_beam();
   scene.stops = {};
-  scene.points = {{"quarter", at_x(0.3)}, {"end", at_x(1), true}};
+  scene.points = {{"quarter", at_position(0.3)}, {"end", at_position(1), true}};
   const SemiDiscrete problem = discretised(scene, 4, *mass("consistent"));
   REQUIRE(problem.observed.count() == 2);
   const Eigen::VectorXd read = problem.observed.rows * cube();
@@ -50,11 +50,11 @@ TEST_CASE("a point reads the displacement of its place, and the first one is the
 TEST_CASE("the surface of a tube moves by the radius times the rotation of its section") {
   SceneSpec scene = unit_beam();
   scene.stops = {};
-  NamedStop stop{"bar", at_x(0.6), {}, {}, 1.0};
+  NamedStop stop{"bar", at_position(0.6), {}, {}, 1.0};
   stop.tangent = TangentSpec{0.02, {}, ""};
-  NamedStop between{"between", at_x(0.9), at_x(0.4), {}, 1.0};
+  NamedStop between{"between", at_position(0.9), at_position(0.4), {}, 1.0};
   between.tangent = TangentSpec{0.5, {}, ""};
-  scene.stops.named = {{"bare", at_x(1), {}, {}, 1.0}, stop, between};
+  scene.stops.named = {{"bare", at_position(1), {}, {}, 1.0}, stop, between};
   const SemiDiscrete problem = discretised(scene, 4, *mass("consistent"));
   CHECK(problem.tangent_of == std::vector<int>{-1, 0, 1});
   const Eigen::VectorXd read = problem.tangents.rows * cube();
@@ -63,15 +63,25 @@ TEST_CASE("the surface of a tube moves by the radius times the rotation of its s
   CHECK(problem.tangents.on_support.isZero(0));
 }
 
-TEST_CASE("supports that move alike turn no section, and lift every point by what they do") {
+TEST_CASE("supports that move alike turn no section, and lift every point by what they do, with shear too") {
   SceneSpec scene = unit_beam();
+  if (GENERATE(false, true)) {
+    BeamSpec& beam = beam_of(scene);
+    beam.young = 2e11;
+    beam.density = 8000;
+    beam.section = {};
+    beam.section.type = Section::Type::rectangle;
+    beam.section.width = beam.section.height = 0.2;
+    beam.shear.emplace();
+    beam.shear->poisson = 0.3;
+  }
   beam_of(scene).supports = {{"left", 0, BeamSupport::Type::pinned, 0, 0},
                              {"right", 1, BeamSupport::Type::pinned, 0, 0}};
   scene.stops = {};
-  NamedStop stop{"bar", at_x(0.1), {}, {}, 1.0};
+  NamedStop stop{"bar", at_position(0.1), {}, {}, 1.0};
   stop.tangent = TangentSpec{1, {}, ""};
   scene.stops.named = {stop};
-  scene.points = {{"near", at_x(0.1)}, {"between", at_x(0.1), true}};
+  scene.points = {{"near", at_position(0.1)}, {"between", at_position(0.1), true}};
   TimeTable table;
   table.times = {0, 1};
   table.values = {0, 0};
@@ -85,36 +95,36 @@ TEST_CASE("supports that move alike turn no section, and lift every point by wha
 TEST_CASE("points and tangents that cannot be are refused by name and pointer") {
   SceneSpec scene = unit_beam();
   scene.stops = {};
-  scene.stops.named = {{"bar", at_x(1), {}, {}, 1.0}};
+  scene.stops.named = {{"bar", at_position(1), {}, {}, 1.0}};
   const auto with_point = [&](const char* name, const Place& place) {
     SceneSpec other = scene;
     other.points = {{name, place}};
-    return fault(other);
+    return scene_fault(other);
   };
-  CHECK(with_point("a b", at_x(1)) ==
+  CHECK(with_point("a b", at_position(1)) ==
         "/scene/points/0/name: \"a b\"; expected a name of 1 to 40 letters, digits, '-' or '_'");
-  CHECK(with_point("bar", at_x(1)) ==
+  CHECK(with_point("bar", at_position(1)) ==
         "/scene/points/0/name: another point or stop is called \"bar\"; expected another name");
-  CHECK(with_point("tip", at_x(1)) ==
+  CHECK(with_point("tip", at_position(1)) ==
         "/scene/points/0/name: \"tip\" is what tables call the first point; expected another name");
-  CHECK(with_point("mid", at_x(2)) == "/scene/points/0/at/x: 2 m is beyond the beam; expected 0 to 1 m");
+  CHECK(with_point("mid", at_position(2)) == "/scene/points/0/at/x: 2 m is beyond the beam; expected 0 to 1 m");
   const auto with_tangent = [&](const TangentSpec& tangent) {
     SceneSpec other = scene;
     other.stops.named[0].tangent = tangent;
-    return fault(other);
+    return scene_fault(other);
   };
   CHECK(with_tangent({0, {0, 1, 0}, ""}) == "/scene/stops/0/tangent: stop bar is not at a node; expected slope_radius");
   SceneSpec frame = assembled_scene(assembled(beam_files(beam_of(scene), 4)), {});
   frame.stops.named = {{"bar", at_node("N4"), {}, {}, 1.0}};
   frame.stops.named[0].tangent = TangentSpec{0.1, {}, ""};
-  CHECK(fault(frame) ==
+  CHECK(scene_fault(frame, 1) ==
         "/scene/stops/0/tangent/slope_radius: the slope is that of a beam; expected direction or component, or a stop "
         "at {\"x\"}");
   frame.stops.named[0].tangent = TangentSpec{0, {}, "uz"};
-  CHECK_THAT(fault(frame),
+  CHECK_THAT(scene_fault(frame, 1),
              Catch::Contains("/scene/stops/0/tangent/component: node N4 has ") && Catch::Contains("no uz"));
   frame.stops.named[0].tangent = TangentSpec{0, {}, "rz"};
-  CHECK(fault(frame) == "no error");
+  CHECK(scene_fault(frame, 1) == "no error");
   frame.points = {{"far", at_node("N44")}};
-  CHECK_THAT(fault(frame), Catch::Contains("/scene/points/0/at/node: \"N44\": no such node; nearest N4"));
+  CHECK_THAT(scene_fault(frame, 1), Catch::Contains("/scene/points/0/at/node: \"N44\": no such node; nearest N4"));
 }
