@@ -113,7 +113,8 @@ void ImpactRecorder::press_left_out(const Marcher& marcher, const StepInterval& 
       lane.points[static_cast<std::size_t>(steps.closed[i].point)].given += stage.momentum * std::abs(efforts[i]);
     if (stage.closes_instant) {
       lane.force = 0;
-      for (const ClosedPoint& closed : steps.closed) press(lane, closed.point, lasts);
+      const double time = begins + stage.facts.instant * h_;
+      for (const ClosedPoint& closed : steps.closed) press(lane, closed.point, lasts, time, false);
     }
     if (at + 1 == static_cast<int>(stages.size())) begins += h_;
   });
@@ -150,7 +151,7 @@ void ImpactRecorder::move_to_place(Lane& lane, int point, double place, double t
 }
 
 // One more instant of a closed point.
-void ImpactRecorder::press(Lane& lane, int point, double lasts) {
+void ImpactRecorder::press(Lane& lane, int point, double lasts, double time, bool closes) {
   Point& one = lane.points[static_cast<std::size_t>(point)];
   const double force = lasts > 0 ? one.given / lasts : 0.0;
   lane.force += force;
@@ -167,6 +168,10 @@ void ImpactRecorder::press(Lane& lane, int point, double lasts) {
     impact.peak_force = std::max(impact.peak_force, force);
     impact.release_force = force;
   }
+  if (&lane == &lanes_.front())
+    for (ContactListener* listener : listeners_)
+      listener->instant({point, one.side > 0 ? StopSide::lower : StopSide::upper, time, lasts, one.given, force, closes,
+                         one.came, one.row});
   one.pushed = one.given;
   one.given = 0;
 }
@@ -263,17 +268,18 @@ void ImpactRecorder::let_go(const Marcher& marcher, const StageView& view) {
       start.look(marcher, view.slots, view.from);
 }
 
-// A point closes; contact of the start goes on as if it had always been there.
-void ImpactRecorder::begin(const Marcher& marcher, const StageView& view, int lane, int point, int side) {
+// A point closes, and whether it had been open: contact of the start goes on as if it had always been there.
+bool ImpactRecorder::begin(const Marcher& marcher, const StageView& view, int lane, int point, int side) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   Point& one = state.points[static_cast<std::size_t>(point)];
   one.velocity = velocity(marcher, lane, point, lift(marcher, lane));
+  one.came = side > 0 ? -one.velocity : one.velocity;
   std::erase(state.leaving, point);
   if (state.start.any() && state.start.take(point, side)) {
     one.row = nowhere;
-    return;
+    return false;
   }
-  const double towards = side > 0 ? -one.velocity : one.velocity;
+  const double towards = one.came;
   StopTotals& totals = stop(state, point, side);
   totals.fastest = totals.impacts == 0 ? towards : std::max(totals.fastest, towards);
   ++totals.impacts;
@@ -281,7 +287,7 @@ void ImpactRecorder::begin(const Marcher& marcher, const StageView& view, int la
   one.row = state.impacts.size();
   if (one.row >= most_) {
     one.row = nowhere;
-    return;
+    return true;
   }
   Impact impact;
   impact.time = view.time + view.program->facts.instant * h_;
@@ -289,6 +295,7 @@ void ImpactRecorder::begin(const Marcher& marcher, const StageView& view, int la
   impact.side = side > 0 ? StopSide::lower : StopSide::upper;
   impact.speed_in = towards;
   state.impacts.push_back(impact);
+  return true;
 }
 
 void ImpactRecorder::close_instant(const Marcher& marcher, const StageView& view, int lane) {
@@ -303,8 +310,8 @@ void ImpactRecorder::close_instant(const Marcher& marcher, const StageView& view
     }
     one.side = now;
     if (now == 0) return;
-    if (now != before) begin(marcher, view, lane, point, now);
-    press(state, point, lasts_);
+    const bool closes = now != before && begin(marcher, view, lane, point, now);
+    press(state, point, lasts_, view.time + view.program->facts.instant * h_, closes);
   });
   if (state.closed.idle() && state.leaving.empty()) busy_ &= ~(1U << lane);
 }

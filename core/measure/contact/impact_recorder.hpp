@@ -4,6 +4,7 @@
 #include <limits>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/contact/closed_points.hpp>
+#include <ricochet/measure/contact/contact_instants.hpp>
 #include <ricochet/measure/contact/start_contact.hpp>
 #include <vector>
 
@@ -20,8 +21,6 @@
 /// stage of either, H q + φ, over the time between: of one stage per step (x_{n+1} − x_n)/h, of several sub-steps that
 /// of one of them. Stops do not move: it is relative to them.
 namespace ricochet {
-
-enum class StopSide { lower, upper };
 
 /// A point closes at a stop, is pushed for one or more instants, and opens.
 struct Impact {
@@ -70,6 +69,9 @@ class ImpactRecorder final : public StepObserver {
 
   explicit ImpactRecorder(const Marcher& marcher, std::size_t most = most_impacts);
 
+  /// Tells `listener` of every instant from now on. It outlives the integration.
+  void tell(ContactListener* listener) { listeners_.push_back(listener); }
+
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;
   void interval(Marcher& marcher, const StepInterval& steps) override;
@@ -96,6 +98,7 @@ class ImpactRecorder final : public StepObserver {
     double velocity = 0;  // over the sub-step before the last instant; of closed points
     double place = 0;     // absolute, before the last instant of steps that were left out
     double pushed = 0;    // I of the last instant
+    double came = 0;      // speed towards the stop when it last closed
     int side = 0;         // at the last instant: −1 upper, 0 open, 1 lower
     int free = 0;         // sub-steps without an effort since it opened, while its speed out is open
     // Of its last impact; beyond the list where that is full, or where contact is that of the start.
@@ -128,17 +131,18 @@ class ImpactRecorder final : public StepObserver {
   double velocity(const Marcher& marcher, int lane, int point, double support) const;
   double lift(const Marcher& marcher, int lane) const;
   void close_instant(const Marcher& marcher, const StageView& view, int lane);
-  void begin(const Marcher& marcher, const StageView& view, int lane, int point, int side);
+  bool begin(const Marcher& marcher, const StageView& view, int lane, int point, int side);
   void let_go(const Marcher& marcher, const StageView& view);
   static void move(Lane& lane, int point, double now);
   void move_to_place(Lane& lane, int point, double place, double time);
-  static void press(Lane& lane, int point, double lasts);
+  void press(Lane& lane, int point, double lasts, double time, bool closes);
 
   const MarchModel& model_;
   std::size_t most_;
   double h_;
   int T_;
   std::vector<Lane> lanes_;
+  std::vector<ContactListener*> listeners_;
   int increment_slot_ = -1;               // holds what the positions moved by; −1: they are kept
   const double* increment_ = nullptr;     // that slot, before the stages of the instant under way
   std::vector<double> earlier_, latest_;  // positions before the instant before the one under way, and before that one
