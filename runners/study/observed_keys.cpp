@@ -8,8 +8,8 @@ Field points_key() {
   ObjectForm point;
   point.fields = {of_form(Field::Form::text, "name", std::nullopt, "Letters, digits, '-' and '_'; each once."),
                   place("at", std::nullopt, "Place whose displacement is shown."),
-                  quiet(single(word("frame", {"absolute", "supports"}, "",
-                                    "What it counts from; absent: as `frame` of the scene.")))};
+                  quiet(optional(word("frame", {"absolute", "supports"}, std::nullopt,
+                                      "What it counts from; absent: as `frame` of the scene.")))};
   return quiet(objects("points", "Places whose motion is shown; the first is where the tip is.", point));
 }
 

@@ -16,6 +16,9 @@ constexpr const char* side_names[] = {"lower", "upper"};
 const Column point_column{"point", "1", "Number of the contact point of the scene, from 0."};
 const Column x_column{"x", "m", "Place of the contact point."};
 const Column stop_column{"stop", "", "Name of the stop."};
+const Column tangent_speed_column{"tangent_speed", "m/s",
+                                  "Velocity along the surface over the sub-step before the one that closes the point."};
+const Column shock_column{"shock", "1", "Row of shocks.csv of this case that it belongs to, from 0; empty: none."};
 
 NumberTable impacts_head() {
   NumberTable table = number_table(
@@ -61,7 +64,8 @@ Table stops_head() {
       {}};
 }
 
-void add_impacts(CaseRecord& record, const ImpactRecorder& recorder, const SemiDiscrete& problem) {
+void add_impacts(CaseRecord& record, const ImpactRecorder& recorder, const SemiDiscrete& problem,
+                 const StopWatches& watches) {
   const std::vector<double>& x = problem.contact_x;
   NumberTable table = impacts_head();
   table.words = {{"side", {side_names[0], side_names[1]}}, {"open_end", {"false", "true"}}};
@@ -74,6 +78,18 @@ void add_impacts(CaseRecord& record, const ImpactRecorder& recorder, const SemiD
     table.values.push_back(*table.series(point_column.name));
     table.words.emplace_back(stop_column.name, problem.stops);
   }
+  const std::vector<Impact>& impacts = recorder.impacts(0);
+  if (watches.tangents && watches.tangents->any()) {
+    table.columns.push_back(tangent_speed_column);
+    Series& speeds = table.values.emplace_back();
+    for (std::size_t i = 0; i < impacts.size(); ++i) speeds.push_back(watches.tangents->speed_at(i));
+  }
+  if (watches.outputs && watches.outputs->shocks()) {
+    table.columns.push_back(shock_column);
+    Series& numbers = table.values.emplace_back();
+    const std::vector<Shock> shocks = shocks_in_order(*watches.outputs->shocks());
+    for (const Impact& impact : impacts) numbers.push_back(shock_of(impact, shocks));
+  }
   const auto listed = static_cast<long long>(table.rows());
   if (listed < recorder.count(0))
     record.notes.push_back(fmt::format("impacts.csv has the first {} of {} impacts; counts and sums have all of them",
@@ -83,18 +99,29 @@ void add_impacts(CaseRecord& record, const ImpactRecorder& recorder, const SemiD
 
 }  // namespace
 
-void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const Marcher& marcher) {
+void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const Marcher& marcher,
+                 const StopWatches& watches) {
   put_measure(record, "impacts", static_cast<double>(recorder.count(0)));
   if (!marcher.program().contact) return;
   const SemiDiscrete& problem = *marcher.program().problem;
   Table stops = stops_head();
   const bool named = !problem.stops.empty();
   if (named) stops.columns.push_back(stop_column);
+  // Means over a window that was not reached are none.
+  const StopWatches ended = record.status == "done" ? watches : StopWatches{};
+  StopReading known;
+  for (int point = 0; point < problem.points(); ++point) {
+    const StopReading one = stop_reading(recorder, ended, point);
+    if (one.pushed) known.pushed = one.pushed;
+    if (one.shocks) known.shocks = one.shocks;
+    if (one.wear_power) known.wear_power = one.wear_power;
+  }
+  const std::vector<Column> readings = stop_reading_columns(known);
+  stops.columns.insert(stops.columns.end(), readings.begin(), readings.end());
   double peak = 0, time = 0;
   for (int point = 0; point < problem.points(); ++point) {
     if (named)
-      put_stop_measures(record, problem.stops[static_cast<std::size_t>(point)],
-                        recorder.totals(0, point, StopSide::lower), recorder.totals(0, point, StopSide::upper));
+      put_stop_measures(record, problem.stops[static_cast<std::size_t>(point)], stop_reading(recorder, ended, point));
     for (const StopSide side : {StopSide::lower, StopSide::upper}) {
       const StopTotals& totals = recorder.totals(0, point, side);
       if (totals.impacts == 0 && totals.contact_time == 0) continue;
@@ -105,22 +132,28 @@ void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const March
                             totals.mean_force(), totals.rms_force(), totals.contact_time, totals.impulse,
                             totals.normal_work, totals.impacts > 0 ? Cell(totals.fastest) : Cell()});
       if (named) stops.rows.back().push_back(problem.stops[static_cast<std::size_t>(point)]);
+      const Row cells = stop_reading_cells(stop_reading(recorder, ended, point, side));
+      stops.rows.back().insert(stops.rows.back().end(), cells.begin(), cells.end());
+      stops.rows.back().resize(stops.columns.size());
     }
   }
   put_measure(record, "peak_contact_force", peak);
   put_measure(record, "contact_time", time);
-  add_impacts(record, recorder, problem);
+  add_impacts(record, recorder, problem, watches);
   record.tables.push_back(std::move(stops));
+  add_stop_tables(record, problem, watches);
 }
 
 void describe_contact(std::vector<CaseRecord>& records) {
   Table stops = stops_head();
   NumberTable impacts = impacts_head();
   stops.columns.push_back(stop_column);
-  impacts.columns.push_back(stop_column);
+  for (const Column& column : all_stop_reading_columns()) stops.columns.push_back(column);
+  for (const Column& column : {stop_column, tangent_speed_column, shock_column}) impacts.columns.push_back(column);
   // Of a study of many cases in which nothing is hit, what they mean would be the largest part.
   bool stops_told = false, impacts_told = false;
   for (CaseRecord& record : records) {
+    describe_stop_tables(record);
     for (Table& table : record.tables)
       if (table.name == stops.name && (!table.rows.empty() || !std::exchange(stops_told, true))) describe(table, stops);
     for (NumberTable& table : record.numbers)

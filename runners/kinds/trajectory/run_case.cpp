@@ -115,7 +115,9 @@ class Sampler final : public StepObserver {
 /// What looks at the steps of a trajectory, in turn; only what is asked for is among `observers`.
 struct Watched {
   EnergyAudit audit;
+  TangentWatch tangents;
   ImpactRecorder recorder;
+  OutputWatch outputs;
   WindowMeans means;
   ForceWindow forces;
   SnapshotTaker snapshots;
@@ -123,12 +125,21 @@ struct Watched {
   Observers observers;
   Watched(const StudyCase& study_case, const Marcher& marcher, long long steps)
       : audit(marcher, SamplingMode::seldom),
+        tangents(marcher, asked_outputs(study_case).window),
         recorder(marcher),
+        outputs(study_case, marcher, recorder),
         means(study_case.settings, marcher, audit),
         forces(study_case.settings, marcher),
         snapshots(marcher, steps, snapshots_asked(study_case.settings)),
         sampler(marcher, audit, recorder),
-        observers{&audit, &recorder} {
+        observers{&audit} {
+    // Before the recorder, which tells it what a step gave.
+    if (tangents.any()) {
+      observers.add(&tangents);
+      recorder.tell(&tangents);
+    }
+    observers.add(&recorder);
+    if (outputs.any()) observers.add(&outputs);
     if (means.asked()) observers.add(&means);
     if (has_window(study_case.settings)) observers.add(&forces);
     if (snapshots.taken()) observers.add(&snapshots);
@@ -231,7 +242,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   const std::shared_ptr<const SemiDiscrete> problem = prepared.problem;
   Marcher marcher(std::move(*prepared.program));
   Watched watched(study_case, marcher, prepared.steps);
-  auto& [audit, recorder, means, forces, snapshots, sampler, observers] = watched;
+  auto& [audit, tangents, recorder, outputs, means, forces, snapshots, sampler, observers] = watched;
   record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 
   const double run = thread_seconds(), budget = budget_of(study_case);
@@ -267,9 +278,11 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
     record.status = "done";
   else
     record_early_end(record, marcher, prepared.steps, budget);
+  tangents.finish(marcher);
   recorder.finish(marcher);
+  outputs.finish(marcher);
   fill_measures(record, marcher, audit, *problem);
-  add_contact(record, recorder, marcher);
+  add_contact(record, recorder, marcher, {&outputs, &tangents});
   doubts.push_back(GapWatch::crossed(marcher, recorder));
   doubts.push_back(sampler.gaps().passed());
   add_doubts(record, doubts);

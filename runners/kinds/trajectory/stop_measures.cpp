@@ -15,25 +15,95 @@
 namespace ricochet {
 namespace {
 
+using Known = std::optional<double>;
+
+/// What a study has to say for a measure to be known.
+enum class Needs { nothing, window, shocks, tangent };
+
 struct StopMeasure {
   const char *name, *unit, *text, *words;
-  double (*value)(const StopTotals& lower, const StopTotals& upper);
+  Known (*value)(const StopReading& of);
+  Needs needs = Needs::nothing;
+  bool column = false;  ///< of stops.csv too
 };
+
+template <double (*of)(const RunningMoments&)>
+Known displaced(const StopReading& reading) {
+  return reading.displacement && reading.displacement->any() ? Known(of(*reading.displacement)) : std::nullopt;
+}
+template <double (*of)(const PushTotals&, double)>
+Known pushed(const StopReading& reading) {
+  return reading.pushed ? Known(of(*reading.pushed, reading.window)) : std::nullopt;
+}
+template <double (*of)(const ShockTotals&)>
+Known shocked(const StopReading& reading) {
+  return reading.shocks && reading.shocks->shocks > 0 ? Known(of(*reading.shocks)) : std::nullopt;
+}
+
+using Moments = const RunningMoments&;
+using Push = const PushTotals&;
+using Shocks = const ShockTotals&;
 
 const StopMeasure table[] = {
     {"impulse", "N s", "Momentum that the stop {} gives, by magnitude.", "impulse at {}",
-     [](const StopTotals& a, const StopTotals& b) { return a.impulse + b.impulse; }},
+     [](const StopReading& of) -> Known { return of.run.impulse; }},
     {"impacts", "1", "Number of times that the stop {} closed; contact from the start is none.", "impacts at {}",
-     [](const StopTotals& a, const StopTotals& b) { return static_cast<double>(a.impacts + b.impacts); }},
+     [](const StopReading& of) -> Known { return static_cast<double>(of.run.impacts); }},
     {"peak_force", "N", "Largest force at the stop {}. That of an impact on a rigid stop grows as the step shrinks.",
-     "peak force at {}", [](const StopTotals& a, const StopTotals& b) { return std::max(a.peak_force, b.peak_force); }},
+     "peak force at {}", [](const StopReading& of) -> Known { return of.run.peak_force; }},
     {"rms_force", "N", "Root mean square of the force at the stop {} over the time in contact.", "rms force at {}",
-     [](const StopTotals& a, const StopTotals& b) {
-       const double time = a.contact_time + b.contact_time;
-       return time > 0 ? std::sqrt((a.squares + b.squares) / time) : 0.0;
-     }},
+     [](const StopReading& of) -> Known { return of.run.rms_force(); }},
     {"contact_time", "s", "Time in contact with the stop {}.", "time in contact at {}",
-     [](const StopTotals& a, const StopTotals& b) { return a.contact_time + b.contact_time; }}};
+     [](const StopReading& of) -> Known { return of.run.contact_time; }},
+    {"mean_force", "N", "Mean of the force at the stop {} over the time in contact.", "mean force at {}",
+     [](const StopReading& of) -> Known { return of.run.mean_force(); }},
+    {"displacement_mean", "m", "Mean over the window of the displacement that the stop {} bounds.",
+     "mean displacement at {}", displaced<[](Moments m) { return m.mean; }>, Needs::window, true},
+    {"displacement_deviation", "m", "Standard deviation over the window of the displacement that the stop {} bounds.",
+     "deviation of the displacement at {}", displaced<[](Moments m) { return m.deviation(); }>, Needs::window, true},
+    {"displacement_rms", "m", "Root mean square over the window of the displacement that the stop {} bounds.",
+     "rms displacement at {}", displaced<[](Moments m) { return m.rms(); }>, Needs::window, true},
+    {"displacement_min", "m", "Least displacement over the window that the stop {} bounds.", "least displacement at {}",
+     displaced<[](Moments m) { return m.least; }>, Needs::window, true},
+    {"displacement_max", "m", "Largest displacement over the window that the stop {} bounds.",
+     "largest displacement at {}", displaced<[](Moments m) { return m.largest; }>, Needs::window, true},
+    {"window_force", "N", "Mean over the window of the force at the stop {}: times the window it is the impulse.",
+     "force at {}", pushed<[](Push p, double time) { return p.mean(time); }>, Needs::window, true},
+    {"window_rms_force", "N", "Root mean square over the window of the force at the stop {}.",
+     "rms force at {}, always", pushed<[](Push p, double time) { return p.rms(time); }>, Needs::window, true},
+    {"contact_force", "N", "Mean of the force at the stop {} over the time in contact in the window.",
+     "force in contact at {}", pushed<[](Push p, double) { return p.mean_pushed(); }>, Needs::window, true},
+    {"contact_rms_force", "N", "Root mean square of the force at the stop {} over the time in contact in the window.",
+     "rms force in contact at {}", pushed<[](Push p, double) { return p.rms_pushed(); }>, Needs::window, true},
+    {"contact_share", "1", "Share of the window in contact with the stop {}.", "share in contact at {}",
+     pushed<[](Push p, double time) { return p.contact_time / time; }>, Needs::window, true},
+    {"impact_rate", "1/s", "How often the stop {} closes in a second of the window.", "impacts per second at {}",
+     pushed<[](Push p, double time) { return static_cast<double>(p.impacts) / time; }>, Needs::window, true},
+    {"shock_rate", "1/s", "Shocks per second at the stop {}.", "shocks per second at {}",
+     [](const StopReading& of) -> Known {
+       return of.shocks ? Known(static_cast<double>(of.shocks->shocks) / of.window) : std::nullopt;
+     },
+     Needs::shocks, true},
+    {"shock_time", "s", "Mean duration of a shock at the stop {}, rebounds included.", "duration of a shock at {}",
+     shocked<[](Shocks s) { return s.lasted / static_cast<double>(s.shocks); }>, Needs::shocks, true},
+    {"rebound_time", "s", "Mean time for which a rebound of a shock at the stop {} is pushed.",
+     "duration of a rebound at {}", shocked<[](Shocks s) { return s.pushed / static_cast<double>(s.rebounds); }>,
+     Needs::shocks, true},
+    {"shock_force_mean", "N", "Mean of the peak forces of the shocks at the stop {}.", "mean peak at {}",
+     shocked<[](Shocks s) { return s.peaks.mean; }>, Needs::shocks, true},
+    {"shock_force_deviation", "N", "Standard deviation of the peak forces of the shocks at the stop {}.",
+     "deviation of the peaks at {}", shocked<[](Shocks s) { return s.peaks.deviation(); }>, Needs::shocks, true},
+    {"shock_force_max", "N", "Largest peak force of the shocks at the stop {}.", "largest peak at {}",
+     shocked<[](Shocks s) { return s.peaks.largest; }>, Needs::shocks, true},
+    {"wear_power", "W",
+     "Wear power of the stop {}, (1/T) Σ I ½(|V⁻| + |V⁺|): I impulse of an instant, V speeds along the surface.",
+     "wear power at {}", [](const StopReading& of) { return of.wear_power; }, Needs::tangent, true}};
+
+const StopMeasure* find_measure(const std::string& name) {
+  const auto one = std::find_if(std::begin(table), std::end(table),
+                                [&](const StopMeasure& candidate) { return name == candidate.name; });
+  return one == std::end(table) ? nullptr : &*one;
+}
 
 std::string name_of(const std::string& measure, const std::string& stop) {
   return measure + "[" + stop + "]";
@@ -45,6 +115,9 @@ std::optional<std::pair<std::string, std::string>> parts_of(const std::string& n
   if (open == std::string::npos || !name.ends_with("]") || open + 2 >= name.size()) return std::nullopt;
   return std::pair(name.substr(0, open), name.substr(open + 1, name.size() - open - 2));
 }
+
+// How the measure begins that is half the interval of another.
+const std::string confidence = "confidence.";
 
 /// Keeps the texts that a MeasureInfo points to.
 struct Described {
@@ -66,23 +139,68 @@ const std::vector<std::string>& measures_of_stops() {
 const MeasureInfo* stop_measure_info(const std::string& name) {
   static std::map<std::string, std::unique_ptr<Described>> known;
   if (const auto found = known.find(name); found != known.end()) return &found->second->info;
-  const auto parts = parts_of(name);
+  const bool half = name.starts_with(confidence);
+  const auto parts = parts_of(half ? name.substr(confidence.size()) : name);
   if (!parts) return nullptr;
-  const auto one = std::find_if(std::begin(table), std::end(table),
-                                [&](const StopMeasure& candidate) { return parts->first == candidate.name; });
-  if (one == std::end(table)) return nullptr;
+  const StopMeasure* one = find_measure(parts->first);
+  if (!one) return nullptr;
   auto made = std::make_unique<Described>();
   made->name = name;
-  made->text = fmt::format(fmt::runtime(one->text), parts->second);
+  made->text = half ? fmt::format("Half the 95 % interval of {} (stationary block bootstrap of the parts).",
+                                  name.substr(confidence.size()))
+                    : fmt::format(fmt::runtime(one->text), parts->second);
   made->words = fmt::format(fmt::runtime(one->words), parts->second);
   made->info = {made->name.c_str(), one->unit, made->text.c_str()};
   made->info.reading.words = made->words.c_str();
+  made->info.aside = one->column;
+  if (half) made->info.of = MeasureInfo::Of::computation;
   return &(known[name] = std::move(made))->info;
 }
 
-void put_stop_measures(CaseRecord& record, const std::string& stop, const StopTotals& lower, const StopTotals& upper) {
-  for (const StopMeasure& one : table) put_measure(record, name_of(one.name, stop), one.value(lower, upper));
+void put_stop_measures(CaseRecord& record, const std::string& stop, const StopReading& reading) {
+  for (const StopMeasure& one : table)
+    if (const Known value = one.value(reading)) put_measure(record, name_of(one.name, stop), *value);
 }
+
+std::vector<Column> stop_reading_columns(const StopReading& known) {
+  std::vector<Column> columns;
+  for (const StopMeasure& one : table)
+    if (one.column && ((one.needs == Needs::window && known.pushed) || (one.needs == Needs::shocks && known.shocks) ||
+                       (one.needs == Needs::tangent && known.wear_power)))
+      columns.push_back({one.name, one.unit, fmt::format(fmt::runtime(one.text), "of the row")});
+  return columns;
+}
+
+Row stop_reading_cells(const StopReading& reading) {
+  Row cells;
+  for (const Column& column : stop_reading_columns(reading)) cells.push_back(find_measure(column.name)->value(reading));
+  return cells;
+}
+
+std::vector<Column> all_stop_reading_columns() {
+  StopReading all;
+  all.pushed.emplace();
+  all.shocks.emplace();
+  all.wear_power = 0;
+  return stop_reading_columns(all);
+}
+
+namespace {
+
+// What a study leaves out that a measure of a stop needs; "" where nothing.
+std::string missing_for(const StopMeasure& one, const nlohmann::ordered_json& study, const std::string& stop) {
+  const auto given = [&](const char* key) { return study.contains(key) && study.at(key).is_object(); };
+  if (one.needs == Needs::window && !given("window")) return "is measured over a window; give one";
+  if (one.needs == Needs::shocks && (!given("outputs") || !study.at("outputs").contains("shocks")))
+    return "counts shocks; give outputs.shocks";
+  if (one.needs == Needs::tangent)
+    for (const auto& other : study.at("scene").at("stops"))
+      if (other.at("name") == stop && !other.contains("tangent"))
+        return "needs what slides there; give tangent to the stop";
+  return "";
+}
+
+}  // namespace
 
 void check_observed_stops(const nlohmann::ordered_json& study) {
   const auto observed = study.find("observe");
@@ -92,10 +210,16 @@ void check_observed_stops(const nlohmann::ordered_json& study) {
     for (const auto& stop : list) stops.push_back(stop.at("name").get<std::string>());
   for (std::size_t i = 0; i < observed->size(); ++i) {
     const auto parts = parts_of((*observed)[i].get<std::string>());
-    if (!parts || std::find(stops.begin(), stops.end(), parts->second) != stops.end()) continue;
+    if (!parts) continue;
+    if (std::find(stops.begin(), stops.end(), parts->second) != stops.end()) {
+      const StopMeasure* one = find_measure(parts->first);
+      if (const std::string missing = one ? missing_for(*one, study, parts->second) : ""; !missing.empty())
+        throw InputError(fmt::format("/observe/{}", i), one->name + (" " + missing));
+      continue;
+    }
     throw InputError(fmt::format("/observe/{}", i),
-                     stops.empty() ? "the scene has no stops with names; expected a list of stops, or " +
-                                         quoted_list(measures_of_stops()) + " without a name"
+                     stops.empty() ? "the scene has no stops with names; expected a list of stops, or a measure "
+                                     "without a name"
                                    : fmt::format("no stop \"{}\"; there is: {}{}", parts->second, quoted_list(stops),
                                                  did_you_mean(parts->second, stops)));
   }

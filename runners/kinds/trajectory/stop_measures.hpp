@@ -1,5 +1,8 @@
 #pragma once
+#include <optional>
 #include <ricochet/measure/contact/impact_recorder.hpp>
+#include <ricochet/measure/contact/shocks.hpp>
+#include <ricochet/measure/contact/stop_statistics.hpp>
 #include <string>
 #include <vector>
 
@@ -9,16 +12,33 @@
 /// Measures of one stop that has a name: "impulse[bar-a]". They are measures like any other.
 namespace ricochet {
 
-/// Their names without the stop: impulse, impacts, peak_force, rms_force, contact_time.
+/// Their names without the stop: impulse, impacts, peak_force, …
 const std::vector<std::string>& measures_of_stops();
 
-/// What such a measure means; null for any other name.
+/// What such a measure means, or the confidence of one; null for any other name.
 const MeasureInfo* stop_measure_info(const std::string& name);
 
-/// Adds those of a stop: the totals of both its sides.
-void put_stop_measures(CaseRecord& record, const std::string& stop, const StopTotals& lower, const StopTotals& upper);
+/// What is known of one stop, or of one of its sides.
+struct StopReading {
+  StopTotals run;     ///< over the whole run
+  double window = 0;  ///< s: how long what follows was looked at
+  std::optional<RunningMoments> displacement;
+  std::optional<PushTotals> pushed;
+  std::optional<ShockTotals> shocks;
+  std::optional<double> wear_power;  ///< W
+};
 
-/// Throws InputError where `observe` of a study names a stop that its scene has not.
+/// Adds the measures of a stop, those that are known.
+void put_stop_measures(CaseRecord& record, const std::string& stop, const StopReading& reading);
+
+/// Those of them that are columns of stops.csv beside its first ones: name, unit, text; and their cells.
+std::vector<Column> stop_reading_columns(const StopReading& known);
+Row stop_reading_cells(const StopReading& reading);
+/// All of them.
+std::vector<Column> all_stop_reading_columns();
+
+/// Throws InputError where `observe` of a study names a stop that its scene has not, or a measure of it that the study
+/// does not ask for.
 void check_observed_stops(const nlohmann::ordered_json& study);
 
 }  // namespace ricochet

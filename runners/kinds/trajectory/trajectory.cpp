@@ -6,9 +6,11 @@
 #include <cmath>
 #include <map>
 
+#include "runners/answers/uncertainty.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
 #include "runners/kinds/trajectory/contact_rows.hpp"
 #include "runners/kinds/trajectory/energy_tables.hpp"
+#include "runners/kinds/trajectory/output_keys.hpp"
 #include "runners/kinds/trajectory/page/page.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
 #include "runners/kinds/trajectory/stop_measures.hpp"
@@ -254,15 +256,17 @@ StudyKind trajectory_format(const std::vector<MeasureInfo>& measures) {
                  keys::march("auto"),
                  keys::optional(window_key()),
                  snapshots_key(),
+                 outputs_key(),
                  keys::budget(),
                  keys::observe(measure_names(measures))};
   format.keys.back().of_each = measures_of_stops();
   format.check = [](const Json& study) {
     check_window(study);
+    check_outputs(study);
     check_observed_stops(study);
   };
   format.settings = [](const nlohmann::ordered_json& resolved) {
-    return given_settings(resolved, {"window", "snapshots", "budget"});
+    return given_settings(resolved, {"window", "snapshots", "outputs", "budget"});
   };
   return format;
 }
@@ -288,7 +292,8 @@ class TrajectoryKind final : public Kind {
   void tables(StudyResults& results) const override {
     describe_contact(results.cases);
     collect_tables(results);
-    for (Table table : {energy_ends_table(results), energy_ledger_table(results)})
+    for (Table table : {energy_ends_table(results), energy_ledger_table(results),
+                        answers::uncertainty_table(answers::Compared(results))})
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
   }
   std::vector<std::string> observed(const StudyResults& results) const override { return observed_energies(results); }
@@ -352,7 +357,7 @@ Json minimal_study(const StudyResults& results, const CaseRecord& record) {
       {"mesh", mesh},
       {"methods", methods},
       {"step", step}};
-  for (const char* key : {"duration", "samples", "window", "snapshots", "budget"})
+  for (const char* key : {"duration", "samples", "window", "snapshots", "outputs", "budget"})
     if (const auto found = results.study.find(key); found != results.study.end() && !found->is_null())
       study[key] = *found;
   if (!march.is_null()) study["march"] = march;

@@ -1,0 +1,15 @@
+#pragma once
+#include "runners/answers/compared.hpp"
+#include "runners/table/table.hpp"
+
+namespace ricochet::answers {
+
+/// uncertainty: one row per measure of a stop that has a name, what all methods and refinements together leave of it.
+///
+///     d = max(step gap, mesh gap, sampling),     interval [least − d, largest + d]
+///
+/// over the methods, each at its finest step and mesh. Gaps are the largest u that a method's refinement leaves,
+/// sampling half the 95 % interval of a mean over the parts of a window. The interval is blank of a single step.
+Table uncertainty_table(const Compared& study);
+
+}  // namespace ricochet::answers

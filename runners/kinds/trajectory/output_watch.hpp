@@ -1,0 +1,72 @@
+#pragma once
+#include <optional>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/contact/impact_recorder.hpp>
+#include <ricochet/measure/contact/shocks.hpp>
+#include <ricochet/measure/contact/stop_statistics.hpp>
+#include <ricochet/measure/statistics/welch.hpp>
+#include <vector>
+
+#include "runners/kinds/trajectory/output_keys.hpp"
+
+namespace ricochet {
+
+/// A spectrum as one lane marches. Displacements are sampled at k/rate, straight between steps; a force is its impulse
+/// over 1/rate divided by that, so that an impact of any shortness keeps its momentum; positive upwards.
+class SpectrumTaker final : public ContactListener {
+ public:
+  SpectrumTaker(const Marcher& marcher, const AskedOutputs& asked, const AskedSpectrum& of);
+
+  /// A step is over.
+  void see(const Marcher& marcher);
+  void instant(const ContactInstant& one) override;
+  void finish(double time);
+
+  bool reads_steps() const { return !of_.force; }
+  const AskedSpectrum& of() const { return of_; }
+  const WelchSpectrum& spectrum() const { return spectrum_; }
+
+ private:
+  void flush(double until);
+
+  AskedSpectrum of_;
+  WindowParts window_;
+  double rate_;
+  RowReadings rows_;
+  int row_ = -1;
+  WelchSpectrum spectrum_;
+  long long next_ = 0, last_;      // samples: the next one, and the last of the window
+  double before_ = 0, value_ = 0;  // when the step before ended, and what was read there
+  std::vector<double> bins_;       // impulses of the samples to come, N s
+};
+
+/// What `outputs`, and a window over stops that have names, ask of an integration. The recorder, which tells it of
+/// instants, looks at a step before it. Every step of the window is shown to it where it reads displacements.
+class OutputWatch final : public StepObserver {
+ public:
+  OutputWatch(const StudyCase& study_case, const Marcher& marcher, ImpactRecorder& recorder);
+  OutputWatch(const OutputWatch&) = delete;
+
+  /// Whether it has anything to look at.
+  bool any() const { return statistics_ || !spectra_.empty(); }
+  void stage_solved(const Marcher&, const StageView&) override {}
+  void step_done(Marcher& marcher) override;
+  void interval(Marcher& marcher, const StepInterval& steps) override;
+  void finish(const Marcher& marcher);
+
+  const AskedOutputs& asked() const { return asked_; }
+  const StopStatistics* statistics() const { return statistics_ ? &*statistics_ : nullptr; }
+  const ShockRecorder* shocks() const { return shocks_ ? &*shocks_ : nullptr; }
+  const std::vector<SpectrumTaker>& spectra() const { return spectra_; }
+
+ private:
+  void ask(const Marcher& marcher);
+
+  AskedOutputs asked_;
+  bool reads_steps_ = false;
+  std::optional<StopStatistics> statistics_;
+  std::optional<ShockRecorder> shocks_;
+  std::vector<SpectrumTaker> spectra_;
+};
+
+}  // namespace ricochet

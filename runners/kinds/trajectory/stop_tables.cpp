@@ -1,0 +1,280 @@
+#include "runners/kinds/trajectory/stop_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ricochet/measure/statistics/block_bootstrap.hpp>
+
+#include "runners/store/record_values.hpp"
+
+namespace ricochet {
+namespace {
+
+const Column stop_or_point{"stop", "", "Name of the stop, or number of the contact point."};
+const Column side_of_stop{"side", "", "Its side: lower or upper."};
+
+NumberTable shocks_head() {
+  NumberTable table = number_table(
+      "shocks",
+      {stop_or_point,
+       side_of_stop,
+       {"t_begin", "s", "Time of the first instant whose force is above force_above."},
+       {"t_peak", "s", "Time of the largest force."},
+       {"peak_force", "N", "Largest force."},
+       {"impulse", "N s", "Momentum that the stop gives from the first to the last such instant, by magnitude."},
+       {"duration", "s", "From the first to the end of the last such instant, whole sub-steps."},
+       {"speed_in", "m/s", "Velocity towards the stop when the point last closed before it."},
+       {"rebounds", "1", "How often the force rose above force_above."},
+       {"open_end", "", "Whether the force was above it when the integration ended."}});
+  table.text = "One shock of one case: force above force_above, joined while apart by less than rest.";
+  return table;
+}
+
+NumberTable spectra_head() {
+  NumberTable table = number_table("spectra", {{"of", "", "Name of the stop or the point."},
+                                               {"quantity", "", "Displacement, or force, positive upwards."},
+                                               {"frequency", "Hz", "Frequency f."},
+                                               {"density", "m²/Hz or N²/Hz",
+                                                "One-sided power spectral density: its sum times the spacing of f is "
+                                                "the variance."}});
+  table.text = "One frequency of one power spectral density of one case, by Welch's method over the window.";
+  return table;
+}
+
+Table histogram_head() {
+  return {"histogram",
+          "One class of the peak forces of the shocks at one stop of one case.",
+          {stop_or_point,
+           {"from", "N", "The class begins above it; the first one at 0."},
+           {"to", "N", "Its end."},
+           {"shocks", "1", "Shocks whose peak force is in it, both sides."},
+           {"share", "1", "Their share of the shocks listed at this stop."}},
+          {}};
+}
+
+Table parts_head(const StopReading& known) {
+  Table table{"stop_parts",
+              "One part of the window of one case at one stop, both sides.",
+              {stop_or_point,
+               {"part", "1", "Number of the part, from 0."},
+               {"from", "s", "Begin of the part."},
+               {"to", "s", "Its end."}},
+              {}};
+  for (const Column& column : stop_reading_columns(known)) table.columns.push_back(column);
+  return table;
+}
+
+std::vector<std::string> stop_names(const SemiDiscrete& problem) {
+  if (!problem.stops.empty()) return problem.stops;
+  std::vector<std::string> names;
+  for (int point = 0; point < problem.points(); ++point) names.push_back(std::to_string(point));
+  return names;
+}
+
+void add_shocks(CaseRecord& record, const ShockRecorder& recorder, const std::vector<std::string>& names) {
+  NumberTable table = shocks_head();
+  table.words = {{"stop", names}, {"side", {"lower", "upper"}}, {"open_end", {"false", "true"}}};
+  for (const Shock& shock : shocks_in_order(recorder))
+    table.add({static_cast<double>(shock.point), static_cast<double>(shock.side), shock.begin, shock.peak_at,
+               shock.peak, shock.impulse, shock.duration, shock.speed_in, static_cast<double>(shock.rebounds),
+               shock.open_end ? 1.0 : 0.0});
+  if (recorder.count() > static_cast<long long>(table.rows()))
+    record.notes.push_back(fmt::format("shocks.csv and histogram.csv have {} of {} shocks; measures have all of them",
+                                       table.rows(), recorder.count()));
+  record.numbers.push_back(std::move(table));
+}
+
+// Equal classes from 0 to the largest peak of each stop, of the shocks of the window.
+void add_histogram(CaseRecord& record, const OutputWatch& outputs, const std::vector<std::string>& names) {
+  Table table = histogram_head();
+  const int classes = outputs.asked().classes;
+  const WindowParts& window = outputs.asked().window;
+  for (std::size_t point = 0; point < names.size(); ++point) {
+    std::vector<double> peaks;
+    for (const Shock& shock : outputs.shocks()->shocks())
+      if (shock.point == static_cast<int>(point) && shock.begin >= window.from && shock.begin <= window.to)
+        peaks.push_back(shock.peak);
+    if (peaks.empty()) continue;
+    const double largest = *std::max_element(peaks.begin(), peaks.end());
+    std::vector<long long> counts(static_cast<std::size_t>(classes), 0);
+    for (const double peak : peaks)
+      ++counts[static_cast<std::size_t>(std::clamp(static_cast<int>(std::ceil(peak / largest * classes)), 1, classes) -
+                                        1)];
+    for (int i = 0; i < classes; ++i) {
+      const long long count = counts[static_cast<std::size_t>(i)];
+      table.rows.push_back({names[point], largest * i / classes, largest * (i + 1) / classes, count,
+                            static_cast<double>(count) / static_cast<double>(peaks.size())});
+    }
+  }
+  record.tables.push_back(std::move(table));
+}
+
+// What a point is in one part of the window.
+StopReading part_reading(const StopWatches& watches, int point, int part) {
+  const StopStatistics& statistics = *watches.outputs->statistics();
+  StopReading reading;
+  reading.window = statistics.window().length();
+  reading.displacement = statistics.displacement(point, part);
+  reading.pushed = statistics.pushed(point, StopSide::lower, part);
+  reading.pushed->add(statistics.pushed(point, StopSide::upper, part));
+  if (watches.tangents && watches.tangents->has(point))
+    reading.wear_power = watches.tangents->work(point, part) / reading.window;
+  return reading;
+}
+
+// Half the interval of the mean of a series over the parts; `root`: of the root of it.
+void put_half(CaseRecord& record, const std::string& measure, const std::vector<double>& series, bool root) {
+  const Interval found = block_bootstrap_mean(series);
+  const auto shown = [root](double x) { return root ? std::sqrt(std::max(x, 0.0)) : x; };
+  put_measure(record, "confidence." + measure,
+              std::max(shown(found.high) - shown(found.value), shown(found.value) - shown(found.low)));
+}
+
+void put_halves(CaseRecord& record, const StopWatches& watches, int point, const std::string& name) {
+  const StopStatistics& statistics = *watches.outputs->statistics();
+  std::vector<double> displacement, squares, force, force_squares, rate, share, wear;
+  const double length = statistics.window().length();
+  for (int part = 0; part < statistics.window().count; ++part) {
+    const StopReading reading = part_reading(watches, point, part);
+    displacement.push_back(reading.displacement->mean);
+    squares.push_back(std::pow(reading.displacement->rms(), 2));
+    force.push_back(reading.pushed->mean(length));
+    force_squares.push_back(reading.pushed->squares / length);
+    rate.push_back(static_cast<double>(reading.pushed->impacts) / length);
+    share.push_back(reading.pushed->contact_time / length);
+    if (reading.wear_power) wear.push_back(*reading.wear_power);
+  }
+  const std::string of = "[" + name + "]";
+  put_half(record, "displacement_mean" + of, displacement, false);
+  put_half(record, "displacement_rms" + of, squares, true);
+  put_half(record, "window_force" + of, force, false);
+  put_half(record, "window_rms_force" + of, force_squares, true);
+  put_half(record, "impact_rate" + of, rate, false);
+  put_half(record, "contact_share" + of, share, false);
+  if (!wear.empty()) put_half(record, "wear_power" + of, wear, false);
+}
+
+void add_parts(CaseRecord& record, const StopWatches& watches, const SemiDiscrete& problem,
+               const std::vector<std::string>& names) {
+  const StopStatistics& statistics = *watches.outputs->statistics();
+  const WindowParts& window = statistics.window();
+  // Columns that one stop has, all have.
+  StopReading known;
+  known.pushed.emplace();
+  for (int point = 0; watches.tangents && point < problem.points(); ++point)
+    if (watches.tangents->has(point)) known.wear_power = 0;
+  Table table = parts_head(known);
+  const std::vector<Column> columns = stop_reading_columns(known);
+  for (int point = 0; point < problem.points(); ++point) {
+    for (int part = 0; part < window.count && statistics.complete(part); ++part) {
+      Row row = {names[static_cast<std::size_t>(point)], part, window.begin(part), window.begin(part + 1)};
+      const StopReading reading = part_reading(watches, point, part);
+      const Row cells = stop_reading_cells(reading);
+      row.insert(row.end(), cells.begin(), cells.end());
+      row.resize(table.columns.size());
+      table.rows.push_back(std::move(row));
+    }
+    if (window.count >= fewest_resampled && statistics.complete(window.count - 1) && !problem.stops.empty())
+      put_halves(record, watches, point, names[static_cast<std::size_t>(point)]);
+  }
+  record.tables.push_back(std::move(table));
+}
+
+void add_spectra(CaseRecord& record, const OutputWatch& outputs) {
+  NumberTable table = spectra_head();
+  std::vector<std::string> names;
+  for (const SpectrumTaker& one : outputs.spectra()) {
+    const auto name = static_cast<double>(names.size());
+    names.push_back(one.of().of);
+    const std::vector<double> density = one.spectrum().density();
+    for (std::size_t k = 0; k < density.size(); ++k)
+      table.add({name, one.of().force ? 1.0 : 0.0, one.spectrum().frequency(static_cast<int>(k)), density[k]});
+    if (density.empty())
+      record.notes.push_back(fmt::format("no spectrum of {}: the run ended within the first segment", one.of().of));
+  }
+  table.words = {{"of", names}, {"quantity", {"displacement", "force"}}};
+  record.numbers.push_back(std::move(table));
+}
+
+}  // namespace
+
+StopReading stop_reading(const ImpactRecorder& recorder, const StopWatches& watches, int point,
+                         std::optional<StopSide> side) {
+  StopReading reading;
+  const StopTotals &lower = recorder.totals(0, point, StopSide::lower),
+                   &upper = recorder.totals(0, point, StopSide::upper);
+  reading.run = side == StopSide::lower ? lower : side == StopSide::upper ? upper : lower;
+  if (!side) {
+    reading.run.impacts += upper.impacts;
+    reading.run.peak_force = std::max(lower.peak_force, upper.peak_force);
+    reading.run.impulse = lower.impulse + upper.impulse;
+    reading.run.contact_time = lower.contact_time + upper.contact_time;
+    reading.run.squares = lower.squares + upper.squares;
+  }
+  if (watches.tangents && watches.tangents->has(point)) reading.wear_power = watches.tangents->power(point);
+  if (!watches.outputs) return reading;
+  const OutputWatch& outputs = *watches.outputs;
+  reading.window = outputs.asked().window.to - outputs.asked().window.from;
+  if (const StopStatistics* statistics = outputs.statistics();
+      statistics && statistics->complete(statistics->window().count - 1)) {
+    reading.displacement = statistics->displacement(point);
+    reading.pushed = statistics->pushed(point, side.value_or(StopSide::lower));
+    if (!side) reading.pushed->add(statistics->pushed(point, StopSide::upper));
+  }
+  if (const ShockRecorder* shocks = outputs.shocks()) {
+    reading.shocks = shocks->totals(point, side.value_or(StopSide::lower));
+    if (!side) reading.shocks->add(shocks->totals(point, StopSide::upper));
+  }
+  return reading;
+}
+
+std::vector<Shock> shocks_in_order(const ShockRecorder& recorder) {
+  std::vector<Shock> shocks = recorder.shocks();
+  std::sort(shocks.begin(), shocks.end(), [](const Shock& a, const Shock& b) {
+    return a.begin != b.begin ? a.begin < b.begin : a.point != b.point ? a.point < b.point : a.side < b.side;
+  });
+  return shocks;
+}
+
+double shock_of(const Impact& impact, const std::vector<Shock>& in_order) {
+  // An impact begins no later than its first force above that of the rule, and ends after it.
+  const double rounding = 1e-9 * (impact.duration + impact.time);
+  for (auto at = std::lower_bound(in_order.begin(), in_order.end(), impact.time + impact.duration + rounding,
+                                  [](const Shock&shock, double t) { return shock.begin < t; });
+       at != in_order.begin();) {
+    --at;
+    if (at->point != impact.point || at->side != impact.side) continue;
+    return at->begin + at->duration >= impact.time - rounding ? static_cast<double>(at - in_order.begin())
+                                                              : std::nan("");
+  }
+  return std::nan("");
+}
+
+void add_stop_tables(CaseRecord& record, const SemiDiscrete& problem, const StopWatches& watches) {
+  if (!watches.outputs) return;
+  const OutputWatch& outputs = *watches.outputs;
+  const std::vector<std::string> names = stop_names(problem);
+  if (outputs.shocks()) {
+    add_shocks(record, *outputs.shocks(), names);
+    add_histogram(record, outputs, names);
+  }
+  if (outputs.statistics()) add_parts(record, watches, problem, names);
+  if (!outputs.spectra().empty()) add_spectra(record, outputs);
+}
+
+void describe_stop_tables(CaseRecord& record) {
+  Table parts = parts_head({});
+  for (const Column& column : all_stop_reading_columns()) parts.columns.push_back(column);
+  for (const Table& head : {histogram_head(), parts})
+    for (Table& table : record.tables)
+      if (table.name == head.name) describe(table, head);
+  for (const NumberTable& head : {shocks_head(), spectra_head()})
+    for (NumberTable& table : record.numbers)
+      if (table.name == head.name) {
+        table.text = head.text;
+        describe(table.columns, head.columns);
+      }
+}
+
+}  // namespace ricochet
