@@ -1,0 +1,199 @@
+#include "runners/kinds/trajectory/page/stops.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "runners/answers/compared.hpp"
+#include "runners/answers/limits.hpp"
+#include "runners/report/html.hpp"
+#include "runners/table/in_order_met.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet::report {
+namespace {
+
+// Of the many measures of a stop, those that a first look is for, in this order.
+const std::vector<std::string> first_measures = {"impacts",    "impact_rate",   "shock_rate",       "impulse",
+                                                 "peak_force", "rms_force",     "window_force",     "shock_force_mean",
+                                                 "shock_time", "contact_share", "displacement_rms", "displacement_max",
+                                                 "wear_power"};
+
+constexpr std::size_t most_shocks_drawn = 3000, most_lines_drawn = 400;
+
+/// Cases of one method, finest mesh and step first.
+struct FromFinest {
+  Cases cases;
+};
+
+std::vector<FromFinest> methods_from_finest(const answers::Compared& study) {
+  InOrderMet<std::string, Cases> groups;
+  for (const CaseRecord* record : with_status(all_cases(study.results()), "done"))
+    groups[study.key(*record)].push_back(record);
+  std::vector<FromFinest> out;
+  for (auto& [key, cases] : std::move(groups).list()) {
+    std::stable_sort(cases.begin(), cases.end(), [&](const CaseRecord* a, const CaseRecord* b) {
+      const double mesh_a = study.elements(*a).value_or(1), mesh_b = study.elements(*b).value_or(1);
+      return mesh_a != mesh_b ? mesh_a > mesh_b : study.step(*a).value_or(1) < study.step(*b).value_or(1);
+    });
+    out.push_back({std::move(cases)});
+  }
+  return out;
+}
+
+/// Densities of one record by series: "bar-a\nforce".
+std::map<std::string, std::vector<double>> densities(const CaseRecord& record, std::vector<double>* frequencies) {
+  std::map<std::string, std::vector<double>> out;
+  const NumberTable* table = find_table(record.numbers, "spectra");
+  if (!table) return out;
+  const auto *of = table->numbers("of"), *quantity = table->numbers("quantity"), *f = table->numbers("frequency"),
+             *density = table->numbers("density");
+  const auto *names = table->words_of("of"), *quantities = table->words_of("quantity");
+  if (!of || !quantity || !f || !density || !names || !quantities) return out;
+  for (std::size_t i = 0; i < table->rows(); ++i) {
+    const std::string key =
+        names->at(static_cast<std::size_t>((*of)[i])) + "\n" + quantities->at(static_cast<std::size_t>((*quantity)[i]));
+    out[key].push_back((*density)[i]);
+    if (frequencies && out.size() == 1) frequencies->push_back((*f)[i]);
+  }
+  return out;
+}
+
+struct Band {
+  std::vector<double> least, largest, gap;
+};
+
+void widen_band(Band& band, const std::vector<double>& finest, const std::vector<double>* coarser) {
+  if (band.least.empty()) band = {finest, finest, std::vector<double>(finest.size(), 0.0)};
+  for (std::size_t k = 0; k < std::min(finest.size(), band.least.size()); ++k) {
+    band.least[k] = std::min(band.least[k], finest[k]);
+    band.largest[k] = std::max(band.largest[k], finest[k]);
+    if (coarser && k < coarser->size()) band.gap[k] = std::max(band.gap[k], std::abs((*coarser)[k] - finest[k]));
+  }
+}
+
+}  // namespace
+
+std::string stops_html(const CaseView& view) {
+  const Table* table = find_table(view.results().derived, "uncertainty");
+  if (!table || table->rows.empty()) return "";
+  const auto at = [&](const Row& row, const char* column) { return row[find_column(table->columns, column).value()]; };
+  std::vector<std::string> stops;
+  std::map<std::pair<std::string, std::string>, const Row*> rows;
+  for (const Row& row : table->rows) {
+    const std::string stop = at(row, "stop").text();
+    if (std::find(stops.begin(), stops.end(), stop) == stops.end()) stops.push_back(stop);
+    rows[{at(row, "measure").text(), stop}] = &row;
+  }
+  HtmlTable html(
+      "What each stop gives: the range over all methods at their finest step and mesh, widened by what these leave "
+      "open. All measures: uncertainty.csv.",
+      {{"measure"}, {"unit"}});
+  for (const std::string& stop : stops) html.add({stop, true});
+  for (const std::string& name : first_measures) {
+    if (std::none_of(stops.begin(), stops.end(), [&](const std::string& stop) { return rows.contains({name, stop}); }))
+      continue;
+    html.row(in_words(name));
+    std::string unit;
+    for (const std::string& stop : stops)
+      if (const auto found = rows.find({name, stop}); found != rows.end()) unit = at(*found->second, "unit").text();
+    html.text(unit);
+    for (const std::string& stop : stops) {
+      const auto found = rows.find({name, stop});
+      if (found == rows.end()) {
+        html.absent();
+        continue;
+      }
+      const Row& row = *found->second;
+      const bool known = !at(row, "low").is_nothing();
+      const double low = at(row, known ? "low" : "least").number().value_or(0),
+                   high = at(row, known ? "high" : "largest").number().value_or(0);
+      const std::string text = number_text(low, 3) == number_text(high, 3)
+                                   ? number_text(low, 3)
+                                   : number_text(low, 3) + " to " + number_text(high, 3);
+      html.number(known ? text : text + " ?", at(row, "sentence").text());
+    }
+  }
+  return html.html();
+}
+
+Table shock_points(const CaseView& view) {
+  Table out{"shock_points",
+            "One of the largest shocks of the finest case of a method.",
+            {{"case", "", "Identity of the case: its row in cases.csv."},
+             {"stop", "", "Name of the stop, or number of the contact point."},
+             {"t", "s", "Time of the largest force."},
+             {"peak", "N", "Largest force."},
+             {"duration", "s", "Duration."},
+             {"rebounds", "1", "Rebounds."}},
+            {}};
+  struct Point {
+    double peak;
+    Row row;
+  };
+  std::vector<Point> points;
+  for (const FromFinest& method : methods_from_finest(answers::Compared(view.results()))) {
+    const CaseRecord& record = *method.cases.front();
+    const NumberTable* table = find_table(record.numbers, "shocks");
+    if (!table || table->rows() == 0) continue;
+    const auto& peaks = *table->numbers("peak_force");
+    for (std::size_t i = 0; i < table->rows(); ++i)
+      points.push_back({peaks[i],
+                        {record.id, table->words_of("stop")->at(static_cast<std::size_t>((*table->numbers("stop"))[i])),
+                         (*table->numbers("t_peak"))[i], peaks[i], (*table->numbers("duration"))[i],
+                         (*table->numbers("rebounds"))[i]}});
+  }
+  std::stable_sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.peak > b.peak; });
+  for (Point& point : points) {
+    if (out.rows.size() == most_shocks_drawn) break;
+    out.rows.push_back(std::move(point.row));
+  }
+  return out;
+}
+
+Table spectrum_bands(const CaseView& view) {
+  Table out{"spectrum_bands",
+            "One frequency of one spectrum: between which densities all methods are.",
+            {{"of", "", "Name of the stop or the point."},
+             {"quantity", "", "Displacement or force."},
+             {"frequency", "Hz", "Frequency."},
+             {"least", "m²/Hz or N²/Hz", "Least density over the methods, each at its finest step and mesh."},
+             {"largest", "m²/Hz or N²/Hz", "Largest of them."},
+             {"low", "m²/Hz or N²/Hz", "The least less what the last refinement moves a method by."},
+             {"high", "m²/Hz or N²/Hz", "The largest and that."}},
+            {}};
+  std::map<std::string, Band> bands;
+  std::vector<double> frequencies;
+  for (const FromFinest& method : methods_from_finest(answers::Compared(view.results()))) {
+    std::vector<double> own;
+    const auto finest = densities(*method.cases.front(), &own);
+    if (own.size() > frequencies.size()) frequencies = own;
+    std::map<std::string, std::vector<double>> coarser;
+    if (method.cases.size() > 1) coarser = densities(*method.cases[1], nullptr);
+    for (const auto& [key, density] : finest) {
+      const auto other = coarser.find(key);
+      widen_band(bands[key], density, other == coarser.end() ? nullptr : &other->second);
+    }
+  }
+  for (const auto& [key, band] : bands) {
+    const std::size_t count = std::min(band.least.size(), frequencies.size());
+    const std::size_t together = (count + most_lines_drawn - 1) / most_lines_drawn;
+    for (std::size_t k = 1; k < count; k += std::max<std::size_t>(together, 1)) {
+      double least = band.least[k], largest = band.largest[k], low = least, high = largest;
+      for (std::size_t i = k; i < std::min(k + together, count); ++i) {
+        least = std::min(least, band.least[i]);
+        largest = std::max(largest, band.largest[i]);
+        low = std::min(low, band.least[i] - band.gap[i]);
+        high = std::max(high, band.largest[i] + band.gap[i]);
+      }
+      const std::size_t cut = key.find('\n');
+      out.rows.push_back(
+          {key.substr(0, cut), key.substr(cut + 1), frequencies[k], least, largest, std::max(low, 0.0), high});
+    }
+  }
+  return out;
+}
+
+}  // namespace ricochet::report
