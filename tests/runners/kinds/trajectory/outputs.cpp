@@ -56,7 +56,7 @@ const Table& table_of(const CaseRecord& record, const char* name) {
   return *table;
 }
 
-std::string refusal(const Json& study) {
+std::string refused_outputs(const Json& study) {
   try {
     CaseRuns().study(study);
   } catch (const InputError& error) {
@@ -126,7 +126,7 @@ TEST_CASE("a shock of a study is a row, and its impact points to it") {
   CHECK(*impacts->numbers("shock") == std::vector<double>{0, 1});
   CHECK(measure(record, "shock_rate[wall]").value() == Approx(2 / 0.495).epsilon(1e-12));
   CHECK(measure(record, "shock_time[wall]").value() == Approx(pi / closed).margin(2e-4));
-  CHECK(measure(record, "rebound_time[wall]").value() == measure(record, "shock_time[wall]").value());
+  CHECK(measure(record, "rebound_time[wall]").value() == Approx(pi / closed).margin(2e-4));
   CHECK(measure(record, "shock_force_max[wall]").value() == Approx(1e6 / closed).epsilon(share));
   const Table& histogram = table_of(record, "histogram");
   REQUIRE(histogram.rows.size() == 4);
@@ -208,7 +208,9 @@ TEST_CASE("observers of stops leave the motion as it is") {
   const CaseRecord lean = CaseRuns().first_of(study);
   REQUIRE(full.status == "done");
   for (const auto& [name, value] : lean.measures)
-    if (name != "microseconds_per_step") CHECK(measure(full, name).value() == value);
+    // Energies are read at other steps, and summed up in another order.
+    if (name != "microseconds_per_step")
+      CHECK(measure(full, name).value() == Approx(value).epsilon(1e-11).margin(1e-12));
   CHECK(full.curve.columns.size() == lean.curve.columns.size());
   CHECK(curve_of(full, "tip_displacement") == curve_of(lean, "tip_displacement"));
 }
@@ -260,7 +262,7 @@ TEST_CASE("outputs that cannot be are refused by pointer, with the nearest name"
   Json study = tube();
   const auto with = [&](const char* outputs) {
     study["outputs"] = Json::parse(outputs);
-    return refusal(study);
+    return refused_outputs(study);
   };
   CHECK(with(R"({"shocks": {}})") == "none");
   CHECK_THAT(with(R"({"shock": {}})"), Contains("/outputs/shock: unknown key") && Contains("shocks"));
@@ -277,18 +279,18 @@ TEST_CASE("outputs that cannot be are refused by pointer, with the nearest name"
              Contains("/outputs/segment: 0.2 s in 0.1 s"));
   study.erase("outputs");
   study["observe"] = "wear_power[end]";
-  CHECK(refusal(study) == "/observe/0: wear_power needs what slides there; give tangent to the stop");
+  CHECK(refused_outputs(study) == "/observe/0: wear_power needs what slides there; give tangent to the stop");
   study["observe"] = "shock_rate[end]";
-  CHECK(refusal(study) == "/observe/0: shock_rate counts shocks; give outputs.shocks");
+  CHECK(refused_outputs(study) == "/observe/0: shock_rate counts shocks; give outputs.shocks");
   study["observe"] = "window_force[end]";
-  CHECK(refusal(study) == "none");
+  CHECK(refused_outputs(study) == "none");
   study.erase("window");
-  CHECK(refusal(study) == "/observe/0: window_force is measured over a window; give one");
+  CHECK(refused_outputs(study) == "/observe/0: window_force is measured over a window; give one");
   study["kind"] = "convergence";
   study.erase("observe");
   study["reference"] = "self";
   study["scene"]["points"] = Json::parse(R"([{"name": "half", "at": {"x": 0.75}}])");
-  CHECK_THAT(refusal(study), Contains("/scene/points: a study of kind convergence shows no points"));
+  CHECK_THAT(refused_outputs(study), Contains("/scene/points: a study of kind convergence shows no points"));
 }
 
 TEST_CASE("the half interval of a measure of a stop says of which it is") {
