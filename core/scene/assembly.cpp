@@ -106,19 +106,37 @@ std::vector<std::pair<int, double>> row_of(const FiniteElementSpace& space, cons
 
 }  // namespace
 
+namespace {
+
+std::array<double, 4> shapes_at(const FiniteElementSpace& space, const FiniteElementSpace::Element& element, double xi,
+                                ShapeOf what) {
+  const double length = element.length, slope = 6 / (length * length * (1 + element.shear));
+  switch (what) {
+    case ShapeOf::rotation:
+      return shape_rotations(element, xi);
+    case ShapeOf::curvature:
+      return shape_strains(space.basis, element, xi);
+    case ShapeOf::curvature_slope:
+      return {2 * slope / length, slope, -2 * slope / length, slope};
+    case ShapeOf::displacement:
+      break;
+  }
+  return shape_values(space.basis, element, xi);
+}
+
+}  // namespace
+
 std::vector<std::pair<int, double>> displacement_row(const FiniteElementSpace& space, double x, ShapeOf what) {
   if (space.elements.empty()) return {{0, 1.0}};
   const auto [element, xi] = locate(space, x);
-  if (what == ShapeOf::rotation) return row_of(space, *element, shape_rotations(*element, xi));
-  return row_of(space, *element, shape_values(space.basis, *element, xi));
+  return row_of(space, *element, shapes_at(space, *element, xi, what));
 }
 
 std::vector<std::pair<double, double>> held_row(const FiniteElementSpace& space, double x, ShapeOf what) {
   std::vector<std::pair<double, double>> row;
   if (space.elements.empty()) return row;
   const auto [element, xi] = locate(space, x);
-  const std::array<double, 4> values =
-      what == ShapeOf::rotation ? shape_rotations(*element, xi) : shape_values(space.basis, *element, xi);
+  const std::array<double, 4> values = shapes_at(space, *element, xi, what);
   const int right = space.basis == FiniteElementSpace::Basis::hermite ? 2 : 1;
   for (const int a : {0, right})
     if (element->dof[a] < 0 && values[a] != 0)

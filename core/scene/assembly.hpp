@@ -29,8 +29,8 @@ Eigen::VectorXd rigid_motion_load(const FiniteElementSpace& space);
 
 /// The displacement at x as Σ value·q_dof, eliminated dofs left out. x within 1e-10 of an element's length from a node
 /// is that node: one entry, exactly 1. Without elements the only dof is everywhere.
-/// Or the rotation of a beam's section there, in rad.
-enum class ShapeOf { displacement, rotation };
+/// Of a beam also: the rotation of its section θ, rad; its curvature θ', 1/m; and θ'', 1/m².
+enum class ShapeOf { displacement, rotation, curvature, curvature_slope };
 std::vector<std::pair<int, double>> displacement_row(const FiniteElementSpace& space, double x,
                                                      ShapeOf what = ShapeOf::displacement);
 

@@ -63,15 +63,15 @@ PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, cons
   return out;
 }
 
-PlaceRow rotation_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place,
-                      const std::string& pointer) {
+PlaceRow section_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place, ShapeOf what,
+                     const std::string& pointer) {
   if (!std::holds_alternative<BeamSpec>(scene.structure) || !place.x)
-    throw InputError(pointer, fmt::format("a place of a {} does not turn; expected a beam and x", space.structure));
+    throw InputError(pointer, fmt::format("a {} does not bend; expected a beam", space.structure));
   place_row(scene, space, place, pointer);
   PlaceRow out;
-  out.free = displacement_row(space, *place.x, ShapeOf::rotation);
+  out.free = displacement_row(space, *place.x, what);
   std::sort(out.free.begin(), out.free.end());
-  out.held = held_by(support_places(scene.structure), space, *place.x, ShapeOf::rotation);
+  out.held = held_by(support_places(scene.structure), space, *place.x, what);
   out.x = *place.x;
   return out;
 }

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
+#include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/place.hpp>
 #include <ricochet/scene/scene.hpp>
@@ -17,9 +18,9 @@ namespace ricochet {
 PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place,
                    const std::string& pointer);
 
-/// The rotation of a beam's section at a place, rad; pointers as above.
-PlaceRow rotation_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place,
-                      const std::string& pointer);
+/// The same of what else a beam has at a place; pointers as above.
+PlaceRow section_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place, ShapeOf what,
+                     const std::string& pointer);
 
 /// Throws InputError at `pointer` for a name that is not 1 to 40 letters, digits, '-' or '_'.
 void check_name(const std::string& name, const std::string& pointer);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/observed_rows.hpp>
 #include <ricochet/scene/scene.hpp>
@@ -55,6 +56,19 @@ std::string tangent_pointer(std::size_t stop) {
   return fmt::format("/scene/stops/{}/tangent", stop);
 }
 
+PlaceRow scaled(PlaceRow row, double factor) {
+  for (auto& [dof, value] : row.free) value *= factor;
+  for (auto& [support, weight] : row.held) weight *= factor;
+  return row;
+}
+
+// M = EI θ' or M' at a point of a beam; where the section changes, of what stands to the right.
+PlaceRow field_row(const SceneSpec& scene, const FiniteElementSpace& space, const PointSpec& point, ShapeOf what,
+                   const std::string& pointer) {
+  const PlaceRow row = section_row(scene, space, point.at, what, pointer);
+  return scaled(row, part_at(uniform_parts(std::get<BeamSpec>(scene.structure)), row.x).section.EI);
+}
+
 // The place of a node with another component or direction.
 Place turned(const Place& place, const TangentSpec& tangent) {
   Place out;
@@ -62,12 +76,6 @@ Place turned(const Place& place, const TangentSpec& tangent) {
   out.component = tangent.component;
   out.direction = tangent.direction;
   return out;
-}
-
-PlaceRow scaled(PlaceRow row, double factor) {
-  for (auto& [dof, value] : row.free) value *= factor;
-  for (auto& [support, weight] : row.held) weight *= factor;
-  return row;
 }
 
 PlaceRow tangent_row(const SceneSpec& scene, const FiniteElementSpace& space, const NamedStop& stop,
@@ -79,7 +87,7 @@ PlaceRow tangent_row(const SceneSpec& scene, const FiniteElementSpace& space, co
       if (!place.x)
         throw InputError(pointer + "/slope_radius",
                          "the slope is that of a beam; expected direction or component, or a stop at {\"x\"}");
-      return scaled(rotation_row(scene, space, place, pointer), tangent.slope_radius);
+      return scaled(section_row(scene, space, place, ShapeOf::rotation, pointer), tangent.slope_radius);
     }
     if (place.node.empty())
       throw InputError(pointer, fmt::format("stop {} is not at a node; expected {}", stop.name,
@@ -104,6 +112,7 @@ void check_points(const SceneSpec& scene, const FiniteElementSpace& space) {
                        fmt::format("another point or stop is called \"{}\"; expected another name", point.name));
     names.push_back(point.name);
     place_row(scene, space, point.at, point_pointer(i, "/at"));
+    if (point.moment || point.shear) field_row(scene, space, point, ShapeOf::curvature, point_pointer(i, "/fields"));
   }
   const auto* assembled = std::get_if<AssembledSpec>(&scene.structure);
   if (assembled && assembled->tip && !scene.points.empty())
@@ -124,6 +133,16 @@ void observe_rows(const SceneSpec& scene, SemiDiscrete& problem) {
                point.from_supports ? 0.0 : 1.0, !point.from_supports);
   }
   problem.observed = points.make();
+  RowMaker fields(problem, 2 * scene.points.size());
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    const PointSpec& point = scene.points[i];
+    const auto add = [&](const char* name, ShapeOf what) {
+      fields.add(point.name + name, field_row(scene, problem.space, point, what, point_pointer(i, "/fields")), 0, true);
+    };
+    if (point.moment) add("_moment", ShapeOf::curvature);
+    if (point.shear) add("_shear", ShapeOf::curvature_slope);
+  }
+  problem.fields = fields.make();
 
   const std::vector<NamedStop>& stops = scene.stops.named;
   RowMaker tangents(problem, stops.size());

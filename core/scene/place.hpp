@@ -23,6 +23,7 @@ struct PointSpec {
   std::string name;  ///< letters, digits, '-' and '_'
   Place at;
   bool from_supports = false;
+  bool moment = false, shear = false;  ///< of a beam: whether M = EI θ' (N m) and M' (N) are shown there too
 };
 
 /// What moves along the surface of a stop while it is pushed. Exactly one is given.

@@ -101,6 +101,7 @@ struct SemiDiscrete {
   Eigen::SparseMatrix<double, Eigen::RowMajor> tip;  ///< 1 × n: the displacement shown to people
   Eigen::RowVectorXd tip_on_supports;                ///< 1 × r: ψ_j there, of matrices that are given
   ObservedRows observed;                             ///< points that are shown
+  ObservedRows fields;                               ///< moments (N m) and shear forces (N) there, by name
   ObservedRows tangents;                             ///< motions along surfaces of stops
   std::vector<int> tangent_of;                       ///< row of each contact point in them, −1: none; or empty
   Eigen::VectorXd position, velocity;                ///< q₀, v₀ of w

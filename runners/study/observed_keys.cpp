@@ -1,15 +1,34 @@
 #include "runners/study/observed_keys.hpp"
 
+#include <algorithm>
+
 namespace ricochet {
 
 using namespace keys;
+
+namespace {
+
+Field fields_of_point() {
+  Field field = of_form(Field::Form::words, "fields", Json(nullptr), "Of a beam there too: moment, shear, or both.");
+  field.spec = word_parameter("fields", {"moment", "shear"}, std::nullopt, field.spec.text.c_str());
+  field.nullable = true;
+  return quiet(std::move(field));
+}
+
+bool shows(const Json& point, const char* field) {
+  const Json fields = point.value("fields", Json::array());
+  return std::find(fields.begin(), fields.end(), field) != fields.end();
+}
+
+}  // namespace
 
 Field points_key() {
   ObjectForm point;
   point.fields = {of_form(Field::Form::text, "name", std::nullopt, "Letters, digits, '-' and '_'; each once."),
                   place("at", std::nullopt, "Place whose displacement is shown."),
                   quiet(optional(word("frame", {"absolute", "supports"}, std::nullopt,
-                                      "What it counts from; absent: as `frame` of the scene.")))};
+                                      "What it counts from; absent: as `frame` of the scene."))),
+                  fields_of_point()};
   return quiet(objects("points", "Places whose motion is shown; the first is where the tip is.", point));
 }
 
@@ -46,8 +65,8 @@ std::vector<PointSpec> read_points(const Json& scene) {
   std::vector<PointSpec> points;
   const std::string frame = scene.value("frame", "absolute");
   for (const Json& one : scene.value("points", Json::array()))
-    points.push_back(
-        {one.at("name").get<std::string>(), read_place(one.at("at")), one.value("frame", frame) == "supports"});
+    points.push_back({one.at("name").get<std::string>(), read_place(one.at("at")),
+                      one.value("frame", frame) == "supports", shows(one, "moment"), shows(one, "shear")});
   return points;
 }
 

@@ -47,6 +47,29 @@ TEST_CASE("a point reads the displacement of its place, and the first one is the
   CHECK(problem.observed.on_support[1] == 0);
 }
 
+TEST_CASE("moment and shear force of a cubic are EI w'' and its derivative, of the section to the right of a change") {
+  SceneSpec scene = unit_beam();
+  scene.stops = {};
+  BeamPart half, whole;
+  half.to = 0.5;
+  half.section = whole.section = beam_of(scene).section;
+  half.section.EI = 3;
+  whole.to = 1;
+  whole.section.EI = 7;
+  beam_of(scene).sections = {half, whole};
+  scene.points = {{"quarter", at_position(0.3), false, true, true},
+                  {"change", at_position(0.5), false, true, false},
+                  {"end", at_position(1), false, false, true}};
+  const SemiDiscrete problem = discretised(scene, 4, *mass("consistent"));
+  CHECK(problem.fields.names ==
+        std::vector<std::string>{"quarter_moment", "quarter_shear", "change_moment", "end_shear"});
+  const Eigen::VectorXd read = problem.fields.rows * cube();
+  CHECK(read[0] == Approx(3 * 6 * 0.3).epsilon(1e-12));
+  CHECK(read[1] == Approx(3 * 6).epsilon(1e-12));
+  CHECK(read[2] == Approx(7 * 6 * 0.5).epsilon(1e-12));
+  CHECK(read[3] == Approx(7 * 6).epsilon(1e-12));
+}
+
 TEST_CASE("the surface of a tube moves by the radius times the rotation of its section") {
   SceneSpec scene = unit_beam();
   scene.stops = {};

@@ -193,12 +193,17 @@ Table common_curves() {
 
 }  // namespace
 
-Table curves_head(const std::vector<std::string>& points) {
+Table curves_head(const std::vector<std::string>& points, const std::vector<std::string>& fields) {
   Table curves = common_curves();
   for (const std::string& name : points) {
     curves.columns.push_back(
         {name + "_displacement", "m", "Displacement of the point " + name + ", in its own frame."});
     curves.columns.push_back({name + "_velocity", "m/s", "Its velocity, the mean over the last sub-step."});
+  }
+  for (const std::string& name : fields) {
+    const bool moment = name.ends_with("_moment");
+    curves.columns.push_back({name, moment ? "N m" : "N",
+                              moment ? "Bending moment EI θ' there." : "Derivative of the bending moment along x."});
   }
   return curves;
 }

@@ -17,7 +17,8 @@ void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const March
 /// Units and meanings of these tables, for records that come from a store.
 void describe_contact(std::vector<CaseRecord>& records);
 
-/// `curves`, without rows: the sampled series of one trajectory, curves/ID.csv; those of these points come last.
-Table curves_head(const std::vector<std::string>& points = {});
+/// `curves`, without rows: the sampled series of one trajectory, curves/ID.csv; those of these points come last,
+/// and then their fields ("mid_moment").
+Table curves_head(const std::vector<std::string>& points = {}, const std::vector<std::string>& fields = {});
 
 }  // namespace ricochet

@@ -37,9 +37,11 @@ class Sampler final : public StepObserver {
         recorder_(recorder),
         gaps_(marcher),
         points_(marcher, marcher.program().problem->observed),
-        row_(curves_head(marcher.program().problem->observed.names).columns.size()) {
-    for (const Column& column : curves_head(marcher.program().problem->observed.names).columns)
+        fields_(marcher, marcher.program().problem->fields) {
+    const SemiDiscrete& problem = *marcher.program().problem;
+    for (const Column& column : curves_head(problem.observed.names, problem.fields.names).columns)
       curve_.names.push_back(column.name);
+    row_.resize(curve_.names.size());
     curve_.columns.resize(curve_.names.size());
     asks_.next_shown = never;
     asks_.tip = true;
@@ -82,6 +84,7 @@ class Sampler final : public StepObserver {
       *next++ = points_.displacement(marcher, i);
       *next++ = points_.velocity(marcher, audit_, i);
     }
+    for (int i = 0; i < fields_.count(); ++i) *next++ = fields_.displacement(marcher, i);
     low_ = infinity;
     high_ = -infinity;
     deepest_ = 0;
@@ -107,7 +110,7 @@ class Sampler final : public StepObserver {
   double low_ = infinity, high_ = -infinity, deepest_ = 0;  // since the last sample
   double largest_tip_ = 0;                                  // until then
   GapWatch gaps_;
-  RowReadings points_;
+  RowReadings points_, fields_;
   std::vector<double> row_;  // of the curve
   Curve curve_;
 };

@@ -146,12 +146,12 @@ void put_halves(CaseRecord& record, const StopWatches& watches, int point, const
     if (reading.wear_power) wear.push_back(*reading.wear_power);
   }
   const std::string of = "[" + name + "]";
-  put_half(record, "displacement_mean" + of, displacement, false);
-  put_half(record, "displacement_rms" + of, squares, true);
+  put_half(record, "window_displacement_mean" + of, displacement, false);
+  put_half(record, "window_displacement_rms" + of, squares, true);
   put_half(record, "window_force" + of, force, false);
   put_half(record, "window_rms_force" + of, force_squares, true);
-  put_half(record, "impact_rate" + of, rate, false);
-  put_half(record, "contact_share" + of, share, false);
+  put_half(record, "window_impact_rate" + of, rate, false);
+  put_half(record, "window_contact_share" + of, share, false);
   if (!wear.empty()) put_half(record, "wear_power" + of, wear, false);
 }
 

@@ -238,10 +238,17 @@ std::vector<std::string> observed_energies(const StudyResults& results) {
   return {driven ? "dissipated_at_contact" : "energy_left", "impulse", "tip_displacement_end"};
 }
 
-std::vector<std::string> point_names(const Json& study) {
+// Names of the points of a study, or of their fields: "mid_moment".
+std::vector<std::string> point_names(const Json& study, bool fields) {
   std::vector<std::string> names;
-  if (study.contains("scene") && study.at("scene").contains("points"))
-    for (const auto& point : study.at("scene").at("points")) names.push_back(point.at("name").get<std::string>());
+  if (!study.contains("scene") || !study.at("scene").contains("points")) return names;
+  for (const auto& point : study.at("scene").at("points")) {
+    const auto name = point.at("name").get<std::string>();
+    if (!fields) names.push_back(name);
+    const Json asked = point.value("fields", Json::array());
+    for (const char* field : {"moment", "shear"})
+      if (fields && std::find(asked.begin(), asked.end(), field) != asked.end()) names.push_back(name + "_" + field);
+  }
   return names;
 }
 
@@ -297,7 +304,9 @@ class TrajectoryKind final : public Kind {
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
   }
   std::vector<std::string> observed(const StudyResults& results) const override { return observed_energies(results); }
-  Table curve(const StudyResults& results) const override { return curves_head(point_names(results.study)); }
+  Table curve(const StudyResults& results) const override {
+    return curves_head(point_names(results.study, false), point_names(results.study, true));
+  }
   std::string outcome(const CaseRecord& record) const override { return energies_text(record); }
   bool measures_stand() const override { return true; }
   nlohmann::ordered_json alone(const StudyResults& results, const CaseRecord& record) const override {

@@ -16,9 +16,18 @@ namespace ricochet::report {
 namespace {
 
 // Of the many measures of a stop, those that a first look is for, in this order.
-const std::vector<std::string> first_measures = {"impacts",    "impact_rate",   "shock_rate",       "impulse",
-                                                 "peak_force", "rms_force",     "window_force",     "shock_force_mean",
-                                                 "shock_time", "contact_share", "displacement_rms", "displacement_max",
+const std::vector<std::string> first_measures = {"impacts",
+                                                 "window_impact_rate",
+                                                 "shock_rate",
+                                                 "impulse",
+                                                 "peak_force",
+                                                 "rms_force",
+                                                 "window_force",
+                                                 "shock_force_mean",
+                                                 "shock_time",
+                                                 "window_contact_share",
+                                                 "window_displacement_rms",
+                                                 "window_displacement_max",
                                                  "wear_power"};
 
 constexpr std::size_t most_shocks_drawn = 3000, most_lines_drawn = 400;

@@ -143,16 +143,16 @@ TEST_CASE("a free swing past a stop that it does not reach: mean, deviation and 
   REQUIRE(record.status == "done");
   const auto of = [&](const char* name) { return measure(record, std::string(name) + "[wall]").value(); };
   // Of the scheme's own sine, whose amplitude and period are off by (ωh)² at most.
-  CHECK(of("displacement_mean") == Approx(0).margin(1e-5 * amplitude));
-  CHECK(of("displacement_rms") == Approx(amplitude / std::sqrt(2)).epsilon(1e-5));
-  CHECK(of("displacement_deviation") == Approx(amplitude / std::sqrt(2)).epsilon(1e-5));
-  CHECK(of("displacement_max") == Approx(amplitude).epsilon(1e-5));
-  CHECK(of("displacement_min") == Approx(-amplitude).epsilon(1e-5));
+  CHECK(of("window_displacement_mean") == Approx(0).margin(1e-5 * amplitude));
+  CHECK(of("window_displacement_rms") == Approx(amplitude / std::sqrt(2)).epsilon(1e-5));
+  CHECK(of("window_displacement_deviation") == Approx(amplitude / std::sqrt(2)).epsilon(1e-5));
+  CHECK(of("window_displacement_max") == Approx(amplitude).epsilon(1e-5));
+  CHECK(of("window_displacement_min") == Approx(-amplitude).epsilon(1e-5));
   CHECK(of("window_force") == 0);
-  CHECK(of("contact_share") == 0);
+  CHECK(of("window_contact_share") == 0);
   const Table& parts = table_of(record, "stop_parts");
   REQUIRE(parts.rows.size() == 8);
-  const auto mean = find_column(parts.columns, "displacement_mean").value();
+  const auto mean = find_column(parts.columns, "window_displacement_mean").value();
   // Half a period: 2/π of the amplitude.
   CHECK(parts.rows[2][mean].number().value() == Approx(2 / pi * amplitude).epsilon(1e-3));
   CHECK(parts.rows[3][mean].number().value() == Approx(-2 / pi * amplitude).epsilon(1e-3));
@@ -165,11 +165,11 @@ TEST_CASE("what a window of the whole run says of its stops adds up to what the 
   for (const std::string stop : {"[plate]", "[end]"}) {
     const auto of = [&](const char* name) { return measure(record, name + stop).value(); };
     CHECK(of("window_force") * duration == Approx(of("impulse")).epsilon(1e-12));
-    CHECK(of("contact_share") * duration == Approx(of("contact_time")).epsilon(1e-12));
-    CHECK(of("contact_force") == Approx(of("mean_force")).epsilon(1e-12));
-    CHECK(of("contact_rms_force") == Approx(of("rms_force")).epsilon(1e-12));
-    CHECK(of("impact_rate") * duration == Approx(of("impacts")).epsilon(1e-12));
-    CHECK(of("displacement_max") < 0.011);
+    CHECK(of("window_contact_share") * duration == Approx(of("contact_time")).epsilon(1e-12));
+    CHECK(of("window_contact_force") == Approx(of("mean_force")).epsilon(1e-12));
+    CHECK(of("window_contact_rms_force") == Approx(of("rms_force")).epsilon(1e-12));
+    CHECK(of("window_impact_rate") * duration == Approx(of("impacts")).epsilon(1e-12));
+    CHECK(of("window_displacement_max") < 0.011);
     CHECK(of("confidence.window_force") >= 0);
   }
   const Table& parts = table_of(record, "stop_parts");
@@ -191,7 +191,7 @@ TEST_CASE("what a window of the whole run says of its stops adds up to what the 
   // The columns that stops.csv had stand first.
   const Table& stops = table_of(record, "stops");
   CHECK(find_column(stops.columns, "stop").value() == 11);
-  CHECK(stops.columns[12].name == "displacement_mean");
+  CHECK(stops.columns[12].name == "window_displacement_mean");
   CHECK(stops.columns.back().name == "wear_power");
   const NumberTable* impacts = find_table(record.numbers, "impacts");
   CHECK(impacts->columns.back().name == "tangent_speed");
