@@ -66,7 +66,7 @@ PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, cons
 PlaceRow section_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place, ShapeOf what,
                      const std::string& pointer) {
   if (!std::holds_alternative<BeamSpec>(scene.structure) || !place.x)
-    throw InputError(pointer, fmt::format("a {} does not bend; expected a beam", space.structure));
+    throw InputError(pointer, fmt::format("nothing bends in this {}; expected a beam", space.structure));
   place_row(scene, space, place, pointer);
   PlaceRow out;
   out.free = displacement_row(space, *place.x, what);

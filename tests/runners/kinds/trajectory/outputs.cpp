@@ -83,6 +83,27 @@ TEST_CASE("the curve of a point at the tip is that of the tip, and points of one
   CHECK(plain.curve.names.size() + 6 == record.curve.names.size());
 }
 
+TEST_CASE("a point of a beam shows its bending moment and shear force, which balance a load at rest") {
+  Json study = Json::parse(R"json({
+    "name": "resting", "kind": "trajectory",
+    "scene": {"structure": {"type": "beam", "length": 2, "section": {"type": "given", "EI": 40, "rhoS": 0.12}},
+              "load": [{"at": 2, "force": 3}], "initial": {"displacement": "3*x^2*(6 - x)/240"},
+              "points": [{"name": "half", "at": {"x": 1}, "fields": ["moment", "shear"]}, {"name": "end", "at": {"x": 2}}]},
+    "mesh": {"elements": 4}, "methods": {"mass": "consistent", "contact": "none", "time": "newmark"},
+    "step": 1e-3, "duration": 0.1, "samples": 10})json");
+  const CaseRecord record = CaseRuns().first_of(study);
+  REQUIRE(record.status == "done");
+  // F(L − x), and −F.
+  for (const double moment : curve_of(record, "half_moment")) CHECK(moment == Approx(3.0).epsilon(1e-7));
+  for (const double shear : curve_of(record, "half_shear")) CHECK(shear == Approx(-3.0).epsilon(1e-7));
+  CHECK(record.curve.names.back() == "half_shear");
+  study["scene"]["points"][0]["fields"] = "momentum";
+  CHECK_THAT(refused_outputs(study), Catch::Contains("/scene/points/0/fields") && Catch::Contains("moment"));
+  Json swing = swinging(1, 1);
+  swing["scene"]["points"] = Json::parse(R"([{"name": "mass", "at": {"x": 0}, "fields": "moment"}])");
+  CHECK(refused_outputs(swing) == "/scene/points/0/fields: nothing bends in this oscillator; expected a beam");
+}
+
 TEST_CASE("the first point of a scene is where the tip of its tables is") {
   Json study = tube();
   study["scene"]["points"] = Json::parse(R"([{"name": "half", "at": {"x": 0.75}}])");
@@ -213,6 +234,37 @@ TEST_CASE("observers of stops leave the motion as it is") {
       CHECK(measure(full, name).value() == Approx(value).epsilon(1e-11).margin(1e-12));
   CHECK(full.curve.columns.size() == lean.curve.columns.size());
   CHECK(curve_of(full, "tip_displacement") == curve_of(lean, "tip_displacement"));
+}
+
+TEST_CASE("shocks and spectra of steps that flights leave out are those of every step") {
+  Json study = tube();
+  study["scene"].erase("load");
+  study["scene"]["initial"] = {{"velocity", "-2*x"}};
+  study["scene"]["stops"][0].erase("tangent");
+  study["methods"]["contact"] = GENERATE(Json("signorini"), Json{{"name", "penalty"}, {"stiffness", 1e5}});
+  study["duration"] = 0.4;
+  study["window"] = {{"from", 0.1}, {"to", 0.3}};
+  study["outputs"] = Json::parse(R"({"shocks": {"rest": 1e-3}, "rate": 1000, "segment": 0.1,
+      "spectra": [{"of": "end", "quantity": "displacement"}, {"of": "end", "quantity": "force"}]})");
+  study["march"] = {"every-step", "flights"};
+  const std::vector<CaseRecord> both = CaseRuns().of(study);
+  REQUIRE(both.size() == 2);
+  for (const CaseRecord& record : both) REQUIRE(record.status == "done");
+  CHECK(measure(both[1], "steps_visited").value() < measure(both[0], "steps_visited").value());
+  const NumberTable &a = *find_table(both[0].numbers, "shocks"), &b = *find_table(both[1].numbers, "shocks");
+  REQUIRE(a.rows() > 2);
+  REQUIRE(a.rows() == b.rows());
+  // Round-off, times what the motion makes of it.
+  for (const char* column : {"t_begin", "peak_force", "impulse", "duration", "rebounds"})
+    for (std::size_t i = 0; i < a.rows(); ++i)
+      CHECK(b.numbers(column)->at(i) == Approx(a.numbers(column)->at(i)).epsilon(1e-6));
+  for (const char* name : {"window_displacement_rms[end]", "window_force[end]", "window_displacement_max[plate]"})
+    CHECK(measure(both[1], name).value() == Approx(measure(both[0], name).value()).epsilon(1e-6));
+  const auto &s = *find_table(both[0].numbers, "spectra")->numbers("density"),
+             &t = *find_table(both[1].numbers, "spectra")->numbers("density");
+  REQUIRE(s.size() == t.size());
+  const double largest = *std::max_element(s.begin(), s.begin() + static_cast<std::ptrdiff_t>(s.size() / 2));
+  for (std::size_t k = 0; k < s.size() / 2; ++k) CHECK(t[k] == Approx(s[k]).margin(1e-6 * largest));
 }
 
 TEST_CASE("a swing has its spectrum at its frequency, with half its squared amplitude") {
