@@ -11,13 +11,14 @@ namespace ricochet {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// The mass of a structure that is given by its matrices, or marched in its modes, and has no elements, and what else is
-/// known of its dofs.
+/// The mass of a structure that is given by its matrices, or marched in its modes, and has no elements, and what else
+/// is known of its dofs.
 struct GivenMass {
-  SparseMatrix mass;           ///< M, n × n, both triangles, positive semidefinite
-  SparseMatrix stiffness;      ///< K, n × n: dofs that share an entry are neighbours
-  std::vector<int> direction;  ///< of each dof: 0, 1, 2 a displacement along x, y, z; 3 a rotation; −1 anything else
-  Eigen::MatrixXd rigid;       ///< n × k: the translations of the dofs, then the rotations that K lets be
+  SparseMatrix mass;            ///< M, n × n, both triangles, positive semidefinite
+  SparseMatrix stiffness = {};  ///< K, n × n: dofs that share an entry are neighbours
+  /// Of each dof: 0, 1, 2 a displacement along x, y, z; 3 a rotation; −1 anything else.
+  std::vector<int> direction = {};
+  Eigen::MatrixXd rigid = {};  ///< n × k: the translations of the dofs, then the rotations that K lets be
   /// Along x, y, z (kg): what a translation of all dofs moves, and the sum of the diagonal of M, held dofs included.
   std::array<double, 3> translated{}, diagonal{};
   bool modes = false;              ///< whether the dofs are coordinates of modes: nothing but `mass` is known then

@@ -204,28 +204,27 @@ Eigen::VectorXd initial_dofs(const AssembledStructure& structure, const InitialS
 }
 
 void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond) {
+  const bool modal = assembled_of(scene)->modes.has_value();
+  const std::string no_x = (modal ? "a " : "an ") + space.structure + " has no x; expected ";
   if (scene.support.amplitude != 0 && assembled_of(scene)->supports.empty())
     throw InputError("/scene/support/amplitude",
                      "the table of dofs names no support that could move; expected an amplitude of 0");
   if (scene.stops.lower || scene.stops.upper)
-    throw InputError("/scene/stops", "matrices that are given have no x; expected a list of stops with name and place");
+    throw InputError("/scene/stops", no_x + "a list of stops with name and place");
   if (!scene.load.formula.is_zero())
-    throw InputError("/scene/load",
-                     "matrices that are given have no x; expected a list of entries {\"at\": place, \"force\": F(t)}");
+    throw InputError("/scene/load", no_x + "a list of entries {\"at\": place, \"force\": F(t)}");
   for (const auto& [formula, key] :
        {std::pair(&scene.initial.displacement, "displacement"), {&scene.initial.velocity, "velocity"}})
     if (!formula->is_zero())
-      throw InputError(fmt::format("/scene/initial/{}", key),
-                       "matrices that are given have no x; expected 0, or the file of an initial state");
+      throw InputError(fmt::format("/scene/initial/{}", key), no_x + "0, or the file of an initial state");
   for (std::size_t k = 0; k < scene.load.terms.size(); ++k) {
     const LoadTerm& term = scene.load.terms[k];
     const std::string pointer = fmt::format("/scene/load/{}", k);
-    if (!term.force)
-      throw InputError(pointer + "/shape",
-                       "matrices that are given have no x; expected {\"at\": place, \"force\": F(t)}");
+    if (!term.force) throw InputError(pointer + "/shape", no_x + "{\"at\": place, \"force\": F(t)}");
     if (!term.place)
       throw InputError(pointer + "/at",
-                       "expected the place of the force: node and component, node and direction, dofs, or point");
+                       modal ? "expected the place of the force: point"
+                             : "expected the place of the force: node and component, node and direction, or dofs");
     if (place_row(scene, space, *term.place, pointer + "/at").free.empty())
       throw InputError(pointer + "/at", "the force acts where the structure is held: nothing there can move");
     term.history(0, 0);

@@ -266,8 +266,9 @@ InertiaOrRefusal build_mass(const SemiDiscrete& problem, const MassStrategy& mas
   if (!problem.in_modes()) {
     if (problem.space.given && !mass.takes_given())
       return Refusal{
-          "this mass is made of velocities on elements, and an assembled structure has matrices alone: use consistent, "
-          "hrz or redistributed"};
+          "this mass is made of velocities on elements, and an assembled structure has matrices alone: use one that "
+          "takes "
+          "them (consistent)"};
     return mass.build(problem.space);
   }
   if (!mass.takes_modes())

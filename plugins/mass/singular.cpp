@@ -42,8 +42,8 @@ class Singular : public MassStrategy {
   static InertiaOrRefusal without_residual_mass(const GivenMass& given) {
     if (!given.modes)
       return Refusal{
-          "this mass is made of velocities on elements, and an assembled structure has matrices alone: use consistent "
-          "or redistributed"};
+          "this mass is made of velocities on elements, and an assembled structure has matrices alone: use the mass "
+          "consistent, hrz or redistributed"};
     if (given.attached.empty())
       return Refusal{
           "the modes carry no residual flexibility, so that nothing without inertia is left at the stops: give it, or "

@@ -121,7 +121,7 @@ Table refinements_table(const Compared& study, const std::vector<std::string>& m
               {{"measure", "", "The measure."},
                {"method", "", "The case that stands for the method in limits."},
                {"refined", "", "step or mesh."},
-               {"size", "", "The step, in s or in periods, or the number of elements."},
+               {"size", "", "The step, in s or in periods, or the number of elements or modes."},
                {"value", "", "The value, in `unit`."},
                {"unit", "", "Unit of the value."}},
               {}};

@@ -55,6 +55,7 @@ constexpr AxisWords scene_words[] = {{"structure.damping.stiffness", "viscosity"
                                      {"initial.displacement", "initial displacement", ""},
                                      {"initial.projection", "projection", ""},
                                      {"elements", "", " elements"},
+                                     {"modes", "", " modes"},
                                      {"steps_per_period", "", " steps per period"},
                                      {"march", "", ""}};
 
@@ -78,7 +79,7 @@ std::optional<double> as_number(const std::string& text) {
 }
 
 bool is_refinement(const std::string& column) {
-  return column == "step" || column == "elements" || column == "steps_per_period";
+  return column == "step" || column == "elements" || column == "modes" || column == "steps_per_period";
 }
 
 Compared::Compared(const StudyResults& results) : results_(results) {
@@ -246,7 +247,17 @@ std::optional<double> Compared::step(const CaseRecord& record) const {
 }
 
 std::optional<double> Compared::elements(const CaseRecord& record) const {
-  return as_number(text(record, "elements"));
+  if (!varies("modes")) return as_number(text(record, "elements"));
+  if (const auto modes = as_number(text(record, "modes"))) return modes;
+  // All dofs of the mesh are more than any number of modes that is named.
+  const auto known = numbers_.find("modes");
+  return known == numbers_.end() || known->second.empty() ? std::nullopt : std::optional(2 * known->second.back());
+}
+
+bool Compared::on_finest_mesh(const CaseRecord& record) const {
+  if (!varies("modes") || !varies("elements")) return true;
+  const auto elements = as_number(text(record, "elements"));
+  return !elements || *elements == numbers_.at("elements").back();
 }
 
 std::string Compared::step_words(double step) const {

@@ -12,7 +12,7 @@ namespace ricochet::answers {
 
 /// The number that a text is as a whole; nothing of other texts.
 std::optional<double> as_number(const std::string& text);
-/// Whether a column is refined rather than chosen: step, steps_per_period, elements.
+/// Whether a column is refined rather than chosen: step, steps_per_period, elements, modes.
 bool is_refinement(const std::string& column);
 
 /// A study as a comparison. A *choice* is a role with its parameters ("time"), or an axis of the scene; a *method* is
@@ -58,7 +58,10 @@ class Compared {
 
   /// Size of the step: h (s), or the share of a period; nothing where the study refines no step.
   std::optional<double> step(const CaseRecord& record) const;
+  /// Size of the mesh: the elements, or the modes where these vary.
   std::optional<double> elements(const CaseRecord& record) const;
+  /// Whether it has the most elements; where modes do not vary, always.
+  bool on_finest_mesh(const CaseRecord& record) const;
   /// "h = 1e-6 s", "4000 steps per period".
   std::string step_words(double step) const;
 

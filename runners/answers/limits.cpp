@@ -75,10 +75,15 @@ MeasureLimits limits_of(const Compared& study, const std::string& name, bool con
   for (auto& [key, members] : std::move(groups).list()) {
     Method method;
     method.cases = members;
+    std::vector<Valued> coarser;
     for (const CaseRecord* record : members) {
       if (record->status != "done") continue;
       const auto value = scaled_value(out.words, *record);
       if (!value || !std::isfinite(*value)) continue;
+      if (!study.on_finest_mesh(*record)) {
+        coarser.push_back({record, *value});
+        continue;
+      }
       method.done.push_back({record, *value});
       method.grid[{step_or_one(study, *record), elements_or_one(study, *record)}] = *value;
     }
@@ -103,6 +108,15 @@ MeasureLimits limits_of(const Compared& study, const std::string& name, bool con
       method.limit = combined(method.step, method.mesh);
       method.half = measure(*best.record, "confidence." + name).value_or(0);
       if (method.limit) widen(*method.limit, method.half);
+      // Of modes on several meshes, what the nearest coarser mesh says otherwise.
+      double most = 0, apart = 0;
+      for (const auto& [record, value] : coarser) {
+        const double elements = as_number(study.text(*record, "elements")).value_or(0);
+        if (step_or_one(study, *record) != h || elements_or_one(study, *record) != N || elements <= most) continue;
+        most = elements;
+        apart = std::abs(value - method.grid.at({h, N}));
+      }
+      if (method.limit && most > 0) widen(*method.limit, apart);
     }
     out.methods.push_back(std::move(method));
   }

@@ -119,7 +119,7 @@ std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, bool modal) {
     for (const std::string& residual : list_of<std::string>(mesh.value("residual", Json("stops"))))
       if (!modes.is_null())
         bases.push_back(BasisSpec{modes.get<int>(), residual == "stops"});
-      else if (modal && residual == "none")
+      else if (modal && residual != "stops")
         bases.push_back(BasisSpec{0, false});
       else if (std::find(bases.begin(), bases.end(), std::nullopt) == bases.end())
         bases.emplace_back();

@@ -1,6 +1,7 @@
 // Structures of their own, µs per step: a beam of 200 elements on twelve pins with forty named stops, and a net of 10^4
-// dofs given by its matrices with twenty stops. What contact, audit and recorder of impacts add to the linear step, by
-// leaving them out. Where Siconos is found, the beam beside it, as bench_siconos does: Moreau–Jean, θ = ½, e = 0.
+// dofs given by its matrices with twenty stops; both once more in 60 modes. What contact, audit and recorder of impacts
+// add to the linear step, by leaving them out. Where Siconos is found, the beam beside it, as bench_siconos does:
+// Moreau–Jean, θ = ½, e = 0.
 //
 //     bench_own [--rounds N] [--steps N]
 #include <fmt/format.h>
@@ -102,6 +103,14 @@ Scene net() {
     one.scene.stops.named.push_back({fmt::format("s{}", k), node(30 + 2 * k, 50), {}, -1e-3, 1e-3});
   one.scene.load.terms = {{true, {}, {}, Formula("4e4*sin(60*t)", "/scene/load", "t"), node(50, 52)}};
   return one;
+}
+
+// The same scene in its slowest modes, and the static shapes of its stops.
+Scene in_modes(Scene scene, int modes) {
+  scene.name += fmt::format(", in {} modes and the residual of the stops", modes);
+  scene.scene.basis = BasisSpec{modes, true};
+  scene.kinds = {OperatorKind::modal};
+  return scene;
 }
 
 // What an integration looks at.
@@ -225,7 +234,7 @@ void race(const Scene& scene, int rounds, long long steps, Registry& registry) {
         "", 100 * linear / all, 100 * (contact - linear) / all, 100 * (all - contact) / all, 100 * pushed);
   }
 #ifdef RICOCHET_SICONOS
-  if (!problem->space.given) beside(scene, problem, rounds, registry);
+  if (!problem->space.given && !problem->basis) beside(scene, problem, rounds, registry);
 #endif
 }
 
@@ -252,4 +261,6 @@ int main(int argc, char** argv) {
   }
   race(tube(), rounds, steps, registry);
   race(net(), rounds, std::max(1LL, steps / 20), registry);
+  race(in_modes(tube(), 60), rounds, steps, registry);
+  race(in_modes(net(), 60), rounds, steps, registry);
 }
