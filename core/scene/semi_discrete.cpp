@@ -268,7 +268,7 @@ InertiaOrRefusal build_mass(const SemiDiscrete& problem, const MassStrategy& mas
       return Refusal{
           "this mass is made of velocities on elements, and an assembled structure has matrices alone: use one that "
           "takes "
-          "them (consistent)"};
+          "another mass that takes matrices"};
     return mass.build(problem.space);
   }
   if (!mass.takes_modes())
