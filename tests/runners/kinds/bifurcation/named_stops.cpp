@@ -1,6 +1,7 @@
 // Stops that have names, and matrices that are given, in sweeps.
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "tests/runners/kinds/sweep/sweep_case.hpp"
+#include "tests/runners/scratch_folder.hpp"
 #include "tests/scene/structure/beam_files.hpp"
 #include "tests/scene/working_set.hpp"
 
@@ -24,6 +25,36 @@ TEST_CASE("bifurcation: impacts say the name of their stop, where stops have nam
   REQUIRE(impacts.rows() > 0);
   REQUIRE(stop.size() == impacts.rows());
   for (std::size_t i = 0; i < x.size(); ++i) CHECK(stop[i] == (x[i] == 0.75 ? 0 : 1));
+}
+
+TEST_CASE("bifurcation: a mass given by its matrices is the oscillator, whose base is the support of both") {
+  const ScratchFolder folder;
+  const std::string head = "%%MatrixMarket matrix coordinate real symmetric\n2 2 ";
+  write_text(folder / "K.mtx", head + "3\n1 1 100\n2 1 -100\n2 2 100\n");
+  write_text(folder / "M.mtx", head + "1\n2 2 1\n");
+  write_text(folder / "dofs.csv", "dof,node,component,x,y,z,held\n1,B,ux,0,0,0,base\n2,A,ux,1,0,0,\n");
+  Json oscillator = oscillator_sweep({0.02, 0.04}, 0);
+  oscillator["parameter"]["pointer"] = "/scene/support/amplitude";
+  oscillator["scene"] = Json::parse(R"({
+    "structure": {"type": "oscillator", "mass": 1, "stiffness": 100, "damping": 0.2},
+    "stops": {"upper": 0.05, "at": "tip"}, "support": {"amplitude": 0.02, "pulsation": 9}})");
+  Json given = oscillator;
+  given["scene"]["structure"] = Json::parse(R"({"type": "assembled", "stiffness": "K.mtx", "mass": "M.mtx",
+    "dofs": "dofs.csv", "damping": {"stiffness": 2e-3}})");
+  given["scene"]["stops"] = Json::parse(R"([{"name": "wall", "at": {"node": "A", "component": "ux"}, "upper": 0.05}])");
+  const auto speeds = [&](const Json& text) {
+    Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+    Registry registry;
+    const Study study = parse_study(text.dump(1), catalogue, registry, folder.path());
+    const std::atomic<bool> stop = false;
+    const CaseRecord record = run_bifurcation(study.cases.front(), registry, {}, stop);
+    REQUIRE(record.status == "done");
+    return column_of(numbers_of(record, "impacts"), "speed");
+  };
+  const std::vector<double> a = speeds(oscillator), b = speeds(given);
+  REQUIRE(a.size() == b.size());
+  REQUIRE(!a.empty());
+  for (std::size_t i = 0; i < a.size(); ++i) CHECK(b[i] == Approx(a[i]).epsilon(1e-11));
 }
 
 TEST_CASE("sweep: a support of given matrices that does not lift its stops alike is refused") {
