@@ -88,7 +88,7 @@ Field outputs_key() {
       quiet(objects("spectra", "Power spectral densities, for spectra.csv, over the window.", spectrum)),
       quiet(keys::optional(real("rate", "Hz", positive, std::nullopt, "Samples per second of spectra."))),
       quiet(keys::optional(real("segment", "s", positive, std::nullopt, "Length of a segment of Welch's method.")))};
-  for (const std::size_t nullable : {0, 2}) outputs.fields[nullable].nullable = true;
+  outputs.fields.front().nullable = true;
   Field field = quiet(object("outputs", Json(nullptr), "What is kept beside measures and curves.", outputs));
   field.nullable = true;
   return field;
@@ -103,7 +103,7 @@ void check_outputs(const Json& study) {
     throw InputError("/window/parts", fmt::format("{} parts of {} stops; expected at most {} together",
                                                   window.at("parts").get<std::size_t>(), stops, most));
   if (!outputs.is_object()) return;
-  if (outputs.contains("spectra")) check_spectra(study, outputs);
+  if (outputs.contains("spectra") && !outputs.at("spectra").empty()) check_spectra(study, outputs);
 }
 
 AskedOutputs asked_outputs(const StudyCase& study_case) {
