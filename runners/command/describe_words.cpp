@@ -199,6 +199,11 @@ bool describe_word(const std::string& name, std::ostream& out) {
       next();
       print(measure, out);
     }
+  // Those of a stop, "impulse[bar-a]", are as many as there are names.
+  if (const MeasureInfo* of_stop = name.ends_with("]") ? measure_info(name) : nullptr) {
+    next();
+    print(*of_stop, out);
+  }
   return found;
 }
 

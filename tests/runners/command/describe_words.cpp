@@ -1,6 +1,7 @@
 #include "runners/command/describe_words.hpp"
 
 #include <catch2/catch.hpp>
+#include <sstream>
 
 using namespace ricochet;
 
@@ -12,4 +13,11 @@ TEST_CASE("Values of axes are told in their shortest form") {
   CHECK(plain("P1") == "P1");
   CHECK(plain(nullptr) == "none");
   CHECK(plain({1.0, 1.5}) == "[1.0,1.5]");
+}
+
+TEST_CASE("A measure of a stop is described by its name with that of the stop") {
+  std::ostringstream out;
+  CHECK(describe_word("wear_power[bar-a]", out));
+  CHECK_THAT(out.str(), Catch::Contains("bar-a") && Catch::Contains("W"));
+  CHECK_FALSE(describe_word("energy_left[bar-a]", out));
 }
