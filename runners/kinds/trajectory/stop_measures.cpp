@@ -35,6 +35,11 @@ template <double (*of)(const PushTotals&, double)>
 Known pushed(const StopReading& reading) {
   return reading.pushed ? Known(of(*reading.pushed, reading.window)) : std::nullopt;
 }
+/// The same of what is over the time in contact: nothing where there was none.
+template <double (*of)(const PushTotals&, double)>
+Known while_pushed(const StopReading& reading) {
+  return reading.pushed && reading.pushed->contact_time > 0 ? pushed<of>(reading) : std::nullopt;
+}
 template <double (*of)(const ShockTotals&)>
 Known shocked(const StopReading& reading) {
   return reading.shocks && reading.shocks->shocks > 0 ? Known(of(*reading.shocks)) : std::nullopt;
@@ -56,7 +61,7 @@ const StopMeasure table[] = {
     {"contact_time", "s", "Time in contact with the stop {}.", "time in contact at {}",
      [](const StopReading& of) -> Known { return of.run.contact_time; }},
     {"mean_force", "N", "Mean of the force at the stop {} over the time in contact.", "mean force at {}",
-     [](const StopReading& of) -> Known { return of.run.mean_force(); }},
+     [](const StopReading& of) { return of.run.contact_time > 0 ? Known(of.run.mean_force()) : std::nullopt; }},
     {"window_displacement_mean", "m", "Mean over the window of the displacement that the stop {} bounds.",
      "mean displacement at {}", displaced<[](Moments m) { return m.mean; }>, Needs::window, true},
     {"window_displacement_deviation", "m",
@@ -73,10 +78,10 @@ const StopMeasure table[] = {
     {"window_rms_force", "N", "Root mean square over the window of the force at the stop {}.",
      "rms force at {} over the window", pushed<[](Push p, double time) { return p.rms(time); }>, Needs::window, true},
     {"window_contact_force", "N", "Mean of the force at the stop {} over the time in contact in the window.",
-     "force in contact at {}", pushed<[](Push p, double) { return p.mean_pushed(); }>, Needs::window, true},
+     "force in contact at {}", while_pushed<[](Push p, double) { return p.mean_pushed(); }>, Needs::window, true},
     {"window_contact_rms_force", "N",
      "Root mean square of the force at the stop {} over the time in contact in the window.",
-     "rms force in contact at {}", pushed<[](Push p, double) { return p.rms_pushed(); }>, Needs::window, true},
+     "rms force in contact at {}", while_pushed<[](Push p, double) { return p.rms_pushed(); }>, Needs::window, true},
     {"window_contact_share", "1", "Share of the window in contact with the stop {}.", "share in contact at {}",
      pushed<[](Push p, double time) { return p.contact_time / time; }>, Needs::window, true},
     {"window_impact_rate", "1/s", "How often the stop {} closes in a second of the window.", "impacts per second at {}",

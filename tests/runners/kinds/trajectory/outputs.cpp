@@ -171,6 +171,9 @@ TEST_CASE("a free swing past a stop that it does not reach: mean, deviation and 
   CHECK(of("window_displacement_min") == Approx(-amplitude).epsilon(1e-5));
   CHECK(of("window_force") == 0);
   CHECK(of("window_contact_share") == 0);
+  // A mean over no time is none.
+  CHECK_FALSE(measure(record, "window_contact_force[wall]"));
+  CHECK_FALSE(measure(record, "mean_force[wall]"));
   const Table& parts = table_of(record, "stop_parts");
   REQUIRE(parts.rows.size() == 8);
   const auto mean = find_column(parts.columns, "window_displacement_mean").value();
