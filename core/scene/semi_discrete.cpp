@@ -266,8 +266,7 @@ InertiaOrRefusal build_mass(const SemiDiscrete& problem, const MassStrategy& mas
   if (!problem.in_modes()) {
     if (problem.space.given && !mass.takes_given())
       return Refusal{
-          "this mass is made of velocities on elements, and an assembled structure has matrices alone: use one that "
-          "takes "
+          "this mass is made of velocities on elements, and an assembled structure has matrices alone: use consistent or "
           "another mass that takes matrices"};
     return mass.build(problem.space);
   }
