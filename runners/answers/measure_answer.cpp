@@ -68,17 +68,19 @@ MeasureSaid say_measure(const Compared& study, const std::string& name, bool kep
       const MeasureLimits own = limits_of(study, name, keeps_energy(study.results(), cases), cases);
       auto [kind, said] = TierSpeaker(study, own, rest).tiers();
       if (said.empty()) continue;
-      std::string text = said.front().text;
-      const std::string measure = capitalised(words.words);
-      for (const std::string& begins : {std::string("The "), std::string("None "), std::string("No "),
-                                        std::string("All "), std::string("These "), measure})
-        if (text.starts_with(begins) && text[0] >= 'A' && text[0] <= 'Z')
-          text[0] = static_cast<char>(text[0] - 'A' + 'a');
-      const char* link = text.starts_with(words.words) ? ", " : ": ";
       std::vector<std::string> where;
       for (const std::string& column : scene) where.push_back(study.level(methods.front()->first(), column));
-      said.front().text = "With " + and_list(where) + link + text;
-      out.sentences.push_back(std::move(said.front()));
+      const std::string measure = capitalised(words.words);
+      for (Sentence& one : said) {
+        std::string text = one.text;
+        for (const std::string& begins : {std::string("The "), std::string("None "), std::string("No "),
+                                          std::string("All "), std::string("These "), measure})
+          if (text.starts_with(begins) && text[0] >= 'A' && text[0] <= 'Z')
+            text[0] = static_cast<char>(text[0] - 'A' + 'a');
+        const char* link = text.starts_with(words.words) ? ", " : ": ";
+        one.text = "With " + and_list(where) + link + text;
+        out.sentences.push_back(std::move(one));
+      }
     }
     return out;
   }
@@ -138,6 +140,22 @@ void say_others(const std::vector<MeasureSaid>& others, const MeasureSaid& first
       said.clauses.push_back(clause);
       const bool some = kind == alike && by_percent(spread(*one)) != by_percent(0);
       names.push_back(one->limits.words.words + (some ? " (" + by_percent(spread(*one)) + ")" : ""));
+    }
+    // Of one alone the value is told as well.
+    if (kind == alike && all.size() == 1 && first_kind == alike) {
+      const MeasureSaid& one = *all.front();
+      std::vector<double> values;
+      for (const Method* method : one.limits.with_limit()) values.push_back(method->limit->value);
+      const double middle = median(values), apart = spread(one);
+      Clause value{.form = "value", .measure = one.limits.words.measure};
+      value.value = middle * one.limits.words.factor;
+      value.unit = one.limits.words.unit;
+      said.clauses.push_back(std::move(value));
+      said.text =
+          fmt::format("{} agrees as well: {}, {} apart.", capitalised(one.limits.words.words),
+                      value_text(one.limits.words, middle, std::max(apart, moved(one)) * one.scale), by_percent(apart));
+      out.push_back(std::move(said));
+      continue;
     }
     if (kind == alike && (all.size() > 1 || first_kind == alike)) {
       said.text = first_kind == alike
@@ -209,7 +227,8 @@ Answer measure_answer(const Compared& study, const std::vector<std::string>& mea
       }
       if (first.kind.empty()) {
         only_one(study, said);
-        constexpr std::size_t of_first = 3;
+        constexpr std::size_t three = 3;
+        const std::size_t of_first = said.by_scene ? sentences_at_most : three;
         for (std::size_t s = 0; s < std::min(of_first, said.sentences.size()); ++s) body.push_back(said.sentences[s]);
         first = std::move(said);
         continue;

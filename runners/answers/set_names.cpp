@@ -250,6 +250,12 @@ std::string SetNames::mostly(const Members& members) const {
   return methods_.size() > most_searched ? "" : nearest(chosen, members.size(), 0).value_or("");
 }
 
+std::string SetNames::shared(const Members& members) const {
+  Picked chosen(methods_.size(), 0);
+  for (const std::size_t m : members) chosen[m] = 1;
+  return common(chosen, members.size());
+}
+
 SetNames::Name SetNames::found(const Members& members, bool may_turn) const {
   const std::size_t count = members.size();
   Picked chosen(methods_.size(), 0);

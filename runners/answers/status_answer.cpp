@@ -186,27 +186,38 @@ std::vector<Sentence> ended(const Compared& study) {
       const std::string who = names.of(members) + (whole ? "" : at_steps(study, some));
       constexpr std::size_t longest = 120;
       const std::string own = without_count(who).empty() ? who : without_count(who),
-                        shown = own.size() <= longest
-                                    ? own
-                                    : fmt::format("{} of {} methods", members.size(), methods.firsts.size());
+                        shown = own.size() <= longest ? own : names.shared(members);
       std::string text = fmt::format("{}: {} of {} case{}{}", verb, some.size(), total, total == 1 ? "" : "s",
                                      some.size() == total ? "" : " (" + shown + ")");
-      if (!reason.empty()) text += ": " + shortened(reason);
+      if (!reason.empty()) text += ": " + reason;
       if (!text.ends_with('.') && !text.ends_with("…")) text += ".";
       out.push_back({text, {status_clause(status, who, some.size(), total)}});
     };
     // Where each case says its own figures, none speaks for the others.
     const std::vector<Reason> reasons = reasons_of(cases, refused);
     constexpr std::size_t all_told = 3, told = 2;
+    const auto named = [&](const Cases& some) {
+      const std::set<const CaseRecord*> chosen(some.begin(), some.end());
+      return names.found(members_where(methods, [&](const CaseRecord* one) { return chosen.contains(one); })).exact;
+    };
+    // Cases of several reasons that have a name together alone are told together.
+    const bool together = named(cases) && std::any_of(reasons.begin(), reasons.end(),
+                                                      [&](const Reason& one) { return !named(one.cases); });
+    if (refused && reasons.size() > 1 && together) {
+      say(cases, shortened(reasons.front().text) + fmt::format(" ({} of these; {} other reason{})",
+                                                               reasons.front().cases.size(), reasons.size() - 1,
+                                                               reasons.size() == 2 ? "" : "s"));
+      continue;
+    }
     if (!refused || reasons.size() < 2) {
       const bool shared = !reasons.empty() && (reasons.front().cases.size() > 1 || cases.size() == 1);
-      say(cases, shared ? reasons.front().text : "");
+      say(cases, shared ? shortened(reasons.front().text) : "");
       continue;
     }
     const std::size_t most = reasons.size() <= all_told ? all_told : told;
     std::size_t left = cases.size();
     for (std::size_t k = 0; k < std::min(most, reasons.size()); ++k) {
-      say(reasons[k].cases, reasons[k].text);
+      say(reasons[k].cases, shortened(reasons[k].text));
       left -= reasons[k].cases.size();
     }
     if (left > 0)

@@ -115,11 +115,18 @@ void TierSpeaker::say_tiers(const std::vector<Members>& tiers, std::vector<Sente
   for (const Members& tier : shown) {
     more -= tier.size();
     const SetNames::Name name = names_.found(tier);
-    if (keeps_energy())
-      said.text += fmt::format("; {} keep{} {}{}", name.text, plural_s(name.several), values_of(tier), mark(tier));
-    else
-      said.text += fmt::format("; {}{}{} with {}{}", ends ? "most, " : "", values_of(tier), ends ? "," : "", name.text,
-                               mark(tier));
+    const std::string part =
+        keeps_energy() ? fmt::format("{} keep{} {}{}", name.text, plural_s(name.several), values_of(tier), mark(tier))
+                       : fmt::format("{}{}{} with {}{}", ends ? "most, " : "", values_of(tier), ends ? "," : "",
+                                     name.text, mark(tier));
+    constexpr std::size_t longest = 220;
+    if (said.text.size() > longest) {
+      said.text += ".";
+      out.push_back(std::move(said));
+      said = {keeps_energy() ? capitalised(part) : capitalised(words_.words) + ", further: " + part, {}};
+    } else {
+      said.text += "; " + part;
+    }
     said.clauses.push_back(clause(form(tier), tier));
   }
   if (more > 0) said.text += fmt::format("; {} more in the table", more);

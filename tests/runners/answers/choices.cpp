@@ -128,3 +128,28 @@ TEST_CASE("of a compared number the end is told from which on it moves next to n
   CHECK_THAT(text, Contains("From stiffness 1e5 on it moves the energy left by at most 0.099 %.") ||
                        Contains("From stiffness 100000 on it moves the energy left by at most 0.099 %."));
 }
+
+TEST_CASE("of two or three scenes each is answered by itself, with its own truth and its own gains") {
+  StudyResults results = full_factorial(
+      {{"structure.damping.stiffness", {"0", "0.001"}}, {"mass", {"one", "other"}}, {"time", {"a", "b"}}}, steps,
+      [](const auto& at, double step) {
+        if (at[0] == 1) return 0.4 + step;
+        return at[1] == 0 ? 0.999 + step : at[2] == 0 ? 0.8 + step : 2 + step;
+      });
+  // Only the second scene is damped.
+  for (CaseRecord& record : results.cases)
+    if (record.axes[0].second == "0.001") record.measures.back().second = 1;
+  const std::string text = sentences(results);
+  INFO(text);
+  CHECK_THAT(text, Contains("With viscosity 0 s: the one mass keeps it: "));
+  CHECK_THAT(text, Contains("With viscosity 0 s: A on the other mass") || Contains("gains energy: 2 times the start"));
+  CHECK_THAT(text, Contains("With viscosity 0.001 s: no difference: the energy left is 40.01 % whichever method"));
+}
+
+TEST_CASE("a measure that agrees as well is told with its value, several with how far they are apart") {
+  StudyResults results = full_factorial({{"mass", {"one", "other"}}}, steps,
+                                        [](const auto& at, double step) { return 0.4 + 1e-4 * at[0] + step; });
+  for (CaseRecord& record : results.cases) record.measures.emplace_back("impulse", 2);
+  results.study["observe"] = {"energy_left", "impulse"};
+  CHECK_THAT(sentences(results), Contains("Impulse agrees as well: 2 N s, nothing apart."));
+}
