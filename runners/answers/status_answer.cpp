@@ -182,7 +182,7 @@ std::vector<Sentence> ended(const Compared& study) {
       const Members members = members_where(methods, [&](const CaseRecord* one) { return chosen.contains(one); });
       bool whole = true;
       for (const std::size_t k : members)
-        for (const CaseRecord* one : methods.cases[k]) whole = whole && one->status == status;
+        for (const CaseRecord* one : methods.cases[k]) whole = whole && chosen.contains(one);
       const std::string who = names.of(members) + (whole ? "" : at_steps(study, some));
       constexpr std::size_t longest = 120;
       const std::string own = without_count(who).empty() ? who : without_count(who),
