@@ -179,7 +179,7 @@ std::optional<Sentence> say_steady_end(const Compared& study, const MeasureLimit
       rows[study.key(method->first(), others)][*number] = method;
   const double scale = scale_of(limits.words, limits.without_gain());
   if (scale <= 0) return std::nullopt;
-  /// How far apart two levels within are, at most.
+  // How far apart two levels within are, at most.
   const auto spread = [&](double low, double high) {
     double most = 0;
     for (const auto& [rest, levels] : rows) {
