@@ -266,7 +266,8 @@ InertiaOrRefusal build_mass(const SemiDiscrete& problem, const MassStrategy& mas
   if (!problem.in_modes()) {
     if (problem.space.given && !mass.takes_given())
       return Refusal{
-          "this mass is made of velocities on elements, and an assembled structure has matrices alone: use consistent or "
+          "this mass is made of velocities on elements, and an assembled structure has matrices alone: use consistent "
+          "or "
           "another mass that takes matrices"};
     return mass.build(problem.space);
   }
@@ -302,7 +303,7 @@ void march_in_basis(const SceneSpec& scene, SemiDiscrete& problem, DistributedLo
         std::make_shared<const SparseMatrix>(((damping + damping.transpose()) / 2).eval().sparseView());
   }
   problem.contact = basis.at_points.sparseView();
-  for (SparseRows* rows : {&problem.tip, &problem.observed.rows, &problem.tangents.rows})
+  for (SparseRows* rows : {&problem.tip, &problem.observed.rows, &problem.fields.rows, &problem.tangents.rows})
     *rows = problem.on_unknowns(std::move(*rows));
   problem.support_shape = basis.shapes.transpose() * problem.support_shape;
   load.project(basis.shapes);

@@ -8,6 +8,7 @@
 
 #include "runners/json/json_text.hpp"
 #include "runners/study/axis_meaning.hpp"
+#include "runners/study/bases.hpp"
 #include "runners/study/check_object.hpp"
 #include "runners/study/histories.hpp"
 #include "runners/study/product.hpp"
@@ -108,24 +109,6 @@ void require_mesh(const Json& study) {
   if (!study.at("mesh").contains("elements")) throw InputError("/mesh/elements", "missing; this key is required");
 }
 
-// The bases of modes that a study marches in; one that is empty without mesh.modes.
-std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, bool modal) {
-  if (!mesh.contains("modes") && !mesh.contains("residual")) return {std::nullopt};
-  if (!mesh.contains("modes") && !modal)
-    throw InputError("/mesh/residual", "there is no mesh.modes whose residual it could be; expected modes too");
-  std::vector<std::optional<BasisSpec>> bases;
-  const Json counts = mesh.value("modes", Json(nullptr));
-  for (const Json& modes : counts.is_array() ? counts : Json::array({counts}))
-    for (const std::string& residual : list_of<std::string>(mesh.value("residual", Json("stops"))))
-      if (!modes.is_null())
-        bases.push_back(BasisSpec{modes.get<int>(), residual == "stops"});
-      else if (modal && residual != "stops")
-        bases.push_back(BasisSpec{0, false});
-      else if (std::find(bases.begin(), bases.end(), std::nullopt) == bases.end())
-        bases.emplace_back();
-  return bases;
-}
-
 // References: plugins, or the method itself marched finer.
 std::vector<MethodChoice> read_references(Json& resolved, const std::string& pointer, Catalogue& catalogue,
                                           Registry& registry) {
@@ -184,10 +167,10 @@ std::vector<bool> start_beyond(const std::vector<MethodOption>& contacts, const 
 }
 
 // Reads and checks every scene that is marched; an offending value that came from a list is named with its place in the
-// list. `beyond`: whether some law of the study lets it begin beyond a stop.
+// list. `beyond`: whether some law of the study lets it begin beyond a stop; `every_dof`: whether it marches all dofs.
 std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis>& axes, int finest, bool beyond,
-                                       const StudyKind& kind, const Json& settings, StudyFiles& files,
-                                       double duration) {
+                                       const StudyKind& kind, const Json& settings, StudyFiles& files, double duration,
+                                       bool every_dof) {
   std::vector<SceneOption> options;
   Product product;
   for (const Axis& axis : axes) product.add(axis.values.size());
@@ -206,7 +189,7 @@ std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis
     }
     try {
       option.scene = read_scene(option.json, &files);
-      check_size(option.scene.structure);
+      if (every_dof) check_size(option.scene.structure);
       files.add_digests(option.json);
       check_scene(option.scene, finest, beyond ? anywhere_beyond() : ForceBeyond());
       if (duration > 0) check_tables(option.scene, duration);
@@ -322,9 +305,9 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   everything.refuse_above(largest_study, "");
   const int finest = *std::max_element(meshes.begin(), meshes.end());
   const std::vector<bool> beyond = start_beyond(contacts, catalogue, registry);
-  const std::vector<SceneOption> scenes =
-      expand_scenes(resolved["scene"], axes, finest, std::find(beyond.begin(), beyond.end(), true) != beyond.end(),
-                    kind, settings, *files, duration);
+  const std::vector<SceneOption> scenes = expand_scenes(
+      resolved["scene"], axes, finest, std::find(beyond.begin(), beyond.end(), true) != beyond.end(), kind, settings,
+      *files, duration, std::find(bases.begin(), bases.end(), std::nullopt) != bases.end());
   if (Json said = files->said(); !said.is_null()) resolved["files"] = std::move(said);
   if (kind.check_methods) {
     const int coarsest = *std::min_element(meshes.begin(), meshes.end());

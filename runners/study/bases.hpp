@@ -1,0 +1,14 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "runners/study/study.hpp"
+
+namespace ricochet {
+
+/// The bases of modes that a study marches in, out of its `mesh`: mesh.modes times mesh.residual; one that is empty
+/// where all dofs march. `modal`: whether the structure is described by modes, whose residual may be left out alone.
+/// Throws InputError at /mesh/residual for a residual of no modes.
+std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, bool modal);
+
+}  // namespace ricochet
