@@ -56,6 +56,7 @@ constexpr AxisWords scene_words[] = {{"structure.damping.stiffness", "viscosity"
                                      {"initial.projection", "projection", ""},
                                      {"elements", "", " elements"},
                                      {"modes", "", " modes"},
+                                     {"mode_residual", "residual", ""},
                                      {"steps_per_period", "", " steps per period"},
                                      {"march", "", ""}};
 

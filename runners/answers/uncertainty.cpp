@@ -15,10 +15,12 @@ namespace {
 struct Spread {
   double value = 0, least = 0, largest = 0;
   std::size_t methods = 0;
+  bool either_sign = false;  // whether a value below 0 means something
   std::optional<double> step, mesh, sampling;
 
   double size() const { return largest - least; }
   double scale() const { return std::max(std::abs(least), std::abs(largest)); }
+  double low(double margin) const { return either_sign ? least - margin : std::max(0.0, least - margin); }
   std::optional<double> margin() const {
     if (!step || !std::isfinite(*step)) return std::nullopt;
     const double all = std::max({*step, mesh.value_or(0), sampling.value_or(0)});
@@ -52,7 +54,7 @@ std::optional<Spread> spread_of(const MeasureLimits& limits) {
   for (const Method* method : limits.with_limit()) {
     const auto value = scaled_value(limits.words, *method->finest);
     if (!value) continue;
-    if (!out) out = Spread{*value, *value, *value, 0, {}, {}, {}};
+    if (!out) out = Spread{*value, *value, *value, 0, false, {}, {}, {}};
     out->least = std::min(out->least, *value);
     out->largest = std::max(out->largest, *value);
     ++out->methods;
@@ -95,43 +97,46 @@ std::string sentence(const MeasureWords& words, const Spread& spread) {
   add("the step", spread.step);
   add("the mesh", spread.mesh);
   add("sampling", spread.sampling);
-  return fmt::format("{}: {}{}.", name, range(spread.least - *margin, spread.largest + *margin),
+  return fmt::format("{}: {}{}.", name, range(spread.low(*margin), spread.largest + *margin),
                      moves.empty() ? "" : "; moved by " + moves);
 }
 
 }  // namespace
 
 Table uncertainty_table(const Compared& study) {
-  Table table{"uncertainty",
-              "One measure of one stop over all methods: between which values it is.",
-              {{"measure", "", "The measure, without its stop."},
-               {"stop", "", "Name of the stop."},
-               {"unit", "", "Unit of the numbers."},
-               {"value", "", "That of the first method at its finest step and mesh."},
-               {"least", "", "The least over the methods, each at its finest step and mesh."},
-               {"largest", "", "The largest of them."},
-               {"methods", "1", "Methods that have a value."},
-               {"step_gap", "", "The largest that the step still moves a method by; empty of a single step."},
-               {"mesh_gap", "", "The same of the mesh."},
-               {"sampling", "", "Half the 95 % interval of a mean over the parts of the window, the largest."},
-               {"low", "", "The least less the largest of the three; empty where that of the step is not known."},
-               {"high", "", "The largest and the largest of the three."},
-               {"verdict", "",
-                "settled: within 1 %; methods, step, mesh, sampling: what leaves it open; unknown: a single step."},
-               {"sentence", "", "The same in words."}},
-              {}};
+  Table table{
+      "uncertainty",
+      "One measure of one stop over all methods: between which values it is.",
+      {{"measure", "", "The measure, without its stop."},
+       {"stop", "", "Name of the stop."},
+       {"unit", "", "Unit of the numbers."},
+       {"value", "", "That of the first method at its finest step and mesh."},
+       {"least", "", "The least over the methods, each at its finest step and mesh."},
+       {"largest", "", "The largest of them."},
+       {"methods", "1", "Methods that have a value."},
+       {"step_gap", "", "The largest that the step still moves a method by; empty of a single step."},
+       {"mesh_gap", "", "The same of the mesh."},
+       {"sampling", "", "Half the 95 % interval of a mean over the parts of the window, the largest."},
+       {"low", "",
+        "The least less the largest of the three, 0 where none is below 0; empty where that of the step is not known."},
+       {"high", "", "The largest and the largest of the three."},
+       {"verdict", "",
+        "settled: within 1 %; methods, step, mesh, sampling: what leaves it open; unknown: a single step."},
+       {"sentence", "", "The same in words."}},
+      {}};
   for (const std::string& name : measures_of_stops(study.results())) {
     const MeasureLimits limits = limits_of(study, name, false, all_cases(study.results()));
-    const std::optional<Spread> found = spread_of(limits);
+    std::optional<Spread> found = spread_of(limits);
     if (!found) continue;
-    const Spread& spread = *found;
     const auto [measure, stop] = *measure_of_stop(name);
+    found->either_sign = measure.starts_with("window_displacement_m");  // mean, min, max
+    const Spread& spread = *found;
     const double factor = limits.words.factor;
     const auto scaled = [factor](std::optional<double> value) { return value ? Cell(*value * factor) : Cell(); };
     const std::optional<double> margin = spread.margin();
     table.rows.push_back({measure, stop, limits.words.unit, factor * spread.value, factor * spread.least,
                           factor * spread.largest, spread.methods, scaled(spread.step), scaled(spread.mesh),
-                          scaled(spread.sampling), margin ? Cell(factor * (spread.least - *margin)) : Cell(),
+                          scaled(spread.sampling), margin ? Cell(factor * spread.low(*margin)) : Cell(),
                           margin ? Cell(factor * (spread.largest + *margin)) : Cell(), verdict(spread),
                           sentence(limits.words, spread)});
   }

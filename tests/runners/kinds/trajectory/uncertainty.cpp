@@ -64,6 +64,17 @@ TEST_CASE("an interval is the range over the methods, widened by the largest of 
   CHECK(told(sampled, "verdict").text() == "sampling");
 }
 
+TEST_CASE("an interval of what is never below 0 begins at 0") {
+  StudyResults results = two_forces();
+  results.cases.back().measures.emplace_back("confidence.rms_force[bar]", 30.0);
+  CHECK(told(uncertain(results), "low").number() == 0.0);
+  for (CaseRecord& record : results.cases)
+    for (auto& [name, value] : record.measures)
+      if (name == "rms_force[bar]") name = "window_displacement_mean[bar]";
+  results.cases.back().measures.back().first = "confidence.window_displacement_mean[bar]";
+  CHECK(told(uncertain(results), "low").number().value() == Approx(-20).epsilon(1e-12));
+}
+
 TEST_CASE("of a single step no interval is told") {
   StudyResults results = two_forces();
   results.cases.erase(results.cases.begin() + 2);
