@@ -201,6 +201,17 @@ void say_others(const std::vector<MeasureSaid>& others, const MeasureSaid& first
 
 }  // namespace
 
+namespace {
+
+// Whether some case says how well it knows this mean.
+bool has_interval(const StudyResults& results, const std::string& name) {
+  return std::any_of(results.cases.begin(), results.cases.end(), [&](const CaseRecord& one) {
+    return one.status == "done" && measure(one, "confidence." + name).has_value();
+  });
+}
+
+}  // namespace
+
 Answer measure_answer(const Compared& study, const std::vector<std::string>& measures, bool status_first) {
   Answer answer;
   const StudyResults& results = study.results();
@@ -219,10 +230,13 @@ Answer measure_answer(const Compared& study, const std::vector<std::string>& mea
     for (std::size_t k = 0; k < std::min(measures.size(), measures_at_most); ++k) {
       MeasureSaid said = say_measure(study, measures[k], kept);
       if (said.sentences.empty()) continue;
-      if (chaotic_means(results) && !measures[k].starts_with("window")) {
-        body.push_back({fmt::format("{} is not compared: the motion is chaotic, its means are.",
-                                    capitalised(said.limits.words.words)),
-                        {Clause{.form = "open", .measure = measures[k], .status = "chaotic"}}});
+      if (chaotic_means(results) && !measures[k].starts_with("window") && !has_interval(results, measures[k])) {
+        const std::size_t stop = measures[k].find('[');
+        const std::string mean = stop == std::string::npos ? "" : "window_contact_" + measures[k];
+        body.push_back(
+            {fmt::format("{} is not compared: the motion is chaotic, its means are{}.",
+                         capitalised(said.limits.words.words), has_interval(results, mean) ? ", as " + mean : ""),
+             {Clause{.form = "open", .measure = measures[k], .status = "chaotic"}}});
         continue;
       }
       if (first.kind.empty()) {

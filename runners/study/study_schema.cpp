@@ -267,6 +267,8 @@ class SchemaWriter {
     Json properties = {
         {"why", {{"type", "string"}, {"minLength", 1}, {"description", "The reason; the report shows it."}}},
         {"elements", true},
+        {"modes", true},
+        {residual_axis, true},
         {"step", true},
         {"steps_per_period", true},
         {"march", true}};

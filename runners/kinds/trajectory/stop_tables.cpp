@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <ricochet/measure/statistics/block_bootstrap.hpp>
 
 #include "runners/store/record_values.hpp"
@@ -125,10 +126,22 @@ StopReading part_reading(const StopWatches& watches, int point, int part) {
 
 // Half the interval of the mean of a series over the parts; `root`: of the root of it.
 void put_half(CaseRecord& record, const std::string& measure, const std::vector<double>& series, bool root) {
+  if (series.empty()) return;
   const Interval found = block_bootstrap_mean(series);
   const auto shown = [root](double x) { return root ? std::sqrt(std::max(x, 0.0)) : x; };
   put_measure(record, "confidence." + measure,
               std::max(shown(found.high) - shown(found.value), shown(found.value) - shown(found.low)));
+}
+
+// A series whose mean is R = Σa/Σb and whose scatter is that of R to first order: R + (a_i − R b_i)/b̄. Empty where b
+// is 0.
+std::vector<double> ratio_series(const std::vector<double>& a, const std::vector<double>& b) {
+  const double over = std::accumulate(b.begin(), b.end(), 0.0);
+  std::vector<double> out;
+  if (!(over > 0)) return out;
+  const double ratio = std::accumulate(a.begin(), a.end(), 0.0) / over, mean = over / static_cast<double>(b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) out.push_back(ratio + (a[i] - ratio * b[i]) / mean);
+  return out;
 }
 
 void put_halves(CaseRecord& record, const StopWatches& watches, int point, const std::string& name) {
@@ -152,6 +165,8 @@ void put_halves(CaseRecord& record, const StopWatches& watches, int point, const
   put_half(record, "window_rms_force" + of, force_squares, true);
   put_half(record, "window_impact_rate" + of, rate, false);
   put_half(record, "window_contact_share" + of, share, false);
+  put_half(record, "window_contact_rms_force" + of, ratio_series(force_squares, share), true);
+  put_half(record, "window_contact_force" + of, ratio_series(force, share), false);
   if (!wear.empty()) put_half(record, "wear_power" + of, wear, false);
 }
 

@@ -195,6 +195,9 @@ TEST_CASE("what a window of the whole run says of its stops adds up to what the 
     CHECK(of("window_impact_rate") * duration == Approx(of("impacts")).epsilon(1e-12));
     CHECK(of("window_displacement_max") < 0.011);
     CHECK(of("confidence.window_force") >= 0);
+    // Of a ratio of means, to first order.
+    CHECK(of("confidence.window_contact_rms_force") > 0);
+    CHECK(of("confidence.window_contact_rms_force") < of("rms_force"));
   }
   const Table& parts = table_of(record, "stop_parts");
   REQUIRE(parts.rows.size() == 20);
