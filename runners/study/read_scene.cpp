@@ -216,6 +216,8 @@ SceneSpec read_scene(const Json& scene, StudyFiles* files) {
                             : initial.at("projection") == "least-squares" ? InitialSpec::Projection::least_squares
                                                                           : InitialSpec::Projection::none;
   spec.points = read_points(scene);
+  if (const Json basis = scene.value("basis", Json(nullptr)); !basis.is_null())
+    spec.basis = BasisSpec{basis.at("modes").get<int>(), basis.at("residual") == "stops"};
   if (initial.contains("file") && files) spec.initial.dofs = files->initial(initial, scene.at("structure"));
   return spec;
 }

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <numbers>
+#include <set>
 
 #include "tests/runners/study/study_fixture.hpp"
 
@@ -73,6 +74,19 @@ TEST_CASE("A case at a value is the case that the study would make of the value"
     CHECK(found.axes == wanted.axes);
     CHECK(found.id == one.id);
   }
+}
+
+TEST_CASE("A case that marches in modes marches in these at any value") {
+  Json study = small_sweep();
+  study["mesh"]["modes"] = Json::array({3, nullptr, 5});
+  const std::vector<StudyCase> cases = parse(study).cases;
+  std::set<int> modes;
+  for (const StudyCase& one : cases) {
+    const StudyCase moved = with_parameter(one, "/scene/support/amplitude", 0.02);
+    CHECK(moved.scene.basis == one.scene.basis);
+    modes.insert(one.scene.basis ? one.scene.basis->modes : 0);
+  }
+  CHECK(modes == std::set<int>{0, 3, 5});
 }
 
 TEST_CASE("A formula is multiplied, a formula without variables is a number") {
