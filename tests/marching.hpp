@@ -105,6 +105,27 @@ inline void run(Marcher& made, double duration) {
   made.march(std::llround(duration / made.program().h) - made.step());
 }
 
+/// The tip at every step, of a march that runs to its end.
+inline std::vector<double> tip_history(const SceneSpec& scene, int elements, const Methods& methods, double h,
+                                       double duration, const CompileOptions& options = {}) {
+  Marcher made = marcher(scene, elements, methods, h, options);
+  made.start();
+  std::vector<double> out;
+  for (long long n = made.step(); n < std::llround(duration / h); ++n) {
+    made.march(1);
+    out.push_back(made.tip(0));
+  }
+  REQUIRE(made.status(0).running);
+  return out;
+}
+
+inline double largest_gap(const std::vector<double>& a, const std::vector<double>& b) {
+  double most = 0;
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
+}
+
 inline double line_density(const SceneSpec& scene) {
   const auto& beam = std::get<BeamSpec>(scene.structure);
   return section_properties(beam.section, beam.young, beam.density).rhoS;

@@ -36,25 +36,9 @@ SceneSpec shaken_files(const BeamFileOptions& options) {
 
 /// The tip at every step.
 std::vector<double> tips(const SceneSpec& scene, int mesh, const Methods& methods, OperatorKind kind) {
-  constexpr double h = 1e-3, duration = 1.5;
   CompileOptions options;
   options.kind = kind;
-  Marcher made = marcher(scene, mesh, methods, h, options);
-  made.start();
-  std::vector<double> out;
-  for (long long n = made.step(); n < std::llround(duration / h); ++n) {
-    made.march(1);
-    out.push_back(made.tip(0));
-  }
-  REQUIRE(made.status(0).running);
-  return out;
-}
-
-double apart(const std::vector<double>& a, const std::vector<double>& b) {
-  double most = 0;
-  REQUIRE(a.size() == b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
-  return most;
+  return tip_history(scene, mesh, methods, 1e-3, 1.5, options);
 }
 
 }  // namespace
@@ -69,11 +53,11 @@ TEST_CASE("the files of a beam march as the beam, whatever the order of their do
     const std::vector<double> beam = tips(shaken_beam(), elements, methods, OperatorKind::band);
     CHECK(*std::max_element(beam.begin(), beam.end()) > 0.029);
     // Round-off of K grows over the impacts; the tip moves by 0.03.
-    CHECK(apart(beam, tips(shaken_files({}), 1, methods, OperatorKind::band)) < 1e-12);
-    CHECK(apart(beam, tips(shaken_files({1, "fixed", backwards}), 1, methods, OperatorKind::band)) < 1e-12);
-    CHECK(apart(beam, tips(shaken_files({1e-3, "fixed", {}}), 1, methods, OperatorKind::band)) < 1e-12);
-    CHECK(apart(beam, tips(shaken_files({1, "fixed", backwards}), 1, methods, OperatorKind::sparse)) < 1e-12);
-    CHECK(apart(beam, tips(shaken_files({}), 1, methods, OperatorKind::modal)) < 1e-9);
+    CHECK(largest_gap(beam, tips(shaken_files({}), 1, methods, OperatorKind::band)) < 1e-12);
+    CHECK(largest_gap(beam, tips(shaken_files({1, "fixed", backwards}), 1, methods, OperatorKind::band)) < 1e-12);
+    CHECK(largest_gap(beam, tips(shaken_files({1e-3, "fixed", {}}), 1, methods, OperatorKind::band)) < 1e-12);
+    CHECK(largest_gap(beam, tips(shaken_files({1, "fixed", backwards}), 1, methods, OperatorKind::sparse)) < 1e-12);
+    CHECK(largest_gap(beam, tips(shaken_files({}), 1, methods, OperatorKind::modal)) < 1e-9);
   }
 }
 
@@ -87,7 +71,7 @@ TEST_CASE("rotations without inertia in the files are those of the beam's own lu
   SceneSpec scene = shaken_files({});
   std::get<AssembledSpec>(scene.structure).structure = std::make_shared<const AssembledStructure>(assembled(files));
   CHECK(discretised(scene, 1, *mass("consistent")).inertia.kernel_dimension == elements);
-  CHECK(apart(tips(shaken_beam(), elements, own, OperatorKind::band), tips(scene, 1, given, OperatorKind::band)) <
+  CHECK(largest_gap(tips(shaken_beam(), elements, own, OperatorKind::band), tips(scene, 1, given, OperatorKind::band)) <
         1e-12);
 }
 
@@ -95,8 +79,8 @@ TEST_CASE("files of a beam march as the beam with masses that are made of the ma
   const Methods scaled{{"hrz"}, {"signorini"}, {"newmark-dumont-paoli"}},
       moved{{"redistributed", {{"form", std::string("projected")}}}, {"signorini"}, {"newmark-dumont-paoli"}};
   for (const Methods& methods : {scaled, moved})
-    CHECK(apart(tips(shaken_beam(), elements, methods, OperatorKind::band),
-                tips(shaken_files({}), 1, methods, OperatorKind::band)) < 1e-11);
+    CHECK(largest_gap(tips(shaken_beam(), elements, methods, OperatorKind::band),
+                      tips(shaken_files({}), 1, methods, OperatorKind::band)) < 1e-11);
 }
 
 TEST_CASE("two equal masses that are pushed together are one mass against a wall half the gap away") {
@@ -119,7 +103,7 @@ TEST_CASE("two equal masses that are pushed together are one mass against a wall
   };
   const auto a = tips(two, 1, with(2.88e7), OperatorKind::band), b = tips(one, 1, with(5.76e7), OperatorKind::band);
   CHECK(*std::max_element(a.begin(), a.end()) > 4.9e-4);
-  CHECK(apart(a, b) < 1e-12);
+  CHECK(largest_gap(a, b) < 1e-12);
 }
 
 TEST_CASE("two masses without springs that meet share the momentum of a constant push") {
@@ -159,11 +143,11 @@ TEST_CASE("a damping matrix of a file that is αK + ηM marches as α and η, in
       INFO(law.name << ", " << scheme);
       const std::vector<double> expected = tips(numbers, 1, methods, OperatorKind::band);
       // Round-off of C grows over the impacts.
-      CHECK(apart(expected, tips(given, 1, methods, OperatorKind::band)) < 1e-9);
-      CHECK(apart(expected, tips(given, 1, methods, OperatorKind::sparse)) < 1e-9);
+      CHECK(largest_gap(expected, tips(given, 1, methods, OperatorKind::band)) < 1e-9);
+      CHECK(largest_gap(expected, tips(given, 1, methods, OperatorKind::sparse)) < 1e-9);
       SceneSpec whole = given;
       whole.basis = BasisSpec{2 * elements, true};
-      CHECK(apart(expected, tips(whole, 1, methods, OperatorKind::automatic)) < 1e-8);
+      CHECK(largest_gap(expected, tips(whole, 1, methods, OperatorKind::automatic)) < 1e-8);
     }
   Marcher made = marcher(given, 1, {{"consistent"}, {"signorini"}, {"newmark-dumont-paoli"}}, 1e-3, {});
   const EnergyAudit audit = audited(made, 1.5);

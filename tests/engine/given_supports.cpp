@@ -72,25 +72,8 @@ MotionSpec sine(std::vector<std::string> supports, double amplitude, double puls
 
 const Methods methods{{"consistent"}, {"penalty", {{"stiffness", 1e5}}}, {"newmark-dumont-paoli"}};
 
-/// The tip at every step.
 std::vector<double> tips(const SceneSpec& scene, int mesh = 1) {
-  constexpr double h = 1e-3, duration = 1.5;
-  Marcher made = marcher(scene, mesh, methods, h, {});
-  made.start();
-  std::vector<double> out;
-  for (long long n = made.step(); n < std::llround(duration / h); ++n) {
-    made.march(1);
-    out.push_back(made.tip(0));
-  }
-  REQUIRE(made.status(0).running);
-  return out;
-}
-
-double apart(const std::vector<double>& a, const std::vector<double>& b) {
-  double most = 0;
-  REQUIRE(a.size() == b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
-  return most;
+  return tip_history(scene, mesh, methods, 1e-3, 1.5);
 }
 
 }  // namespace
@@ -106,7 +89,7 @@ TEST_CASE("a structure without its held dofs, and their influence, moves as the 
   a.motions = b.motions = {sine({"left"}, 0.01, 9, 0.4), sine({"right"}, 0.015, 14, 0)};
   const std::vector<double> moved = tips(a);
   CHECK(*std::max_element(moved.begin(), moved.end()) > 0.011);
-  CHECK(apart(moved, tips(b)) < 1e-12);
+  CHECK(largest_gap(moved, tips(b)) < 1e-12);
 }
 
 TEST_CASE("an influence counts rotations per unit of length, and names no support that is held") {
@@ -158,8 +141,8 @@ TEST_CASE("the harmonic support of a beam's files moves them as the beam's, and 
   const std::vector<double> shaken = tips(files);
   CHECK(*std::max_element(shaken.begin(), shaken.end()) > 0.019);
   // Round-off of the static modes, 1e-12 of K's condition; the tip moves by 0.03.
-  CHECK(apart(shaken, tips(beam, elements)) < 1e-11);
-  CHECK(apart(shaken, tips(moved)) < 1e-11);
+  CHECK(largest_gap(shaken, tips(beam, elements)) < 1e-11);
+  CHECK(largest_gap(shaken, tips(moved)) < 1e-11);
 }
 
 TEST_CASE("a harmonic support that does not lift all stops alike is a motion of all supports") {
@@ -169,7 +152,7 @@ TEST_CASE("a harmonic support that does not lift all stops alike is a motion of 
     moved.motions = {sine({}, 0.01, 9, 0.4)};
     CHECK(support_bends(shaken));
     CHECK(discretised(shaken, 1, *mass("consistent")).motions.histories.size() == 1);
-    CHECK(apart(tips(shaken), tips(moved)) == 0);
+    CHECK(largest_gap(tips(shaken), tips(moved)) == 0);
     shaken.stops.named.resize(1);
     CHECK(support_bends(shaken) == (ground > 0));
   }

@@ -14,25 +14,8 @@ const Methods rigid{{"consistent"}, {"signorini"}, {"newmark-dumont-paoli"}},
     spring{{"consistent"}, {"penalty", {{"stiffness", 1e4}}}, {"newmark"}},
     gated{{"consistent"}, {"signorini"}, {"moreau-jean"}};
 
-/// The tip at every step.
 std::vector<double> tips(const SceneSpec& scene, const Methods& methods) {
-  constexpr double h = 1e-3, duration = 1;
-  Marcher made = marcher(scene, 1, methods, h, {});
-  made.start();
-  std::vector<double> out;
-  for (long long n = made.step(); n < std::llround(duration / h); ++n) {
-    made.march(1);
-    out.push_back(made.tip(0));
-  }
-  REQUIRE(made.status(0).running);
-  return out;
-}
-
-double apart(const std::vector<double>& a, const std::vector<double>& b) {
-  double most = 0;
-  REQUIRE(a.size() == b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
-  return most;
+  return tip_history(scene, 1, methods, 1e-3, 1);
 }
 
 /// A beam's files, pushed onto its stop.
@@ -57,9 +40,9 @@ TEST_CASE("motions that rest are no motions, and a support that rests is a dof t
     const std::vector<double> lean = tips(pushed(), methods);
     CHECK(*std::max_element(lean.begin(), lean.end()) > 0.019);
     SceneSpec still = pushed("clamp");
-    CHECK(apart(lean, tips(still, methods)) == 0);
+    CHECK(largest_gap(lean, tips(still, methods)) == 0);
     still.motions = {{.supports = {"clamp"}, .history = std::make_shared<const HarmonicMotion>(0, 3, 0)}};
-    CHECK(apart(lean, tips(still, methods)) == 0);
+    CHECK(largest_gap(lean, tips(still, methods)) == 0);
   }
 }
 
@@ -68,15 +51,15 @@ TEST_CASE("bounds and stops that nothing reaches change nothing") {
     SceneSpec lean = pushed(), two_sided = lean, more = lean;
     two_sided.stops.named.front().lower = -1e3;
     more.stops.named.push_back({"far", at_node("N3"), {}, -1e3, 1e3});
-    CHECK(apart(tips(lean, methods), tips(two_sided, methods)) == 0);
+    CHECK(largest_gap(tips(lean, methods), tips(two_sided, methods)) == 0);
     // One more point has no closed form: round-off of 0.02 m.
-    CHECK(apart(tips(lean, methods), tips(more, methods)) < 1e-13);
+    CHECK(largest_gap(tips(lean, methods), tips(more, methods)) < 1e-13);
   }
 }
 
 TEST_CASE("held dofs are eliminated: a mass beyond measure in their place holds as well") {
   // The clamp's reaction of 10 N and 10 N m moves 1e14 kg by 5e-14 m in 1 s.
-  CHECK(apart(tips(pushed(), spring), tips(pushed("", 1e14), spring)) < 1e-10);
+  CHECK(largest_gap(tips(pushed(), spring), tips(pushed("", 1e14), spring)) < 1e-10);
 }
 
 }  // namespace left_out_tests

@@ -35,25 +35,6 @@ SceneSpec pushed_beam() {
   return scene;
 }
 
-std::vector<double> tip_history(const SceneSpec& scene, int mesh, const Methods& methods, double h, double duration) {
-  Marcher made = marcher(scene, mesh, methods, h);
-  made.start();
-  std::vector<double> out;
-  for (long long n = made.step(); n < std::llround(duration / h); ++n) {
-    made.march(1);
-    out.push_back(made.tip(0));
-  }
-  REQUIRE(made.status(0).running);
-  return out;
-}
-
-double largest_gap(const std::vector<double>& a, const std::vector<double>& b) {
-  double most = 0;
-  REQUIRE(a.size() == b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
-  return most;
-}
-
 const Methods rigid{{"consistent"}, {"signorini"}, {"newmark-dumont-paoli"}},
     spring{{"consistent"}, {"penalty", {{"stiffness", 1e3}}}, {"newmark-dumont-paoli"}};
 
