@@ -255,6 +255,11 @@ std::optional<double> Compared::elements(const CaseRecord& record) const {
   return known == numbers_.end() || known->second.empty() ? std::nullopt : std::optional(2 * known->second.back());
 }
 
+std::string Compared::mesh_words(double size) const {
+  if (!varies("modes")) return short_number(size) + " elements";
+  return size > numbers_of("modes").back() ? "all dofs" : short_number(size) + " modes";
+}
+
 bool Compared::on_finest_mesh(const CaseRecord& record) const {
   if (!varies("modes") || !varies("elements")) return true;
   const auto elements = as_number(text(record, "elements"));

@@ -60,6 +60,10 @@ class Compared {
   std::optional<double> step(const CaseRecord& record) const;
   /// Size of the mesh: the elements, or the modes where these vary.
   std::optional<double> elements(const CaseRecord& record) const;
+  /// The column of that size.
+  std::string mesh_column() const { return varies("modes") ? "modes" : "elements"; }
+  /// "20 elements", "8 modes", "all dofs".
+  std::string mesh_words(double size) const;
   /// Whether it has the most elements; where modes do not vary, always.
   bool on_finest_mesh(const CaseRecord& record) const;
   /// "h = 1e-6 s", "4000 steps per period".

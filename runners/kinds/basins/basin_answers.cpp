@@ -69,7 +69,8 @@ class BasinSpeaker {
     std::string out = study_.label(record);
     const auto step = study_.step(record), elements = study_.elements(record);
     if (study_.varies("steps_per_period") && step) out += (out.empty() ? "" : ", ") + study_.step_words(*step);
-    if (study_.varies("elements") && elements) out += (out.empty() ? "" : ", ") + short_number(*elements) + " elements";
+    if (study_.varies(study_.mesh_column()) && elements)
+      out += (out.empty() ? "" : ", ") + study_.mesh_words(*elements);
     return out.empty() ? "the one method" : out;
   }
   const CaseEnds* find(const std::string& id) const {
@@ -201,7 +202,7 @@ void BasinSpeaker::say_border(say::Answer& answer) const {
     return;
   }
   std::vector<std::string> columns = study_.columns(), choices = study_.choices();
-  for (const char* refined : {"steps_per_period", "elements"})
+  for (const std::string& refined : {std::string("steps_per_period"), study_.mesh_column()})
     if (study_.varies(refined) && std::find(columns.begin(), columns.end(), refined) == columns.end()) {
       columns.emplace_back(refined);
       choices.emplace_back(refined);

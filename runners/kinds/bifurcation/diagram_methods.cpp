@@ -184,13 +184,13 @@ void DiagramSpeaker::say_steps(say::Answer& answer) const {
     Sentence said;
     std::vector<std::string> parts;
     for (const Likeness& one : meshes) {
-      const std::string who = short_number(study_.elements(*one.record).value_or(0)) + " elements";
+      const std::string who = study_.mesh_words(study_.elements(*one.record).value_or(0));
       parts.push_back(fmt::format("{} {}", who, told(one)));
       Clause part = clause("diagram", one, who);
-      part.choice = "elements";
+      part.choice = study_.mesh_column();
       said.clauses.push_back(part);
     }
-    said.text = fmt::format("Against {} elements: {}.", short_number(mesh), fmt::join(parts, "; "));
+    said.text = fmt::format("Against {}: {}.", study_.mesh_words(mesh), fmt::join(parts, "; "));
     answer.say(std::move(said));
   }
 }

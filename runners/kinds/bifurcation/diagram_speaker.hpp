@@ -71,8 +71,7 @@ class DiagramSpeaker {
   std::string name(const CaseRecord& record, bool with_mesh) const {
     std::string out = study_.name(record);
     const auto elements = study_.elements(record);
-    if (with_mesh && study_.varies("elements") && elements)
-      out += fmt::format(" on {} elements", answers::short_number(*elements));
+    if (with_mesh && study_.varies(study_.mesh_column()) && elements) out += " on " + study_.mesh_words(*elements);
     return out;
   }
   std::string told(const Likeness& one) const;

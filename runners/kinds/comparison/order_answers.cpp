@@ -95,8 +95,8 @@ class OrderSpeaker {
 
 std::string OrderSpeaker::where() const {
   const CaseRecord& any = *runs_.front().finest;
-  if (refined_ == "step" && study_.varies("elements") && study_.elements(any))
-    return fmt::format(", on {} elements", short_number(*study_.elements(any)));
+  if (refined_ == "step" && study_.varies(study_.mesh_column()) && study_.elements(any))
+    return ", on " + study_.mesh_words(*study_.elements(any));
   if (refined_ == "elements" && study_.varies("step") && study_.step(any))
     return ", at " + study_.step_words(*study_.step(any));
   return "";

@@ -36,7 +36,7 @@ struct Limits {
 class StepLimits {
  public:
   explicit StepLimits(const say::Compared& study) : study_(study), columns_(study.columns()) {
-    if (study.varies("elements")) columns_.emplace_back("elements");
+    if (const std::string mesh = study.mesh_column(); study.varies(mesh)) columns_.push_back(mesh);
     std::map<std::string, const CaseRecord*> by_id;
     for (const CaseRecord& record : study.results().cases) by_id[record.id] = &record;
     std::map<std::string, std::size_t> place;
@@ -112,8 +112,8 @@ std::string StepLimits::rest_of(const CaseRecord& record) const {
     const std::string choice = axis_role(column);
     if (choice == "time" || std::find(choices.begin(), choices.end(), choice) != choices.end()) continue;
     choices.push_back(choice);
-    const std::string level =
-        column == "elements" ? study_.value_words(column, study_.text(record, column)) : study_.level(record, choice);
+    const std::string level = column == study_.mesh_column() ? study_.value_words(column, study_.text(record, column))
+                                                             : study_.level(record, choice);
     if (!level.empty()) out += (out.empty() ? "" : ", ") + level;
   }
   return out;
