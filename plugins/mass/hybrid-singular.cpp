@@ -2,6 +2,7 @@
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/contract/plugin.hpp>
 
+#include "massless_residual.hpp"
 #include "rotary_inertia.hpp"
 
 namespace {
@@ -25,7 +26,10 @@ SparseMatrix assembled(int rows, int columns, const Triplets& entries) {
 /// mass.
 class HybridSingular : public MassStrategy {
  public:
+  bool takes_given() const override { return true; }
+  bool takes_modes() const override { return true; }
   InertiaOrRefusal build(const FiniteElementSpace& space) const override {
+    if (space.given) return massless_residual(*space.given);
     if (space.elements.empty())
       return Refusal{"the hybrid-singular mass needs elements to spread velocities over, and this " + space.structure +
                      " has none: use the mass consistent or lumped"};

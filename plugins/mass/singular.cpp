@@ -1,6 +1,7 @@
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/contract/plugin.hpp>
 
+#include "massless_residual.hpp"
 #include "rotary_inertia.hpp"
 
 namespace {
@@ -22,7 +23,7 @@ class Singular : public MassStrategy {
   explicit Singular(bool continuous) : continuous_(continuous) {}
 
   InertiaOrRefusal build(const FiniteElementSpace& space) const override {
-    if (space.given) return without_residual_mass(*space.given);
+    if (space.given) return ricochet::massless_residual(*space.given);
     if (space.elements.empty())
       return Refusal{"a singular mass needs elements to spread velocities over, and this " + space.structure +
                      " has none: use the mass consistent or lumped"};
@@ -38,27 +39,6 @@ class Singular : public MassStrategy {
   bool takes_modes() const override { return true; }
 
  private:
-  /// Of modes: what touches, the residual flexibility of the stops, has no inertia.
-  static InertiaOrRefusal without_residual_mass(const GivenMass& given) {
-    if (!given.modes)
-      return Refusal{
-          "this mass is made of velocities on elements, and an assembled structure has matrices alone: use the mass "
-          "consistent, hrz or redistributed"};
-    if (given.attached.empty())
-      return Refusal{
-          "the modes carry no residual flexibility, so that nothing without inertia is left at the stops: give it, or "
-          "use the mass consistent"};
-    std::vector<bool> attached(static_cast<std::size_t>(given.mass.rows()), false);
-    for (const int dof : given.attached) attached[static_cast<std::size_t>(dof)] = true;
-    Inertia inertia;
-    inertia.mass = given.mass;
-    inertia.mass.prune([&](int row, int column, double) {
-      return !attached[static_cast<std::size_t>(row)] && !attached[static_cast<std::size_t>(column)];
-    });
-    inertia.kernel_dimension = static_cast<int>(given.attached.size());
-    return inertia;
-  }
-
   /// P1: hat functions at the nodes, without those where the displacement is imposed. C_v⁻¹ is full: M stays in
   /// factors.
   static InertiaOrRefusal factored(const FiniteElementSpace& space) {
