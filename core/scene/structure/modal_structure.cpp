@@ -41,6 +41,10 @@ std::vector<Mode> read_modes(const CsvFile& table) {
     if (!(one.mass > 0)) table.fail(row, fmt::format("mass {:g} kg; expected above 0", one.mass));
     if (!(std::abs(one.damping) < 1))
       table.fail(row, fmt::format("damping ratio {:g}; expected one between -1 and 1", one.damping));
+    const double omega = 2 * std::numbers::pi * one.frequency;
+    if (!std::isfinite(one.mass * omega * omega))
+      table.fail(
+          row, fmt::format("frequency {:g} Hz and mass {:g} kg; expected a finite stiffness", one.frequency, one.mass));
     modes.push_back(one);
   }
   std::sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) {
@@ -113,6 +117,7 @@ NamedRows read_symmetric(const CsvFile& table, const NamedRows& shapes) {
     if (shapes.find(name) < 0)
       throw FileError(fmt::format("{}: no point \"{}\" in the shapes{}", table.name, shortened(name),
                                   nearest_text(name, shapes.names)));
+  if (columns.empty() || rows.names.empty()) throw FileError(table.name + " has no point; expected one or more");
   MatrixXd ordered(rows.values.rows(), rows.values.rows());
   if (columns.size() != rows.names.size())
     throw FileError(

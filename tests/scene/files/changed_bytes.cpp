@@ -5,6 +5,7 @@
 #include <ricochet/scene/files/dof_table.hpp>
 #include <ricochet/scene/files/matrix_market.hpp>
 #include <ricochet/scene/files/text_file.hpp>
+#include <ricochet/scene/structure/modal_structure.hpp>
 
 #include "tests/scene/structure/beam_files.hpp"
 #include "tests/scene/working_set.hpp"
@@ -65,6 +66,24 @@ TEST_CASE("whatever bytes a file has, it is read or told") {
   const auto matrix = [](int dofs) {
     return [dofs](const std::string& text) { read_matrix_market(text, "K.mtx", dofs, "dofs.csv"); };
   };
+  const CsvFile modes = read_csv("mode,frequency,mass,damping\n1,5,2,0.01\n2,3,1,0.02\n", "modes.csv"),
+                shapes = read_csv("point,1,2\na,1,0.5\nb,-1,2\n", "shapes.csv");
+  // Few of them: each finds eigenvalues.
+  constexpr long slower = 10;
+  const auto modal = [](const CsvFile& list, const CsvFile& rows, const CsvFile& residual) {
+    std::vector<double> ratios;
+    const AssembledStructure made = modal_structure({list, rows, residual, {}, {}}, ratios);
+    for (const SparseMatrix* matrix : {&made.stiffness, &made.mass})
+      if (!Eigen::MatrixXd(*matrix).allFinite()) throw std::runtime_error("a matrix that is not finite");
+  };
+  const std::string flexible = "point,a,b\na,4e-7,1e-7\nb,1e-7,3e-7\n";
+  const CsvFile residual = read_csv(flexible, "residual.csv");
+  CHECK(readable("mode,frequency,mass,damping\n1,5,2,0.01\n2,3,1,0.02\n", each / slower, random,
+                 [&](const std::string& text) { modal(read_csv(text, "modes.csv"), shapes, residual); }) > 0);
+  CHECK(readable("point,1,2\na,1,0.5\nb,-1,2\n", each / slower, random,
+                 [&](const std::string& text) { modal(modes, read_csv(text, "shapes.csv"), residual); }) > 0);
+  CHECK(readable(flexible, each / slower, random,
+                 [&](const std::string& text) { modal(modes, shapes, read_csv(text, "residual.csv")); }) > 0);
   for (const long found :
        {readable(beam.stiffness, each, random, matrix(4)), readable(array, each, random, matrix(3)),
         readable(beam.dofs, each, random, [](const std::string& text) { read_dof_table(text, "dofs.csv"); }),

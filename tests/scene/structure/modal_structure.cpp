@@ -109,6 +109,8 @@ TEST_CASE("what is wrong with a description in modes is told with its file and l
        "residual.csv is not positive semidefinite: eigenvalue -1e-07 m/N");
   says({.residual = "point,a,c\na,1e-7,0\nc,0,1e-7\n"}, "residual.csv: no point \"c\" in the shapes");
   says({.residual = "point,a,b\na,1e-7,0\n"}, "1 rows and 2 columns");
+  says({.residual = "point\n"}, "residual.csv has no point");
+  says({.modes = "mode,frequency,mass,damping\n1,1e200,1,0\n"}, "modes.csv, line 2: frequency 1e+200 Hz");
   says({.residual_mass = "point,a\na,1\n"}, "weighs a residual that is not given");
   says({.static_modes = "point,floor\na,1\n"}, "shapes.csv: no row of the support \"floor\"");
   const AssembledStructure structure = read({});
