@@ -13,6 +13,8 @@
 /// Places of a structure as rows, and where its stops act.
 namespace ricochet {
 
+struct SemiDiscrete;
+
 /// The displacement at a place, relative to the clamp that moves a beam or a bar. Throws InputError below `pointer` for
 /// a place that the structure does not have.
 PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place,

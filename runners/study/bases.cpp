@@ -1,6 +1,9 @@
 #include "runners/study/bases.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <ricochet/scene/semi_discrete.hpp>
 
 namespace ricochet {
 namespace {
@@ -27,6 +30,23 @@ std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, bool modal) {
       else if (std::find(bases.begin(), bases.end(), std::nullopt) == bases.end())
         bases.emplace_back();
   return bases;
+}
+
+void check_bases(const std::vector<std::optional<BasisSpec>>& bases, const Json& mesh, const StructureSpec& structure,
+                 int coarsest) {
+  const bool any = std::any_of(bases.begin(), bases.end(), [](const auto& basis) { return basis.has_value(); });
+  const int dofs = any ? make_space(structure, coarsest).dofs : 0;
+  for (const std::optional<BasisSpec>& basis : bases) {
+    if (!basis || basis->modes <= dofs) continue;
+    const Json& counts = mesh.at("modes");
+    std::string pointer = "/mesh/modes";
+    for (std::size_t i = 0; counts.is_array() && i < counts.size(); ++i)
+      if (counts[i] == basis->modes) pointer = pointer_to("/mesh/modes", i);
+    throw InputError(
+        pointer,
+        fmt::format("{} modes; the structure has {} degrees of freedom{}", basis->modes, dofs,
+                    std::holds_alternative<AssembledSpec>(structure) ? "" : fmt::format(" on {} elements", coarsest)));
+  }
 }
 
 }  // namespace ricochet

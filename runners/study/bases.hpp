@@ -11,4 +11,8 @@ namespace ricochet {
 /// Throws InputError at /mesh/residual for a residual of no modes.
 std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, bool modal);
 
+/// Throws InputError at /mesh/modes for more modes than the structure has dofs on one of the meshes.
+void check_bases(const std::vector<std::optional<BasisSpec>>& bases, const Json& mesh, const StructureSpec& structure,
+                 int coarsest);
+
 }  // namespace ricochet

@@ -308,12 +308,12 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   const std::vector<SceneOption> scenes = expand_scenes(
       resolved["scene"], axes, finest, std::find(beyond.begin(), beyond.end(), true) != beyond.end(), kind, settings,
       *files, duration, std::find(bases.begin(), bases.end(), std::nullopt) != bases.end());
+  const int coarsest = *std::min_element(meshes.begin(), meshes.end());
+  for (const SceneOption& one : scenes) check_bases(bases, resolved["mesh"], one.scene.structure, coarsest);
   if (Json said = files->said(); !said.is_null()) resolved["files"] = std::move(said);
-  if (kind.check_methods) {
-    const int coarsest = *std::min_element(meshes.begin(), meshes.end());
+  if (kind.check_methods)
     kind.check_methods(resolved, settings, registry, everything.count(),
                        make_space(scenes.front().scene.structure, coarsest).dofs);
-  }
 
   for (const MethodOptions& role : methods)
     for (const MethodOption& option : role.options) add_columns(option.axes, study.columns);

@@ -154,6 +154,15 @@ std::string References::key(const StudyCase& study_case, const MethodChoice& cho
   return content_hash(content.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
+// Where modes are refined, twice the most of the study, as far as the structure has so many.
+std::optional<BasisSpec> References::richer_basis(const SceneSpec& scene, int elements) const {
+  std::optional<BasisSpec> basis = bases_.front();
+  if (!basis || bases_.size() == 1) return basis;
+  const int with_mass = semidefinite_rank(consistent_mass(make_space(scene.structure, elements)));
+  basis->modes = std::max(basis->modes, std::min(2 * basis->modes, with_mass));
+  return basis;
+}
+
 KnownReference References::march_finer(const StudyCase& study_case, const std::atomic<bool>& stop) const {
   KnownReference known{marched_reference, "", coarsest_ == finest_, {}};
   const double smallest = smallest_step_;
@@ -161,7 +170,7 @@ KnownReference References::march_finer(const StudyCase& study_case, const std::a
   const bool several = finest_ != coarsest_;
   const int elements = several ? 2 * finest : study_case.elements;
   const SampleGrid grid = comparison_grid(study_case.scene, study_case.duration, study_case.samples);
-  const std::optional<BasisSpec>& richest = bases_.front();
+  const std::optional<BasisSpec> richest = richer_basis(study_case.scene, elements);
   const Marched coarse = march(at(study_case, smallest / 4, elements, richest), registry_, grid, nullptr, stop);
   const Marched fine = march(at(study_case, smallest / 8, elements, richest), registry_, grid, nullptr, stop);
   for (const Marched* one : {&coarse, &fine})
@@ -186,8 +195,10 @@ KnownReference References::march_finer(const StudyCase& study_case, const std::a
     known.found.how += "; its gap is that to " + named;
   };
   if (several) widen(at(study_case, smallest / 4, finest, richest), fmt::format("{} elements", finest));
-  if (bases_.size() > 1)
-    widen(at(study_case, smallest / 4, elements, bases_[1]), fmt::format("{} modes", bases_[1]->modes));
+  if (bases_.size() > 1) {
+    const std::optional<BasisSpec>& poorer = richest == bases_.front() ? bases_[1] : bases_.front();
+    widen(at(study_case, smallest / 4, elements, poorer), fmt::format("{} modes", poorer->modes));
+  }
   return known;
 }
 

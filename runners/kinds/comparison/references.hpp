@@ -96,7 +96,8 @@ class References {
   const Registry& registry_;
   CheckpointStore checkpoints_;
   double smallest_step_ = 0;
-  int coarsest_ = 0, finest_ = 0;                // elements
+  int coarsest_ = 0, finest_ = 0;  // elements
+  std::optional<BasisSpec> richer_basis(const SceneSpec& scene, int elements) const;
   std::vector<std::optional<BasisSpec>> bases_;  // the richest first
   std::map<std::string, Known<ReferencePointer>> known_;
   std::map<std::string, Known<Twin>> twins_;

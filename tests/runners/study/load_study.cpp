@@ -364,3 +364,22 @@ TEST_CASE("A load is a formula, or a list of forces at points and of shapes with
   CHECK_THAT(refused(R"({"at": 1, "force": 1})"), StartsWith("/scene/load: ") && Contains("or a list of objects"));
   CHECK_THAT(refused("[]"), StartsWith("/scene/load: "));
 }
+
+TEST_CASE("Modes that a structure does not have, and a residual of no modes, are refused with their place") {
+  Json study = small_study();
+  const auto fault = [&]() -> std::string {
+    try {
+      parse(study);
+    } catch (const InputError& error) {
+      return error.pointer() + ": " + error.what();
+    }
+    return "";
+  };
+  study["mesh"] = {{"elements", {4, 8}}, {"modes", {3, 9, nullptr}}};
+  CHECK(fault() == "/mesh/modes/1: 9 modes; the structure has 8 degrees of freedom on 4 elements");
+  study["mesh"]["modes"] = {3, 8};
+  CHECK(fault().empty());
+  study["mesh"].erase("modes");
+  study["mesh"]["residual"] = "none";
+  CHECK(fault().starts_with("/mesh/residual: there is no mesh.modes"));
+}
