@@ -37,8 +37,8 @@ const char* word(Matters matters) {
   return matters == Matters::yes ? "matters" : matters == Matters::no ? "does not matter" : "open";
 }
 
-std::optional<double> Method::at(double step, double elements) const {
-  const auto found = grid.find({step, elements});
+std::optional<double> Method::at(double h, double elements) const {
+  const auto found = grid.find({h, elements});
   return found == grid.end() ? std::nullopt : std::optional(found->second);
 }
 

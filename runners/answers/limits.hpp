@@ -30,7 +30,7 @@ struct Method {
   std::map<std::pair<double, double>, double> grid;  ///< by step and elements (1 where there is none)
 
   const CaseRecord& first() const { return *cases.front(); }
-  std::optional<double> at(double step, double elements) const;
+  std::optional<double> at(double h, double elements) const;
 };
 
 /// What ends above this many times the most that a method without a gain may have gains.

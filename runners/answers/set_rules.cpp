@@ -77,9 +77,9 @@ std::optional<std::string> SetNames::cover(const Picked& chosen, std::size_t cou
     bool joined = false;
     for (Merged& one : merged) {
       if (one.attributes != part->attributes) continue;
-      const std::size_t parts = part->attributes.size();
-      for (std::size_t open = 0; open < parts && !joined; ++open) {
-        if (parts == 2 && one.levels[1 - open] != std::vector{part->levels[1 - open]}) continue;
+      const std::size_t sides = part->attributes.size();
+      for (std::size_t open = 0; open < sides && !joined; ++open) {
+        if (sides == 2 && one.levels[1 - open] != std::vector{part->levels[1 - open]}) continue;
         one.levels[open].push_back(part->levels[open]);
         joined = true;
       }

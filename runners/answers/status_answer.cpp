@@ -251,8 +251,8 @@ std::vector<Sentence> status(const Compared& study) {
     for (const auto& [ending, verb] : {std::pair{"diverged", "diverge"}, std::pair{"failed", "fail"}}) {
       const Cases own = with_status(wrong, ending);
       if (own.empty()) continue;
-      const std::string who = names.of(members_where(methods, [&](const CaseRecord* one) {
-        return one->status == ending && went_wrong(*one);
+      const std::string who = names.of(members_where(methods, [&, as = std::string(ending)](const CaseRecord* one) {
+        return one->status == as && went_wrong(*one);
       })) + at_steps(study, own);
       const std::string shown = without_count(who);
       parts.push_back(fmt::format("{} {}{}{}", own.size(), verb, own.size() == 1 ? "s" : "",

@@ -225,13 +225,13 @@ TEST_CASE("rooms include what lies below them, and every folder has its rule") {
   for (const std::string folder : {"core", "runners"})
     for (const Source& source : sources(folder)) {
       if (!source.name.ends_with(".cpp") && !source.name.ends_with(".hpp")) continue;
-      const std::string folder = folder_of(source.name);
+      const std::string layer = folder_of(source.name);
       INFO(source.name);
-      REQUIRE(below.count(folder) == 1);
+      REQUIRE(below.count(layer) == 1);
       for (const std::string& include : includes(source)) {
         const std::string other = layer_of(include);
         INFO("includes " << include);
-        CHECK((other.empty() || other == folder || below.at(folder).count(other)));
+        CHECK((other.empty() || other == layer || below.at(layer).count(other)));
       }
     }
 }

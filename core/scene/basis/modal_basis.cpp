@@ -21,7 +21,7 @@ constexpr double negligible = 1e-12;
 class ElasticSolve {
  public:
   ElasticSolve(const SparseMatrix& stiffness, const SparseMatrix& mass, double shift)
-      : stiffness_(stiffness), mass_(mass), shift_(shift) {
+      : stiffness_(stiffness), shift_(shift) {
     const SparseMatrix shifted = stiffness + shift * mass;
     scale_ = shifted.diagonal();
     for (double& one : scale_) one = one > 0 ? 1 / std::sqrt(one) : 1.0;
@@ -49,7 +49,7 @@ class ElasticSolve {
     return scale_.asDiagonal() * x;
   }
 
-  const SparseMatrix &stiffness_, &mass_;
+  const SparseMatrix& stiffness_;
   double shift_;
   VectorXd scale_;
   SparseLdlt ldlt_;
