@@ -174,17 +174,20 @@ void DistributedLoad::integrate(const Formula& load, double t, double* out) cons
   }
 }
 
-void DistributedLoad::project(const Eigen::MatrixXd& basis) {
-  basis_ = std::make_shared<const Eigen::MatrixXd>(basis);
+void DistributedLoad::project(std::shared_ptr<const Eigen::MatrixXd> basis) {
+  basis_ = std::move(basis);
   nodal_.resize(size_);
-  for (Term& term : terms_) term.shape = basis.transpose() * term.shape;
+  for (Term& term : terms_) term.shape = basis_->transpose() * term.shape;
 }
 
 void DistributedLoad::assemble_formula(double t, double* out) const {
-  double* nodal = basis_ ? nodal_.data() : out;
-  std::fill(nodal, nodal + size_, 0.0);
-  if (has_formula()) integrate(formula_, t, nodal);
-  if (basis_) Eigen::Map<Eigen::VectorXd>(out, unknowns()).noalias() = basis_->transpose() * nodal_;
+  Eigen::Map<Eigen::VectorXd> result(out, unknowns());
+  result.setZero();
+  if (!has_formula()) return;
+  if (!basis_) return integrate(formula_, t, out);
+  nodal_.setZero();
+  integrate(formula_, t, nodal_.data());
+  result.noalias() = basis_->transpose() * nodal_;
 }
 
 void DistributedLoad::assemble(double t, double* out) const {

@@ -163,26 +163,21 @@ namespace {
 void add_stiffness(const BeamSpec& beam, SemiDiscrete& problem) {
   for (const UniformPart& part : uniform_parts(beam)) problem.rigidity = std::max(problem.rigidity, part.section.EI);
   problem.stiffness = beam_stiffness(beam, problem.space);
-  problem.damping = beam.damping;
 }
 void add_stiffness(const BarSpec& bar, SemiDiscrete& problem) {
   problem.rigidity = bar.EA;
   problem.stiffness = axial_stiffness(problem.space, bar.EA);
-  problem.damping = bar.damping;
 }
 void add_stiffness(const OscillatorSpec& oscillator, SemiDiscrete& problem) {
   problem.rigidity = oscillator.stiffness;
   problem.stiffness.resize(1, 1);
   problem.stiffness.insert(0, 0) = oscillator.stiffness;
   problem.stiffness.makeCompressed();
-  problem.damping.mass = oscillator.damping / oscillator.mass;
 }
 
 void add_stiffness(const AssembledSpec& spec, SemiDiscrete& problem) {
   const AssembledStructure& structure = *spec.structure;
   problem.stiffness = structure.stiffness;
-  problem.damping = spec.damping;
-  if (structure.damping.rows() > 0) problem.damping.matrix = {spec.structure, &structure.damping};
   problem.notes = structure.notes;
 }
 
@@ -267,8 +262,7 @@ InertiaOrRefusal build_mass(const SemiDiscrete& problem, const MassStrategy& mas
     if (problem.space.given && !mass.takes_given())
       return Refusal{
           "this mass is made of velocities on elements, and an assembled structure has matrices alone: use consistent "
-          "or "
-          "another mass that takes matrices"};
+          "or another mass that takes matrices"};
     return mass.build(problem.space);
   }
   if (!mass.takes_modes())
@@ -288,9 +282,8 @@ InertiaOrRefusal build_mass(const SemiDiscrete& problem, const MassStrategy& mas
 }
 
 // What was made on the dofs of the mesh, in the coordinates of the basis.
-void march_in_basis(const SceneSpec& scene, SemiDiscrete& problem, DistributedLoad& load) {
+void march_in_basis(const SceneSpec& scene, const SparseMatrix& mass, SemiDiscrete& problem, DistributedLoad& load) {
   const ModalBasis& basis = *problem.basis;
-  const SparseMatrix mass = consistent_mass(problem.space);
   const bool least_squares = scene.initial.projection == InitialSpec::Projection::least_squares;
   for (Eigen::VectorXd* state : {&problem.position, &problem.velocity})
     *state = least_squares ? in_basis_by_least_squares(basis, *state) : in_basis(basis, mass, problem.contact, *state);
@@ -306,7 +299,7 @@ void march_in_basis(const SceneSpec& scene, SemiDiscrete& problem, DistributedLo
   for (SparseRows* rows : {&problem.tip, &problem.observed.rows, &problem.fields.rows, &problem.tangents.rows})
     *rows = problem.on_unknowns(std::move(*rows));
   problem.support_shape = basis.shapes.transpose() * problem.support_shape;
-  load.project(basis.shapes);
+  load.project({problem.basis, &basis.shapes});
 }
 
 }  // namespace
@@ -328,13 +321,15 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   problem.stops = std::move(points.names);
   problem.space.contact_dofs = touched_dofs(problem.contact);
   std::visit([&](const auto& structure) { add_stiffness(structure, problem); }, scene.structure);
+  problem.damping = damping_of(scene.structure);
   problem.support = scene.support;
   problem.support_shape = rigid_motion_load(problem.space);
   hold_by_supports(scene.structure, elements, problem);
   // The modes of K with the consistent or given mass, whatever mass is marched.
+  const SparseMatrix whole = scene.basis ? consistent_mass(problem.space) : SparseMatrix();
   if (scene.basis)
     problem.basis = std::make_shared<const ModalBasis>(
-        modal_basis(problem.stiffness, consistent_mass(problem.space), problem.contact, problem.held, *scene.basis));
+        modal_basis(problem.stiffness, whole, problem.contact, problem.held, *scene.basis));
   auto built = build_mass(problem, mass);
   if (auto* refusal = std::get_if<Refusal>(&built)) return *refusal;
   problem.inertia = std::get<Inertia>(std::move(built));
@@ -353,7 +348,7 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   add_support(scene, points.on_supports, problem, *load);
   observe_rows(scene, problem);
   interpolate_initial(scene, problem);
-  if (problem.basis) march_in_basis(scene, problem, *load);
+  if (problem.basis) march_in_basis(scene, whole, problem, *load);
   problem.load = std::move(load);
   if (law && law->changes_problem() && problem.points() > 0) {
     if (auto refusal = change_by(*law, problem)) return *refusal;

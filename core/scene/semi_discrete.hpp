@@ -24,7 +24,7 @@ class DistributedLoad {
  public:
   DistributedLoad(const LoadSpec& load, const FiniteElementSpace& space, const AssembledStructure* assembled = nullptr);
   /// From now on QᵀF in the place of F, Q n × n̂.
-  void project(const Eigen::MatrixXd& basis);
+  void project(std::shared_ptr<const Eigen::MatrixXd> basis);
   /// One more term: g(t) times F_k (n).
   void add(Eigen::VectorXd shape, Formula history);
   bool absent() const { return formula_.is_zero() && terms_.empty(); }

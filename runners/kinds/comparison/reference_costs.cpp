@@ -142,8 +142,6 @@ void describe(const BeamSpec& beam, ReferenceProblem& problem) {
   problem.length = beam.length;
   problem.stiffness = section.EI;
   problem.inertia = section.rhoS;
-  problem.damping_stiffness = beam.damping.stiffness;
-  problem.damping_mass = beam.damping.mass;
   problem.left_fixed = !problem.other_beam;
 }
 void describe(const BarSpec& bar, ReferenceProblem& problem) {
@@ -151,8 +149,6 @@ void describe(const BarSpec& bar, ReferenceProblem& problem) {
   problem.length = bar.length;
   problem.stiffness = bar.EA;
   problem.inertia = bar.rhoA;
-  problem.damping_stiffness = bar.damping.stiffness;
-  problem.damping_mass = bar.damping.mass;
   problem.left_fixed = bar.fixed == BarSpec::Fixed::left;
   problem.right_fixed = bar.fixed == BarSpec::Fixed::right;
 }
@@ -160,16 +156,13 @@ void describe(const OscillatorSpec& oscillator, ReferenceProblem& problem) {
   problem.structure = "oscillator";
   problem.stiffness = oscillator.stiffness;
   problem.inertia = oscillator.mass;
-  problem.damping_mass = oscillator.damping / oscillator.mass;
   problem.force_amplitude = oscillator.force.amplitude;
   problem.force_pulsation = oscillator.force.pulsation;
   problem.force_phase = oscillator.force.phase;
 }
 
-void describe(const AssembledSpec& spec, ReferenceProblem& problem) {
+void describe(const AssembledSpec&, ReferenceProblem& problem) {
   problem.structure = "assembled structure";
-  problem.damping_stiffness = spec.damping.stiffness;
-  problem.damping_mass = spec.damping.mass;
 }
 
 }  // namespace
@@ -178,6 +171,9 @@ ReferenceProblem reference_problem(const StudyCase& study_case, const Registry& 
   const SceneSpec& scene = study_case.scene;
   ReferenceProblem problem;
   std::visit([&](const auto& structure) { describe(structure, problem); }, scene.structure);
+  const Damping damping = damping_of(scene.structure);
+  problem.damping_stiffness = damping.stiffness;
+  problem.damping_mass = damping.mass;
   problem.support_amplitude = scene.support.amplitude;
   problem.support_pulsation = scene.support.pulsation;
   problem.support_phase = scene.support.phase;
