@@ -54,12 +54,17 @@ MarchModel::MarchModel(std::shared_ptr<const SemiDiscrete> problem, bool modal)
   if (!modal) {
     stiffness_ = p.stiffness;
     inertia_ = p.inertia;
-    contact_ = RowMatrix::from(p.contact);
-    measured_ = RowMatrix::from(p.law_rows);
-    tip_ = RowMatrix::from(p.tip);
     shape_ = p.support_shape;
-    return;
+  } else {
+    find_modes();
   }
+  contact_ = in_model(p.contact);
+  if (p.changed_by_law()) measured_ = in_model(p.law_rows);
+  tip_ = in_model(p.tip);
+}
+
+void MarchModel::find_modes() {
+  const SemiDiscrete& p = *problem_;
   const Eigen::MatrixXd K(p.stiffness), M = dense_mass(p.inertia);
   if (!p.held && p.asks_for_modes()) shift_ = elastic_shift(p.stiffness, M.sparseView(), p.inertia.kernel_dimension);
   const SymmetricModes modes = symmetric_modes(M, shift_ == 0 ? K : K + shift_ * M);
@@ -73,10 +78,11 @@ MarchModel::MarchModel(std::shared_ptr<const SemiDiscrete> problem, bool modal)
   if (p.damping.by_modes()) damping_ = damping_of_modes(p.damping, mu, stiff);
   inertia_.mass = diagonal(mu);
   inertia_.kernel_dimension = p.inertia.kernel_dimension;
-  contact_ = dense_rows(p.contact * modes_);
-  if (p.changed_by_law()) measured_ = dense_rows(p.law_rows * modes_);
-  tip_ = dense_rows(p.tip * modes_);
   shape_ = modes_.transpose() * p.support_shape;
+}
+
+RowMatrix MarchModel::in_model(const SparseRows& rows) const {
+  return modal() ? dense_rows(rows * modes_) : RowMatrix::from(rows);
 }
 
 // Modal rows have no zeros.

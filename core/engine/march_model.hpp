@@ -43,6 +43,8 @@ class MarchModel {
   const RowMatrix& contact() const { return contact_; }
   const RowMatrix& measured() const { return problem_->changed_by_law() ? measured_ : contact_; }
   const RowMatrix& tip() const { return tip_; }
+  /// Rows on q as rows on these coordinates.
+  RowMatrix in_model(const SparseRows& rows) const;
   /// One row of these times a contiguous vector.
   double times(const RowMatrix& rows, int row, const double* x) const {
     return modal() ? times_full(rows, row, x) : rows.times(row, x);
@@ -57,6 +59,7 @@ class MarchModel {
   void load_to_model(const double* in, double* out) const;
 
  private:
+  void find_modes();
   double times_full(const RowMatrix& rows, int row, const double* x) const;
 
   std::shared_ptr<const SemiDiscrete> problem_;

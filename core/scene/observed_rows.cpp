@@ -18,8 +18,7 @@ class RowMaker {
  public:
   RowMaker(const SemiDiscrete& problem, std::size_t count) : problem_(problem) {
     rows_.on_support = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count));
-    rows_.on_motions = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count),
-                                             static_cast<Eigen::Index>(problem.motions.supports.size()));
+    shares_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count), problem.static_modes.cols());
   }
   /// `on_support`: how much of the motion that all supports share; `moved`: whether motions by histories are seen.
   void add(const std::string& name, const PlaceRow& row, double on_support, bool moved) {
@@ -28,23 +27,20 @@ class RowMaker {
     rows_.on_support[i] = on_support;
     for (const auto& [dof, value] : row.free) entries_.emplace_back(static_cast<int>(i), dof, value);
     if (!moved) return;
-    Eigen::RowVectorXd shares = Eigen::RowVectorXd::Zero(problem_.static_modes.cols());
-    for (const auto& [dof, value] : row.free) shares += value * problem_.static_modes.row(dof);
-    for (const auto& [support, weight] : row.held) shares[support] += weight;
-    const auto& supports = problem_.motions.supports;
-    for (std::size_t k = 0; k < supports.size(); ++k)
-      for (const std::size_t j : supports[k])
-        rows_.on_motions(i, static_cast<Eigen::Index>(k)) += shares[static_cast<Eigen::Index>(j)];
+    for (const auto& [dof, value] : row.free) shares_.row(i) += value * problem_.static_modes.row(dof);
+    for (const auto& [support, weight] : row.held) shares_(i, support) += weight;
   }
   ObservedRows make() {
     rows_.rows.resize(static_cast<Eigen::Index>(rows_.names.size()), problem_.space.dofs);
     rows_.rows.setFromTriplets(entries_.begin(), entries_.end());
+    rows_.on_motions = of_motions(problem_.motions, shares_);
     return std::move(rows_);
   }
 
  private:
   const SemiDiscrete& problem_;
   ObservedRows rows_;
+  Eigen::MatrixXd shares_;  // of the supports
   std::vector<Eigen::Triplet<double>> entries_;
 };
 

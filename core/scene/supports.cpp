@@ -184,9 +184,6 @@ Eigen::MatrixXd support_shapes(const SemiDiscrete& problem, const std::vector<do
   return shapes;
 }
 
-namespace {
-
-// Columns of supports to columns of motions: the sum over those that each moves.
 Eigen::MatrixXd of_motions(const SupportMotions& motions, const Eigen::MatrixXd& shapes) {
   Eigen::MatrixXd shares = Eigen::MatrixXd::Zero(shapes.rows(), static_cast<Eigen::Index>(motions.supports.size()));
   for (std::size_t k = 0; k < motions.supports.size(); ++k)
@@ -194,8 +191,6 @@ Eigen::MatrixXd of_motions(const SupportMotions& motions, const Eigen::MatrixXd&
       shares.col(static_cast<Eigen::Index>(k)) += shapes.col(static_cast<Eigen::Index>(j));
   return shares;
 }
-
-}  // namespace
 
 Eigen::MatrixXd motion_shapes(const SemiDiscrete& problem, const std::vector<double>& x) {
   return of_motions(problem.motions, support_shapes(problem, x));
@@ -229,10 +224,11 @@ void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, Sem
 namespace {
 
 // Whether the supports, moved together by 1, lift the stops and the tip by 1.
-bool lift_alike(const SemiDiscrete& problem, const Eigen::MatrixXd& on_supports, const Eigen::MatrixXd& at_tip) {
+bool lift_alike(const SemiDiscrete& problem, const Eigen::MatrixXd& on_supports) {
   constexpr double alike = 1e-9;  // round-off of static modes
   const Eigen::VectorXd points = (problem.contact * problem.static_modes + on_supports).rowwise().sum();
-  return (points.size() == 0 || (points.array() - 1).abs().maxCoeff() <= alike) && std::abs(at_tip.sum() - 1) <= alike;
+  return (points.size() == 0 || (points.array() - 1).abs().maxCoeff() <= alike) &&
+         std::abs(problem.tip_on_supports.sum() - 1) <= alike;
 }
 
 }  // namespace
@@ -240,7 +236,7 @@ bool lift_alike(const SemiDiscrete& problem, const Eigen::MatrixXd& on_supports,
 void add_support(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, SemiDiscrete& problem,
                  DistributedLoad& load) {
   if (!problem.space.given || scene.support.amplitude == 0) return add_motions(scene, on_supports, problem, load);
-  if (lift_alike(problem, on_supports, support_shapes(problem, {tip_position(scene)}))) {
+  if (lift_alike(problem, on_supports)) {
     problem.support_shape = problem.support_loads.rowwise().sum();
     return;
   }
@@ -262,7 +258,7 @@ bool support_bends(const SceneSpec& scene) {
   problem.contact = std::move(points.rows);
   hold_by_supports(scene.structure, 1, problem);
   show_tip(scene, problem);
-  return !lift_alike(problem, points.on_supports, support_shapes(problem, {tip_position(scene)}));
+  return !lift_alike(problem, points.on_supports);
 }
 
 }  // namespace ricochet

@@ -19,6 +19,9 @@ std::vector<double> support_places(const StructureSpec& structure);
 std::vector<std::pair<int, double>> held_by(const std::vector<double>& supports, const FiniteElementSpace& space,
                                             double x, ShapeOf what = ShapeOf::displacement);
 
+/// Columns of supports to columns of motions: the sum over those that each moves.
+Eigen::MatrixXd of_motions(const SupportMotions& motions, const Eigen::MatrixXd& shapes);
+
 /// Throws InputError for an unknown support, one that two motions move, a stop that would move with supports that move
 /// apart or rest, a frame without motions.
 void check_motions(const SceneSpec& scene);

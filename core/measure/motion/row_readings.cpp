@@ -1,30 +1,8 @@
 #include <ricochet/measure/motion/row_readings.hpp>
 
 namespace ricochet {
-namespace {
-
-// Rows of nodal displacements in the coordinates of a march.
-RowMatrix in_model(const MarchModel& model, const SparseRows& rows) {
-  if (!model.modal()) return RowMatrix::from(rows);
-  RowMatrix out;
-  Eigen::VectorXd nodal(rows.cols()), modal(model.rows());
-  for (int i = 0; i < rows.rows(); ++i) {
-    nodal = rows.row(i).transpose();
-    // Φᵀ of a row is what loads take.
-    model.load_to_model(nodal.data(), modal.data());
-    for (int j = 0; j < model.rows(); ++j) {
-      out.index.push_back(j);
-      out.value.push_back(modal[j]);
-    }
-    out.start.push_back(static_cast<int>(out.index.size()));
-  }
-  return out;
-}
-
-}  // namespace
-
 RowReadings::RowReadings(const Marcher& marcher, const ObservedRows& rows)
-    : RowReadings(*marcher.program().model, in_model(*marcher.program().model, rows.rows), rows.on_support,
+    : RowReadings(*marcher.program().model, marcher.program().model->in_model(rows.rows), rows.on_support,
                   rows.on_motions) {}
 
 RowReadings RowReadings::of_stops(const Marcher& marcher) {
