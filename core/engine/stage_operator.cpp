@@ -359,9 +359,6 @@ QuasiDefinite stage_system(const MarchModel& model, const FoldedStage& stage) {
 
 OperatorOrRefusal make_operator(OperatorKind kind, const MarchModel& model, const FoldedStage& stage, int lanes) {
   if (kind == OperatorKind::modal) return make_modal_operator(model, stage, lanes);
-  if (model.problem().damping.by_modes())
-    return Refusal{std::string("damping ratios are those of modes, and the operator ") + operator_name(kind) +
-                   " has none: leave it out"};
   const Inertia& inertia = model.inertia();
   if (inertia.inverted() && stage.stiffness == 0 && !model.problem().damping.matrix)
     return std::make_unique<InverseOperator>(model, stage, lanes);

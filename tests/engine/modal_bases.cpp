@@ -109,6 +109,16 @@ TEST_CASE("ratios that are those of α and η march as α and η do") {
   CHECK(largest_gap(rayleigh, tip_history(scene, 8, spring, 5e-4, 0.5)) < 1e-9);
 }
 
+TEST_CASE("ratios of more dofs than march in modes are refused, and a basis marches them") {
+  SceneSpec scene = pushed_beam();
+  beam_of(scene).damping = {.beyond = 0.02};
+  const ProgramOrRefusal refused = compiled(problem_of(scene, 501, {"consistent"}), rigid, 1e-3);
+  REQUIRE(std::holds_alternative<Refusal>(refused));
+  CHECK(std::get<Refusal>(refused).sentence.find("use mesh.modes") != std::string::npos);
+  scene.basis = BasisSpec{8, true};
+  CHECK(std::holds_alternative<Program>(compiled(problem_of(scene, 501, {"consistent"}), rigid, 1e-3)));
+}
+
 TEST_CASE("a residual without mass gives a static push at a stop in full, whatever the modes") {
   // Held against the stop by a slow load, the beam stands where the whole structure does.
   SceneSpec scene = pushed_beam();
