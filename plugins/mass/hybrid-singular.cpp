@@ -26,7 +26,6 @@ SparseMatrix assembled(int rows, int columns, const Triplets& entries) {
 /// mass.
 class HybridSingular : public MassStrategy {
  public:
-  bool takes_given() const override { return true; }
   bool takes_modes() const override { return true; }
   InertiaOrRefusal build(const FiniteElementSpace& space) const override {
     if (space.given) return massless_residual(*space.given);

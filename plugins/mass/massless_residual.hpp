@@ -4,12 +4,8 @@
 
 namespace ricochet {
 
-/// Of modes: what touches, the residual flexibility of the stops, has no inertia.
+/// Of a structure in modes: what touches, the residual flexibility of the stops, has no inertia.
 inline InertiaOrRefusal massless_residual(const GivenMass& given) {
-  if (!given.modes)
-    return Refusal{
-        "this mass is made of velocities on elements, and an assembled structure has matrices alone: use the mass "
-        "consistent, hrz or redistributed"};
   if (given.attached.empty())
     return Refusal{
         "the modes carry no residual flexibility, so that nothing without inertia is left at the stops: give it, or "

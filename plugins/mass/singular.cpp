@@ -35,7 +35,6 @@ class Singular : public MassStrategy {
     return assembled(space);
   }
 
-  bool takes_given() const override { return true; }
   bool takes_modes() const override { return true; }
 
  private:
