@@ -201,6 +201,14 @@ class StructureMaker {
                                   files_.mass_name, ldlt.reason()));
   }
 
+  // 1 on the displacements that a support holds.
+  Eigen::VectorXd held_by(Eigen::Index support) const {
+    Eigen::VectorXd moved = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held_.size()));
+    for (std::size_t i = 0; i < held_.size(); ++i)
+      if (out_.where[static_cast<std::size_t>(held_[i])].support == support) moved[static_cast<Eigen::Index>(i)] = 1;
+    return moved;
+  }
+
   void take_damping() {
     check_symmetry(files_.damping, files_.damping_name, files_.table, out_.notes);
     const SparseMatrix C = in_metres(files_.damping.matrix, files_.table, files_.length_unit);
@@ -208,10 +216,7 @@ class StructureMaker {
     const SparseMatrix across = picked(C, free_, held_);
     constexpr double negligible = 1e-12;
     for (Eigen::Index j = 0; j < out_.static_modes.cols(); ++j) {
-      Eigen::VectorXd moved = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held_.size()));
-      for (std::size_t i = 0; i < held_.size(); ++i)
-        if (out_.where[static_cast<std::size_t>(held_[i])].support == j) moved[static_cast<Eigen::Index>(i)] = 1;
-      const Eigen::VectorXd own = out_.damping * out_.static_modes.col(j), all = own + across * moved;
+      const Eigen::VectorXd own = out_.damping * out_.static_modes.col(j), all = own + across * held_by(j);
       if (all.norm() > negligible * own.norm())
         out_.notes.push_back(
             fmt::format("{} damps the static mode of the support {} by {:.2g} of its own force: it is "
@@ -231,10 +236,7 @@ class StructureMaker {
                       "dofs fixed, or a structure without rigid motion",
                       files_.stiffness_name, out_.supports.front()));
     for (Eigen::Index j = 0; j < r; ++j) {
-      Eigen::VectorXd moved = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held_.size()));
-      for (std::size_t i = 0; i < held_.size(); ++i)
-        if (out_.where[static_cast<std::size_t>(held_[i])].support == j) moved[static_cast<Eigen::Index>(i)] = 1;
-      const Eigen::VectorXd right = -(K_held * moved);
+      const Eigen::VectorXd moved = held_by(j), right = -(K_held * moved);
       Eigen::VectorXd mode(n), step(n);
       ldlt.solve(right.data(), mode.data());
       // One refinement: the residual of a slender structure is then round-off of its own entries.

@@ -19,6 +19,10 @@ using Eigen::VectorXd;
 struct Mode {
   int number = 0;  // in the file, from 1
   double frequency = 0, mass = 0, damping = 0;
+  double stiffness() const {
+    const double omega = 2 * std::numbers::pi * frequency;
+    return mass * omega * omega;
+  }
 };
 
 std::vector<Mode> read_modes(const CsvFile& table) {
@@ -41,8 +45,7 @@ std::vector<Mode> read_modes(const CsvFile& table) {
     if (!(one.mass > 0)) table.fail(row, fmt::format("mass {:g} kg; expected above 0", one.mass));
     if (!(std::abs(one.damping) < 1))
       table.fail(row, fmt::format("damping ratio {:g}; expected one between -1 and 1", one.damping));
-    const double omega = 2 * std::numbers::pi * one.frequency;
-    if (!std::isfinite(one.mass * omega * omega))
+    if (!std::isfinite(one.stiffness()))
       table.fail(
           row, fmt::format("frequency {:g} Hz and mass {:g} kg; expected a finite stiffness", one.frequency, one.mass));
     modes.push_back(one);
@@ -204,11 +207,10 @@ AssembledStructure modal_structure(const ModalFiles& files, std::vector<double>&
   int negative = 0;
   for (Index k = 0; k < count; ++k) {
     const Mode& one = modes[static_cast<std::size_t>(k)];
-    const double omega = 2 * std::numbers::pi * one.frequency;
     mass[k] = one.mass;
-    stiff[k] = one.mass * omega * omega;
-    out.definite = out.definite && omega > 0;
-    if (omega > 0) ratios.push_back(one.damping);
+    stiff[k] = one.stiffness();
+    out.definite = out.definite && one.frequency > 0;
+    if (one.frequency > 0) ratios.push_back(one.damping);
     negative += one.damping < 0 ? 1 : 0;
   }
   if (negative > 0)
