@@ -255,6 +255,13 @@ std::optional<double> Compared::elements(const CaseRecord& record) const {
   return known == numbers_.end() || known->second.empty() ? std::nullopt : std::optional(2 * known->second.back());
 }
 
+bool Compared::finer(const CaseRecord& a, const CaseRecord& b) const {
+  const auto size = [&](const CaseRecord& one) {
+    return std::pair(elements(one).value_or(1), as_number(text(one, "elements")).value_or(1));
+  };
+  return size(a) != size(b) ? size(a) > size(b) : step(a).value_or(1) < step(b).value_or(1);
+}
+
 std::string Compared::mesh_words(double size) const {
   if (!varies("modes")) return short_number(size) + " elements";
   return size > numbers_of("modes").back() ? "all dofs" : short_number(size) + " modes";
@@ -269,6 +276,11 @@ bool Compared::on_finest_mesh(const CaseRecord& record) const {
 std::string Compared::step_words(double step) const {
   return steps_ == "steps_per_period" ? short_number(1 / step) + " steps per period"
                                       : "h = " + short_number(step) + " s";
+}
+
+std::vector<std::string> without(std::vector<std::string> columns, const std::vector<std::string>& own) {
+  std::erase_if(columns, [&](const auto& one) { return std::find(own.begin(), own.end(), one) != own.end(); });
+  return columns;
 }
 
 std::string spoken(const std::string& choice) {

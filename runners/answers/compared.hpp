@@ -60,6 +60,8 @@ class Compared {
   std::optional<double> step(const CaseRecord& record) const;
   /// Size of the mesh: the elements, or the modes where these vary.
   std::optional<double> elements(const CaseRecord& record) const;
+  /// Whether a has a finer mesh than b, or the same and a smaller step; of modes on several meshes more elements count.
+  bool finer(const CaseRecord& a, const CaseRecord& b) const;
   /// The column of that size.
   std::string mesh_column() const { return varies("modes") ? "modes" : "elements"; }
   /// "20 elements", "8 modes", "all dofs".
@@ -78,6 +80,9 @@ class Compared {
   std::string steps_;                                              // the column of steps
   std::map<std::string, std::map<std::string, bool>> differs_in_;  // role → name\ncolumn: some cases of it differ there
 };
+
+/// The columns that are not among `own`.
+std::vector<std::string> without(std::vector<std::string> columns, const std::vector<std::string>& own);
 
 /// A choice in a sentence: "the mass matrix", "restitution" of "time.restitution".
 std::string spoken(const std::string& choice);

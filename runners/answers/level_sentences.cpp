@@ -218,8 +218,7 @@ std::vector<Sentence> say_levels(const Compared& study, const MeasureLimits& lim
   // Of a number no level is the reference of the others.
   if (axis_role(asked) != asked && !study.numbers_of(asked).empty()) return {};
   const std::vector<std::string> own = own_columns(study, asked);
-  std::vector<std::string> others = study.columns();
-  std::erase_if(others, [&](const auto& one) { return std::find(own.begin(), own.end(), one) != own.end(); });
+  const std::vector<std::string> others = without(study.columns(), own);
   InOrderMet<std::string, const Method*> levels;
   for (const Method& method : limits.methods)
     if (const std::string key = study.key(method.first(), own); !levels.holds(key)) levels[key] = &method;

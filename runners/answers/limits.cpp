@@ -89,10 +89,8 @@ MeasureLimits limits_of(const Compared& study, const std::string& name, bool con
     }
     if (!method.done.empty()) {
       const auto& best =
-          *std::max_element(method.done.begin(), method.done.end(), [&](const Valued& a, const Valued& b) {
-            const double mesh_a = elements_or_one(study, *a.record), mesh_b = elements_or_one(study, *b.record);
-            return mesh_a != mesh_b ? mesh_a < mesh_b : step_or_one(study, *a.record) > step_or_one(study, *b.record);
-          });
+          *std::max_element(method.done.begin(), method.done.end(),
+                            [&](const Valued& a, const Valued& b) { return study.finer(*b.record, *a.record); });
       method.finest = best.record;
       const double h = step_or_one(study, *best.record), N = elements_or_one(study, *best.record);
       std::vector<SizedValue> by_step, by_mesh;
@@ -233,11 +231,6 @@ std::string place_of_effect(const Compared& study, const ChoiceEffect& effect, c
   if (name.exact && name.text.find(", and ") == std::string::npos) return " with " + name.text;
   const std::string near = name.text.starts_with("mostly ") ? name.text : names.mostly(inside);
   return near.starts_with("mostly ") ? ", mostly with " + near.substr(7, near.rfind(" (") - 7) : "";
-}
-
-std::vector<std::string> without(std::vector<std::string> columns, const std::vector<std::string>& own) {
-  std::erase_if(columns, [&](const auto& one) { return std::find(own.begin(), own.end(), one) != own.end(); });
-  return columns;
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ StopReading part_reading(const StopWatches& watches, int point, int part) {
   return reading;
 }
 
-// Half the interval of the mean of a series over the parts; `root`: of the root of it.
+// Half the interval of the mean of a series over the parts; `root`: of the root of it. Nothing of an empty one.
 void put_half(CaseRecord& record, const std::string& measure, const std::vector<double>& series, bool root) {
   if (series.empty()) return;
   const Interval found = block_bootstrap_mean(series);
@@ -167,7 +167,7 @@ void put_halves(CaseRecord& record, const StopWatches& watches, int point, const
   put_half(record, "window_contact_share" + of, share, false);
   put_half(record, "window_contact_rms_force" + of, ratio_series(force_squares, share), true);
   put_half(record, "window_contact_force" + of, ratio_series(force, share), false);
-  if (!wear.empty()) put_half(record, "wear_power" + of, wear, false);
+  put_half(record, "wear_power" + of, wear, false);
 }
 
 void add_parts(CaseRecord& record, const StopWatches& watches, const SemiDiscrete& problem,

@@ -32,22 +32,16 @@ const std::vector<std::string> first_measures = {"impacts",
 
 constexpr std::size_t most_shocks_drawn = 3000, most_lines_drawn = 400;
 
-/// Cases of one method, finest mesh and step first.
-struct FromFinest {
-  Cases cases;
-};
-
-std::vector<FromFinest> methods_from_finest(const answers::Compared& study) {
+/// The cases of each method, finest mesh and step first.
+std::vector<Cases> methods_from_finest(const answers::Compared& study) {
   InOrderMet<std::string, Cases> groups;
   for (const CaseRecord* record : with_status(all_cases(study.results()), "done"))
     groups[study.key(*record)].push_back(record);
-  std::vector<FromFinest> out;
+  std::vector<Cases> out;
   for (auto& [key, cases] : std::move(groups).list()) {
-    std::stable_sort(cases.begin(), cases.end(), [&](const CaseRecord* a, const CaseRecord* b) {
-      const double mesh_a = study.elements(*a).value_or(1), mesh_b = study.elements(*b).value_or(1);
-      return mesh_a != mesh_b ? mesh_a > mesh_b : study.step(*a).value_or(1) < study.step(*b).value_or(1);
-    });
-    out.push_back({std::move(cases)});
+    std::stable_sort(cases.begin(), cases.end(),
+                     [&](const CaseRecord* a, const CaseRecord* b) { return study.finer(*a, *b); });
+    out.push_back(std::move(cases));
   }
   return out;
 }
@@ -143,8 +137,8 @@ Table shock_points(const CaseView& view) {
     Row row;
   };
   std::vector<Point> points;
-  for (const FromFinest& method : methods_from_finest(answers::Compared(view.results()))) {
-    const CaseRecord& record = *method.cases.front();
+  for (const Cases& cases : methods_from_finest(answers::Compared(view.results()))) {
+    const CaseRecord& record = *cases.front();
     const NumberTable* table = find_table(record.numbers, "shocks");
     if (!table || table->rows() == 0) continue;
     const auto& peaks = *table->numbers("peak_force");
@@ -175,12 +169,12 @@ Table spectrum_bands(const CaseView& view) {
             {}};
   std::map<std::string, Band> bands;
   std::vector<double> frequencies;
-  for (const FromFinest& method : methods_from_finest(answers::Compared(view.results()))) {
+  for (const Cases& cases : methods_from_finest(answers::Compared(view.results()))) {
     std::vector<double> own;
-    const auto finest = densities(*method.cases.front(), &own);
+    const auto finest = densities(*cases.front(), &own);
     if (own.size() > frequencies.size()) frequencies = own;
     std::map<std::string, std::vector<double>> coarser;
-    if (method.cases.size() > 1) coarser = densities(*method.cases[1], nullptr);
+    if (cases.size() > 1) coarser = densities(*cases[1], nullptr);
     for (const auto& [key, density] : finest) {
       const auto other = coarser.find(key);
       widen_band(bands[key], density, other == coarser.end() ? nullptr : &other->second);
