@@ -60,6 +60,13 @@ std::string explained(const InputError& error, std::string place, const std::str
 std::string pointer_to(const std::string& parent, const std::string& key);
 std::string pointer_to(const std::string& parent, std::size_t index);
 
+/// The values of a field that may be a list.
+template <class T>
+std::vector<T> one_or_each(const Json& value) {
+  if (value.is_array()) return value.get<std::vector<T>>();
+  return {value.get<T>()};
+}
+
 /// A value as it is quoted in a message: its JSON, cut short when long.
 std::string quote(const Json& value);
 

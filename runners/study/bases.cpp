@@ -5,16 +5,9 @@
 #include <algorithm>
 #include <ricochet/scene/semi_discrete.hpp>
 
+#include "runners/json/json_text.hpp"
+
 namespace ricochet {
-namespace {
-
-std::vector<std::string> words_of(const Json& value) {
-  if (value.is_array()) return value.get<std::vector<std::string>>();
-  return {value.get<std::string>()};
-}
-
-}  // namespace
-
 std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, bool modal) {
   if (!mesh.contains("modes") && !mesh.contains("residual")) return {std::nullopt};
   if (!mesh.contains("modes") && !modal)
@@ -22,7 +15,7 @@ std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, bool modal) {
   std::vector<std::optional<BasisSpec>> bases;
   const Json counts = mesh.value("modes", Json(nullptr));
   for (const Json& modes : counts.is_array() ? counts : Json::array({counts}))
-    for (const std::string& residual : words_of(mesh.value("residual", Json("stops"))))
+    for (const std::string& residual : one_or_each<std::string>(mesh.value("residual", Json("stops"))))
       if (!modes.is_null())
         bases.push_back(BasisSpec{modes.get<int>(), residual == "stops"});
       else if (modal && residual != "stops")

@@ -77,19 +77,12 @@ void check_name(const std::string& name) {
                          quote(name));
 }
 
-// The values of a field that may be a list.
-template <class T>
-std::vector<T> list_of(const Json& value) {
-  if (value.is_array()) return value.get<std::vector<T>>();
-  return {value.get<T>()};
-}
-
 std::string element_pointer(const Json& value, const std::string& pointer, std::size_t index) {
   return value.is_array() ? pointer_to(pointer, index) : pointer;
 }
 
 void check_steps(const Json& steps, double duration) {
-  const std::vector<double> values = list_of<double>(steps);
+  const std::vector<double> values = one_or_each<double>(steps);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::string pointer = element_pointer(steps, "/step", i);
     if (values[i] > duration)
@@ -258,11 +251,11 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
       given_duration == resolved.end() || given_duration->is_null() ? 0.0 : given_duration->get<double>();
   const auto samples = resolved.value("samples", 0);
   if (stepped) check_steps(resolved["step"], duration);
-  const std::vector<double> steps = stepped ? list_of<double>(resolved["step"]) : std::vector<double>{0.0};
-  const std::vector<int> per_period = by_period ? list_of<int>(resolved["steps_per_period"]) : std::vector<int>{0};
+  const std::vector<double> steps = stepped ? one_or_each<double>(resolved["step"]) : std::vector<double>{0.0};
+  const std::vector<int> per_period = by_period ? one_or_each<int>(resolved["steps_per_period"]) : std::vector<int>{0};
   // A kind without the key marches every step.
   const std::vector<std::string> marches =
-      resolved.contains("march") ? list_of<std::string>(resolved["march"]) : std::vector<std::string>{"every-step"};
+      resolved.contains("march") ? one_or_each<std::string>(resolved["march"]) : std::vector<std::string>{"every-step"};
   // One that is not given is none of the study's axes, and none of the study as it is kept.
   const bool ways = given.contains("march");
   if (!ways) resolved.erase("march");
@@ -272,7 +265,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   if (kind.check) kind.check(resolved);
   if (!kind.shows_points && resolved["scene"].contains("points"))
     throw InputError("/scene/points", "a study of kind " + kind.name + " shows no points; expected kind trajectory");
-  const std::vector<int> meshes = list_of<int>(resolved["mesh"]["elements"]);
+  const std::vector<int> meshes = one_or_each<int>(resolved["mesh"]["elements"]);
 
   std::vector<MethodOptions> methods;
   for (const Role role : {Role::mass, Role::contact, Role::time}) {

@@ -18,11 +18,6 @@ std::vector<std::string> names_in(const Json& study, const char* list) {
   return names;
 }
 
-// One value or each of a list.
-std::vector<double> numbers_of(const Json& value) {
-  return value.is_array() ? value.get<std::vector<double>>() : std::vector<double>{value.get<double>()};
-}
-
 void check_spectra(const Json& study, const Json& outputs) {
   const std::vector<std::string> stops = names_in(study, "stops"), points = names_in(study, "points");
   std::vector<std::string> all = stops;
@@ -48,7 +43,7 @@ void check_spectra(const Json& study, const Json& outputs) {
     if (!outputs.contains(key) || outputs.at(key).is_null())
       throw InputError(fmt::format("/outputs/{}", key), "missing; spectra need rate, in Hz, and segment, in s");
   const double rate = outputs.at("rate").get<double>(), segment = outputs.at("segment").get<double>();
-  for (const double step : numbers_of(study.at("step")))
+  for (const double step : one_or_each<double>(study.at("step")))
     if (step * rate > 1)
       throw InputError("/outputs/rate", fmt::format("{:.6g} Hz is above one sample in a step of {:.6g} s; expected at "
                                                     "most {:.6g} Hz",
