@@ -10,6 +10,7 @@
 #include <cstring>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/loader/catalogue.hpp>
+#include <ricochet/measure/statistics/quantiles.hpp>
 
 #include "tests/benchmarks/reference_beam.hpp"
 #include "tests/benchmarks/thread_clock.hpp"
@@ -84,11 +85,6 @@ void measure(const Registry& registry, Case& one) {
   one.milliseconds.push_back(1e-6 * (thread_nanoseconds() - begin) / steps);
   one.most = count.most;
   if (!beam.status(0).running) one.most = -1;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/loader/catalogue.hpp>
+#include <ricochet/measure/statistics/quantiles.hpp>
 
 #include "tests/benchmarks/reference_beam.hpp"
 #include "tests/benchmarks/thread_clock.hpp"
@@ -49,11 +50,6 @@ Marcher let_go(const Registry& registry, Case& one) {
       compile(problem, plan, step, std::move(law), {scene_lane(*problem, defaults(contact->manual))}, options));
   one.predicted = 1e9 * program.predicted_step_seconds;
   return Marcher(std::move(program));
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <numbers>
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/measure/orbits/section_march.hpp>
+#include <ricochet/measure/statistics/quantiles.hpp>
 #include <thread>
 
 #include "tests/benchmarks/reference_beam.hpp"
@@ -98,11 +99,6 @@ std::unique_ptr<SectionMarch> block(const std::string& law, const Setting& setti
   }
   for (int n = 0; n < 4; ++n) march->period();
   return march;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 struct Row {

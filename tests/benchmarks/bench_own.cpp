@@ -18,12 +18,13 @@
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
-#include <ricochet/scene/assembly.hpp>
+#include <ricochet/measure/statistics/quantiles.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 
 #include "tests/benchmarks/reference_beam.hpp"
 #ifdef RICOCHET_SICONOS
+#include "tests/benchmarks/shaken_beam.hpp"
 #include "tests/benchmarks/siconos_beam.hpp"
 #endif
 #include "tests/benchmarks/thread_clock.hpp"
@@ -149,11 +150,6 @@ double microseconds(const std::shared_ptr<const SemiDiscrete>& problem, const Sc
   return (thread_nanoseconds() - start) / 1e3 / static_cast<double>(steps);
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 std::string shown(const std::vector<double>& values) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   return fmt::format("{:.3g} ({:.3g} to {:.3g})", median(values), *low, *high);
@@ -164,33 +160,13 @@ const char* name_of(OperatorKind kind) {
 }
 
 #ifdef RICOCHET_SICONOS
-ShakenBeam matrices(const SemiDiscrete& problem) {
-  ShakenBeam beam;
-  beam.M = dense_mass(problem.inertia);
-  beam.K = problem.stiffness;
-  beam.H = problem.contact;
-  beam.viscosity = problem.damping.stiffness;
-  beam.support_shape = problem.support_shape;
-  beam.translation = Eigen::VectorXd::Zero(problem.dofs());
-  const auto places = dof_places(problem.space);
-  for (int i = 0; i < problem.dofs(); ++i) beam.translation[i] = places[static_cast<std::size_t>(i)].slope ? 0 : 1;
-  beam.tip = Eigen::MatrixXd(problem.tip).row(0);
-  beam.lower = problem.lower;
-  beam.upper = problem.upper;
-  beam.position = problem.position;
-  beam.velocity = problem.velocity;
-  beam.amplitude = problem.support.amplitude;
-  beam.pulsation = problem.support.pulsation;
-  return beam;
-}
-
 // Both march the same steps; then rounds of the partner alone, whose times follow each other.
 void beside(const Scene& scene, const std::shared_ptr<const SemiDiscrete>& problem, int rounds, Registry& registry) {
   constexpr long long common = 4000, timed = 400;
   const std::pair<const char*, SiconosBeam::Form> forms[] = {{"Siconos, M, K, C dense", SiconosBeam::Form::dense},
                                                              {"Siconos, in modes", SiconosBeam::Form::modes}};
   for (const auto& [name, form] : forms) {
-    SiconosBeam partner(matrices(*problem), scene.h, common + timed * rounds, form, SiconosBeam::Leaving::passing,
+    SiconosBeam partner(shaken_beam(*problem), scene.h, common + timed * rounds, form, SiconosBeam::Leaving::passing,
                         SiconosBeam::Solver::lemke);
     Marcher ours(program(problem, scene, scene.kinds.front(), registry, true));
     ours.start();

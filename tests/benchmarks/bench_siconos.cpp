@@ -28,10 +28,11 @@
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
-#include <ricochet/scene/assembly.hpp>
+#include <ricochet/measure/statistics/quantiles.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 
 #include "tests/benchmarks/reference_beam.hpp"
+#include "tests/benchmarks/shaken_beam.hpp"
 #include "tests/benchmarks/siconos_beam.hpp"
 #include "tests/benchmarks/thread_clock.hpp"
 
@@ -68,26 +69,6 @@ std::shared_ptr<const SemiDiscrete> problem_of(const Scene& scene, Registry& reg
   const auto* mass = registry.mass("consistent");
   return std::make_shared<const SemiDiscrete>(
       std::get<SemiDiscrete>(discretise(scene.scene, 50, *mass->make(defaults(mass->manual)))));
-}
-
-ShakenBeam matrices(const SemiDiscrete& problem) {
-  ShakenBeam beam;
-  beam.M = dense_mass(problem.inertia);
-  beam.K = problem.stiffness;
-  beam.H = problem.contact;
-  beam.viscosity = problem.damping.stiffness;
-  beam.support_shape = problem.support_shape;
-  beam.translation = Eigen::VectorXd::Zero(problem.dofs());
-  const auto places = dof_places(problem.space);
-  for (int i = 0; i < problem.dofs(); ++i) beam.translation[i] = places[static_cast<std::size_t>(i)].slope ? 0 : 1;
-  beam.tip = Eigen::MatrixXd(problem.tip).row(0);
-  beam.lower = problem.lower;
-  beam.upper = problem.upper;
-  beam.position = problem.position;
-  beam.velocity = problem.velocity;
-  beam.amplitude = problem.support.amplitude;
-  beam.pulsation = problem.support.pulsation;
-  return beam;
 }
 
 // An integration of this marcher with its audit and its recorder of impacts.
@@ -149,11 +130,6 @@ void compare(const std::string& name, SiconosBeam& siconos, const std::shared_pt
              contact, totals.contact_steps, points, our_points, impulse, totals.impulse);
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 std::string range(const std::vector<double>& values, const char* format) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   return fmt::format(fmt::runtime(std::string("[") + format + ", " + format + "]"), *low, *high);
@@ -161,7 +137,7 @@ std::string range(const std::vector<double>& values, const char* format) {
 
 void race(const Scene& scene, int rounds, Registry& registry) {
   const auto problem = problem_of(scene, registry);
-  const ShakenBeam beam = matrices(*problem);
+  const ShakenBeam beam = shaken_beam(*problem);
   using Form = SiconosBeam::Form;
   using Leaving = SiconosBeam::Leaving;
   using Solver = SiconosBeam::Solver;
