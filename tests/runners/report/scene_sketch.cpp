@@ -113,3 +113,38 @@ TEST_CASE("a beam's own supports are drawn where they stand, with spans, masses 
   CHECK(value_of(study, "masses") == "0.25 kg at 1.5 m");
   CHECK_THAT(plain, !Contains("class=\"spring\""));
 }
+
+TEST_CASE("matrices with places are drawn as nodes, links, stops with their names and loads", "[report]") {
+  const Scene study = Scene::parse(R"json({"scene": {
+    "structure": {"type": "assembled", "stiffness": "K.mtx", "mass": "M.mtx", "damping": {"ratio": 0.02}},
+    "stops": [{"name": "wall", "at": {"node": "B", "component": "ux"}, "upper": 0.002},
+              {"name": "pair", "at": {"node": "A", "component": "uz"}, "to": {"node": "C", "component": "uz"},
+               "lower": -0.001, "upper": 0.003}],
+    "load": [{"at": {"node": "A", "component": "ux"}, "force": "sin(t)"}]},
+    "files": {"layout": {"axes": ["x", "z"], "nodes": ["A", "B", "C"], "x": [0, 1, 0], "y": [0, 0, 0.5], "held": [2],
+      "links": [[0, 1], [0, 2]],
+      "stops": [{"at": 1, "direction": [1, 0]}, {"at": 0, "to": 2, "direction": [0, 1]}],
+      "loads": [{"at": 0, "direction": [1, 0]}]}}})json");
+  const std::string svg = report::scene_svg(study);
+  CHECK_THAT(svg, Contains("wall 0.002 m") && Contains("pair 0.003 m") && Contains(">F(t)<") && Contains(">1 m<"));
+  CHECK_THAT(svg, Contains(">x<") && Contains(">z<"));
+  CHECK(count(svg, "rect class=\"solid\"") == 1);
+  CHECK(count(svg, "<line class=\"stop\"") == 4);  // three faces, and the line to the other node
+  CHECK(value_of(study, "damping ratio") == "0.02");
+  CHECK(value_of(study, "load") == "F(t) at A ux = sin(t)");
+}
+
+TEST_CASE("points without places are drawn in a row, each with its stops", "[report]") {
+  const Scene study = Scene::parse(R"json({"scene": {
+    "structure": {"type": "modal", "modes": "modes.csv", "shapes": "shapes.csv"},
+    "stops": [{"name": "plate", "at": {"point": "middle"}, "lower": -1e-3, "upper": 2e-3}],
+    "load": [{"at": {"point": "force"}, "force": {"file": "f.csv"}}]},
+    "files": {"layout": {"points": ["force", "middle"]}}})json");
+  const std::string svg = report::scene_svg(study);
+  CHECK(count(svg, "<circle class=\"body\"") == 2);
+  CHECK_THAT(svg, Contains(">plate<") && Contains(">middle<") && Contains(">0.002 m<") && Contains(">F(t)<"));
+  CHECK(value_of(study, "load") == "F(t) at point force = f.csv");
+  Scene none = study;
+  none.erase("files");
+  CHECK(report::scene_svg(none).empty());
+}
