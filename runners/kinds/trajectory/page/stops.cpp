@@ -79,10 +79,6 @@ void widen_band(Band& band, const std::vector<double>& finest, const std::vector
 
 }  // namespace
 
-const std::vector<std::string>& first_measures_of_stops() {
-  return first_measures;
-}
-
 std::string stops_html(const CaseView& view) {
   const Table* table = find_table(view.results().derived, "uncertainty");
   if (!table || table->rows.empty()) return "";

@@ -1,13 +1,9 @@
 #pragma once
 #include <string>
-#include <vector>
 
 #include "runners/report/case_view.hpp"
 
 namespace ricochet::report {
-
-/// Of the many measures of a stop those that a first look is for, in this order.
-const std::vector<std::string>& first_measures_of_stops();
 
 /// What each stop that has a name gives, a row per measure and a column per stop, as HTML; "" without such stops.
 std::string stops_html(const CaseView& view);
