@@ -53,7 +53,7 @@ double mesh_pulsation(const UniformPart& part, double length, int elements, int 
     return out;
   };
   const Eigen::Matrix2d k = wave(K), m = wave(M);
-  const double two = m.determinant(), zero = k.determinant(),
+  const double two = m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0), zero = k(0, 0) * k(1, 1) - k(0, 1) * k(1, 0),
                one = k(0, 0) * m(1, 1) + k(1, 1) * m(0, 0) - 2 * k(0, 1) * m(0, 1);
   return std::sqrt(2 * zero / (one + std::sqrt(one * one - 4 * two * zero)));
 }
