@@ -106,12 +106,11 @@ std::string decider(const Compared& study, const MeasureLimits& limits, const Me
   const std::string said = spoken(lead->choice);
   std::optional<Sentence> levels = apart_levels(study, limits, lead->choice);
   if (!levels) return fmt::format("{} moves it most", said);
-  MeasureWords bare = words;
-  bare.unit.clear();
   std::string values;
   for (Clause& one : levels->clauses) {
     const double own = limits.words.factor;
-    const std::string low = value_text(bare, *one.low / own, margin), high = value_text(bare, *one.high / own, margin);
+    const std::string low = value_text(words, *one.low / own, margin, false),
+                      high = value_text(words, *one.high / own, margin, false);
     values += fmt::format("{}{} with {}", values.empty() ? "" : ", ", low == high ? low : low + " to " + high, one.who);
     clauses.push_back(std::move(one));
   }
