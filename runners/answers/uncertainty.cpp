@@ -74,7 +74,8 @@ const char* verdict(const Spread& spread) {
   return *margin == *spread.step ? "step" : *margin == spread.mesh.value_or(-1) ? "mesh" : "sampling";
 }
 
-// Small powers and lengths are read in thousandths and millionths.
+}  // namespace
+
 MeasureWords prefixed(MeasureWords words, double scale) {
   constexpr double thousandths = 0.1, millionths = 1e-4;
   if (words.unit != "W" && words.unit != "m") return words;
@@ -87,6 +88,8 @@ MeasureWords prefixed(MeasureWords words, double scale) {
   }
   return words;
 }
+
+namespace {
 
 Clause number_clause(const MeasureWords& words, const std::string& choice, double value) {
   Clause out{.form = "value", .measure = words.measure, .choice = choice};

@@ -15,7 +15,7 @@ namespace ricochet::report {
 namespace {
 
 // Pixels of the drawing: where the structure begins, how long it is, its line at rest, and how far stops may lie off.
-constexpr double sketch_width = 640, sketch_height = 168, sketch_left = 76, sketch_span = 480, sketch_rest = 84,
+constexpr double sketch_width = 640, sketch_height = 184, sketch_left = 76, sketch_span = 480, sketch_rest = 84,
                  nearest_gap = 9, widest_gap = 44;
 
 /// A stop above (or below) a point: its face level at y, hatched away from the structure.

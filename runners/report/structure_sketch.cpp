@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double sketch_margin = 100, sketch_height_margin = 62, tallest_sketch = 230, lowest_sketch = 60,
+constexpr double sketch_margin = 122, sketch_height_margin = 62, tallest_sketch = 230, lowest_sketch = 60,
                  stop_gap = 12, force_length = 34;
 constexpr std::size_t most_sketch_labels = 12;
 

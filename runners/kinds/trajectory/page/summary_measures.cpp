@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runners/answers/numbers_in_words.hpp"
+#include "runners/answers/uncertainty.hpp"
 #include "runners/report/html.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"
@@ -16,8 +17,9 @@ namespace {
 constexpr std::size_t most_summary_measures = 8;
 
 // Of the measures of a stop, those that a file asks for beside what is observed.
-const std::vector<std::string> summary_order = {"peak_force", "impulse", "wear_power", "window_displacement_max",
-                                                "shock_force_max", "shock_rate", "window_impact_rate", "impacts"};
+const std::vector<std::string> summary_order = {
+    "peak_force",      "impulse",    "wear_power",         "window_displacement_max",
+    "shock_force_max", "shock_rate", "window_impact_rate", "impacts"};
 
 /// One measure over all methods, in the unit of its table.
 struct SummaryMeasure {
@@ -81,11 +83,14 @@ void add_row(HtmlTable& table, const std::string& name, const SummaryMeasure& on
   answers::MeasureWords words = answers::measure_words(name);
   words.factor = 1;
   words.unit = one.unit;
+  const double size = std::max(std::abs(one.least), std::abs(one.largest));
+  words = answers::prefixed(std::move(words), size);
   const bool known = one.low && one.high;
   table.row(words.words);
-  table.number(answers::range_text(words, known ? *one.low : one.least, known ? *one.high : one.largest) +
-               (known ? "" : " ?"));
-  const double size = std::max(std::abs(one.least), std::abs(one.largest));
+  // Shares of energy that no method has below 0 are none below it.
+  const bool share_of_energy = one.unit == "%" && one.least >= 0;
+  const double low = !known ? one.least : share_of_energy ? std::max(0.0, *one.low) : *one.low;
+  table.number(answers::range_text(words, low, known ? *one.high : one.largest) + (known ? "" : " ?"));
   const auto share = [&](const std::optional<double>& value) {
     if (!value || !std::isfinite(*value) || size == 0)
       table.absent();
