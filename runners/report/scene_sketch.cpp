@@ -177,12 +177,13 @@ std::string tip_stops(const SceneValues& scene, double length, double x, double 
   const Gaps gaps(stops);
   std::string out;
   for (const SceneValues::Stop& stop : stops) {
+    const std::string name = stop.name.empty() ? "" : stop.name + " ";
     if (stop.upper)
       out += upright_stop(x + 4 + gaps(*stop.upper), y, 1) +
-             label(x + 14 + gaps(*stop.upper), y + 4, metres(*stop.upper), "start");
+             label(x + 14 + gaps(*stop.upper), y + 4, name + metres(*stop.upper), "start");
     if (stop.lower)
       out += upright_stop(x - 4 - gaps(*stop.lower), y, -1) +
-             label(x - 14 - gaps(*stop.lower), y + 4, metres(*stop.lower), "end");
+             label(x - 14 - gaps(*stop.lower), y + 4, name + metres(*stop.lower), "end");
   }
   return out + (stops.empty() ? "" : line(x, y - 10, x, y + 22, "structure"));
 }

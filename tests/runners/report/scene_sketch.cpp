@@ -59,6 +59,9 @@ TEST_CASE("every structure is drawn, a study without a scene has no sketch", "[r
     "force": {"amplitude": 1, "pulsation": 2.2}}, "stops": {"upper": 0.1, "at": "tip"}},
     "parameter": {"pointer": "/scene/structure/force/amplitude", "from": 0.2, "to": 1.2, "count": 6}})");
   CHECK_THAT(report::scene_svg(oscillator), Contains("F cos(ωt + ψ)"));
+  Scene named = oscillator;
+  named["scene"]["stops"] = Scene::parse(R"([{"name": "wall", "at": {"x": 0}, "upper": 0.25}])");
+  CHECK_THAT(report::scene_svg(named), Contains(">wall 0.25 m<"));
   CHECK(value_of(oscillator, "F") == "from 0.2 to 1.2 N, swept");
   const Scene bar = Scene::parse(R"({"scene": {"structure": {"type": "bar", "length": 2, "EA": 3, "rhoA": 1,
     "fixed": "right"}, "stops": {"lower": -0.5, "at": "tip"}}})");
