@@ -105,12 +105,15 @@ std::vector<std::pair<int, int>> linked_nodes(const std::map<std::string, Assemb
     for (const auto& [component, dof] : node.dofs) node_of[static_cast<std::size_t>(dof) - 1] = number;
     ++number;
   }
-  std::set<std::pair<int, int>> links;
+  std::vector<std::pair<int, int>> links;
   for (int j = 0; j < stiffness.outerSize(); ++j)
-    for (SparseMatrix::InnerIterator it(stiffness, j); it; ++it)
-      if (const int a = node_of[static_cast<std::size_t>(it.row())], b = node_of[static_cast<std::size_t>(j)]; a < b)
-        links.emplace(a, b);
-  return {links.begin(), links.end()};
+    for (SparseMatrix::InnerIterator it(stiffness, j); it; ++it) {
+      const std::pair link(node_of[static_cast<std::size_t>(it.row())], node_of[static_cast<std::size_t>(j)]);
+      if (link.first < link.second && (links.empty() || links.back() != link)) links.push_back(link);
+    }
+  std::sort(links.begin(), links.end());
+  links.erase(std::unique(links.begin(), links.end()), links.end());
+  return links;
 }
 
 int NodeLayout::find(const std::string& node) const {

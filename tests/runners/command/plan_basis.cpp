@@ -30,6 +30,6 @@ TEST_CASE("plan tells what modes leave out at each stop, and that times the stif
   // R = 1/48 − 2/π⁴ = 3.0126e-4 m/N, 1.4 % of 1/48.
   const std::string both = planned(R"(["signorini", {"name": "penalty", "stiffness": [10, 1000]}])");
   CHECK_THAT(both, Contains("stop mid: the modes leave out 1.4 % of the flexibility, 0.000301 m/N"));
-  CHECK_THAT(both, Contains("that times the stiffest spring, R κ with κ = 1000 N/m: mid 30 %"));
+  CHECK_THAT(both, Contains("what modes leave out times the stiffest spring, R κ with κ = 1000 N/m: mid 30 %"));
   CHECK_THAT(planned(R"("signorini")"), !Contains("stiffest spring"));
 }
