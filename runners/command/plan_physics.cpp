@@ -158,7 +158,8 @@ std::string left_out_text(const StructurePhysics& physics, const Json& scene, st
     text += fmt::format("{}{} {:.2g} %", i == 0 ? "" : ", ", name, percent * physics.left_out[i] * *spring);
   }
   if (physics.left_out.size() > most_points) text += fmt::format(" and {} more", physics.left_out.size() - most_points);
-  return fmt::format("    what modes leave out times the stiffest spring, R κ with κ = {:.4g} N/m: {}\n", *spring, text);
+  return fmt::format("    what modes leave out times the stiffest spring, R κ with κ = {:.4g} N/m: {}\n", *spring,
+                     text);
 }
 
 std::string structure_text(const Group& group, const StudyCase& one, const std::vector<double>& steps,

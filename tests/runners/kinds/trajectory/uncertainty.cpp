@@ -56,7 +56,9 @@ TEST_CASE("an interval is the range over the methods, widened by the largest of 
   CHECK(told(table, "low").number().value() == Approx(9.8).epsilon(1e-12));
   CHECK(told(table, "high").number().value() == Approx(11.2).epsilon(1e-12));
   CHECK(told(table, "verdict").text() == "methods");
-  CHECK(told(table, "sentence").text() == "Rms force at bar: 9.8 to 11.2 N; the time scheme decides it (10.0 with newmark, 11.0 with moreau-jean); the step "
+  CHECK(told(table, "sentence").text() ==
+        "Rms force at bar: 9.8 to 11.2 N; the time scheme decides it (10.0 with newmark, 11.0 with moreau-jean); the "
+        "step "
         "leaves 0.2.");
 
   results.cases.back().measures.emplace_back("confidence.rms_force[bar]", 0.8);
@@ -101,9 +103,10 @@ TEST_CASE("small powers are said in thousandths of a watt, and stand in the tabl
   const Table table = uncertain(results);
   CHECK(told(table, "unit").text() == "W");
   CHECK(told(table, "low").number().value() == Approx(9.8e-4).epsilon(1e-12));
-  CHECK(told(table, "sentence").text() ==
-        "Wear power at bar: 0.98 to 1.12 mW; the time scheme decides it (1.00 with newmark, 1.10 with moreau-jean); the "
-        "step leaves 0.02.");
+  CHECK(
+      told(table, "sentence").text() ==
+      "Wear power at bar: 0.98 to 1.12 mW; the time scheme decides it (1.00 with newmark, 1.10 with moreau-jean); the "
+      "step leaves 0.02.");
 }
 
 TEST_CASE("an interval of what is never below 0 begins at 0") {
