@@ -6,7 +6,7 @@
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/scene/assembly.hpp>
-#include <ricochet/scene/basis/modal_basis.hpp>
+#include <ricochet/scene/basis/shared_bases.hpp>
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/massless_part.hpp>
@@ -327,9 +327,7 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   hold_by_supports(scene.structure, elements, problem);
   // The modes of K with the consistent or given mass, whatever mass is marched.
   const SparseMatrix whole = scene.basis ? consistent_mass(problem.space) : SparseMatrix();
-  if (scene.basis)
-    problem.basis = std::make_shared<const ModalBasis>(
-        modal_basis(problem.stiffness, whole, problem.contact, problem.held, *scene.basis));
+  if (scene.basis) problem.basis = shared_basis(problem.stiffness, whole, problem.contact, problem.held, *scene.basis);
   auto built = build_mass(problem, mass);
   if (auto* refusal = std::get_if<Refusal>(&built)) return *refusal;
   problem.inertia = std::get<Inertia>(std::move(built));

@@ -10,6 +10,7 @@
 #include "runners/answers/choice_sentences.hpp"
 #include "runners/answers/set_names.hpp"
 #include "runners/answers/tier_speaker.hpp"
+#include "runners/answers/uncertainty.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 constexpr std::size_t a_dozen = 12, sentences_at_most = 5;
 
 struct MeasureSaid {
-  std::string kind;  ///< differ, none, open, value, choices
+  std::string kind;  ///< differ, none, open, value, choices, interval
   std::vector<Sentence> sentences;
   MeasureLimits limits;
   double scale = 1;
@@ -230,6 +231,12 @@ Answer measure_answer(const Compared& study, const std::vector<std::string>& mea
     for (std::size_t k = 0; k < std::min(measures.size(), measures_at_most); ++k) {
       MeasureSaid said = say_measure(study, measures[k], kept);
       if (said.sentences.empty()) continue;
+      // What methods and refinement leave of a stop's measure; a choice that is asked for speaks by itself.
+      if (study.asked().empty() && (said.kind == "differ" || said.kind == "choices"))
+        if (std::optional<Sentence> interval = uncertainty_sentence(study, said.limits)) {
+          said.kind = "interval";
+          said.sentences = {std::move(*interval)};
+        }
       if (chaotic_means(results) && !measures[k].starts_with("window") && !has_interval(results, measures[k])) {
         const std::size_t stop = measures[k].find('[');
         const std::string mean = stop == std::string::npos ? "" : "window_contact_" + measures[k];

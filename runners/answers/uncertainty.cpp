@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "runners/answers/choice_sentences.hpp"
 #include "runners/answers/limits.hpp"
 
 namespace ricochet::answers {
@@ -73,32 +74,104 @@ const char* verdict(const Spread& spread) {
   return *margin == *spread.step ? "step" : *margin == spread.mesh.value_or(-1) ? "mesh" : "sampling";
 }
 
-std::string with_unit(const MeasureWords& words, const std::string& number) {
-  return words.unit.empty() ? number : number + " " + words.unit;
+}  // namespace
+
+MeasureWords prefixed(MeasureWords words, double scale) {
+  constexpr double thousandths = 0.1, millionths = 1e-4;
+  if (words.unit != "W" && words.unit != "m") return words;
+  if (scale < millionths) {
+    words.factor *= 1e6;
+    words.unit = "µ" + words.unit;
+  } else if (scale < thousandths) {
+    words.factor *= 1e3;
+    words.unit = "m" + words.unit;
+  }
+  return words;
 }
 
-std::string sentence(const MeasureWords& words, const Spread& spread) {
-  const auto shown = [&](double value) { return cell_text(words, value); };
-  const auto range = [&](double low, double high) {
-    const std::string from = shown(low), to = shown(high);
-    return with_unit(words, from == to ? from : from + " to " + to);
+namespace {
+
+Clause number_clause(const MeasureWords& words, const std::string& choice, double value) {
+  Clause out{.form = "value", .measure = words.measure, .choice = choice};
+  out.value = value;
+  out.unit = words.unit;
+  return out;
+}
+
+// The choice that most of the spread is due to, and what each of its levels gives, as far as `margin` tells.
+std::string decider(const Compared& study, const MeasureLimits& limits, const MeasureWords& words, double margin,
+                    std::vector<Clause>& clauses) {
+  const std::vector<ChoiceEffect> effects = choice_effects(study, limits);
+  const auto lead = std::max_element(effects.begin(), effects.end(), [](const ChoiceEffect& a, const ChoiceEffect& b) {
+    return a.typical < b.typical;
+  });
+  if (lead == effects.end() || !(lead->typical > 0)) return "";
+  const std::string said = spoken(lead->choice);
+  std::optional<Sentence> levels = apart_levels(study, limits, lead->choice);
+  if (!levels) return fmt::format("{} moves it most", said);
+  std::string values;
+  for (Clause& one : levels->clauses) {
+    const double own = limits.words.factor;
+    const std::string low = value_text(words, *one.low / own, margin, false),
+                      high = value_text(words, *one.high / own, margin, false);
+    values += fmt::format("{}{} with {}", values.empty() ? "" : ", ", low == high ? low : low + " to " + high, one.who);
+    clauses.push_back(std::move(one));
+  }
+  return fmt::format("{} decides it ({})", said, values);
+}
+
+// "rms force at bar-a: 0.17 to 0.19 N; the contact law decides it (0.17 with penalty, 0.19 with rigid stops); the
+// step leaves 4e-4, the mesh 2e-4".
+Sentence interval_sentence(const Compared& study, const MeasureLimits& limits, const Spread& spread) {
+  const MeasureWords words = prefixed(limits.words, spread.scale());
+  const std::string name = capitalised(words.words);
+  Sentence out;
+  Clause range{.form = "value", .measure = words.measure};
+  range.unit = limits.words.unit;
+  const auto ends = [&](double low, double high) {
+    range.low = low * limits.words.factor;
+    range.high = high * limits.words.factor;
+    out.clauses.push_back(range);
+    return range_text(words, low, high);
   };
   const std::optional<double> margin = spread.margin();
-  const std::string name = capitalised(words.words);
-  if (!margin)
-    return fmt::format("{}: {}; what the step leaves open is not known.", name, range(spread.least, spread.largest));
-  // What is below it is round-off.
-  const double floor = 1e-9 * spread.scale();
-  std::string moves;
+  if (!margin) {
+    out.text = fmt::format("{}: {}; what the step leaves open is not known.", name, ends(spread.least, spread.largest));
+    return out;
+  }
+  out.text = fmt::format("{}: {}", name, ends(spread.low(*margin), spread.largest + *margin));
+  // What is below it is round-off, or nothing beside the interval.
+  const double floor = std::max(1e-9 * spread.scale(), 1e-3 * *margin);
+  std::string parts;
+  if (spread.methods > 1 && spread.size() > floor) {
+    const std::string verdict_word = verdict(spread);
+    parts = verdict_word == "methods" ? decider(study, limits, words, *margin, out.clauses) : "";
+    if (parts.empty()) {
+      MeasureWords bare = words;
+      bare.unit.clear();
+      parts = "methods differ by " + uncertainty_text(bare, spread.size());
+      out.clauses.push_back(number_clause(limits.words, "methods", spread.size() * limits.words.factor));
+    }
+  }
+  std::string left;
   const auto add = [&](const char* what, const std::optional<double>& by) {
-    if (by && *by > floor) moves += fmt::format("{}{} ({})", moves.empty() ? "" : ", ", what, shown(*by));
+    if (!by || !(*by > floor)) return;
+    MeasureWords bare = words;
+    bare.unit.clear();
+    left += fmt::format("{} {} {}", left.empty() ? ";" : ",", what + std::string(left.empty() ? " leaves" : ""),
+                        uncertainty_text(bare, *by));
+    out.clauses.push_back(number_clause(limits.words, what, *by * limits.words.factor));
   };
-  if (spread.methods > 1) add("methods", spread.size());
   add("the step", spread.step);
-  add("the mesh", spread.mesh);
+  add(study.varies("modes") ? "the number of modes" : "the mesh", spread.mesh);
   add("sampling", spread.sampling);
-  return fmt::format("{}: {}{}.", name, range(spread.low(*margin), spread.largest + *margin),
-                     moves.empty() ? "" : "; moved by " + moves);
+  out.text += (parts.empty() ? "" : "; " + parts) + left + ".";
+  return out;
+}
+
+Spread signed_spread(Spread spread, const std::string& measure) {
+  spread.either_sign = measure.starts_with("window_displacement_m");  // mean, min, max
+  return spread;
 }
 
 }  // namespace
@@ -108,7 +181,7 @@ Table uncertainty_table(const Compared& study) {
       "uncertainty",
       "One measure of one stop over all methods: between which values it is.",
       {{"measure", "", "The measure, without its stop."},
-       {"stop", "", "Name of the stop."},
+       {"stop", "", "Name of the stop, or of the point of a spectrum."},
        {"unit", "", "Unit of the numbers."},
        {"value", "", "That of the first method at its finest step and mesh."},
        {"least", "", "The least over the methods, each at its finest step and mesh."},
@@ -126,11 +199,10 @@ Table uncertainty_table(const Compared& study) {
       {}};
   for (const std::string& name : measures_of_stops(study.results())) {
     const MeasureLimits limits = limits_of(study, name, false, all_cases(study.results()));
-    std::optional<Spread> found = spread_of(limits);
+    const std::optional<Spread> found = spread_of(limits);
     if (!found) continue;
     const auto [measure, stop] = *measure_of_stop(name);
-    found->either_sign = measure.starts_with("window_displacement_m");  // mean, min, max
-    const Spread& spread = *found;
+    const Spread spread = signed_spread(*found, measure);
     const double factor = limits.words.factor;
     const auto scaled = [factor](std::optional<double> value) { return value ? Cell(*value * factor) : Cell(); };
     const std::optional<double> margin = spread.margin();
@@ -138,9 +210,16 @@ Table uncertainty_table(const Compared& study) {
                           factor * spread.largest, spread.methods, scaled(spread.step), scaled(spread.mesh),
                           scaled(spread.sampling), margin ? Cell(factor * spread.low(*margin)) : Cell(),
                           margin ? Cell(factor * (spread.largest + *margin)) : Cell(), verdict(spread),
-                          sentence(limits.words, spread)});
+                          interval_sentence(study, limits, spread).text});
   }
   return table;
+}
+
+std::optional<Sentence> uncertainty_sentence(const Compared& study, const MeasureLimits& limits) {
+  const auto named = measure_of_stop(limits.words.measure);
+  const std::optional<Spread> spread = named ? spread_of(limits) : std::nullopt;
+  if (!spread || spread->methods < 2 || !spread->margin()) return std::nullopt;
+  return interval_sentence(study, limits, signed_spread(*spread, named->first));
 }
 
 }  // namespace ricochet::answers

@@ -1,5 +1,8 @@
 #pragma once
-#include "runners/answers/compared.hpp"
+#include <optional>
+
+#include "runners/answers/answer.hpp"
+#include "runners/answers/limits.hpp"
 #include "runners/table/table.hpp"
 
 namespace ricochet::answers {
@@ -11,5 +14,13 @@ namespace ricochet::answers {
 /// over the methods, each at its finest step and mesh. Gaps are the largest u that a method's refinement leaves,
 /// sampling half the 95 % interval of a mean over the parts of a window. The interval is blank of a single step.
 Table uncertainty_table(const Compared& study);
+
+/// Words whose numbers are thousandths or millionths where the unit is W or m and the largest value, `scale` (in the
+/// unit), is small: mW below 0.1 W, µW below 1e-4 W.
+MeasureWords prefixed(MeasureWords words, double scale);
+
+/// The sentence of that row: the interval, the choice that decides it with what its levels give, and what step, mesh
+/// and sampling leave open. Nothing for measures of whole cases, a single method, or a single step.
+std::optional<Sentence> uncertainty_sentence(const Compared& study, const MeasureLimits& limits);
 
 }  // namespace ricochet::answers

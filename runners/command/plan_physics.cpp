@@ -127,7 +127,43 @@ std::string stops_text(const Json& scene, const std::vector<double>& stiffness) 
   return text;
 }
 
-std::string structure_text(const StudyCase& one, const std::vector<double>& steps, const Registry& registry) {
+/// κ of the stiffest law of the study whose force is κ times the depth, N/m.
+std::optional<double> stiffest_spring(const Group& group, const Registry& registry) {
+  std::optional<double> out;
+  for (const PlannedCase* one : group) {
+    const MethodChoice& law = one->study_case->contact;
+    const PluginManual* manual = registry.manual(Role::contact, law.name);
+    if (!manual) continue;
+    const std::vector<ParameterSpec>& declared = manual->parameters;
+    const auto spring = std::find_if(declared.begin(), declared.end(), [](const ParameterSpec& spec) {
+      return spec.role == ParameterRole::stiffness && spec.unit == "N/m";
+    });
+    if (spring == declared.end()) continue;
+    if (const auto stiffness = value_of_role(declared, law.parameters, ParameterRole::stiffness))
+      out = std::max(out.value_or(0), *stiffness);
+  }
+  return out;
+}
+
+/// R_ii κ: how much softer than its spring a stop would be without the residual flexibility of the modes.
+std::string left_out_text(const StructurePhysics& physics, const Json& scene, std::optional<double> spring) {
+  if (physics.left_out.empty() || !spring) return "";
+  constexpr std::size_t most_points = 12;
+  constexpr double percent = 100;
+  const Json& stops = scene.at("stops");
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most_points, physics.left_out.size()); ++i) {
+    const std::string name =
+        stops.is_array() && i < stops.size() ? stops[i]["name"].get<std::string>() : fmt::format("point {}", i + 1);
+    text += fmt::format("{}{} {:.2g} %", i == 0 ? "" : ", ", name, percent * physics.left_out[i] * *spring);
+  }
+  if (physics.left_out.size() > most_points) text += fmt::format(" and {} more", physics.left_out.size() - most_points);
+  return fmt::format("    what modes leave out times the stiffest spring, R κ with κ = {:.4g} N/m: {}\n", *spring,
+                     text);
+}
+
+std::string structure_text(const Group& group, const StudyCase& one, const std::vector<double>& steps,
+                           const Registry& registry) {
   const auto mass = registry.mass(one.mass.name)->make(one.mass.parameters);
   const auto answer = structure_physics(one.scene, one.elements, *mass);
   const auto* physics = std::get_if<StructurePhysics>(&answer);
@@ -141,6 +177,7 @@ std::string structure_text(const StudyCase& one, const std::vector<double>& step
               ? fmt::format("; modes with mass {}\n", one.mass.name)
               : fmt::format("; modes with mass {} on {} elements\n", one.mass.name, physics->elements);
   for (const std::string& line : physics->details) text += "    " + line + "\n";
+  text += left_out_text(*physics, one.scene_json, stiffest_spring(group, registry));
   if (physics->pulsations.empty())
     text += "    no frequencies: the structure has more dofs than plan finds modes of\n";
   else
@@ -160,7 +197,7 @@ std::string physics_text(const std::vector<PlannedCase>& cases, const CasePlanne
     const Group& group = groups[g].second;
     const std::vector<double> steps = steps_of(group);
     const StudyCase& one = representative(group);
-    text += planner.ask(one, [&] { return structure_text(one, steps, registry); });
+    text += planner.ask(one, [&] { return structure_text(group, one, steps, registry); });
   }
   if (groups.size() > most_structures)
     text += fmt::format("  and {} more structures\n", groups.size() - most_structures);

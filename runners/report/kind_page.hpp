@@ -21,6 +21,8 @@ struct KindPage {
   std::vector<Table (*)(const CaseView&)> derived;
   /// The section "Answer" as HTML: sentences and tables made of rows.
   std::function<std::string(const CaseView&)> answer;
+  /// Tables of the page that a file keeps, between its answer and its figure.
+  std::function<std::string(const CaseView&)> summary;
   /// A section on the methods, after the figures.
   std::function<std::string(const CaseView&)> methods;
   /// What the scripts read beside tables, under this key; large columns of numbers go to the blocks.

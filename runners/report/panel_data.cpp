@@ -121,7 +121,7 @@ Snapshots thinned(const Snapshots& all, size_t stride) {
   out.t.clear();
   out.clamp.clear();
   out.displacement.clear();
-  const size_t places = all.x.size(), points = all.point.size();
+  const size_t places = all.values(), points = all.point.size();
   for (size_t i = 0; i < all.t.size(); i += stride) {
     out.t.push_back(all.t[i]);
     out.clamp.push_back(all.clamp[i]);
@@ -150,6 +150,20 @@ PageJson stops_json(const std::vector<double>& places) {
   return out;
 }
 
+// Of a structure of files: nodes on a plane, or points.
+void add_drawing(const Snapshots& shots, PageJson& out) {
+  out["names"] = shots.names;
+  out["stops"] = PageJson::array();
+  for (const Snapshots::Stop& stop : shots.stops)
+    out["stops"].push_back({{"at", stop.at}, {"to", stop.to}, {"direction", stop.direction}});
+  if (shots.y.empty()) return;
+  static const char* const axes[] = {"x", "y", "z"};
+  out["axes"] = {axes[shots.axes[0]], axes[shots.axes[1]]};
+  out["y"] = shots.y;
+  out["held"] = shots.held;
+  out["links"] = shots.links;
+}
+
 PageJson one_case(const std::string& id, const Snapshots& shots, CurveData& blocks) {
   const std::string key = id + "/" + snapshots_name + "/";
   blocks.put_floats(key + "t", shots.t);
@@ -157,13 +171,15 @@ PageJson one_case(const std::string& id, const Snapshots& shots, CurveData& bloc
   put_whole(blocks, key + "u", "i16", shots.displacement);
   put_whole(blocks, key + "pushed", "u32", shots.pushed);
   put_whole(blocks, key + "force", "i16", shots.force);
-  return {{"along", shots.along},
-          {"x", shots.x},
-          {"point", shots.point},
-          {"lower", stops_json(shots.lower)},
-          {"upper", stops_json(shots.upper)},
-          {"metres", shots.metres},
-          {"newtons", shots.newtons}};
+  PageJson out = {{"along", shots.along},
+                  {"x", shots.x},
+                  {"point", shots.point},
+                  {"lower", stops_json(shots.lower)},
+                  {"upper", stops_json(shots.upper)},
+                  {"metres", shots.metres},
+                  {"newtons", shots.newtons}};
+  if (!shots.names.empty()) add_drawing(shots, out);
+  return out;
 }
 
 }  // namespace

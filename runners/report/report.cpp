@@ -77,7 +77,7 @@ std::string script(const std::string& attributes, const std::string& content) {
 /// A sentence with its numbers in bold, so that the eye finds them.
 std::string emphasised(const std::string& sentence) {
   static const std::string digits = "(?:−)?[0-9][0-9.]*(?:e-?[0-9]+)?",
-                           unit = "(?:%|times|N s|m/s|rad/s|N/m|ms|µs|s|m|N|J|W)";
+                           unit = "(?:%|times|N s|m/s|rad/s|N/m|ms|µs|s|m|N|J|W|mW|µW|mm|µm)";
   static const std::regex number("(^|[ (])(" + digits + "(?: ± " + digits + ")?(?: to " + digits + ")?(?: " + unit +
                                  "(?![A-Za-z/]))?)(?=[ ,.;:)]|$)");
   // The numbers of orders and parameters are no results.
@@ -126,7 +126,7 @@ std::string render_page(const StudyResults& results, const KindPage& kind, std::
   page.set("name", results.name);
   page.set("kind", results.kind);
   page.set("style", std::string(asset("page.css")) + std::string(asset("panel.css")) + page_margins(results));
-  page.set("summary", summary_html(view));
+  page.set("summary", summary_html(view, kind.summary ? kind.summary(view) : ""));
   if (const std::string sketch = scene_svg(results.study); !sketch.empty()) page.set("sketch", sketch);
   if (!results.question.empty()) page.set("question", results.question);
   page.set("counts", counts_text(results));

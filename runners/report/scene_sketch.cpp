@@ -9,12 +9,13 @@
 #include "runners/report/html.hpp"
 #include "runners/report/scene_values.hpp"
 #include "runners/report/sketch_lines.hpp"
+#include "runners/report/structure_sketch.hpp"
 
 namespace ricochet::report {
 namespace {
 
 // Pixels of the drawing: where the structure begins, how long it is, its line at rest, and how far stops may lie off.
-constexpr double sketch_width = 640, sketch_height = 168, sketch_left = 76, sketch_span = 480, sketch_rest = 84,
+constexpr double sketch_width = 640, sketch_height = 184, sketch_left = 76, sketch_span = 480, sketch_rest = 84,
                  nearest_gap = 9, widest_gap = 44;
 
 /// A stop above (or below) a point: its face level at y, hatched away from the structure.
@@ -67,6 +68,41 @@ std::vector<std::string> motion_words(const SceneValues& scene) {
     words.push_back(fmt::format("{} of {}: {}", accelerates ? "acceleration" : "displacement",
                                 who == "all" ? "all supports" : who,
                                 source.is_string() ? source.get<std::string>() : source.dump()));
+  }
+  return words;
+}
+
+/// A history: its formula, its file, or its spectrum.
+std::string history_words(const nlohmann::ordered_json& given) {
+  if (given.is_string()) return given.get<std::string>();
+  if (!given.is_object()) return given.dump();
+  if (given.contains("file")) return given["file"].get<std::string>();
+  if (!given.contains("psd")) return given.dump();
+  const auto& psd = given["psd"];
+  const auto& density = psd.contains("formula") ? psd["formula"] : psd.value("file", nlohmann::ordered_json(""));
+  return fmt::format("random, one-sided density {} N²/Hz from {} to {} Hz",
+                     density.is_string() ? density.get<std::string>() : density.dump(), psd["from"].dump(),
+                     psd["to"].dump());
+}
+
+/// Loads in words, a line for each term.
+std::vector<std::string> load_words(const SceneValues& scene) {
+  const auto* load = scene.at("/scene/load");
+  if (!load || !load->is_array()) return {scene.text("/scene/load", "")};
+  std::vector<std::string> words;
+  for (const auto& term : *load) {
+    if (!term.is_object()) return {scene.text("/scene/load", "")};
+    if (term.contains("force")) {
+      const auto place = term.contains("at") ? term["at"] : nlohmann::ordered_json();
+      const std::string where = place.is_number()                          ? "x = " + place.dump() + " m"
+                                : place.is_object() && place.contains("x") ? "x = " + place["x"].dump() + " m"
+                                : place.is_object()                        ? place_words(place)
+                                                                           : "";
+      words.push_back(fmt::format("F(t){} = {}", where.empty() ? "" : " at " + where, history_words(term["force"])));
+    } else {
+      words.push_back(fmt::format("{} times {}", term.contains("shape") ? term["shape"].dump() : "f(x)",
+                                  term.contains("time") ? history_words(term["time"]) : "g(t)"));
+    }
   }
   return words;
 }
@@ -141,12 +177,13 @@ std::string tip_stops(const SceneValues& scene, double length, double x, double 
   const Gaps gaps(stops);
   std::string out;
   for (const SceneValues::Stop& stop : stops) {
+    const std::string name = stop.name.empty() ? "" : stop.name + " ";
     if (stop.upper)
       out += upright_stop(x + 4 + gaps(*stop.upper), y, 1) +
-             label(x + 14 + gaps(*stop.upper), y + 4, metres(*stop.upper), "start");
+             label(x + 14 + gaps(*stop.upper), y + 4, name + metres(*stop.upper), "start");
     if (stop.lower)
       out += upright_stop(x - 4 - gaps(*stop.lower), y, -1) +
-             label(x - 14 - gaps(*stop.lower), y + 4, metres(*stop.lower), "end");
+             label(x - 14 - gaps(*stop.lower), y + 4, name + metres(*stop.lower), "end");
   }
   return out + (stops.empty() ? "" : line(x, y - 10, x, y + 22, "structure"));
 }
@@ -202,7 +239,8 @@ const std::vector<Structure>& structures() {
         {"tension", "tension", "N"},
         {"foundation", "foundation", "N/m²"},
         {"α (damping, of K)", "damping/stiffness", "s"},
-        {"η (damping, of M)", "damping/mass", "1/s"}}},
+        {"η (damping, of M)", "damping/mass", "1/s"},
+        {"damping ratio", "damping/ratio", ""}}},
       {"oscillator",
        oscillator,
        {{"m", "mass", "kg"},
@@ -224,7 +262,9 @@ const std::vector<Structure>& structures() {
        {{"K", "stiffness", ""},
         {"M", "mass", ""},
         {"α (damping, of K)", "damping/stiffness", "s"},
-        {"η (damping, of M)", "damping/mass", "1/s"}}}};
+        {"η (damping, of M)", "damping/mass", "1/s"},
+        {"damping ratio", "damping/ratio", ""},
+        {"C", "damping/file", ""}}}};
   return all;
 }
 
@@ -240,11 +280,14 @@ const Structure* structure_of(const SceneValues& scene) {
 std::string scene_svg(const nlohmann::ordered_json& study) {
   const SceneValues scene(study);
   const Structure* structure = structure_of(scene);
-  if (!structure || !structure->draw) return "";
+  if (!structure) return "";
+  const StructureSketch files = structure->draw ? StructureSketch() : structure_sketch(scene, sketch_width);
+  const std::string drawn = structure->draw ? structure->draw(scene) : files.svg;
+  if (drawn.empty()) return "";
   std::string said = std::string("Sketch of the scene: ") + structure->name;
   for (const auto& [symbol, text] : scene_numbers(study)) said += ", " + symbol + " " + text;
   return fmt::format("<svg class=\"sketch\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">{}</svg>\n",
-                     sketch_width, sketch_height, escape(said), structure->draw(scene));
+                     sketch_width, structure->draw ? sketch_height : files.height, escape(said), drawn);
 }
 
 std::vector<std::pair<std::string, std::string>> scene_numbers(const nlohmann::ordered_json& study) {
@@ -276,7 +319,7 @@ std::vector<std::pair<std::string, std::string>> scene_numbers(const nlohmann::o
   if (!scene.text("/scene/support/amplitude", "").empty())
     add("ω (clamp)", scene.text("/scene/support/pulsation", "rad/s"));
   for (const std::string& words : motion_words(scene)) add("motion", words);
-  add("load", scene.text("/scene/load", ""));
+  for (const std::string& words : load_words(scene)) add("load", words);
   add("u(x, 0)", scene.text("/scene/initial/displacement", ""));
   add("u_t(x, 0)", scene.text("/scene/initial/velocity", ""));
   add("duration", scene.text("/duration", "s"));

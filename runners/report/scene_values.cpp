@@ -40,6 +40,13 @@ std::string with(const std::string& number, const std::string& unit) {
 
 }  // namespace
 
+std::string place_words(const SceneJson& one) {
+  if (one.contains("component")) return one.value("node", "") + " " + one.value("component", "");
+  if (one.contains("direction")) return one.value("node", "") + " along " + one["direction"].dump();
+  if (one.contains("point")) return "point " + one.value("point", "");
+  return one.contains("x") ? "x = " + number_text(one["x"].get<double>(), scene_digits) + " m" : std::string("dofs");
+}
+
 const SceneJson* SceneValues::at(const std::string& pointer) const {
   const SceneJson::json_pointer place(pointer);
   return study_.contains(place) && !study_.at(place).is_null() ? &study_.at(place) : nullptr;
@@ -102,14 +109,9 @@ std::vector<std::pair<std::string, std::string>> SceneValues::named_stops() cons
   std::vector<std::pair<std::string, std::string>> out;
   const SceneJson* list = at("/scene/stops");
   if (!list || !list->is_array()) return out;
-  const auto place = [](const SceneJson& one) {
-    if (one.contains("component")) return one.value("node", "") + " " + one.value("component", "");
-    if (one.contains("direction")) return one.value("node", "") + " along " + one["direction"].dump();
-    return one.contains("x") ? "x = " + number_text(one["x"].get<double>(), scene_digits) + " m" : std::string("dofs");
-  };
   for (const SceneJson& stop : *list) {
-    std::string text = place(stop.at("at"));
-    if (stop.contains("to") && !stop["to"].is_null()) text += " less " + place(stop["to"]);
+    std::string text = place_words(stop.at("at"));
+    if (stop.contains("to") && !stop["to"].is_null()) text += " less " + place_words(stop["to"]);
     for (const char* side : {"lower", "upper"})
       if (stop.contains(side) && !stop[side].is_null())
         text += fmt::format(", {} {} m", side, number_text(stop[side].get<double>(), scene_digits));

@@ -7,6 +7,9 @@
 
 namespace ricochet::report {
 
+/// A place as a study writes it, in words: "x = 0.5 m", "N3 uy", "point plate1".
+std::string place_words(const nlohmann::ordered_json& place);
+
 /// The scene of a resolved study, read leniently: what a study varies stands there as a list, and what cannot be read
 /// is left out of the drawing rather than being an error.
 class SceneValues {

@@ -163,7 +163,8 @@ std::string css_string(const std::string& text) {
 std::string study_fingerprint(const StudyResults& results) {
   constexpr std::size_t digits = 16;
   nlohmann::ordered_json study = results.study;
-  if (study.contains("files")) study["files"].erase("folder");  // where files lie says nothing of the study
+  if (study.contains("files"))  // where files lie says nothing of the study, nor how their structure is drawn
+    for (const char* key : {"folder", "layout"}) study["files"].erase(key);
   std::string content = study.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   content += environment_entry(results.environment, "commit");
   for (const auto& [name, value] : results.environment.entries)
@@ -171,7 +172,7 @@ std::string study_fingerprint(const StudyResults& results) {
   return content_hash(content).substr(0, digits);
 }
 
-std::string summary_html(const CaseView& view) {
+std::string summary_html(const CaseView& view, const std::string& measures) {
   const StudyResults& results = view.results();
   if (results.cases.empty()) return "";
   Fill with;
@@ -183,6 +184,7 @@ std::string summary_html(const CaseView& view) {
     numbers += (numbers.empty() ? "" : " · ") + symbol + " = " + text;
   with.set("numbers", numbers);
   with.set("lines", answer_fill(results));
+  with.set("measures", measures);
   with.set("methods", methods_fill(view));
   with.set("limits", limits_fill(results));
   with.set("identity", identity_fill(results));

@@ -1,5 +1,6 @@
 #include "runners/store/snapshots.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace ricochet {
@@ -18,6 +19,48 @@ bool unpack(const std::vector<double>& bytes, std::size_t count, std::vector<Who
   values.resize(count);
   if (count > 0) std::memcpy(values.data(), bytes.data(), count * sizeof(Whole));
   return true;
+}
+
+// What only structures of files have, in columns behind the others.
+void add_drawing(const Snapshots& snapshots, NumberTable& table) {
+  std::vector<double> names, held(snapshots.held.begin(), snapshots.held.end()), links, stops, directions;
+  for (std::size_t i = 0; i < snapshots.names.size(); ++i) names.push_back(static_cast<double>(i));
+  for (const auto& [a, b] : snapshots.links)
+    links.insert(links.end(), {static_cast<double>(a), static_cast<double>(b)});
+  for (const Snapshots::Stop& stop : snapshots.stops) {
+    stops.insert(stops.end(), {static_cast<double>(stop.at), static_cast<double>(stop.to)});
+    directions.insert(directions.end(), stop.direction.begin(), stop.direction.end());
+  }
+  const std::vector<double> axes(snapshots.axes.begin(), snapshots.axes.end());
+  for (const auto& [name, values] : {std::pair<const char*, const std::vector<double>&>("names", names),
+                                     {"axes", axes},
+                                     {"y", snapshots.y},
+                                     {"held", held},
+                                     {"links", links},
+                                     {"stops", stops},
+                                     {"directions", directions}}) {
+    table.columns.push_back({name, "", ""});
+    table.values.emplace_back(values);
+  }
+  table.words.emplace_back("names", snapshots.names);
+}
+
+void take_drawing(const NumberTable& table, Snapshots& out) {
+  const auto column = [&](const char* name) {
+    const std::vector<double>* values = table.numbers(name);
+    return values ? *values : std::vector<double>();
+  };
+  if (const auto* names = table.words_of("names")) out.names = *names;
+  const std::vector<double> axes = column("axes"), links = column("links"), stops = column("stops"),
+                            directions = column("directions");
+  for (std::size_t k = 0; k < axes.size() && k < out.axes.size(); ++k) out.axes[k] = static_cast<std::size_t>(axes[k]);
+  out.y = column("y");
+  for (const double one : column("held")) out.held.push_back(static_cast<int>(one));
+  for (std::size_t k = 0; k + 1 < links.size(); k += 2)
+    out.links.emplace_back(static_cast<int>(links[k]), static_cast<int>(links[k + 1]));
+  for (std::size_t k = 0; k + 1 < std::min(stops.size(), directions.size()); k += 2)
+    out.stops.push_back(
+        {static_cast<int>(stops[k]), static_cast<int>(stops[k + 1]), {directions[k], directions[k + 1]}});
 }
 
 }  // namespace
@@ -45,6 +88,7 @@ NumberTable table_of(const Snapshots& snapshots) {
       snapshots.upper,
       packed(snapshots.pushed),
       packed(snapshots.force)};
+  if (!snapshots.names.empty()) add_drawing(snapshots, table);
   return table;
 }
 
@@ -66,10 +110,11 @@ std::optional<Snapshots> snapshots_of(const NumberTable& table) {
   out.point = column("point");
   out.lower = column("lower");
   out.upper = column("upper");
+  take_drawing(table, out);
   const auto forces = static_cast<std::size_t>(shape[3]);
   const bool whole = out.clamp.size() == out.t.size() && out.lower.size() == out.point.size() &&
-                     out.upper.size() == out.point.size() &&
-                     unpack(column("displacement"), out.t.size() * out.x.size(), out.displacement) &&
+                     out.upper.size() == out.point.size() && (out.y.empty() || out.y.size() == out.x.size()) &&
+                     unpack(column("displacement"), out.t.size() * out.values(), out.displacement) &&
                      unpack(column("pushed"), forces, out.pushed) && unpack(column("force"), forces, out.force);
   if (!whole) return std::nullopt;
   return out;

@@ -1,6 +1,9 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "runners/table/number_table.hpp"
@@ -25,7 +28,24 @@ struct Snapshots {
   std::vector<std::uint32_t> pushed;
   std::vector<std::int16_t> force;
 
-  static constexpr int most_places = 65, most_instants = 2000;
+  /// Of a structure of files. Nodes: x and y are their places on the plane of two axes (0 x, 1 y, 2 z), and each has
+  /// two displacements along these. Else y is empty, and each place is a point without a place, one bar each.
+  struct Stop {
+    int at = -1, to = -1;               ///< places; −1: none that is drawn, the ground
+    std::array<double, 2> direction{};  ///< on the plane
+    bool operator==(const Stop&) const = default;
+  };
+  std::array<std::size_t, 2> axes{0, 1};
+  std::vector<std::string> names;  ///< of the places; empty for beams, bars and oscillators
+  std::vector<double> y;
+  std::vector<int> held;
+  std::vector<std::pair<int, int>> links;
+  std::vector<Stop> stops;  ///< of each contact point
+
+  /// Displacements at one instant.
+  std::size_t values() const { return y.empty() ? x.size() : 2 * x.size(); }
+
+  static constexpr int most_places = 65, most_nodes = 200, most_instants = 2000;
 };
 
 /// As a table of the case that is not exported: `series` of its columns are the bytes of the counts, four in each

@@ -15,6 +15,7 @@
 #include "runners/study/read_methods.hpp"
 #include "runners/study/read_scene.hpp"
 #include "runners/study/scene_size.hpp"
+#include "runners/study/structure_layout.hpp"
 #include "runners/study/study_kind.hpp"
 
 namespace ricochet {
@@ -303,7 +304,10 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
       *files, duration, std::find(bases.begin(), bases.end(), std::nullopt) != bases.end());
   const int coarsest = *std::min_element(meshes.begin(), meshes.end());
   for (const SceneOption& one : scenes) check_bases(bases, resolved["mesh"], one.scene.structure, coarsest);
-  if (Json said = files->said(); !said.is_null()) resolved["files"] = std::move(said);
+  if (Json said = files->said(); !said.is_null()) {
+    if (Json layout = structure_layout(scenes.front().scene); !layout.is_null()) said["layout"] = std::move(layout);
+    resolved["files"] = std::move(said);
+  }
   if (kind.check_methods)
     kind.check_methods(resolved, settings, registry, everything.count(),
                        make_space(scenes.front().scene.structure, coarsest).dofs);

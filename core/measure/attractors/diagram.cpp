@@ -43,11 +43,11 @@ void Diagram::number_values() {
 
 std::optional<std::size_t> reference_case(const Diagram& diagram) {
   std::optional<std::size_t> best;
-  std::tuple<double, double, double> best_rank;
+  std::tuple<double, double, double, double> best_rank;
   for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
     const DiagramCase& one = diagram.cases[c];
     if (!one.any_decided()) continue;
-    const std::tuple rank(-one.compliance.value_or(INFINITY), one.steps_per_period, one.elements);
+    const std::tuple rank(-one.compliance.value_or(INFINITY), one.steps_per_period, one.elements, one.modes);
     if (!best || rank > best_rank) {
       best = c;
       best_rank = rank;

@@ -33,6 +33,7 @@ struct DiagramCase {
   std::vector<int> at = {};              ///< value × starts + start → index into runs, −1 where there is none
   std::optional<double> compliance = 0;  ///< of the contact law, m/N; 0: rigid; none: not known
   double steps_per_period = 0, elements = 0;
+  double modes = 0;  ///< of the basis that it marches in; ∞: all dofs of the mesh
   bool any_decided() const;
 };
 
@@ -58,7 +59,8 @@ struct Diagram {
 };
 
 /// The case that others are compared with: of those with anything decided the one with the stiffest contact (a rigid
-/// one, where there is one), then the most steps per period, then the most elements, then the first.
+/// one, where there is one), then the most steps per period, then the most elements, then all
+/// dofs or the most modes, then the first.
 std::optional<std::size_t> reference_case(const Diagram& diagram);
 
 /// Values × starts where both cases decided, and how many of them agree.

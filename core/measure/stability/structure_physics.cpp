@@ -259,8 +259,10 @@ std::variant<StructurePhysics, Refusal> structure_physics(const SceneSpec& scene
   out.structure = problem.space.structure;
   out.numbers = std::visit(Numbers{}, scene.structure);
   out.details = std::visit(Details{out.elements, problem.space.dofs}, scene.structure);
-  if (problem.basis)
+  if (problem.basis) {
     for (std::string& line : basis_lines(problem)) out.details.push_back(std::move(line));
+    out.left_out.assign(problem.basis->left_out.begin(), problem.basis->left_out.end());
+  }
   if (out.damping.stiffness != 0) out.numbers.push_back({"α", out.damping.stiffness, "s"});
   if (out.damping.mass != 0) out.numbers.push_back({"η", out.damping.mass, "1/s"});
   out.point_stiffness = point_stiffness(problem);

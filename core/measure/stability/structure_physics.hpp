@@ -54,6 +54,8 @@ struct StructurePhysics {
   /// 1/(h K⁻¹ hᵀ) of each contact point, N/m: the force that moves it by 1 m at rest. Empty where K has no inverse, or
   /// where there are many points.
   std::vector<double> point_stiffness;
+  /// R_ii of each contact point, m/N: what the modes of a basis leave out of its flexibility. Empty without a basis.
+  std::vector<double> left_out;
 
   /// ζ_i = (αω_i + η/ω_i)/2 of C = αK + ηM; nothing where nothing is damped, or for a rigid motion.
   std::optional<double> damping_ratio(std::size_t mode) const;

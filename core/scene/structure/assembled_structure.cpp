@@ -7,6 +7,7 @@
 #include <ricochet/scene/files/text_file.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/structure/band_order.hpp>
+#include <ricochet/scene/structure/node_layout.hpp>
 #include <ricochet/scene/structure/rigid_motions.hpp>
 
 namespace ricochet {
@@ -123,6 +124,7 @@ class StructureMaker {
     const SparseMatrix K = in_metres(files_.stiffness.matrix, files_.table, files_.length_unit),
                        M = in_metres(files_.mass.matrix, files_.table, files_.length_unit);
     list_dofs(K, M);
+    out_.links = linked_nodes(out_.nodes, K);
     out_.stiffness = picked(K, free_, free_);
     out_.mass = picked(M, free_, free_);
     out_.half_width = std::max(half_bandwidth(out_.stiffness), half_bandwidth(out_.mass));

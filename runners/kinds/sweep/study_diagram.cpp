@@ -137,6 +137,7 @@ StudyDiagram read_diagram(const StudyResults& results) {
     owner.compliance = compliance_of(record);
     owner.steps_per_period = axis(record, "steps_per_period").number().value_or(0);
     owner.elements = axis(record, "elements").number().value_or(0);
+    owner.modes = axis(record, "modes").number().value_or(INFINITY);
     read_runs(study, source, owner);
   }
   study.diagram.number_values();

@@ -282,7 +282,8 @@ TableType<VerdictRow> verdicts_type(const SweptColumns& swept) {
 TableType<DistanceRow> distances_type(const SweptColumns& swept) {
   RowType<DistanceRow> rows;
   rows.of_case(&DistanceRow::id)
-      .add({"reference_case", "", "The case compared with: a rigid contact, the most steps, the most elements."},
+      .add({"reference_case", "",
+            "The case compared with: a rigid contact, the most steps, the most elements, all dofs or the most modes."},
            &DistanceRow::reference)
       .add(swept.parameter, &DistanceRow::parameter)
       .add(start_column, &DistanceRow::start)

@@ -133,7 +133,7 @@ struct Watched {
         outputs(study_case, marcher, recorder),
         means(study_case.settings, marcher, audit),
         forces(study_case.settings, marcher),
-        snapshots(marcher, steps, snapshots_asked(study_case.settings)),
+        snapshots(study_case.scene, marcher, steps, snapshots_asked(study_case.settings)),
         sampler(marcher, audit, recorder),
         observers{&audit} {
     // Before the recorder, which tells it what a step gave.

@@ -5,6 +5,9 @@
 #include <ricochet/engine/flight/step_interval.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/discrete_problem.hpp>
+#include <ricochet/scene/supports.hpp>
+
+#include "runners/kinds/trajectory/drawn_rows.hpp"
 
 namespace ricochet {
 namespace {
@@ -39,18 +42,30 @@ int snapshots_asked(const Json& settings) {
   return settings.is_object() ? settings.value("snapshots", 0) : 0;
 }
 
-SnapshotTaker::SnapshotTaker(const Marcher& marcher, long long steps, int count)
+SnapshotTaker::SnapshotTaker(const SceneSpec& scene, const Marcher& marcher, long long steps, int count)
     : steps_(steps), count_(std::min<long long>(count, steps)) {
   if (count_ <= 0) return;
   const SemiDiscrete& problem = *marcher.program().problem;
-  shape_.along = problem.space.basis == FiniteElementSpace::Basis::linear && !problem.space.elements.empty();
-  shape_.x = drawn_places(problem.space);
-  at_ = problem.space.elements.empty() ? problem.tip : place_rows(problem, shape_.x);
+  std::optional<DrawnRows> drawn = drawn_rows(scene, problem);
+  if (drawn) {
+    shape_ = std::move(drawn->shape);
+    at_ = problem.on_unknowns(std::move(drawn->rows));
+    by_support_ = drawn->on_supports.rowwise().sum();
+  } else {
+    shape_.along = problem.space.basis == FiniteElementSpace::Basis::linear && !problem.space.elements.empty();
+    shape_.x = drawn_places(problem.space);
+    at_ = problem.space.elements.empty() ? problem.tip : place_rows(problem, shape_.x);
+    by_support_ = Eigen::VectorXd::Ones(at_.rows());
+  }
+  const std::vector<Snapshots::Stop> stops = std::move(shape_.stops);
+  shape_.stops.clear();
   const int points = marcher.program().contact ? problem.points() : 0;
   group_ = std::max(1, (points + Snapshots::most_places - 1) / Snapshots::most_places);
   for (int first = 0; first < points; first += group_) {
     const int last = std::min(points, first + group_) - 1;
-    shape_.point.push_back(problem.contact_x[static_cast<std::size_t>((first + last) / 2)]);
+    const auto middle = static_cast<std::size_t>((first + last) / 2);
+    shape_.point.push_back(problem.contact_x[middle]);
+    if (middle < stops.size()) shape_.stops.push_back(stops[middle]);
     shape_.lower.push_back(problem.lower.segment(first, last - first + 1).maxCoeff());
     shape_.upper.push_back(problem.upper.segment(first, last - first + 1).minCoeff());
   }
@@ -58,7 +73,7 @@ SnapshotTaker::SnapshotTaker(const Marcher& marcher, long long steps, int count)
   // Displacements are drawn as the stops see them.
   if (!problem.motions.empty() && !problem.motions.carry_stops) {
     const std::vector<std::vector<std::size_t>>& moved = problem.motions.supports;
-    shares_ = motion_shapes(problem, shape_.x);
+    shares_ = drawn ? of_motions(problem.motions, drawn->on_supports) : motion_shapes(problem, shape_.x);
     shares_.conservativeResize(shares_.rows() + 1, Eigen::NoChange);
     // The clamp is the first support, which moves by one motion at most.
     for (std::size_t k = 0; k < moved.size(); ++k)
@@ -97,7 +112,7 @@ void SnapshotTaker::interval(Marcher& marcher, const StepInterval& steps) {
 }
 
 void SnapshotTaker::take(const SemiDiscrete& problem, const Eigen::VectorXd& position, double support, double time) {
-  Eigen::VectorXd u = (at_ * position).array() + support;
+  Eigen::VectorXd u = at_ * position + support * by_support_;
   if (shares_.rows() > 0) {
     const Eigen::VectorXd lift = shares_ * problem.motions.values(time, false);
     u += lift.head(u.size());

@@ -14,7 +14,7 @@ int snapshots_asked(const Json& settings);
 /// Takes snapshots of one lane at `count` equal fractions of its `steps` steps, and at the start.
 class SnapshotTaker final : public StepObserver {
  public:
-  SnapshotTaker(const Marcher& marcher, long long steps, int count);
+  SnapshotTaker(const SceneSpec& scene, const Marcher& marcher, long long steps, int count);
 
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;
@@ -30,6 +30,7 @@ class SnapshotTaker final : public StepObserver {
   long long steps_, count_, next_ = 1;
   int group_ = 1;                                    // contact points that are one
   Eigen::SparseMatrix<double, Eigen::RowMajor> at_;  // places × n
+  Eigen::VectorXd by_support_;                       // how much of the clamp's motion each place has
   Eigen::MatrixXd shares_;                           // of motions at the places, and at the clamp
   Snapshots shape_;                                  // all that does not change
   std::vector<double> t_, clamp_, displacement_;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "runners/json/json_text.hpp"
+#include "runners/kinds/trajectory/octave_measures.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
@@ -138,6 +139,7 @@ const std::vector<std::string>& measures_of_stops() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> out;
     for (const StopMeasure& one : table) out.emplace_back(one.name);
+    out.insert(out.end(), octave_measures().begin(), octave_measures().end());
     return out;
   }();
   return names;
@@ -150,7 +152,7 @@ const MeasureInfo* stop_measure_info(const std::string& name) {
   const auto parts = parts_of(half ? name.substr(confidence.size()) : name);
   if (!parts) return nullptr;
   const StopMeasure* one = find_measure(parts->first);
-  if (!one) return nullptr;
+  if (!one) return octave_measure_info(name);
   auto made = std::make_unique<Described>();
   made->name = name;
   made->text = half ? fmt::format("Half the 95 % interval of {} (stationary block bootstrap of the parts).",
@@ -218,6 +220,7 @@ void check_observed_stops(const nlohmann::ordered_json& study) {
   for (std::size_t i = 0; i < observed->size(); ++i) {
     const auto parts = parts_of((*observed)[i].get<std::string>());
     if (!parts) continue;
+    if (check_observed_octave(study, parts->first, parts->second, fmt::format("/observe/{}", i))) continue;
     if (std::find(stops.begin(), stops.end(), parts->second) != stops.end()) {
       const StopMeasure* one = find_measure(parts->first);
       if (const std::string missing = one ? missing_for(*one, study, parts->second) : ""; !missing.empty())

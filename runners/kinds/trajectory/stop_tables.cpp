@@ -7,6 +7,7 @@
 #include <numeric>
 #include <ricochet/measure/statistics/block_bootstrap.hpp>
 
+#include "runners/kinds/trajectory/octave_measures.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
@@ -198,6 +199,7 @@ void add_parts(CaseRecord& record, const StopWatches& watches, const SemiDiscret
 
 void add_spectra(CaseRecord& record, const OutputWatch& outputs) {
   NumberTable table = spectra_head();
+  Table octaves = third_octaves_head();
   std::vector<std::string> names;
   for (const SpectrumTaker& one : outputs.spectra()) {
     const auto name = static_cast<double>(names.size());
@@ -205,11 +207,13 @@ void add_spectra(CaseRecord& record, const OutputWatch& outputs) {
     const std::vector<double> density = one.spectrum().density();
     for (std::size_t k = 0; k < density.size(); ++k)
       table.add({name, one.of().force ? 1.0 : 0.0, one.spectrum().frequency(static_cast<int>(k)), density[k]});
+    put_third_octaves(record, octaves, one.of().of, one.of().force, density, one.spectrum().frequency(1));
     if (density.empty())
       record.notes.push_back(fmt::format("no spectrum of {}: the run ended within the first segment", one.of().of));
   }
   table.words = {{"of", names}, {"quantity", {"displacement", "force"}}};
   record.numbers.push_back(std::move(table));
+  record.tables.push_back(std::move(octaves));
 }
 
 }  // namespace
@@ -281,7 +285,7 @@ void add_stop_tables(CaseRecord& record, const SemiDiscrete& problem, const Stop
 void describe_stop_tables(CaseRecord& record) {
   Table parts = parts_head({});
   for (const Column& column : all_stop_reading_columns()) parts.columns.push_back(column);
-  for (const Table& head : {histogram_head(), parts})
+  for (const Table& head : {histogram_head(), parts, third_octaves_head()})
     for (Table& table : record.tables)
       if (table.name == head.name) describe(table, head);
   for (const NumberTable& head : {shocks_head(), spectra_head()})

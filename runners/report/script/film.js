@@ -102,7 +102,7 @@
       for (const film of this.films) film.k = film.shots === this.films[0].shots ? this.k : film.shots.nearest(time);
       this.scale.textContent = ricochet.drawStage(this.stage, this.films.map((film) => ({ ...film, colour: ricochet.theme.colour(film.colour) })), this.overlay.checked);
       this.maps.forEach((map, f) => map.draw(this.films[f].k));
-      const words = this.films.map(({ shots, k }) => "tip " + text(shots.tip(k), 4) + " m" + (shots.contacts(k).length ? ", pushed at " + shots.contacts(k).length : ""));
+      const words = this.films.map(({ shots, k }) => shots.said(k, text) + (shots.contacts(k).length ? ", pushed at " + shots.contacts(k).length : ""));
       this.now.textContent = "t = " + shown(time, 5) + " s: " + words.join(" · ");
       this.time.setAttribute("aria-valuetext", this.now.textContent);
     }

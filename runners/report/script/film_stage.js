@@ -1,4 +1,4 @@
-// Draws one instant of a motion between its stops: a beam across its axis, a bar along it, a mass on a line. What it draws on is a canvas.
+// Draws one instant of a motion between its stops: a beam across its axis, a bar along it, a mass on a line, nodes on their plane, points as bars. What it draws on is a canvas.
 {
   // The motion of one case at its instants, in metres, seconds and newtons.
   class Snapshots {
@@ -8,11 +8,31 @@
       Object.assign(this, { one, ...held, t: block("t"), clamp: block("clamp"), counts: block("u"), pushed: block("pushed"), forces: block("force") });
       this.largest = this.counts.reduce((most, count) => Math.max(most, Math.abs(count)), 0) * this.metres;
       this.strongest = this.forces.reduce((most, count) => Math.max(most, Math.abs(count)), 0) * this.newtons;
-      this.mass = this.x.length === 1;
+      this.mass = this.x.length === 1 && !this.names;
       this.length = this.x[this.x.length - 1];
+      this.parts = this.y ? 2 : 1;
+      this.shown = this.y ? this.mainPart() : 0;
     }
     get count() { return this.t.length; }
-    at(k, place) { return this.metres * this.counts[k * this.x.length + place]; }
+    part(k, place, c) { return this.metres * this.counts[(k * this.x.length + place) * this.parts + c]; }
+    // Of nodes on a plane the displacement along one axis.
+    at(k, place) { return this.part(k, place, this.shown); }
+    // The axis along which nodes move most.
+    mainPart() {
+      const sums = [0, 0];
+      this.counts.forEach((count, i) => { sums[i % 2] += count * count; });
+      return sums[1] >= sums[0] ? 1 : 0;
+    }
+    // What is said of an instant.
+    said(k, text) {
+      if (!this.names) return "tip " + text(this.tip(k), 4) + " m";
+      let place = 0, most = 0;
+      for (let p = 0; p < this.x.length; ++p) {
+        const size = this.y ? Math.hypot(this.part(k, p, 0), this.part(k, p, 1)) : Math.abs(this.at(k, p));
+        if (size > most) [most, place] = [size, p];
+      }
+      return "most at " + this.names[place] + ", " + text(most, 4) + " m";
+    }
     tip(k) { return this.at(k, this.x.length - 1); }
     // The instant nearest to a time.
     nearest(time) {
@@ -50,10 +70,18 @@
     return { context, width, height, ink: ricochet.theme.ink() };
   }
 
+  // Nodes on their plane: one scale for places, one for displacements, by which the largest is a tenth of the structure.
+  function planeScales(shots, box, largest) {
+    const { x, y } = shots[0], room = 46, extent = (values) => Math.max(...values) - Math.min(...values), wide = extent(x), tall = extent(y);
+    const along = Math.min((box.width - 2 * room) / (wide || 1e-300), (box.height - 2 * room) / (tall || 1e-300)), larger = 0.1 * Math.max(wide, tall) / largest;
+    return { left: box.left + 0.5 * (box.width - along * wide), lowX: Math.min(...x), middle: box.top + 0.5 * (box.height + along * tall), lowY: Math.min(...y), along, across: along * larger, larger };
+  }
   // How lengths become pixels in a box: `along` of positions, `across` of displacements.
   function scalesOf(shots, box) {
     const finite = shots.flatMap((one) => [...one.lower, ...one.upper]).filter((stop) => stop !== null), largest = Math.max(...shots.map((one) => one.largest), 1e-300);
     const reach = Math.max(largest, ...finite.map(Math.abs).filter((stop) => stop < 3 * largest)) * 1.15, length = Math.max(...shots.map((one) => one.length));
+    if (shots[0].y) return planeScales(shots, box, largest);
+    if (shots[0].names) return { left: box.left + 26, middle: box.top + 0.47 * box.height, along: (box.width - 52) / shots[0].x.length, across: 0.4 * box.height / reach };
     if (shots[0].mass) return { centre: box.left + 0.5 * box.width, across: 0.42 * box.width / reach };
     if (shots[0].along) { const across = 0.12 * length / largest, along = box.width / (1.35 * length); return { left: box.left + 0.13 * box.width, along, across: along * across, larger: across }; }
     const along = (box.width - 40) / length, across = 0.44 * box.height / reach;
@@ -124,6 +152,50 @@
       });
       for (const { point, force } of shots.contacts(k)) arrow(context, colour, [px(shots.point[point], shots.between(k, shots.point[point])), y], [Math.sign(force) * arrowLength(force, strongest), 0]);
     },
+    // Nodes where they are, with displacements made larger; a stop stands where its node would touch it.
+    plane(context, { shots, k, colour, dash }, { left, lowX, middle, lowY, along, across }, box, strongest, ink) {
+      const px = (p) => left + along * (shots.x[p] - lowX) + across * shots.part(k, p, 0), py = (p) => middle - along * (shots.y[p] - lowY) - across * shots.part(k, p, 1);
+      const rest = (p) => [left + along * (shots.x[p] - lowX), middle - along * (shots.y[p] - lowY)], half = 9;
+      stroke(context, ink, 0.6, [2, 3], (c) => { for (const [a, b] of shots.links) { c.moveTo(...rest(a)); c.lineTo(...rest(b)); } });
+      stroke(context, colour, 2.4, dash, (c) => {
+        for (const [a, b] of shots.links) { c.moveTo(px(a), py(a)); c.lineTo(px(b), py(b)); }
+        if (!shots.links.length) shots.x.forEach((_, p) => { c.moveTo(px(p) + 2, py(p)); c.arc(px(p), py(p), 2, 0, 7); });
+      });
+      context.fillStyle = ink;
+      for (const p of shots.held) context.fillRect(px(p) - 4, py(p) - 4, 8, 8);
+      shots.stops.forEach(({ at, to, direction: [dx, dy] }, i) => {
+        const size = Math.hypot(dx, dy);
+        if (at < 0 || size < 0.2) return;
+        const [ex, ey] = [dx / size, -dy / size], [x, y] = rest(at), moved = to < 0 ? 0 : across * (shots.part(k, to, 0) * dx + shots.part(k, to, 1) * dy) / size;
+        for (const [bound, side] of [[shots.lower[i], -1], [shots.upper[i], 1]]) {
+          if (bound === null) continue;
+          const far = across * bound + moved, fx = x + far * ex, fy = y + far * ey;
+          stop(context, ink, [fx - half * ey, fy + half * ex], [fx + half * ey, fy - half * ex], [side * ex, side * ey]);
+        }
+      });
+      for (const { point, force } of shots.contacts(k)) {
+        const { at, direction: [dx, dy] } = shots.stops[point], size = Math.hypot(dx, dy), long = Math.sign(force) * arrowLength(force, strongest);
+        if (at >= 0 && size >= 0.2) arrow(context, colour, [px(at), py(at)], [long * dx / size, -long * dy / size]);
+      }
+    },
+    // Points without places: what each is displaced by, beside its stops.
+    points(context, { shots, k, colour, dash, row }, { left, middle, along, across }, box, strongest, ink) {
+      const px = (p) => left + along * (p + 0.5) + (row === 0.5 ? 0 : 8 * (row - 0.5)), py = (u) => middle - across * u, half = Math.min(14, 0.35 * along);
+      stroke(context, ink, 0.6, [], (c) => { c.moveTo(left, middle); c.lineTo(left + along * shots.x.length, middle); });
+      shots.stops.forEach(({ at }, i) => {
+        for (const [u, side] of [[shots.lower[i], 1], [shots.upper[i], -1]]) if (u !== null && at >= 0) stop(context, ink, [px(at) - half, py(u)], [px(at) + half, py(u)], [0, side]);
+      });
+      shots.x.forEach((_, p) => stroke(context, colour, 5, dash.length ? [3, 2] : [], (c) => { c.moveTo(px(p), middle); c.lineTo(px(p), py(shots.at(k, p))); }));
+      context.fillStyle = ink;
+      context.textBaseline = "bottom";
+      context.textAlign = "center";
+      shots.names.forEach((name, p) => context.fillText(name, left + along * (p + 0.5), box.top + box.height - 2, along));
+      context.textAlign = "start";
+      for (const { point, force } of shots.contacts(k)) {
+        const { at } = shots.stops[point];
+        if (at >= 0) arrow(context, colour, [px(at) + 9, py(shots.at(k, at))], [0, -Math.sign(force) * arrowLength(force, strongest)]);
+      }
+    },
     mass(context, { shots, k, colour, dash, row }, { centre, across }, box, strongest, ink) {
       const y = box.top + box.height * (0.35 + 0.3 * row), px = (u) => centre + across * u, half = 11, u = shots.at(k, 0), wall = box.left + 6;
       for (const [at, side] of [[shots.lower[0], -1], [shots.upper[0], 1]])
@@ -143,7 +215,7 @@
   function drawStage(canvas, films, overlay) {
     const { context, width, height, ink } = fresh(canvas), all = films.map((film) => film.shots), beside = !overlay && films.length > 1;
     const boxes = films.map((_, f) => (beside ? { left: f * width / films.length, top: 22, width: width / films.length, height: height - 26 } : { left: 0, top: 22, width, height: height - 26 }));
-    const strongest = Math.max(...all.map((one) => one.strongest), 1e-300), draw = all[0].mass ? drawers.mass : all[0].along ? drawers.bar : drawers.beam;
+    const strongest = Math.max(...all.map((one) => one.strongest), 1e-300), draw = all[0].y ? drawers.plane : all[0].names ? drawers.points : all[0].mass ? drawers.mass : all[0].along ? drawers.bar : drawers.beam;
     let scales = null;
     context.clearRect(0, 0, width, height);
     films.forEach((film, f) => {

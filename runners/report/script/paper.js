@@ -35,8 +35,8 @@
     if (summary) { summary.className = "sheet"; summary.style.removeProperty("--fit"); }
   }
 
-  // The largest letters, in points, at which the summary stays on one sheet, tried on a copy beside the page; where even small ones do not do, the legend
-  // goes, which the report has, then the answer's lesser lines.
+  // The largest letters, in points, at which the summary stays on one sheet, tried on a copy beside the page; where even small ones do not do, the figure
+  // gets smaller, the legend goes, which the report has, then the answer's lesser lines.
   function fit(summary) {
     const probe = place("sheet-probe"), copy = summary.cloneNode(true);
     copy.querySelectorAll("[id]").forEach((part) => part.removeAttribute("id"));
@@ -44,7 +44,7 @@
     copy.removeAttribute("id");
     probe.append(copy);
     document.body.append(probe);
-    const tries = ["", "brief", "brief briefer"].flatMap((classes) => [10, 9.5, 9, 8.5, 8, 7.5, 7, 6.5].map((size) => [classes, size]));
+    const tries = ["", "lean", "brief lean", "brief briefer lean"].flatMap((classes) => [10, 9.5, 9, 8.5, 8, 7.5, 7, 6.5].map((size) => [classes, size]));
     const found = tries.find(([classes, size]) => {
       copy.className = "sheet " + classes;
       copy.style.setProperty("--fit", size + "pt");

@@ -32,7 +32,8 @@
     }
     draw(k) {
       const { context, width, height, ink } = ricochet.freshCanvas(this.canvas), { shots } = this, frame = this.frame(width, height), { shown } = ricochet.format;
-      const across = (instant) => frame.x + frame.width * (instant + 0.5) / shots.count, length = shots.length || 1, up = (x) => frame.y + frame.height * (shots.mass ? 0.5 : 1 - x / length);
+      const across = (instant) => frame.x + frame.width * (instant + 0.5) / shots.count, length = shots.length || 1, share = (point) => (shots.names ? (shots.stops[point].at + 0.5) / shots.x.length : shots.mass ? 0.5 : shots.point[point] / length);
+      const up = (point) => frame.y + frame.height * (1 - share(point));
       context.clearRect(0, 0, width, height);
       context.imageSmoothingEnabled = false;
       context.drawImage(this.image, frame.x, frame.y, frame.width, frame.height);
@@ -41,7 +42,7 @@
       context.fillStyle = "#111";
       for (const entry of shots.pushed) {
         const instant = Math.floor(entry / points), point = entry % points;
-        context.fillRect(across(instant) - 0.5 * wide, up(shots.point[point]) - 2.5, wide, 5);
+        context.fillRect(across(instant) - 0.5 * wide, up(point) - 2.5, wide, 5);
         ++marks;
       }
       this.canvas.dataset.marks = String(marks);
@@ -60,11 +61,11 @@
       context.fillText("t (s)", frame.x + 0.5 * frame.width, frame.y + frame.height + 6);
       if (shots.mass) return;
       context.textAlign = "right";
-      context.fillText(shown(length, 4), frame.x - 6, frame.y);
-      context.textBaseline = "bottom";
-      context.fillText("0", frame.x - 6, frame.y + frame.height);
-      context.textBaseline = "middle";
-      context.fillText("x (m)", frame.x - 6, frame.y + 0.5 * frame.height);
+      const labels = shots.names ? [shots.names[shots.names.length - 1], shots.y ? "u" + shots.axes[shots.shown] : "point", shots.names[0]] : [shown(length, 4), "x (m)", "0"], lines = ["top", "middle", "bottom"];
+      labels.forEach((words, end) => {
+        context.textBaseline = lines[end];
+        context.fillText(words, frame.x - 6, frame.y + 0.5 * end * frame.height, margin.left - 8);
+      });
     }
   }
 

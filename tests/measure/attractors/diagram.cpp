@@ -64,6 +64,11 @@ TEST_CASE("diagram: the reference is the stiffest, then the finest, of the cases
   CHECK(reference_case(diagram) == 2u);
   diagram.cases[4].elements = 1;
   CHECK(reference_case(diagram) == 4u);
+  // All dofs of a mesh are more than any number of modes.
+  diagram.cases[2].elements = 1;
+  diagram.cases[2].modes = INFINITY;
+  diagram.cases[4].modes = 40;
+  CHECK(reference_case(diagram) == 2u);
   // What is not known is taken for the softest.
   for (DiagramCase& one : diagram.cases) one.compliance.reset();
   diagram.cases[0].compliance = 1;

@@ -2,7 +2,9 @@
 #include <numbers>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/contact/shocks.hpp>
+#include <ricochet/measure/statistics/welch.hpp>
 
+#include "tests/allocations.hpp"
 #include "tests/marching.hpp"
 
 using namespace ricochet;
@@ -52,6 +54,23 @@ TEST_CASE("a shock is the time above a force, joined where it is apart by less t
   CHECK(joined[0].impulse == 19 * tick);
   // A rest of as much as they are apart does not join.
   CHECK(fed(forces, {0, 2 * tick}).shocks().size() == 3);
+}
+
+TEST_CASE("a list of shocks and a spectrum that are full take no more memory, however long the motion") {
+  ShockRecorder recorder(1, {0, 0}, {0, 1e9}, 10);
+  WelchSpectrum spectrum(8, 64);
+  const auto shock = [&](int i) {
+    recorder.instant({.time = 2 * i * tick, .lasts = tick, .given = tick, .force = 1, .closes = true, .speed_in = 1});
+    spectrum.add(i % 7);
+  };
+  for (int i = 0; i < 200; ++i) shock(i);
+  const long before = allocations();
+  for (int i = 200; i < 20000; ++i) shock(i);
+  const long after = allocations();  // the macros below allocate
+  CHECK(after == before);
+  CHECK(recorder.shocks().size() == 10);
+  CHECK(recorder.count() > 19000);
+  CHECK(spectrum.segments() == 20000 / 32 - 1);
 }
 
 TEST_CASE("force below that of the rule ends a rebound, and counts in the impulse between two of one shock") {

@@ -59,6 +59,9 @@ TEST_CASE("every structure is drawn, a study without a scene has no sketch", "[r
     "force": {"amplitude": 1, "pulsation": 2.2}}, "stops": {"upper": 0.1, "at": "tip"}},
     "parameter": {"pointer": "/scene/structure/force/amplitude", "from": 0.2, "to": 1.2, "count": 6}})");
   CHECK_THAT(report::scene_svg(oscillator), Contains("F cos(ωt + ψ)"));
+  Scene named = oscillator;
+  named["scene"]["stops"] = Scene::parse(R"([{"name": "wall", "at": {"x": 0}, "upper": 0.25}])");
+  CHECK_THAT(report::scene_svg(named), Contains(">wall 0.25 m<"));
   CHECK(value_of(oscillator, "F") == "from 0.2 to 1.2 N, swept");
   const Scene bar = Scene::parse(R"({"scene": {"structure": {"type": "bar", "length": 2, "EA": 3, "rhoA": 1,
     "fixed": "right"}, "stops": {"lower": -0.5, "at": "tip"}}})");
@@ -112,4 +115,39 @@ TEST_CASE("a beam's own supports are drawn where they stand, with spans, masses 
         "left clamped at 0 m; plate pinned at 0.6 m; grid elastic at 1.2 m, 1e5 N/m, 20 N m/rad");
   CHECK(value_of(study, "masses") == "0.25 kg at 1.5 m");
   CHECK_THAT(plain, !Contains("class=\"spring\""));
+}
+
+TEST_CASE("matrices with places are drawn as nodes, links, stops with their names and loads", "[report]") {
+  const Scene study = Scene::parse(R"json({"scene": {
+    "structure": {"type": "assembled", "stiffness": "K.mtx", "mass": "M.mtx", "damping": {"ratio": 0.02}},
+    "stops": [{"name": "wall", "at": {"node": "B", "component": "ux"}, "upper": 0.002},
+              {"name": "pair", "at": {"node": "A", "component": "uz"}, "to": {"node": "C", "component": "uz"},
+               "lower": -0.001, "upper": 0.003}],
+    "load": [{"at": {"node": "A", "component": "ux"}, "force": "sin(t)"}]},
+    "files": {"layout": {"axes": ["x", "z"], "nodes": ["A", "B", "C"], "x": [0, 1, 0], "y": [0, 0, 0.5], "held": [2],
+      "links": [[0, 1], [0, 2]],
+      "stops": [{"at": 1, "direction": [1, 0]}, {"at": 0, "to": 2, "direction": [0, 1]}],
+      "loads": [{"at": 0, "direction": [1, 0]}]}}})json");
+  const std::string svg = report::scene_svg(study);
+  CHECK_THAT(svg, Contains("wall 0.002 m") && Contains("pair 0.003 m") && Contains(">F(t)<") && Contains(">1 m<"));
+  CHECK_THAT(svg, Contains(">x<") && Contains(">z<"));
+  CHECK(count(svg, "rect class=\"solid\"") == 1);
+  CHECK(count(svg, "<line class=\"stop\"") == 4);  // three faces, and the line to the other node
+  CHECK(value_of(study, "damping ratio") == "0.02");
+  CHECK(value_of(study, "load") == "F(t) at A ux = sin(t)");
+}
+
+TEST_CASE("points without places are drawn in a row, each with its stops", "[report]") {
+  const Scene study = Scene::parse(R"json({"scene": {
+    "structure": {"type": "modal", "modes": "modes.csv", "shapes": "shapes.csv"},
+    "stops": [{"name": "plate", "at": {"point": "middle"}, "lower": -1e-3, "upper": 2e-3}],
+    "load": [{"at": {"point": "force"}, "force": {"file": "f.csv"}}]},
+    "files": {"layout": {"points": ["force", "middle"]}}})json");
+  const std::string svg = report::scene_svg(study);
+  CHECK(count(svg, "<circle class=\"body\"") == 2);
+  CHECK_THAT(svg, Contains(">plate<") && Contains(">middle<") && Contains(">0.002 m<") && Contains(">F(t)<"));
+  CHECK(value_of(study, "load") == "F(t) at point force = f.csv");
+  Scene none = study;
+  none.erase("files");
+  CHECK(report::scene_svg(none).empty());
 }

@@ -102,6 +102,19 @@ TEST_CASE("ids and fingerprints do not know where the files lie") {
         Fingerprints("trajectory", "p").of(b.study.cases.front(), {}));
 }
 
+TEST_CASE("a study keeps where its structure is drawn, and reads it back as it was") {
+  const Files files;
+  const Opened opened(assembled_study(), files.folder.path());
+  const Json layout = opened.study.resolved["files"]["layout"];
+  CHECK(layout["nodes"] == Json({"A", "B"}));
+  CHECK(layout["x"] == Json({0.0, 1.0}));
+  CHECK(layout["links"] == Json::parse("[[0, 1]]"));
+  CHECK(layout["stops"][0] == Json::parse(R"({"at": 0, "direction": [1.0, 0.0], "to": 1})"));
+  CHECK(layout["loads"][0] == Json::parse(R"({"at": 1, "direction": [1.0, 0.0]})"));
+  const Opened again(opened.study.resolved, "/");
+  CHECK(again.study.resolved == opened.study.resolved);
+}
+
 TEST_CASE("folders are an axis") {
   const Files files;
   for (const char* name : {"coarse", "fine"}) {

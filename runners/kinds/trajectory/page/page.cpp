@@ -5,6 +5,7 @@
 #include "runners/answers/answer.hpp"
 #include "runners/answers/limits.hpp"
 #include "runners/kinds/trajectory/page/stops.hpp"
+#include "runners/kinds/trajectory/page/summary_measures.hpp"
 
 namespace ricochet::report {
 
@@ -18,6 +19,7 @@ KindPage trajectory_page() {
   page.answer = [](const CaseView& view) {
     return answers::evidence_html(answers::Compared(view.results())) + stops_html(view);
   };
+  page.summary = summary_measures_html;
   return page;
 }
 

@@ -86,9 +86,11 @@ std::string stops_html(const CaseView& view) {
   std::vector<std::string> stops;
   std::map<std::pair<std::string, std::string>, const Row*> rows;
   for (const Row& row : table->rows) {
-    const std::string stop = at(row, "stop").text();
+    const std::string stop = at(row, "stop").text(), measure = at(row, "measure").text();
+    // Levels of spectra may be those of points.
+    if (std::find(first_measures.begin(), first_measures.end(), measure) == first_measures.end()) continue;
     if (std::find(stops.begin(), stops.end(), stop) == stops.end()) stops.push_back(stop);
-    rows[{at(row, "measure").text(), stop}] = &row;
+    rows[{measure, stop}] = &row;
   }
   HtmlTable html(
       "What each stop gives: the range over all methods at their finest step and mesh, widened by what these leave "

@@ -295,6 +295,28 @@ TEST_CASE("a swing has its spectrum at its frequency, with half its squared ampl
   CHECK(sum == Approx(amplitude * amplitude / 2).epsilon(1e-4));
 }
 
+TEST_CASE("levels of thirds of octaves are measures: the swing is in its own band, and is all there is") {
+  constexpr double period = 2 * pi / 10, amplitude = 0.1;  // 1.59 Hz: the band of 1.6 Hz
+  Json study = swinging(1, 200 * period);
+  study["step"] = period / 2000;
+  study["outputs"] = {
+      {"spectra", {{{"of", "wall"}, {"quantity", "displacement"}}}}, {"rate", 32 / period}, {"segment", 32 * period}};
+  study["observe"] = {"third_octave_displacement_1.6Hz[wall]"};
+  const CaseRecord record = CaseRuns().first_of(study);
+  // A Hann window leaves a line's power within two lines of it, 0.1 Hz here: the band is 0.36 Hz wide.
+  CHECK(measure(record, "third_octave_displacement_1.6Hz[wall]").value() ==
+        Approx(amplitude / std::sqrt(2)).epsilon(1e-3));
+  CHECK(measure(record, "third_octave_displacement_1Hz[wall]").value() < 1e-3 * amplitude);
+  const Table& rows = table_of(record, "third_octaves");
+  REQUIRE(!rows.rows.empty());
+  CHECK(rows.rows.front()[0].text() == "wall");
+
+  study["observe"] = {"third_octave_force_1.6Hz[wall]"};
+  CHECK_THAT(refused_outputs(study), Catch::Contains("/observe/0") && Catch::Contains("needs the spectrum of wall"));
+  study["observe"] = {"third_octave_displacement_2000Hz[wall]"};
+  CHECK_THAT(refused_outputs(study), Catch::Contains("none of 2000 Hz"));
+}
+
 TEST_CASE("a force that holds a mass on its stop has the spectrum of the load, as impulses over samples") {
   Json study = swinging(0, 2);
   study["scene"]["structure"]["stiffness"] = 0;

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "runners/answers/answer.hpp"
 #include "runners/store/record.hpp"
 
 using namespace ricochet;
@@ -55,13 +56,57 @@ TEST_CASE("an interval is the range over the methods, widened by the largest of 
   CHECK(told(table, "low").number().value() == Approx(9.8).epsilon(1e-12));
   CHECK(told(table, "high").number().value() == Approx(11.2).epsilon(1e-12));
   CHECK(told(table, "verdict").text() == "methods");
-  CHECK(told(table, "sentence").text() == "Rms force at bar: 9.8 to 11.2 N; moved by methods (1), the step (0.2).");
+  CHECK(told(table, "sentence").text() ==
+        "Rms force at bar: 9.8 to 11.2 N; the time scheme decides it (10.0 with newmark, 11.0 with moreau-jean); the "
+        "step "
+        "leaves 0.2.");
 
   results.cases.back().measures.emplace_back("confidence.rms_force[bar]", 0.8);
   const Table sampled = uncertain(results);
   CHECK(told(sampled, "sampling").number() == 0.8);
   CHECK(told(sampled, "low").number().value() == Approx(9.2).epsilon(1e-12));
   CHECK(told(sampled, "verdict").text() == "sampling");
+}
+
+TEST_CASE("an answer says the interval of an observed measure of a stop, and each of its numbers is a row") {
+  const StudyResults results = two_forces();
+  const answers::Answer answer = answers::measure_answer(answers::Compared(results), {"rms_force[bar]"}, false);
+  REQUIRE(answer.sentences.size() == 1);
+  CHECK(answer.sentences.front().text == told(uncertain(results), "sentence").text());
+  std::vector<double> numbers;
+  for (const answers::Clause& one : answer.sentences.front().clauses)
+    for (const auto& number : {one.value, one.low, one.high})
+      if (number) numbers.push_back(*number);
+  for (const double said : {9.8, 11.2, 10.0, 11.0, 0.2})
+    CHECK(std::any_of(numbers.begin(), numbers.end(), [&](double one) { return one == Approx(said).epsilon(1e-12); }));
+  // A choice that is asked for speaks by itself.
+  StudyResults asked = results;
+  asked.study["compare"] = "time";
+  CHECK(answers::measure_answer(answers::Compared(asked), {"rms_force[bar]"}, false).sentences.front().text !=
+        answer.sentences.front().text);
+}
+
+TEST_CASE("where methods differ by less than refinement leaves, no choice is said to decide") {
+  StudyResults results = two_forces();
+  results.cases[2].measures.back().second = 10.1;
+  results.cases[3].measures.back().second = 10.05;
+  CHECK(told(uncertain(results), "sentence").text() ==
+        "Rms force at bar: 9.8 to 10.2 N; methods differ by 0.05; the step leaves 0.2.");
+}
+
+TEST_CASE("small powers are said in thousandths of a watt, and stand in the table in watts") {
+  StudyResults results = two_forces();
+  for (CaseRecord& record : results.cases) {
+    record.measures.back().first = "wear_power[bar]";
+    record.measures.back().second *= 1e-4;
+  }
+  const Table table = uncertain(results);
+  CHECK(told(table, "unit").text() == "W");
+  CHECK(told(table, "low").number().value() == Approx(9.8e-4).epsilon(1e-12));
+  CHECK(
+      told(table, "sentence").text() ==
+      "Wear power at bar: 0.98 to 1.12 mW; the time scheme decides it (1.00 with newmark, 1.10 with moreau-jean); the "
+      "step leaves 0.02.");
 }
 
 TEST_CASE("an interval of what is never below 0 begins at 0") {
@@ -84,7 +129,7 @@ TEST_CASE("of a single step no interval is told") {
   CHECK(told(table, "low").is_nothing());
   CHECK(told(table, "high").is_nothing());
   CHECK(told(table, "verdict").text() == "unknown");
-  CHECK(told(table, "sentence").text() == "Rms force at bar: 10 to 11 N; what the step leaves open is not known.");
+  CHECK(told(table, "sentence").text() == "Rms force at bar: 10.0 to 11.0 N; what the step leaves open is not known.");
 }
 
 TEST_CASE("measures of a whole case, and studies without stops with names, have no row") {
