@@ -113,6 +113,9 @@ ContactPoints contact_points(const SceneSpec& scene, const FiniteElementSpace& s
   }
   out.rows.resize(count, space.dofs);
   out.rows.setFromTriplets(entries.begin(), entries.end());
+  const auto& named = scene.stops.named;
+  if (std::any_of(named.begin(), named.end(), [](const NamedStop& stop) { return stop.own.any(); }))
+    for (const NamedStop& stop : named) out.own.push_back(stop.own);
   return out;
 }
 

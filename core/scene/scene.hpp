@@ -141,6 +141,16 @@ using StructureSpec = std::variant<BeamSpec, OscillatorSpec, BarSpec, AssembledS
 /// How it is damped; that of an oscillator is one of mass.
 Damping damping_of(const StructureSpec& structure);
 
+/// What a stop has of its own, in the place of the parameter of the law or scheme that has this role.
+struct StopParameters {
+  std::optional<double> stiffness = {};    ///< N/m
+  std::optional<double> damping = {};      ///< N s/m
+  std::optional<double> restitution = {};  ///< 1
+
+  bool any() const { return stiffness || damping || restitution; }
+  bool operator==(const StopParameters&) const = default;
+};
+
 /// A stop of its own name: lower ≤ u(at) − u(to) ≤ upper, m.
 struct NamedStop {
   std::string name;  ///< letters, digits, '-' and '_'
@@ -149,6 +159,7 @@ struct NamedStop {
   std::optional<double> lower, upper;
   std::string moves_with = {};  ///< the support that carries it, or all; empty: it stands still
   std::optional<TangentSpec> tangent = {};
+  StopParameters own = {};
 };
 
 /// Two rigid stops g1(x) ≤ u ≤ g2(x); a missing formula is an absent stop. Or a list of stops that have names: then
@@ -238,7 +249,7 @@ struct SceneSpec {
   std::vector<MotionSpec> motions;  ///< beside `support`, which is at rest then
   /// Whether the initial state, and the displacements that are shown, count from the supports that move by `motions`.
   bool from_supports = false;
-  std::vector<PointSpec> points = {};  ///< displacements that are shown; the first is where the tip is
+  std::vector<PointSpec> points = {};   ///< displacements that are shown; the first is where the tip is
   std::optional<BasisSpec> basis = {};  ///< none: all dofs of the mesh
 };
 

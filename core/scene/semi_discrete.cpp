@@ -12,6 +12,7 @@
 #include <ricochet/scene/massless_part.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
+#include <ricochet/scene/stop_parameters.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/supports.hpp>
 #include <stdexcept>
@@ -247,10 +248,15 @@ void check_start(const SemiDiscrete& problem, const std::string& pointer, const 
 Eigen::VectorXd pushed_at_start(ContactLaw& law, const Parameters& parameters, const SemiDiscrete& problem) {
   const int points = problem.points();
   if (points == 0 || law.absent() || !law.reads()) return {};
-  law.prepare(points, {&parameters, 1});
-  const double layer = law.layer(0);
+  prepare_law(law, points, {&parameters, 1}, problem.own);
   const Eigen::VectorXd place = problem.measured() * problem.position + lift_at_start(problem);
-  const Eigen::VectorXd lower = problem.lower.array() + layer, upper = problem.upper.array() - layer;
+  const bool own = sets_per_point(law, problem.own);
+  Eigen::VectorXd lower = problem.lower, upper = problem.upper;
+  for (int i = 0; i < points; ++i) {
+    const double layer = law.layer(own ? i : 0);
+    lower[i] += layer;
+    upper[i] -= layer;
+  }
   const std::vector<double> force = standing_force(law, {points, 1, place.data(), lower.data(), upper.data()});
   const Eigen::Map<const Eigen::VectorXd> p(force.data(), points);
   if (p.isZero(0)) return {};
@@ -319,6 +325,7 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   problem.contact_x = std::move(points.x);
   problem.contact = std::move(points.rows);
   problem.stops = std::move(points.names);
+  problem.own = std::move(points.own);
   problem.space.contact_dofs = touched_dofs(problem.contact);
   std::visit([&](const auto& structure) { add_stiffness(structure, problem); }, scene.structure);
   problem.damping = damping_of(scene.structure);

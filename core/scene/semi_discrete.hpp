@@ -97,6 +97,7 @@ struct SemiDiscrete {
   SparseMatrix own_stiffness;                        ///< K of the structure itself there; else empty
   std::vector<double> contact_x;                     ///< position of each contact point, m
   std::vector<std::string> stops;                    ///< name of each contact point's stop; empty where they have none
+  std::vector<StopParameters> own;                   ///< parameters of each point's stop; empty where none has its own
   Eigen::VectorXd lower, upper;                      ///< g1, g2 at the contact points; ±∞ where absent
   Eigen::SparseMatrix<double, Eigen::RowMajor> tip;  ///< 1 × n: the displacement shown to people
   Eigen::RowVectorXd tip_on_supports;                ///< 1 × r: ψ_j there, of matrices that are given

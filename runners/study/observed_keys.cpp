@@ -70,6 +70,23 @@ std::vector<PointSpec> read_points(const Json& scene) {
   return points;
 }
 
+std::vector<Field> parameters_of_stops() {
+  const auto own = [](const char* key, const char* unit, const Range& range, const char* text) {
+    return quiet(optional(real(key, unit, range, std::nullopt, text)));
+  };
+  return {own("stiffness", "N/m", positive, "Its own stiffness, in the place of the contact law's; absent: the law's."),
+          own("damping", "N s/m", non_negative, "Its own viscosity, in the place of the contact law's."),
+          own("restitution", "1", {0, 1, false, false}, "Its own restitution, in the place of the time scheme's.")};
+}
+
+StopParameters read_own(const Json& stop) {
+  const auto value = [&](const char* key) {
+    const Json given = stop.value(key, Json());
+    return given.is_null() ? std::nullopt : std::optional(given.get<double>());
+  };
+  return {value("stiffness"), value("damping"), value("restitution")};
+}
+
 std::optional<TangentSpec> read_tangent(const Json& stop) {
   const Json given = stop.value("tangent", Json());
   if (given.is_null()) return std::nullopt;

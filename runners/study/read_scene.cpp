@@ -179,7 +179,7 @@ StopsSpec read_stops(const Json& json) {
     for (const Json& one : json)
       stops.named.push_back({one.at("name").get<std::string>(), read_place(one.at("at")), optional_place(one.at("to")),
                              bound(one.at("lower")), bound(one.at("upper")), one.value("moves_with", ""),
-                             read_tangent(one)});
+                             read_tangent(one), read_own(one)});
     return stops;
   }
   if (!json.at("lower").is_null()) stops.lower = read_formula(json.at("lower"), "/scene/stops/lower", "x");

@@ -227,6 +227,7 @@ ObjectForm named_stop() {
                  optional(real("lower", "m", any, std::nullopt, "Lower bound; null: none.")),
                  optional(real("upper", "m", any, std::nullopt, "Upper bound; null: none.")),
                  moves_with()};
+  for (Field& field : parameters_of_stops()) keys.fields.push_back(std::move(field));
   for (Field& field : observed_of_stops()) keys.fields.push_back(std::move(field));
   return keys;
 }

@@ -219,6 +219,11 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
     known.refusal = "damping is not made of K and M, and references know C = αK + ηM: use the reference self";
     return known;
   }
+  if (std::any_of(study_case.scene.stops.named.begin(), study_case.scene.stops.named.end(),
+                  [](const NamedStop& stop) { return stop.own.any(); })) {
+    known.refusal = "stops have parameters of their own, and references know one set for all: use the reference self";
+    return known;
+  }
   if (!study_case.scene.motions.empty() || support_bends(study_case.scene)) {
     known.refusal = "supports move by motions, and references know the harmonic support: use the reference self";
     return known;
