@@ -110,6 +110,11 @@ double Damping::rate(double square, std::size_t k) const {
   return by_modes() ? 2 * ratio(k) * std::sqrt(square) : stiffness * square + mass;
 }
 
+bool moves_by_histories(const SceneSpec& scene) {
+  return !scene.motions.empty() || std::any_of(scene.stops.named.begin(), scene.stops.named.end(),
+                                               [](const NamedStop& stop) { return stop.motion != nullptr; });
+}
+
 bool LoadSpec::uses_t() const {
   return formula.uses_t() || std::any_of(terms.begin(), terms.end(), [](const LoadTerm& term) {
            return !ricochet::is_zero(term) && term.history.uses_t();

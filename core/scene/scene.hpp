@@ -131,11 +131,15 @@ struct BarSpec {
 };
 
 struct AssembledStructure;
-/// A structure given by its matrices, as its files say it (assembled_structure.hpp).
+struct Bodies;
+/// A structure given by its matrices, as its files say it (assembled_structure.hpp); or several bodies, joined on a
+/// mesh (bodies.hpp).
 struct AssembledSpec {
   std::shared_ptr<const AssembledStructure> structure;
-  Damping damping;
-  std::optional<Place> tip;  ///< the displacement shown to people; none: that of the first stop, else of the first load
+  Damping damping = {};
+  /// The displacement shown to people; none: that of the first stop, else of the first load.
+  std::optional<Place> tip = {};
+  std::shared_ptr<const Bodies> bodies = {};  ///< null: files
 };
 using StructureSpec = std::variant<BeamSpec, OscillatorSpec, BarSpec, AssembledSpec>;
 /// How it is damped; that of an oscillator is one of mass.
@@ -151,6 +155,8 @@ struct StopParameters {
   bool operator==(const StopParameters&) const = default;
 };
 
+struct MotionSpec;
+
 /// A stop of its own name: lower ≤ u(at) − u(to) ≤ upper, m.
 struct NamedStop {
   std::string name;  ///< letters, digits, '-' and '_'
@@ -160,6 +166,7 @@ struct NamedStop {
   std::string moves_with = {};  ///< the support that carries it, or all; empty: it stands still
   std::optional<TangentSpec> tangent = {};
   StopParameters own = {};
+  std::shared_ptr<const MotionSpec> motion = {};  ///< of its own; null: none
 };
 
 /// Two rigid stops g1(x) ≤ u ≤ g2(x); a missing formula is an absent stop. Or a list of stops that have names: then
@@ -205,6 +212,7 @@ struct InitialSpec {
   Formula displacement, velocity;
   Projection projection = Projection::none;
   std::vector<DofState> dofs = {};  ///< of matrices that are given: those that do not begin at rest at 0
+  bool equilibrium = false;         ///< the displacement is that at rest under F(0) and the stops
 };
 
 /// One part of a load whose form in space stays as it is: a shape that a history scales, or a force at a point.
@@ -234,8 +242,9 @@ struct LoadSpec {
 
 /// The structure in its N slowest modes, in the place of its mesh.
 struct BasisSpec {
-  int modes = 0;         ///< N; 0: all that have mass
-  bool residual = true;  ///< whether the static shapes of its stops stand beside them
+  int modes = 0;                    ///< N; 0: all that have mass; of bodies those of each, or of all in of_bodies
+  bool residual = true;             ///< whether the static shapes of its stops stand beside them
+  std::vector<int> of_bodies = {};  ///< of each body; empty: `modes` of each
 
   bool operator==(const BasisSpec&) const = default;
 };
@@ -252,5 +261,8 @@ struct SceneSpec {
   std::vector<PointSpec> points = {};   ///< displacements that are shown; the first is where the tip is
   std::optional<BasisSpec> basis = {};  ///< none: all dofs of the mesh
 };
+
+/// Whether supports or stops move by histories, beside the harmonic support.
+bool moves_by_histories(const SceneSpec& scene);
 
 }  // namespace ricochet

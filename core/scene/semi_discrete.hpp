@@ -138,6 +138,9 @@ Eigen::MatrixXd motion_shapes(const SemiDiscrete& problem, const std::vector<dou
 /// sections or masses between its ends, on those of beam_intervals().
 FiniteElementSpace make_space(const StructureSpec& structure, int elements);
 
+/// A structure by itself: its space, K, supports and static modes. Nothing acts on it, and it has no mass yet.
+SemiDiscrete structure_alone(const StructureSpec& structure, int elements);
+
 /// Scene × mesh × mass strategy → matrices. Throws InputError with JSON pointers into the scene ("/scene/stops/lower",
 /// …) for stops that cross (lower > upper somewhere), a clamp that the support pushes through a stop, an initial state
 /// outside the stops, formulas that give no finite value. A strategy that does not apply is a Refusal, and so is a law.

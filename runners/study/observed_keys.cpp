@@ -54,6 +54,7 @@ Place read_place(const Json& json) {
   place.node = json.value("node", "");
   place.component = json.value("component", "");
   place.point = json.value("point", "");
+  place.body = json.value("body", "");
   if (json.contains("direction")) place.direction = json.at("direction").get<std::vector<double>>();
   if (json.contains("dofs"))
     for (const Json& one : json.at("dofs"))
@@ -72,7 +73,9 @@ std::vector<PointSpec> read_points(const Json& scene) {
 
 std::vector<Field> parameters_of_stops() {
   const auto own = [](const char* key, const char* unit, const Range& range, const char* text) {
-    return quiet(optional(real(key, unit, range, std::nullopt, text)));
+    Field field = quiet(optional(real(key, unit, range, std::nullopt, text)));
+    field.axis = true;
+    return field;
   };
   return {own("stiffness", "N/m", positive, "Its own stiffness, in the place of the contact law's; absent: the law's."),
           own("damping", "N s/m", non_negative, "Its own viscosity, in the place of the contact law's."),

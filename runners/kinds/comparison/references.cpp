@@ -224,8 +224,9 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
     known.refusal = "stops have parameters of their own, and references know one set for all: use the reference self";
     return known;
   }
-  if (!study_case.scene.motions.empty() || support_bends(study_case.scene)) {
-    known.refusal = "supports move by motions, and references know the harmonic support: use the reference self";
+  if (moves_by_histories(study_case.scene) || support_bends(study_case.scene)) {
+    known.refusal =
+        "supports or stops move by motions, and references know the harmonic support: use the reference self";
     return known;
   }
   if (solver->of_the_mesh()) {
