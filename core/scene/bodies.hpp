@@ -83,7 +83,8 @@ SparseRows rows_of(const SparseRows& rows, const JoinedBody& body);
 ModalBasis join_bases(const JoinedBodies& bodies, const SemiDiscrete& problem, const SparseMatrix& mass,
                       const BasisSpec& spec);
 
-/// The mass of each body by itself, joined. `build`: the mass of a problem of one body.
+/// The mass of each body by itself, joined; that of an oscillator is its own. `build`: the mass of a problem of one
+/// body.
 using MassOfBody = std::function<InertiaOrRefusal(const SemiDiscrete& one)>;
 InertiaOrRefusal join_masses(const JoinedBodies& bodies, const SemiDiscrete& problem, const MassOfBody& build);
 

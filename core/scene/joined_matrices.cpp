@@ -139,7 +139,13 @@ ModalBasis join_bases(const JoinedBodies& bodies, const SemiDiscrete& problem, c
 InertiaOrRefusal join_masses(const JoinedBodies& bodies, const SemiDiscrete& problem, const MassOfBody& build) {
   std::vector<Inertia> masses;
   for (std::size_t b = 0; b < bodies.all.size(); ++b) {
-    InertiaOrRefusal built = build(alone(bodies, b, problem));
+    const SemiDiscrete one = alone(bodies, b, problem);
+    // A point mass has nothing to spread: it is what every strategy leaves it.
+    if (std::holds_alternative<OscillatorSpec>(bodies.all[b].alone.structure)) {
+      masses.emplace_back().mass = one.basis ? one.basis->mass : consistent_mass(one.space);
+      continue;
+    }
+    InertiaOrRefusal built = build(one);
     if (const auto* refusal = std::get_if<Refusal>(&built))
       return Refusal{fmt::format("body {}: {}", bodies.all[b].name, refusal->sentence)};
     masses.push_back(std::get<Inertia>(std::move(built)));

@@ -6,6 +6,7 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/discrete_problem.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
@@ -264,7 +265,8 @@ bool support_bends(const SceneSpec& scene) {
   const auto* spec = std::get_if<AssembledSpec>(&scene.structure);
   if (!spec || scene.support.amplitude == 0) return false;
   SemiDiscrete problem;
-  problem.space = make_space(scene.structure, 1);
+  const JoinedBodies* bodies = bodies_of(scene.structure);
+  problem.space = make_space(scene.structure, bodies ? bodies->mesh : 1);
   ContactPoints points = contact_points(scene, problem.space, 1);
   problem.contact = std::move(points.rows);
   hold_by_supports(scene.structure, 1, problem);

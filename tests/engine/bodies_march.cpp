@@ -11,14 +11,14 @@ using namespace ricochet::testing;
 
 namespace {
 
-Place in(const std::string& body, double x) {
+Place in_part(const std::string& body, double x) {
   Place place;
   place.body = body;
   place.x = x;
   return place;
 }
 
-Place at_x(double x) {
+Place along_beam(double x) {
   Place place;
   place.x = x;
   return place;
@@ -39,7 +39,7 @@ BeamSpec cantilever() {
   return beam_of(scene);
 }
 
-LoadTerm push(const Place& place, const std::string& formula) {
+LoadTerm push_part(const Place& place, const std::string& formula) {
   LoadTerm term;
   term.force = true;
   term.place = place;
@@ -47,7 +47,7 @@ LoadTerm push(const Place& place, const std::string& formula) {
   return term;
 }
 
-LoadTerm push_beam(double x, const std::string& formula) {
+LoadTerm push_along(double x, const std::string& formula) {
   LoadTerm term;
   term.force = true;
   term.at = x;
@@ -56,8 +56,8 @@ LoadTerm push_beam(double x, const std::string& formula) {
 }
 
 /// Displacements of the contact points at every step.
-std::vector<Eigen::VectorXd> history(const SceneSpec& scene, int elements, const Methods& methods, double h,
-                                     double duration) {
+std::vector<Eigen::VectorXd> bodies_history(const SceneSpec& scene, int elements, const Methods& methods, double h,
+                                            double duration) {
   Marcher made = marcher(scene, elements, methods, h);
   made.start();
   std::vector<Eigen::VectorXd> out;
@@ -69,7 +69,7 @@ std::vector<Eigen::VectorXd> history(const SceneSpec& scene, int elements, const
   return out;
 }
 
-Choice penalty(double stiffness) {
+Choice spring_law(double stiffness) {
   return {"penalty", {{"stiffness", stiffness}}};
 }
 
@@ -78,12 +78,13 @@ Choice penalty(double stiffness) {
 TEST_CASE("two mirrored cantilevers that meet move as one against a wall") {
   constexpr int elements = 8;
   SceneSpec two = bodies_scene({{"left", cantilever()}, {"right", cantilever()}}, elements);
-  two.stops.named = {{"gap", in("left", 1), in("right", 1), {}, 0.04}, {"seen", in("left", 1), {}, -9, {}}};
-  two.load.terms = {push(in("left", 1), "0.4*sin(3*t)"), push(in("right", 1), "-0.4*sin(3*t)")};
+  two.stops.named = {{"gap", in_part("left", 1), in_part("right", 1), {}, 0.04},
+                     {"seen", in_part("left", 1), {}, -9, {}}};
+  two.load.terms = {push_part(in_part("left", 1), "0.4*sin(3*t)"), push_part(in_part("right", 1), "-0.4*sin(3*t)")};
   SceneSpec one;
   one.structure = cantilever();
-  one.stops.named = {{"wall", at_x(1), {}, {}, 0.02}};
-  one.load.terms = {push_beam(1, "0.4*sin(3*t)")};
+  one.stops.named = {{"wall", along_beam(1), {}, {}, 0.02}};
+  one.load.terms = {push_along(1, "0.4*sin(3*t)")};
   const Choice newmark{"newmark-dumont-paoli", {{"beta", 0.5}}};
   // A spring κ between two that mirror each other is one of 2κ at the wall.
   const std::vector<std::pair<Methods, Methods>> laws = {
@@ -92,10 +93,11 @@ TEST_CASE("two mirrored cantilevers that meet move as one against a wall") {
       {{{"redistributed", {{"form", std::string("projected")}}}, {"signorini"}, newmark},
        {{"redistributed", {{"form", std::string("projected")}}}, {"signorini"}, newmark}},
       {{{"reciprocal"}, {"signorini"}, {"moreau-jean"}}, {{"reciprocal"}, {"signorini"}, {"moreau-jean"}}},
-      {{{"consistent"}, penalty(500), newmark}, {{"consistent"}, penalty(1000), newmark}}};
+      {{{"consistent"}, spring_law(500), newmark}, {{"consistent"}, spring_law(1000), newmark}}};
   for (const auto& [of_two, of_one] : laws) {
     INFO(of_two.mass.name << ", " << of_two.contact.name);
-    const auto both = history(two, elements, of_two, 1e-4, 2), alone = history(one, elements, of_one, 1e-4, 2);
+    const auto both = bodies_history(two, elements, of_two, 1e-4, 2),
+               alone = bodies_history(one, elements, of_one, 1e-4, 2);
     double most = 0, farthest = 0;
     for (std::size_t n = 0; n < both.size(); ++n) {
       most = std::max(most, std::abs(both[n][1] - alone[n][0]));
@@ -112,12 +114,12 @@ TEST_CASE("masses of bodies stand block by block, whatever form each has") {
   BarSpec bar;
   bar.rhoA = 2;
   SceneSpec scene = bodies_scene({{"beam", cantilever()}, {"bar", bar}}, elements);
-  scene.stops.named = {{"gap", in("beam", 1), in("bar", 0), {}, 0.01}};
+  scene.stops.named = {{"gap", in_part("beam", 1), in_part("bar", 0), {}, 0.01}};
   SceneSpec beam, rod;
   beam.structure = cantilever();
-  beam.stops.named = {{"a", at_x(1), {}, {}, 0.01}};
+  beam.stops.named = {{"a", along_beam(1), {}, {}, 0.01}};
   rod.structure = bar;
-  rod.stops.named = {{"a", at_x(0), {}, {}, 0.01}};
+  rod.stops.named = {{"a", along_beam(0), {}, {}, 0.01}};
   for (const char* name : {"consistent", "lumped", "singular", "hybrid-singular", "hrz", "reciprocal", "mixed"}) {
     INFO(name);
     const auto made = mass(name);
@@ -141,20 +143,20 @@ TEST_CASE("bodies that do not meet move as each alone, with its own damping") {
   BeamSpec slow = cantilever(), fast = cantilever();
   fast.damping = {0, 0.7};
   SceneSpec both = bodies_scene({{"slow", slow}, {"fast", fast}}, elements);
-  both.stops.named = {{"a", in("slow", 1), {}, -9, {}}, {"b", in("fast", 1), {}, -9, {}}};
-  both.load.terms = {push(in("slow", 0.7), "sin(5*t)"), push(in("fast", 0.4), "cos(4*t)")};
+  both.stops.named = {{"a", in_part("slow", 1), {}, -9, {}}, {"b", in_part("fast", 1), {}, -9, {}}};
+  both.load.terms = {push_part(in_part("slow", 0.7), "sin(5*t)"), push_part(in_part("fast", 0.4), "cos(4*t)")};
   const auto alone = [&](const BeamSpec& beam, double x, const std::string& formula) {
     SceneSpec scene;
     scene.structure = beam;
-    scene.stops.named = {{"a", at_x(1), {}, -9, {}}};
-    scene.load.terms = {push_beam(x, formula)};
+    scene.stops.named = {{"a", along_beam(1), {}, -9, {}}};
+    scene.load.terms = {push_along(x, formula)};
     return scene;
   };
   for (const char* name : {"consistent", "singular"}) {
     const Methods methods{{name}, {"signorini"}, {"newmark-dumont-paoli", {{"beta", 0.5}}}};
-    const auto all = history(both, elements, methods, 1e-3, 2),
-               first = history(alone(slow, 0.7, "sin(5*t)"), elements, methods, 1e-3, 2),
-               second = history(alone(fast, 0.4, "cos(4*t)"), elements, methods, 1e-3, 2);
+    const auto all = bodies_history(both, elements, methods, 1e-3, 2),
+               first = bodies_history(alone(slow, 0.7, "sin(5*t)"), elements, methods, 1e-3, 2),
+               second = bodies_history(alone(fast, 0.4, "cos(4*t)"), elements, methods, 1e-3, 2);
     double most = 0;
     for (std::size_t n = 0; n < all.size(); ++n)
       most = std::max({most, std::abs(all[n][0] - first[n][0]), std::abs(all[n][1] - second[n][0])});
@@ -169,7 +171,7 @@ TEST_CASE("supports of one name move together, in each body by its own static mo
   beam.supports = {{{"ground", 0, BeamSupport::Type::clamped}}};
   SceneSpec two = bodies_scene({{"a", beam}, {"b", beam}}, 4);
   CHECK(std::get<AssembledSpec>(two.structure).structure->supports == std::vector<std::string>{"ground"});
-  two.stops.named = {{"a", in("a", 1), {}, -9, {}}, {"gap", in("a", 1), in("b", 1), -9, {}}};
+  two.stops.named = {{"a", in_part("a", 1), {}, -9, {}}, {"gap", in_part("a", 1), in_part("b", 1), -9, {}}};
   TimeTable table;
   table.name = "a";
   table.times = {0, 0.1, 2};
@@ -178,10 +180,10 @@ TEST_CASE("supports of one name move together, in each body by its own static mo
   two.motions = {{{"ground"}, motion, {}, true}};
   SceneSpec one;
   one.structure = beam;
-  one.stops.named = {{"a", at_x(1), {}, -9, {}}};
+  one.stops.named = {{"a", along_beam(1), {}, -9, {}}};
   one.motions = two.motions;
   const Methods methods{{"consistent"}, {"signorini"}, {"newmark"}};
-  const auto both = history(two, 4, methods, 1e-3, 1), alone = history(one, 4, methods, 1e-3, 1);
+  const auto both = bodies_history(two, 4, methods, 1e-3, 1), alone = bodies_history(one, 4, methods, 1e-3, 1);
   for (std::size_t n = 0; n < both.size(); ++n) {
     REQUIRE(std::abs(both[n][0] - alone[n][0]) < 1e-13);
     REQUIRE(std::abs(both[n][1]) < 1e-13);
@@ -199,13 +201,13 @@ TEST_CASE("three beams as bodies, each in its modes, push each other as in code_
   beam.supports = {{{"left", 0, Type::clamped}, {"right", 1, Type::clamped}}};
   SceneSpec scene = bodies_scene({{"A", beam}, {"B", beam}, {"C", beam}}, 10);
   scene.basis = BasisSpec{5, false};
-  scene.stops.named = {{"first", in("A", 0.5), in("B", 0.5), {}, 1e-3},
-                       {"second", in("B", 0.5), in("C", 0.5), {}, 1e-3},
-                       {"a", in("A", 0.5), {}, -1, {}},
-                       {"b", in("B", 0.5), {}, -1, {}},
-                       {"c", in("C", 0.5), {}, -1, {}}};
-  scene.load.terms = {push(in("A", 0.5), "1e6")};
-  Marcher made = marcher(scene, 10, {{"consistent"}, penalty(1e8), {"central-difference"}}, 1e-5);
+  scene.stops.named = {{"first", in_part("A", 0.5), in_part("B", 0.5), {}, 1e-3},
+                       {"second", in_part("B", 0.5), in_part("C", 0.5), {}, 1e-3},
+                       {"a", in_part("A", 0.5), {}, -1, {}},
+                       {"b", in_part("B", 0.5), {}, -1, {}},
+                       {"c", in_part("C", 0.5), {}, -1, {}}};
+  scene.load.terms = {push_part(in_part("A", 0.5), "1e6")};
+  Marcher made = marcher(scene, 10, {{"consistent"}, spring_law(1e8), {"central-difference"}}, 1e-5);
   REQUIRE(made.program().problem->dofs() == 15);
   made.start();
   made.march(99999 - made.step());
@@ -223,12 +225,13 @@ TEST_CASE("a basis of all modes of bodies moves them as all their dofs do") {
   constexpr int elements = 4;
   BarSpec bar;
   SceneSpec scene = bodies_scene({{"beam", cantilever()}, {"bar", bar}}, elements);
-  scene.stops.named = {{"gap", in("beam", 1), in("bar", 0), {}, 0.01}, {"seen", in("bar", 0), {}, -9, {}}};
-  scene.load.terms = {push(in("beam", 1), "0.4*sin(3*t)")};
-  const Methods methods{{"consistent"}, penalty(500), {"newmark-dumont-paoli", {{"beta", 0.5}}}};
-  const auto all = history(scene, elements, methods, 1e-4, 1);
+  scene.stops.named = {{"gap", in_part("beam", 1), in_part("bar", 0), {}, 0.01},
+                       {"seen", in_part("bar", 0), {}, -9, {}}};
+  scene.load.terms = {push_part(in_part("beam", 1), "0.4*sin(3*t)")};
+  const Methods methods{{"consistent"}, spring_law(500), {"newmark-dumont-paoli", {{"beta", 0.5}}}};
+  const auto all = bodies_history(scene, elements, methods, 1e-4, 1);
   scene.basis = BasisSpec{0, true};
-  const auto modes = history(scene, elements, methods, 1e-4, 1);
+  const auto modes = bodies_history(scene, elements, methods, 1e-4, 1);
   double most = 0, farthest = 0;
   for (std::size_t n = 0; n < all.size(); ++n) {
     most = std::max(most, (all[n] - modes[n]).norm());
@@ -244,7 +247,7 @@ TEST_CASE("a body that refuses refuses with its name") {
   rotary.section = {.type = Section::Type::circle, .diameter = 0.1};
   rotary.young = rotary.density = 1;
   SceneSpec scene = bodies_scene({{"rod", cantilever()}, {"grid", rotary}}, 4);
-  scene.stops.named = {{"gap", in("rod", 1), in("grid", 1), {}, 0.01}};
+  scene.stops.named = {{"gap", in_part("rod", 1), in_part("grid", 1), {}, 0.01}};
   const auto made = discretise(scene, 4, *mass("singular"));
   REQUIRE(std::holds_alternative<Refusal>(made));
   CHECK_THAT(std::get<Refusal>(made).sentence, Catch::StartsWith("body grid: rotary inertia"));
@@ -252,10 +255,10 @@ TEST_CASE("a body that refuses refuses with its name") {
     scene.stops.named = {stop};
     return input_error([&] { check_scene(scene, 4); });
   };
-  CHECK(fault({"gap", at_x(1), {}, {}, 0.01}) ==
+  CHECK(fault({"gap", along_beam(1), {}, {}, 0.01}) ==
         "/scene/stops/0/at: does not say the body; expected \"body\": one of rod, grid");
-  CHECK(fault({"gap", in("gird", 1), {}, {}, 0.01}) == "/scene/stops/0/at/body: no body \"gird\"; nearest grid");
-  CHECK(fault({"gap", in("grid", 2), {}, {}, 0.01}) ==
+  CHECK(fault({"gap", in_part("gird", 1), {}, {}, 0.01}) == "/scene/stops/0/at/body: no body \"gird\"; nearest grid");
+  CHECK(fault({"gap", in_part("grid", 2), {}, {}, 0.01}) ==
         "/scene/stops/0/at/x: 2 m is beyond the beam; expected 0 to 1 m");
   rotary.length = -1;
   CHECK(input_error([&] {
@@ -263,7 +266,7 @@ TEST_CASE("a body that refuses refuses with its name") {
         }) == "/scene/bodies/grid/length: the length is -1 m; expected a finite number above 0");
   SceneSpec single = unit_beam();
   single.stops = {};
-  single.stops.named = {{"a", in("rod", 1), {}, {}, 0.01}};
+  single.stops.named = {{"a", in_part("rod", 1), {}, {}, 0.01}};
   CHECK(input_error([&] { check_scene(single, 4); }) ==
         "/scene/stops/0/at/body: \"rod\" in a scene of one structure; expected no body");
 }

@@ -11,13 +11,13 @@ using namespace ricochet::testing;
 
 namespace {
 
-Place at_x(double x) {
+Place at_length(double x) {
   Place place;
   place.x = x;
   return place;
 }
 
-LoadTerm push_beam(double x, const std::string& formula) {
+LoadTerm push_length(double x, const std::string& formula) {
   LoadTerm term;
   term.force = true;
   term.at = x;
@@ -26,16 +26,16 @@ LoadTerm push_beam(double x, const std::string& formula) {
 }
 
 /// A cantilever of EI = L = 1 that its tip stop lifts by 0.01 m, and pushes 0.06 N at its middle onto another one.
-SceneSpec preloaded() {
+SceneSpec preloaded_beam() {
   SceneSpec scene = unit_beam();
   scene.stops = {};
-  scene.stops.named = {{"tip", at_x(1), {}, 0.01, {}}, {"middle", at_x(0.5), {}, {}, 0.05}};
-  scene.load.terms = {push_beam(0.5, "0.06")};
+  scene.stops.named = {{"tip", at_length(1), {}, 0.01, {}}, {"middle", at_length(0.5), {}, {}, 0.05}};
+  scene.load.terms = {push_length(0.5, "0.06")};
   scene.initial.equilibrium = true;
   return scene;
 }
 
-Choice newmark() {
+Choice half_newmark() {
   return {"newmark-dumont-paoli", {{"beta", 0.5}}};
 }
 
@@ -43,18 +43,18 @@ Choice newmark() {
 
 TEST_CASE("a cantilever rests on its stop as statics say") {
   // Tip w = P_m (5/48) + P_t/3 with EI = L = 1: 0.06·5/48 = 0.00625, the stop adds 3·(0.01 − 0.00625).
-  const auto rigid = problem_of(preloaded(), 4, {"consistent"}, Choice{"signorini"});
+  const auto rigid = problem_of(preloaded_beam(), 4, {"consistent"}, Choice{"signorini"});
   const Eigen::VectorXd at = rigid->contact * rigid->position;
   CHECK(at[0] == Approx(0.01).epsilon(1e-13));
   const double push = 3 * (0.01 - 0.00625);
   CHECK(at[1] == Approx(0.06 / 24 + push * 5 / 48).epsilon(1e-12));
   // A spring κ: p = κ(0.01 − w), w = 0.00625 + p/3.
   constexpr double kappa = 30;
-  const auto spring = problem_of(preloaded(), 4, {"consistent"}, Choice{"penalty", {{"stiffness", kappa}}});
+  const auto spring = problem_of(preloaded_beam(), 4, {"consistent"}, Choice{"penalty", {{"stiffness", kappa}}});
   const double p = (0.01 - 0.00625) / (1 / kappa + 1.0 / 3);
   CHECK((spring->contact * spring->position)[0] == Approx(0.00625 + p / 3).epsilon(1e-12));
   // Without contact the tip stays below its stop.
-  const auto open = problem_of(preloaded(), 4, {"consistent"}, Choice{"none"});
+  const auto open = problem_of(preloaded_beam(), 4, {"consistent"}, Choice{"none"});
   CHECK((open->contact * open->position)[0] == Approx(0.00625).epsilon(1e-12));
 }
 
@@ -63,12 +63,12 @@ TEST_CASE("what begins in equilibrium stays there, whatever mass, law and scheme
       conserving{"penalty", {{"stiffness", 30.0}, {"evaluation", std::string("conserving")}}},
       damped{"kelvin-voigt", {{"stiffness", 30.0}, {"viscosity", 1.0}}};
   const std::vector<Methods> all = {
-      {{"consistent"}, {"signorini"}, newmark()}, {{"singular"}, {"signorini"}, newmark()},
-      {{"singular"}, spring, newmark()},          {{"consistent"}, spring, {"newmark"}},
-      {{"consistent"}, conserving, {"midpoint"}}, {{"consistent"}, damped, {"midpoint"}}};
+      {{"consistent"}, {"signorini"}, half_newmark()}, {{"singular"}, {"signorini"}, half_newmark()},
+      {{"singular"}, spring, half_newmark()},          {{"consistent"}, spring, {"newmark"}},
+      {{"consistent"}, conserving, {"midpoint"}},      {{"consistent"}, damped, {"midpoint"}}};
   for (const Methods& methods : all) {
     INFO(methods.mass.name << ", " << methods.contact.name << ", " << methods.time.name);
-    Marcher made = marcher(preloaded(), 4, methods, 1e-3);
+    Marcher made = marcher(preloaded_beam(), 4, methods, 1e-3);
     made.start();
     const double first = made.tip(0);
     double most = 0;
@@ -112,10 +112,10 @@ TEST_CASE("a stop that moves by itself is one that its support carries") {
   motion->history = std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(table, 0, 0));
   SceneSpec own = unit_beam();
   own.stops = {};
-  own.stops.named = {{"tip", at_x(1), {}, -0.01, 0.02}};
+  own.stops.named = {{"tip", at_length(1), {}, -0.01, 0.02}};
   own.stops.named.front().motion = motion;
   // In the frame of a still stop the beam's whole support moves the other way: two clamped points of view.
-  const Methods methods{{"consistent"}, {"signorini"}, newmark()};
+  const Methods methods{{"consistent"}, {"signorini"}, half_newmark()};
   const auto moved = tip_history(own, 6, methods, 1e-3, 1.4);
   SceneSpec carried = own;
   carried.stops.named.front().motion = nullptr;

@@ -7,23 +7,23 @@ using namespace ricochet::testing;
 
 namespace {
 
-Place at_x(double x) {
+Place own_place(double x) {
   Place place;
   place.x = x;
   return place;
 }
 
 /// Two stops on a beam that is thrown at both.
-SceneSpec thrown(StopParameters middle = {}, StopParameters end = {}) {
+SceneSpec thrown_beam(StopParameters middle = {}, StopParameters end = {}) {
   SceneSpec scene = working_set();
   scene.stops = {};
-  scene.stops.named = {{"middle", at_x(0.8), {}, -0.02, 0.05, "", {}, middle},
-                       {"end", at_x(1.501), {}, -0.05, 0.1, "", {}, end}};
+  scene.stops.named = {{"middle", own_place(0.8), {}, -0.02, 0.05, "", {}, middle},
+                       {"end", own_place(1.501), {}, -0.05, 0.1, "", {}, end}};
   return scene;
 }
 
 /// Two masses that do not know of each other; each is thrown at a stop of its own.
-SceneSpec pair(StopParameters first, StopParameters second) {
+SceneSpec thrown_pair(StopParameters first, StopParameters second) {
   const std::string head = "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n";
   SceneSpec scene = assembled_scene(assembled({head + "1 1 100\n2 2 100\n", head + "1 1 1\n2 2 1\n",
                                                "dof,node,component,x,y,z,held\n1,A,ux,0,0,0,\n2,B,ux,0,0,0,\n"}),
@@ -35,8 +35,8 @@ SceneSpec pair(StopParameters first, StopParameters second) {
 }
 
 /// The contact points at every step.
-std::vector<Eigen::VectorXd> history(const SceneSpec& scene, int elements, const Methods& methods, double h,
-                                     double duration) {
+std::vector<Eigen::VectorXd> own_history(const SceneSpec& scene, int elements, const Methods& methods, double h,
+                                         double duration) {
   Marcher made = marcher(scene, elements, methods, h);
   made.start();
   std::vector<Eigen::VectorXd> out;
@@ -48,12 +48,12 @@ std::vector<Eigen::VectorXd> history(const SceneSpec& scene, int elements, const
   return out;
 }
 
-std::string refused(const SceneSpec& scene, const Methods& methods) {
+std::string own_refused(const SceneSpec& scene, const Methods& methods) {
   const auto program = compiled(problem_of(scene, 4, methods.mass, methods.contact), methods, 1e-5);
   return std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence : "";
 }
 
-std::string left_out(const SceneSpec& scene, const Methods& methods, const std::string& item) {
+std::string own_left_out(const SceneSpec& scene, const Methods& methods, const std::string& item) {
   const auto program = compiled(problem_of(scene, 4, methods.mass, methods.contact), methods, 1e-5);
   REQUIRE(std::holds_alternative<Program>(program));
   for (const LeftOut& one : std::get<Program>(program).left_out)
@@ -61,11 +61,11 @@ std::string left_out(const SceneSpec& scene, const Methods& methods, const std::
   return "";
 }
 
-Methods under(const Choice& contact, const Choice& time = {"newmark-dumont-paoli", {{"beta", 0.5}}}) {
+Methods under_law(const Choice& contact, const Choice& time = {"newmark-dumont-paoli", {{"beta", 0.5}}}) {
   return {{"consistent"}, contact, time};
 }
 
-Choice penalty(double stiffness, const char* evaluation = "implicit") {
+Choice own_spring(double stiffness, const char* evaluation = "implicit") {
   return {"penalty", {{"stiffness", stiffness}, {"evaluation", std::string(evaluation)}}};
 }
 
@@ -74,18 +74,18 @@ Choice penalty(double stiffness, const char* evaluation = "implicit") {
 TEST_CASE("an own parameter equal to the law's changes no bit") {
   const Choice damped{"kelvin-voigt", {{"stiffness", 2e5}, {"viscosity", 10.0}}};
   const Choice laid{"layer", {{"stiffness", 2e5}, {"thickness", 1e-3}}};
-  for (const Choice& law : {penalty(2e5), penalty(2e5, "averaged"), penalty(2e5, "midpoint"), damped, laid}) {
+  for (const Choice& law : {own_spring(2e5), own_spring(2e5, "averaged"), own_spring(2e5, "midpoint"), damped, laid}) {
     INFO(law.name);
     StopParameters own{.stiffness = 2e5};
     if (law.name == "kelvin-voigt") own.damping = 10.0;
-    const auto plain = history(thrown(), 8, under(law), 1e-5, 0.1),
-               same = history(thrown({}, own), 8, under(law), 1e-5, 0.1);
+    const auto plain = own_history(thrown_beam(), 8, under_law(law), 1e-5, 0.1),
+               same = own_history(thrown_beam({}, own), 8, under_law(law), 1e-5, 0.1);
     CHECK(plain == same);
     CHECK(std::any_of(plain.begin(), plain.end(), [](const auto& u) { return u[1] < -0.05; }));
   }
   const Choice rebounding{"moreau-jean", {{"restitution", 0.7}}};
-  CHECK(history(thrown(), 8, under({"signorini"}, rebounding), 1e-5, 0.1) ==
-        history(thrown({.restitution = 0.7}, {}), 8, under({"signorini"}, rebounding), 1e-5, 0.1));
+  CHECK(own_history(thrown_beam(), 8, under_law({"signorini"}, rebounding), 1e-5, 0.1) ==
+        own_history(thrown_beam({.restitution = 0.7}, {}), 8, under_law({"signorini"}, rebounding), 1e-5, 0.1));
 }
 
 TEST_CASE("each of two masses meets its own stop as it would alone") {
@@ -100,28 +100,31 @@ TEST_CASE("each of two masses meets its own stop as it would alone") {
   };
   const Choice newmark{"newmark-dumont-paoli", {{"beta", 0.5}}}, jean{"moreau-jean", {{"restitution", 0.2}}},
       lively{"moreau-jean", {{"restitution", 0.9}}};
-  const std::vector<Law> laws = {{penalty(1e4), penalty(9e4), {.stiffness = 9e4}},
-                                 {penalty(1e4, "conserving"), penalty(9e4, "conserving"), {.stiffness = 9e4}},
+  const std::vector<Law> laws = {{own_spring(1e4), own_spring(9e4), {.stiffness = 9e4}},
+                                 {own_spring(1e4, "conserving"), own_spring(9e4, "conserving"), {.stiffness = 9e4}},
                                  {{"kelvin-voigt", {{"stiffness", 1e4}, {"viscosity", 20.0}}},
                                   {"kelvin-voigt", {{"stiffness", 9e4}, {"viscosity", 50.0}}},
                                   {.stiffness = 9e4, .damping = 50.0}}};
   for (const Law& law : laws) {
     INFO(law.soft.name);
-    const auto mixed = history(pair({}, law.own), 1, under(law.soft), 1e-5, 0.3);
+    const auto mixed = own_history(thrown_pair({}, law.own), 1, under_law(law.soft), 1e-5, 0.3);
     // Uncoupled rows of the active set and of Newton: round-off of the search alone.
-    CHECK(largest_gap(column(mixed, 0), column(history(pair({}, {}), 1, under(law.soft), 1e-5, 0.3), 0)) < 1e-13);
-    CHECK(largest_gap(column(mixed, 1), column(history(pair({}, {}), 1, under(law.hard), 1e-5, 0.3), 1)) < 1e-13);
+    CHECK(largest_gap(column(mixed, 0),
+                      column(own_history(thrown_pair({}, {}), 1, under_law(law.soft), 1e-5, 0.3), 0)) < 1e-13);
+    CHECK(largest_gap(column(mixed, 1),
+                      column(own_history(thrown_pair({}, {}), 1, under_law(law.hard), 1e-5, 0.3), 1)) < 1e-13);
     CHECK(largest_gap(column(mixed, 0), column(mixed, 1)) > 1e-3);
   }
-  const auto mixed = history(pair({}, {.restitution = 0.9}), 1, under({"signorini"}, jean), 1e-5, 0.3);
-  CHECK(column(mixed, 0) == column(history(pair({}, {}), 1, under({"signorini"}, jean), 1e-5, 0.3), 0));
-  CHECK(column(mixed, 1) == column(history(pair({}, {}), 1, under({"signorini"}, lively), 1e-5, 0.3), 1));
+  const auto mixed = own_history(thrown_pair({}, {.restitution = 0.9}), 1, under_law({"signorini"}, jean), 1e-5, 0.3);
+  CHECK(column(mixed, 0) == column(own_history(thrown_pair({}, {}), 1, under_law({"signorini"}, jean), 1e-5, 0.3), 0));
+  CHECK(column(mixed, 1) ==
+        column(own_history(thrown_pair({}, {}), 1, under_law({"signorini"}, lively), 1e-5, 0.3), 1));
 }
 
 TEST_CASE("the energy of stops of their own stiffness is in the balance") {
   // conserving gives the stored energy back to round-off, with the stiffness that each stop has.
-  Marcher made = marcher(thrown({.stiffness = 4e4}, {.stiffness = 3e5}), 8,
-                         {{"consistent"}, penalty(1e5, "conserving"), {"midpoint"}}, 1e-5);
+  Marcher made = marcher(thrown_beam({.stiffness = 4e4}, {.stiffness = 3e5}), 8,
+                         {{"consistent"}, own_spring(1e5, "conserving"), {"midpoint"}}, 1e-5);
   const EnergyAudit audit = audited(made, 0.1);
   REQUIRE(made.status(0).running);
   CHECK(audit.contact(0).impacts > 2);
@@ -131,18 +134,20 @@ TEST_CASE("the energy of stops of their own stiffness is in the balance") {
 
 TEST_CASE("parameters of stops that a method does not have are said, or refused") {
   const StopParameters stiff{.stiffness = 1e5};
-  CHECK(left_out(thrown({}, stiff), under({"signorini"}), "stiffness of stops") == "the contact law is rigid");
-  CHECK(left_out(thrown({}, {.damping = 1.0}), under(penalty(1e5)), "damping of stops") == "the contact law has none");
-  CHECK(left_out(thrown({}, {.restitution = 0.5}), under(penalty(1e5)), "restitution of stops") ==
+  CHECK(own_left_out(thrown_beam({}, stiff), under_law({"signorini"}), "stiffness of stops") ==
+        "the contact law is rigid");
+  CHECK(own_left_out(thrown_beam({}, {.damping = 1.0}), under_law(own_spring(1e5)), "damping of stops") ==
+        "the contact law has none");
+  CHECK(own_left_out(thrown_beam({}, {.restitution = 0.5}), under_law(own_spring(1e5)), "restitution of stops") ==
         "a compliant law rebounds by its own force");
-  CHECK(left_out(thrown(), under(penalty(1e5)), "stiffness of stops").empty());
-  CHECK(refused(thrown({}, stiff), under({"nitsche"})) ==
+  CHECK(own_left_out(thrown_beam(), under_law(own_spring(1e5)), "stiffness of stops").empty());
+  CHECK(own_refused(thrown_beam({}, stiff), under_law({"nitsche"})) ==
         "the contact law has one set of parameters for all stops: leave stiffness of stop end out");
-  CHECK(refused(thrown({}, stiff), under({"hertz", {{"stiffness", 1e7}}})) ==
+  CHECK(own_refused(thrown_beam({}, stiff), under_law({"hertz", {{"stiffness", 1e7}}})) ==
         "the contact law has no stiffness in N/m: leave stiffness of stop end out");
-  CHECK(refused(thrown({.restitution = 0.5}, {}), under({"signorini"})) ==
+  CHECK(own_refused(thrown_beam({.restitution = 0.5}, {}), under_law({"signorini"})) ==
         "the time scheme has one restitution in its step: leave restitution of stop middle out, or use a "
         "scheme that closes contact by velocities");
-  CHECK(left_out(thrown({}, {.restitution = 0.5}), under({"signorini"}, {"midpoint"}), "restitution of stops") ==
-        "the time scheme has none");
+  CHECK(own_left_out(thrown_beam({}, {.restitution = 0.5}), under_law({"signorini"}, {"midpoint"}),
+                     "restitution of stops") == "the time scheme has none");
 }

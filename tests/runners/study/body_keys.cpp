@@ -24,7 +24,7 @@ Json bodies_study() {
   return study;
 }
 
-Json changed(const std::string& pointer, const Json& value) {
+Json with_body_key(const std::string& pointer, const Json& value) {
   Json study = bodies_study();
   study[Json::json_pointer(pointer)] = value;
   return study;
@@ -37,7 +37,7 @@ const AssembledStructure& structure_of(const StudyCase& one) {
 }  // namespace
 
 TEST_CASE("bodies of a study are joined on the mesh of each case") {
-  const Study study = parse(changed("/mesh/elements", Json::array({4, 8})));
+  const Study study = parse(with_body_key("/mesh/elements", Json::array({4, 8})));
   REQUIRE(study.cases.size() == 16);
   for (const StudyCase& one : study.cases) {
     REQUIRE(structure_of(one).joined);
@@ -49,7 +49,7 @@ TEST_CASE("bodies of a study are joined on the mesh of each case") {
 }
 
 TEST_CASE("numbers by body are those of each body, and a mesh is called by their sum") {
-  Json given = changed("/mesh/elements", Json::parse(R"([{"rod": 3, "bar": 2}, {"bar": 5, "rod": 7}])"));
+  Json given = with_body_key("/mesh/elements", Json::parse(R"([{"rod": 3, "bar": 2}, {"bar": 5, "rod": 7}])"));
   given["scene"]["bodies"]["bar"] = {{"type", "bar"}, {"length", 1}, {"EA", 1}, {"rhoA", 1}, {"fixed", "right"}};
   const Study study = parse(given);
   for (const StudyCase& one : study.cases) {
@@ -79,24 +79,26 @@ TEST_CASE("one body is a structure like any other") {
 }
 
 TEST_CASE("bodies that cannot be are refused at their place") {
-  CHECK_THAT(refusal(changed("/scene/bodies", Json::object())), Contains("/scene/bodies: expected bodies by name"));
-  CHECK(refusal(changed("/scene/bodies/rod/length", -1)) ==
+  CHECK_THAT(refusal(with_body_key("/scene/bodies", Json::object())),
+             Contains("/scene/bodies: expected bodies by name"));
+  CHECK(refusal(with_body_key("/scene/bodies/rod/length", -1)) ==
         "/scene/bodies/rod/length: expected a number in ]0, ∞[, in m, found -1");
-  CHECK_THAT(refusal(changed("/scene/structure", small_study()["scene"]["structure"])),
+  CHECK_THAT(refusal(with_body_key("/scene/structure", small_study()["scene"]["structure"])),
              Contains("does not go together with \"bodies\""));
-  CHECK_THAT(refusal(changed("/scene/stops/0/at/body", "rood")), Contains("/scene/stops/0/at/body: no body \"rood\"; "
-                                                                          "nearest rod"));
-  CHECK_THAT(refusal(changed("/mesh/elements", {{"rood", 4}})), Contains("did you mean \"rod\"?"));
-  CHECK(refusal(changed("/mesh/elements", {{"ball", 4}, {"rod", 1}})) ==
+  CHECK_THAT(refusal(with_body_key("/scene/stops/0/at/body", "rood")),
+             Contains("/scene/stops/0/at/body: no body \"rood\"; "
+                      "nearest rod"));
+  CHECK_THAT(refusal(with_body_key("/mesh/elements", {{"rood", 4}})), Contains("did you mean \"rod\"?"));
+  CHECK(refusal(with_body_key("/mesh/elements", {{"ball", 4}, {"rod", 1}})) ==
         "/mesh/elements/ball: 4 elements; body ball has no mesh, expected 1");
-  CHECK(refusal(changed("/mesh/elements", {{"ball", 1}})) ==
+  CHECK(refusal(with_body_key("/mesh/elements", {{"ball", 1}})) ==
         "/mesh/elements: says no number for body rod; expected one for each beam or bar");
   CHECK_THAT(refusal(with("/mesh/elements", {{"rod", 4}})), Contains("the scene has one structure"));
-  CHECK(refusal(changed("/scene/initial", {{"file", "state.csv"}})) ==
+  CHECK(refusal(with_body_key("/scene/initial", {{"file", "state.csv"}})) ==
         "/scene/initial/file: bodies begin at rest or in equilibrium; expected no file");
-  CHECK_THAT(refusal(changed("/scene/initial", {{"displacement", "x"}})),
+  CHECK_THAT(refusal(with_body_key("/scene/initial", {{"displacement", "x"}})),
              Contains("/scene/initial/displacement: bodies have no x in common; expected 0, or equilibrium"));
-  CHECK_THAT(refusal(changed("/scene/load", "1")), Contains("bodies have no x in common"));
+  CHECK_THAT(refusal(with_body_key("/scene/load", "1")), Contains("bodies have no x in common"));
 }
 
 TEST_CASE("a stop has parameters and a motion of its own, and lists of its numbers are axes") {
