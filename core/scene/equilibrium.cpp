@@ -32,7 +32,7 @@ class Balance {
   Balance(const SemiDiscrete& problem, const VectorXd& lift, ContactLaw* law, double shift)
       : problem_(problem), lift_(lift), law_(law), columns_(MatrixXd()) {
     diagonal_ = problem.stiffness.diagonal();
-    const double largest = diagonal_.maxCoeff();
+    const double largest = diagonal_.maxCoeff() > 0 ? diagonal_.maxCoeff() : 1.0;
     for (double& one : diagonal_) one = shift * (one > 0 ? one : largest);
     SparseMatrix D(problem.stiffness.rows(), problem.stiffness.cols());
     for (Index i = 0; i < D.rows(); ++i) D.insert(i, i) = diagonal_[i];

@@ -111,15 +111,16 @@ TEST_CASE("two mirrored cantilevers that meet move as one against a wall") {
 
 TEST_CASE("masses of bodies stand block by block, whatever form each has") {
   constexpr int elements = 5;
-  BarSpec bar;
-  bar.rhoA = 2;
-  SceneSpec scene = bodies_scene({{"beam", cantilever()}, {"bar", bar}}, elements);
-  scene.stops.named = {{"gap", in_part("beam", 1), in_part("bar", 0), {}, 0.01}};
+  BeamSpec other = cantilever();
+  other.length = 0.5;
+  other.section.rhoS = 2;
+  SceneSpec scene = bodies_scene({{"beam", cantilever()}, {"other", other}}, elements);
+  scene.stops.named = {{"gap", in_part("beam", 1), in_part("other", 0.5), {}, 0.01}};
   SceneSpec beam, rod;
   beam.structure = cantilever();
   beam.stops.named = {{"a", along_beam(1), {}, {}, 0.01}};
-  rod.structure = bar;
-  rod.stops.named = {{"a", along_beam(0), {}, {}, 0.01}};
+  rod.structure = other;
+  rod.stops.named = {{"a", along_beam(0.5), {}, {}, 0.01}};
   for (const char* name : {"consistent", "lumped", "singular", "hybrid-singular", "hrz", "reciprocal", "mixed"}) {
     INFO(name);
     const auto made = mass(name);

@@ -55,7 +55,13 @@ TEST_CASE("a beam written as one body runs as the structure, bit for bit") {
   REQUIRE(b.size() == 8);
   for (std::size_t i = 0; i < a.size(); ++i) {
     CHECK(a[i].status == "done");
-    CHECK(a[i].measures == b[i].measures);
+    REQUIRE(a[i].measures.size() == b[i].measures.size());
+    for (std::size_t k = 0; k < a[i].measures.size(); ++k) {
+      const auto& [name, value] = a[i].measures[k];
+      INFO(name);
+      CHECK(b[i].measures[k].first == name);
+      if (name.find("second") == std::string::npos) CHECK(b[i].measures[k].second == value);
+    }
   }
 }
 
