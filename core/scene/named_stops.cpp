@@ -6,6 +6,7 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
@@ -69,6 +70,10 @@ PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, cons
 
 PlaceRow section_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place, ShapeOf what,
                      const std::string& pointer) {
+  if (const JoinedBodies* bodies = bodies_of(scene.structure))
+    return bodies->row(place, pointer, [&](const SceneSpec& alone, const FiniteElementSpace& own, const Place& there) {
+      return section_row(alone, own, there, what, pointer);
+    });
   if (!std::holds_alternative<BeamSpec>(scene.structure) || !place.x)
     throw InputError(pointer, fmt::format("nothing bends in this {}; expected a beam", space.structure));
   place_row(scene, space, place, pointer);

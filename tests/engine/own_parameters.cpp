@@ -121,6 +121,37 @@ TEST_CASE("each of two masses meets its own stop as it would alone") {
         column(own_history(thrown_pair({}, {}), 1, under_law({"signorini"}, lively), 1e-5, 0.3), 1));
 }
 
+TEST_CASE("lanes beside each other have the sets of their points, bit for bit as alone") {
+  constexpr int count = 5;
+  const auto softened = [](const LaneSpec& base) {
+    std::vector<LaneSpec> lanes;
+    for (int k = 0; k < count; ++k) {
+      lanes.push_back(base);
+      lanes.back().law.set("stiffness", 5e4 * (k + 1));
+      lanes.back().velocity *= 1 + 0.02 * k;
+    }
+    return lanes;
+  };
+  const SceneSpec scene = thrown_beam({}, {.stiffness = 3e5, .damping = 20.0});
+  for (const Choice& law :
+       {own_spring(1e5), own_spring(1e5, "conserving"), Choice{"layer", {{"stiffness", 1e5}, {"thickness", 1e-3}}},
+        Choice{"kelvin-voigt", {{"stiffness", 1e5}, {"viscosity", 5.0}}}}) {
+    INFO(law.name);
+    const Methods methods = under_law(law);
+    Marcher block = marcher(scene, 6, methods, 1e-5, {}, softened);
+    run(block, 0.1);
+    for (int k = 0; k < count; ++k) {
+      Marcher single = marcher(scene, 6, methods, 1e-5, {}, [&](const LaneSpec& base) {
+        return std::vector<LaneSpec>{softened(base)[static_cast<std::size_t>(k)]};
+      });
+      run(single, 0.1);
+      REQUIRE(single.status(0).running);
+      CHECK(single.position(0) == block.position(k));
+    }
+    CHECK(block.position(0) != block.position(1));
+  }
+}
+
 TEST_CASE("the energy of stops of their own stiffness is in the balance") {
   // conserving gives the stored energy back to round-off, with the stiffness that each stop has.
   Marcher made = marcher(thrown_beam({.stiffness = 4e4}, {.stiffness = 3e5}), 8,
