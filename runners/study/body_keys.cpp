@@ -93,6 +93,23 @@ std::vector<MeshChoice> meshes_of(const Json& mesh, const Json& scene) {
   return out;
 }
 
+Json said_of_mesh(const Json& study, const std::string& key, const Json& number) {
+  const Json& mesh = study.at("mesh");
+  if (!study.at("scene").contains("bodies") || !mesh.contains(key)) return number;
+  if (key == "elements") {
+    for (const MeshChoice& choice : meshes_of(mesh, study.at("scene")))
+      if (choice.elements == number && choice.of_bodies.is_object()) return choice.of_bodies;
+    return number;
+  }
+  const Json& given = mesh.at(key);
+  for (const Json& one : given.is_array() ? given : Json::array({given})) {
+    int sum = 0;
+    for (const Json& own : one.is_object() ? one : Json::object()) sum += own.get<int>();
+    if (one.is_object() && sum == number) return one;
+  }
+  return number;
+}
+
 Json with_meshes(Json scene, const Json& of_bodies) {
   if (!of_bodies.is_null()) scene["elements"] = of_bodies;
   return scene;

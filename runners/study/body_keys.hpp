@@ -25,6 +25,10 @@ struct MeshChoice {
 /// as many elements in all.
 std::vector<MeshChoice> meshes_of(const Json& mesh, const Json& scene);
 
+/// What a study says of mesh.elements or mesh.modes (`key`) where a case calls it by this number: an entry by body, or
+/// the number itself.
+Json said_of_mesh(const Json& study, const std::string& key, const Json& number);
+
 /// A scene that says the elements of each body; null: of none.
 Json with_meshes(Json scene, const Json& of_bodies);
 

@@ -167,6 +167,50 @@ TEST_CASE("bodies that do not meet move as each alone, with its own damping") {
   }
 }
 
+TEST_CASE("bodies in modes have each its own ratios of damping") {
+  constexpr int elements = 6;
+  BeamSpec slow = cantilever(), fast = cantilever();
+  slow.damping = {.beyond = 0.01};
+  fast.damping = {.ratios = {0.05, 0.02}, .beyond = 0.1};
+  SceneSpec both = bodies_scene({{"slow", slow}, {"fast", fast}}, elements);
+  both.stops.named = {{"a", in_part("slow", 1), {}, -9, {}}, {"b", in_part("fast", 1), {}, -9, {}}};
+  both.load.terms = {push_part(in_part("slow", 0.7), "sin(5*t)"), push_part(in_part("fast", 0.4), "cos(4*t)")};
+  both.basis = BasisSpec{4, true};
+  const auto alone = [&](const BeamSpec& beam, double x, const std::string& formula) {
+    SceneSpec scene;
+    scene.structure = beam;
+    scene.stops.named = {{"a", along_beam(1), {}, -9, {}}};
+    scene.load.terms = {push_along(x, formula)};
+    scene.basis = BasisSpec{4, true};
+    return scene;
+  };
+  const Methods methods{{"singular"}, {"signorini"}, {"newmark-dumont-paoli", {{"beta", 0.5}}}};
+  const auto all = bodies_history(both, elements, methods, 1e-3, 2),
+             first = bodies_history(alone(slow, 0.7, "sin(5*t)"), elements, methods, 1e-3, 2),
+             second = bodies_history(alone(fast, 0.4, "cos(4*t)"), elements, methods, 1e-3, 2);
+  double most = 0;
+  for (std::size_t n = 0; n < all.size(); ++n)
+    most = std::max({most, std::abs(all[n][0] - first[n][0]), std::abs(all[n][1] - second[n][0])});
+  CHECK(most < 1e-11);
+}
+
+TEST_CASE("moments and slopes of a body are those of it alone") {
+  SceneSpec two = bodies_scene({{"a", cantilever()}, {"b", cantilever()}}, 4);
+  two.points = {{"p", in_part("b", 0.3), false, true, true}};
+  two.stops.named = {{"s", in_part("b", 0.7), {}, -9, {}}};
+  two.stops.named.front().tangent = TangentSpec{0.01, {}, ""};
+  SceneSpec one;
+  one.structure = cantilever();
+  one.points = {{"p", along_beam(0.3), false, true, true}};
+  one.stops.named = {{"s", along_beam(0.7), {}, -9, {}}};
+  one.stops.named.front().tangent = TangentSpec{0.01, {}, ""};
+  const SemiDiscrete both = discretised(two, 4, *mass("consistent")), alone = discretised(one, 4, *mass("consistent"));
+  const auto own = [&](const SparseRows& rows) { return Eigen::MatrixXd(rows).rightCols(alone.dofs()); };
+  CHECK(own(both.fields.rows) == Eigen::MatrixXd(alone.fields.rows));
+  CHECK(own(both.tangents.rows) == Eigen::MatrixXd(alone.tangents.rows));
+  CHECK(Eigen::MatrixXd(both.fields.rows).leftCols(alone.dofs()).norm() == 0);
+}
+
 TEST_CASE("supports of one name move together, in each body by its own static modes") {
   BeamSpec beam = cantilever();
   beam.supports = {{{"ground", 0, BeamSupport::Type::clamped}}};

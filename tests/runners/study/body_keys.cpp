@@ -60,6 +60,8 @@ TEST_CASE("numbers by body are those of each body, and a mesh is called by their
     CHECK(all[1].elements == 1);
     CHECK(all[2].elements == (one.elements == 5 ? 2 : 5));
   }
+  CHECK(said_of_mesh(study.resolved, "elements", 12) == Json{{"rod", 7}, {"bar", 5}});
+  CHECK(said_of_mesh(study.resolved, "elements", 6) == 6);
   given["mesh"]["modes"] = {{"rod", 2}, {"ball", 1}, {"bar", 2}};
   CHECK(parse(given).cases.front().scene.basis == BasisSpec{5, true, {2, 1, 2}});
   given["mesh"]["modes"].erase("ball");
