@@ -111,6 +111,8 @@ void check_load(const SceneSpec& scene, const FiniteElementSpace& space) {
     const char* one_point = "an oscillator has one point; expected an entry {\"force\": formula in t, in N}";
     require(!oscillator || term.force, load_pointer(k, "shape"), one_point);
     require(!oscillator || !term.at, load_pointer(k, "at"), one_point);
+    require(!term.place || term.force, load_pointer(k, "body"),
+            "the scene has one structure; expected no body of the load");
     require(!term.place, load_pointer(k, "at"),
             fmt::format("a {} has no nodes that are called; expected x in m", space.structure));
     require(oscillator || !term.force || term.at, load_pointer(k, "at"),

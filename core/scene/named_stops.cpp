@@ -234,6 +234,14 @@ void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, co
   for (std::size_t k = 0; k < scene.load.terms.size(); ++k) {
     const LoadTerm& term = scene.load.terms[k];
     const std::string pointer = fmt::format("/scene/load/{}", k);
+    if (bodies && !term.force && term.place) {
+      const JoinedBody& body = assembled_of(scene)->joined->of(*term.place, pointer);
+      if (body.space.given)
+        throw InputError(pointer + "/body", "an assembled body has no x; expected forces at its places");
+      for (const double x : mesh_nodes(body.alone, body.elements)) term.shape(x);
+      term.history(0, 0);
+      continue;
+    }
     if (!term.force) throw InputError(pointer + "/shape", no_x + "{\"at\": place, \"force\": F(t)}");
     if (!term.place)
       throw InputError(pointer + "/at",

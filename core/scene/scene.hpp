@@ -221,7 +221,7 @@ struct LoadTerm {
   std::optional<double> at;                     ///< where that is, m; none of an oscillator, which has one point
   Formula shape;                                ///< f(x), N/m, of what is spread
   Formula history;                              ///< g(t), 1; of a force F(t), N
-  std::optional<ricochet::Place> place = {};    ///< of a force on matrices that are given, in the place of `at`
+  std::optional<ricochet::Place> place = {};    ///< of a force on matrices that are given; of a shape its body
   std::shared_ptr<const TimeTable> table = {};  ///< that the history was made of, where it was
   double period = 0;                            ///< s, after which a random history repeats; 0: none
 };

@@ -163,6 +163,7 @@ Json without_body(Json scene) {
       for (Json& one : scene[list]) {
         clear(one, "at");
         clear(one, "to");
+        if (one.is_object() && one.value("body", Json()) == name) one.erase("body");
       }
   return scene;
 }

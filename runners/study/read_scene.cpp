@@ -32,6 +32,8 @@ LoadSpec read_load(const Json& value, const std::string& pointer, StudyFiles* fi
       else
         term.place = place;
     }
+    if (!term.force && !value[i].value("body", "").empty())
+      term.place.emplace().body = value[i].at("body").get<std::string>();
     if (!term.force) term.shape = read_formula(value[i].at("shape"), here + "/shape", "x");
     const char* history = term.force ? "force" : "time";
     const Json& given = value[i].at(history);

@@ -282,6 +282,8 @@ ObjectForm scene() {
   spread.fields = {single(formula("shape", "N/m", "x", false, std::nullopt, "f(x) of a load f(x) g(t).")),
                    single(formula("time", "1", "t", false, std::nullopt, "g(t); or a table, or a spectrum."))};
   spread.fields.back().given.push_back(load_history("1"));
+  spread.fields.push_back(
+      quiet(of_form(Field::Form::text, "body", Json(""), "Of several bodies, the one it is along.")));
   Field load = formula("load", "N/m", "xt", false, Json("0"), "Load f(x,t), or a list of forces and of shapes.");
   load.nested.emplace_back();
   load.nested.back().ways = {point, spread};

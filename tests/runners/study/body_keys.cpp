@@ -80,6 +80,28 @@ TEST_CASE("one body is a structure like any other") {
   CHECK(parse(body).cases.front().scene.stops.named.at(0).at.body.empty());
 }
 
+TEST_CASE("a load is spread along one of the bodies") {
+  const Json spread = Json::parse(R"json([{"shape": "1 + x", "time": "cos(t)", "body": "rod"}])json");
+  const Study study = parse(with_body_key("/scene/load", spread));
+  const StudyCase& one = study.cases.front();
+  const DistributedLoad load(one.scene.load, make_space(one.scene.structure, one.elements), &structure_of(one));
+  Eigen::VectorXd all(structure_of(one).dofs());
+  load.assemble(0, all.data());
+  // Against the deflection x² of the rod, clamped at 0: ∫(1 + x) x² dx = 1/3 + 1/4.
+  double work = 0;
+  for (int node = 1; node <= one.elements; ++node) {
+    const double x = node / static_cast<double>(one.elements);
+    work += all[2 * (node - 1)] * x * x + all[2 * (node - 1) + 1] * 2 * x;
+  }
+  CHECK(work == Approx(1.0 / 3 + 0.25).epsilon(1e-12));
+  CHECK(all[2 * one.elements] == 0);
+  CHECK_THAT(refusal(with_body_key("/scene/load/0/body", "rod")), Contains("does not go together"));
+  CHECK_THAT(refusal(with("/scene/load", spread)), Contains("/scene/load/0/body: the scene has one structure"));
+  Json assembled = spread;
+  assembled[0]["body"] = "bal";
+  CHECK_THAT(refusal(with_body_key("/scene/load", assembled)), Contains("nearest ball"));
+}
+
 TEST_CASE("bodies that cannot be are refused at their place") {
   CHECK_THAT(refusal(with_body_key("/scene/bodies", Json::object())),
              Contains("/scene/bodies: expected bodies by name"));
