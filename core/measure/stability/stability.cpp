@@ -9,7 +9,6 @@
 #include <ricochet/measure/stability/stability.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
 #include <ricochet/measure/stability/structure_physics.hpp>
-#include <ricochet/scene/stop_parameters.hpp>
 #include <string>
 #include <vector>
 
@@ -133,23 +132,6 @@ constexpr double golden = std::numbers::phi - 1;
 constexpr double modal_marginal = 1e-9, dense_marginal = 1e-7;
 
 }  // namespace
-
-LinearLaw linear_law(ContactLaw& law, int points, const Parameters& parameters, const OwnParameters& stops) {
-  LinearLaw out;
-  out.absent = law.absent() || points == 0;
-  if (out.absent) return out;
-  prepare_law(law, points, std::span<const Parameters>(&parameters, 1), stops);
-  out.evaluation = law.reads();
-  out.stiffness = constant_stiffness(law);
-  for (int i = 0; out.stiffness && sets_per_point(law, stops) && i < points; ++i) {
-    const auto own = constant_stiffness(law, i);
-    if (own)
-      out.own.push_back(*own);
-    else
-      out.stiffness.reset();
-  }
-  return out;
-}
 
 StabilityPredictor::~StabilityPredictor() = default;
 StabilityPredictor::StabilityPredictor(StabilityPredictor&&) noexcept = default;
