@@ -143,7 +143,7 @@ void BoxInterior::start(HeldBand& band, const Problem& problem) {
   upper_.assign(points, {});
   side_.assign(points, 0);
   for (std::size_t i = 0; i < points; ++i) {
-    const double a = problem.reach * band.diagonal(static_cast<int>(i)) + problem.compliance;
+    const double a = problem.reach * band.diagonal(static_cast<int>(i)) + problem.compliance[i];
     if (!(a > 0)) continue;
     if (problem.lower[i] > -infinity) lower_[i].effort = problem.depth / a;
     if (problem.upper[i] < infinity) upper_[i].effort = problem.depth / a;
@@ -159,13 +159,13 @@ void BoxInterior::start(HeldBand& band, const Problem& problem) {
 void BoxInterior::measure(HeldBand& band, const Problem& problem) {
   band.multiply(effort_.data(), measure_.data());
   for (std::size_t i = 0; i < measure_.size(); ++i)
-    measure_[i] = problem.free[i] + problem.reach * measure_[i] + problem.compliance * effort_[i];
+    measure_[i] = problem.free[i] + problem.reach * measure_[i] + problem.compliance[i] * effort_[i];
 }
 
 void BoxInterior::hold(HeldBand& band, const Problem& problem) {
   for (std::size_t i = 0; i < lower_.size(); ++i) {
     const double weight = lower_[i].weight() + upper_[i].weight();
-    compliance_[i] = weight > 0 ? (problem.compliance + 1 / weight) / problem.reach : infinity;
+    compliance_[i] = weight > 0 ? (problem.compliance[i] + 1 / weight) / problem.reach : infinity;
   }
   band.hold(compliance_.data());
 }
@@ -193,7 +193,7 @@ void BoxInterior::find_step(HeldBand& band, const Problem& problem, double targe
     stop.effort_step = stop.wanted - stop.weight() * stop.gap_step;
   };
   for (std::size_t i = 0; i < lower_.size(); ++i) {
-    const double way = problem.reach * moved_[i] + problem.compliance * step_[i];
+    const double way = problem.reach * moved_[i] + problem.compliance[i] * step_[i];
     follow(lower_[i], measure_[i] - problem.lower[i], way);
     follow(upper_[i], problem.upper[i] - measure_[i], -way);
   }
@@ -236,7 +236,7 @@ void BoxInterior::move(double step) {
 
 void BoxInterior::show(HeldBand& band, const Problem& problem) {
   for (std::size_t i = 0; i < lower_.size(); ++i) {
-    const double a = problem.reach * band.diagonal(static_cast<int>(i)) + problem.compliance;
+    const double a = problem.reach * band.diagonal(static_cast<int>(i)) + problem.compliance[i];
     const auto pushes = [&](const Stop& stop) { return stop.present() && a * stop.effort > stop.gap; };
     side_[i] = pushes(lower_[i]) ? 1 : pushes(upper_[i]) ? -1 : 0;
   }

@@ -36,7 +36,7 @@ void BoxSolver::prepare(int points) {
   visited_.reserve(remembered_sets);
 }
 
-LaneOutcome BoxSolver::solve(DelassusColumns& W, double reach, double compliance, const double* free,
+LaneOutcome BoxSolver::solve(DelassusColumns& W, double reach, Strided<const double> compliance, const double* free,
                              const double* lower, const double* upper, double* p, int points, int stride) {
   assert(points >= 0 && static_cast<std::size_t>(points) <= free_.size());
   const Operator A{W, reach, compliance};
@@ -61,7 +61,7 @@ LaneOutcome BoxSolver::solve_alone(const Operator& A, double free, double lower,
   const double depth = box::beyond_bounds(free, lower, upper);
   if (!std::isfinite(free) || !(lower <= upper)) return {false, 0, infinity};
   if (!(depth > 0)) return {};
-  const double a = (A.reach == 0 ? 0.0 : A.reach * A.columns.column(0)[0]) + A.compliance;
+  const double a = (A.reach == 0 ? 0.0 : A.reach * A.columns.column(0)[0]) + A.compliance[0];
   if (!(a > 0) || !std::isfinite(a)) return {false, 1, depth};
   p = ((free < lower ? lower : upper) - free) / a;
   const double y = free + a * p;
@@ -102,7 +102,7 @@ bool BoxSolver::read(const double* free, const double* lower, const double* uppe
 bool BoxSolver::try_alone(const Operator& A, LaneOutcome& outcome) {
   const int i = first_;
   const double* column = A.columns.column(i);
-  const double a = A.reach * column[i] + A.compliance;
+  const double a = A.reach * column[i] + A.compliance[i];
   if (!(a > 0)) return false;
   side_[i] = free_[i] < lower_[i] ? Side::lower : Side::upper;
   count_ = 1;
@@ -118,12 +118,13 @@ bool BoxSolver::try_alone(const Operator& A, LaneOutcome& outcome) {
   return outcome.converged;
 }
 
-// A = compliance·I: each point on its own.
-LaneOutcome BoxSolver::solve_uncoupled(double compliance) {
+// A = diag(compliance): each point on its own.
+LaneOutcome BoxSolver::solve_uncoupled(Strided<const double> compliances) {
   LaneOutcome outcome{true, 1, 0};
   for (int i = 0; i < points_; ++i) {
     const double depth = box::beyond_bounds(free_[i], lower_[i], upper_[i]);
     if (!(depth > 0)) continue;
+    const double compliance = compliances[i];
     if (!(compliance > 0)) {
       outcome.converged = false;
       outcome.residual = std::max(outcome.residual, depth);

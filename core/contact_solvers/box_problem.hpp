@@ -44,7 +44,8 @@ class HeldBand;
 class BoxInterior {
  public:
   struct Problem {
-    double reach = 0, compliance = 0;  ///< A = reach·W + compliance·I
+    double reach = 0;
+    Strided<const double> compliance;  ///< A = reach·W + diag(compliance)
     double depth = 0;                  ///< deepest violation of y°, > 0
     int points = 0;
     const double *free = nullptr, *lower = nullptr, *upper = nullptr;
@@ -82,7 +83,7 @@ class HeldBand;
 
 /// The two-sided box problem of one lane
 ///
-///     y = y° + A p,   A = reach·W + compliance·I,      lower ≤ y ⊥ p ≤ upper:
+///     y = y° + A p,   A = reach·W + diag(compliance),      lower ≤ y ⊥ p ≤ upper:
 ///     p_i > 0 only where y_i = lower_i,  p_i < 0 only where y_i = upper_i,  else p_i = 0                          (1)
 ///
 /// with W (m × m) symmetric positive semidefinite, read by columns on demand. Bounds may be ±∞; lower_i ≤ upper_i.
@@ -126,9 +127,17 @@ class BoxSolver {
   /// and outcome.converged is false. Data that are not finite (infinite bounds are) give p = 0 and an infinite
   /// residual. The result depends on this lane's numbers only, bit for bit, whatever the stride.
   LaneOutcome solve(DelassusColumns& W, double reach, double compliance, const double* free, const double* lower,
-                    const double* upper, double* p, int points, int stride = 1);
+                    const double* upper, double* p, int points, int stride = 1) {
+    return solve(W, reach, Strided<const double>{&compliance, 0}, free, lower, upper, p, points, stride);
+  }
   /// The same of one lane of a stage.
   LaneOutcome solve(const LaneProblem& lane, double compliance) {
+    return solve(lane, Strided<const double>{&compliance, 0});
+  }
+  /// The same with a compliance for each point.
+  LaneOutcome solve(DelassusColumns& W, double reach, Strided<const double> compliance, const double* free,
+                    const double* lower, const double* upper, double* p, int points, int stride = 1);
+  LaneOutcome solve(const LaneProblem& lane, Strided<const double> compliance) {
     return solve(*lane.delassus, lane.reach, compliance, lane.free.first, lane.lower.first, lane.upper.first,
                  lane.effort.first, lane.points, lane.free.stride);
   }
@@ -140,11 +149,12 @@ class BoxSolver {
   enum class Side : signed char { upper = -1, none = 0, lower = 1, immobile = 2 };
   struct Operator {
     DelassusColumns& columns;
-    double reach, compliance;
+    double reach;
+    Strided<const double> compliance;  // of each point
   };
 
   LaneOutcome solve_alone(const Operator& A, double free, double lower, double upper, double& p) const;
-  LaneOutcome solve_uncoupled(double compliance);
+  LaneOutcome solve_uncoupled(Strided<const double> compliances);
   bool try_alone(const Operator& A, LaneOutcome& outcome);
   LaneOutcome search(const Operator& A, const double* previous, int stride);
   bool read(const double* free, const double* lower, const double* upper, int points, int stride);

@@ -46,7 +46,7 @@ void BoxSolver::factorise(const Operator& A) {
       continue;
     }
     const double* column = A.columns.column(i);
-    const double a = A.reach * column[i] + A.compliance;
+    const double a = A.reach * column[i] + A.compliance[i];
     if (!(a > 0)) {
       side_[i] = Side::immobile;
       continue;
@@ -102,7 +102,7 @@ void BoxSolver::evaluate(const Operator& A) {
   for (int j = 0; j < count_; ++j) {
     const double effort = effort_[set_[j]];
     y += (A.reach * effort) * ConstArray(column_[j], points_);
-    y[set_[j]] += A.compliance * effort;
+    y[set_[j]] += A.compliance[set_[j]] * effort;
   }
   judge();
 }
@@ -170,7 +170,7 @@ void BoxSolver::try_held(const Operator& A, HeldBand& band) {
   known_ = count_ = 0;
   dropped_ = -1;
   for (int i = 0; i < points_; ++i) {
-    compliance_[i] = active(i) ? A.compliance / A.reach : infinity;
+    compliance_[i] = active(i) ? A.compliance[i] / A.reach : infinity;
     effort_[i] = 0;
   }
   band.hold(compliance_.data());
@@ -178,7 +178,7 @@ void BoxSolver::try_held(const Operator& A, HeldBand& band) {
     right_[i] = 0;
     measure_[i] = free_[i];
     if (!active(i)) continue;
-    const double a = A.reach * band.diagonal(i) + A.compliance;
+    const double a = A.reach * band.diagonal(i) + A.compliance[i];
     if (!(a > 0)) {
       side_[i] = Side::immobile;
     } else if (band.dropped(i)) {
@@ -207,7 +207,7 @@ void BoxSolver::try_held(const Operator& A, HeldBand& band) {
     band.solve(right_.data(), step_.data());
     for (int j = 0; j < count_; ++j) effort_[set_[j]] += step_[set_[j]] / A.reach;
     band.multiply(effort_.data(), measure_.data());
-    for (int i = 0; i < points_; ++i) measure_[i] = free_[i] + A.reach * measure_[i] + A.compliance * effort_[i];
+    for (int i = 0; i < points_; ++i) measure_[i] = free_[i] + A.reach * measure_[i] + A.compliance[i] * effort_[i];
   }
   judge();
 }

@@ -35,12 +35,17 @@ class PointwiseContact : public ContactLaw, protected PointwiseLaw {
     solver_.prepare(points, static_cast<int>(lanes.size()));
     set_lanes(lanes);
   }
+  bool per_point() const override { return true; }
+  void prepare_points(int points, int lanes, std::span<const Parameters> sets) override {
+    solver_.prepare(points, lanes, true);
+    set_lanes(sets);
+  }
   void solve(ReducedProblem& problem) override {
     for (const int lane : problem.touched) problem.outcome[lane] = solver_.solve(*this, problem, lane);
   }
-  double potential(double depth, int lane) const final {
-    const double beyond = depth + layer(lane);
-    return beyond > 0 ? stored(beyond, lane) : 0.0;
+  double potential(double depth, int set) const final {
+    const double beyond = depth + layer(set);
+    return beyond > 0 ? stored(beyond, set) : 0.0;
   }
   bool offers_slopes() const override { return true; }
   ContactSlopes slopes(int point, int lane) const override { return solver_.slopes(point, lane); }
@@ -49,15 +54,15 @@ class PointwiseContact : public ContactLaw, protected PointwiseLaw {
   }
 
  protected:
-  /// Keeps what at() needs of each lane's parameters.
-  virtual void set_lanes(std::span<const Parameters> lanes) = 0;
+  /// Keeps what at() needs of each set of parameters: one per lane, or per point and lane (ContactState::set).
+  virtual void set_lanes(std::span<const Parameters> sets) = 0;
   /// Φ(δ, δ̇), zero where δ ≤ 0; δ⁻ is not looked at.
   virtual PointForce at(const ContactState& state) const = 0;
   /// The discrete gradient of stored() from δ⁻ to δ, at least one of them > 0; of a law that damps, with what comes on
   /// top.
   virtual PointForce gradient(const ContactState& state) const = 0;
   /// Energy (J) at δ > 0 (m), beyond the bound that the solver is given: the integral of the force at rest.
-  virtual double stored(double depth, int lane) const = 0;
+  virtual double stored(double depth, int set) const = 0;
 
  private:
   PointForce force(const ContactState& state) const final;

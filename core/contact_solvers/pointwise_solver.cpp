@@ -27,10 +27,11 @@ bool PointwiseSolver::Answer::finite() const {
   return std::isfinite(force) && std::isfinite(stiffness) && std::isfinite(viscosity);
 }
 
-void PointwiseSolver::prepare(int points, int lanes) {
+void PointwiseSolver::prepare(int points, int lanes, bool per_point) {
   assert(points >= 0 && lanes >= 0);
   points_ = points;
   lanes_ = lanes;
+  per_point_ = per_point;
   const auto m = static_cast<std::size_t>(points);
   for (auto* v : {&effort_, &moved_, &terms_, &step_, &shift_, &right_, &root_}) v->assign(m, 0.0);
   factor_.assign(m * m, 0.0);
@@ -53,7 +54,7 @@ PointwiseSolver::Answer PointwiseSolver::Lane::answer(int i, double x) const {
   const auto add = [&](double side, double bound) {
     const double depth = side * (bound - y), before = problem.before ? side * (bound - problem.before[k]) : 0.0;
     if (!(depth > 0 || before > 0)) return;
-    const PointForce force = law.force({depth, -side * u, before, i, lane});
+    const PointForce force = law.force({depth, -side * u, before, i, lane, per_point ? static_cast<int>(k) : lane});
     sum.force += side * force.value;
     sum.stiffness += std::max(force.stiffness, 0.0);
     sum.viscosity += std::max(force.viscosity, 0.0);
@@ -320,7 +321,7 @@ LaneOutcome PointwiseSolver::solve_coupled(const Lane& lane) {
 LaneOutcome PointwiseSolver::solve(const PointwiseLaw& law, ReducedProblem& problem, int lane_number) {
   const int m = problem.points;
   assert(m >= 0 && m <= points_ && lane_number >= 0 && lane_number < lanes_);
-  const Lane lane{law, problem, lane_number};
+  const Lane lane{law, problem, lane_number, per_point_};
   bool finite = true, pushed = false;
   for (int i = 0; i < m; ++i) {
     const std::size_t k = lane.at(i);

@@ -11,6 +11,7 @@ struct ContactState {
   double rate = 0;    ///< δ̇, the speed of closing, m/s; 0 where the problem has no rate
   double before = 0;  ///< δ⁻, the depth one step before, m; 0 where the problem has none
   int point = 0, lane = 0;
+  int set = 0;  ///< number of the parameter set: the lane, or that of the point in its lane
 };
 
 /// The force of one side, and how it answers. Slopes ≥ 0 for a law that does not soften.
@@ -56,8 +57,9 @@ class PointwiseLaw {
 class PointwiseSolver {
  public:
   PointwiseSolver() = default;
-  /// Reserves for m points and the slopes of `lanes` lanes; solve() allocates nothing after this.
-  void prepare(int points, int lanes);
+  /// Reserves for m points and the slopes of `lanes` lanes; solve() allocates nothing after this. `per_point`: the set
+  /// of point i of lane l is i·lanes + l, else l.
+  void prepare(int points, int lanes, bool per_point = false);
 
   /// Solves (1) for one lane of the problem; `effort` holds the first guess, then p. The residual is the distance of
   /// (y_i, p_i) from the force law, m. Convergence means equality to the round-off of forming y; where Φ jumps, that p
@@ -86,6 +88,7 @@ class PointwiseSolver {
     const PointwiseLaw& law;
     const ReducedProblem& problem;
     int lane;
+    bool per_point;
     std::size_t at(int i) const {
       return static_cast<std::size_t>(i) * static_cast<std::size_t>(problem.lanes) + static_cast<std::size_t>(lane);
     }
@@ -110,6 +113,7 @@ class PointwiseSolver {
   LaneOutcome finish(const Lane& lane, bool converged, int iterations);
 
   int points_ = 0, lanes_ = 0;
+  bool per_point_ = false;
   int most_iterations_ = 60, most_sweeps_ = 4000;
   std::vector<double> effort_, moved_, terms_;  // p, x = Wp, Σ_j |W_ij p_j|
   std::vector<double> step_, shift_;            // δp, Wδp

@@ -5,6 +5,7 @@
 #include <ricochet/contract/parameters.hpp>
 #include <ricochet/contract/step_plan.hpp>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 
@@ -144,21 +145,32 @@ class ContactLaw {
   virtual std::optional<Refusal> prepare_problem(ContactStructure& /*structure*/) { return std::nullopt; }
   /// Sizes workspaces; `lanes` holds one checked parameter set per lane (only `per_lane` parameters differ).
   virtual void prepare(int points, std::span<const Parameters> lanes) = 0;
+  /// Whether prepare_points() may take the place of prepare().
+  virtual bool per_point() const { return false; }
+  /// The same with a set for each point and lane: that of point i of lane l is the number i·lanes + l. Only parameters
+  /// that have a role differ within a lane.
+  virtual void prepare_points(int /*points*/, int /*lanes*/, std::span<const Parameters> /*sets*/) {
+    throw std::logic_error("the law has one parameter set per lane");
+  }
+  /// Key of its parameter that has this role; empty: none has. The registry answers, from the declaration.
+  virtual std::string parameter_of(ParameterRole /*role*/) const { return {}; }
+
+  // A `set` below is the number of a parameter set: the lane, or after prepare_points() that of the point in its lane.
+
   /// Distance before the stop at which the law begins to act (m ≥ 0): the bounds that solve() sees are shifted by it;
   /// depth and penetration stay measured at the stop.
-  virtual double layer(int /*lane*/) const { return 0; }
+  virtual double layer(int /*set*/) const { return 0; }
   /// Finds p for each touched lane. No allocation here.
   virtual void solve(ReducedProblem& problem) = 0;
-  /// Energy stored by the law at penetration `depth` (m, at least −layer) in lane `lane`, joules; rigid laws store
-  /// none.
-  virtual double potential(double /*depth*/, int /*lane*/) const { return 0; }
+  /// Energy stored by the law at penetration `depth` (m, at least −layer), joules; rigid laws store none.
+  virtual double potential(double /*depth*/, int /*set*/) const { return 0; }
 
   // What analyses ask: flights, exponents, spectra, references, `plan` and `describe`.
 
   /// Of a compliant law that is linear as long as a point pushes: its slopes then, the same at every depth δ > 0 beyond
   /// the stop (and depth before δ⁻ > 0, where that has a slope), with p = stiffness δ + viscosity δ̇ + before δ⁻ and the
   /// dissipation viscosity δ̇². None: not linear, or not told.
-  virtual std::optional<ContactSlopes> linear_slopes(int /*lane*/) const { return std::nullopt; }
+  virtual std::optional<ContactSlopes> linear_slopes(int /*set*/) const { return std::nullopt; }
   /// Whether slopes() are known: tangents use them; without, exponents of a compliant law are those of twins.
   virtual bool offers_slopes() const { return false; }
   /// Slopes at the last solve of a point in contact.
@@ -174,8 +186,8 @@ class ContactLaw {
 
 /// κ (N/m) of a compliant law whose force is κ times the depth, whatever the depth; none: rigid, damped or not linear.
 /// A mean over the step has a half of κ at each of its ends.
-inline std::optional<double> constant_stiffness(const ContactLaw& law, int lane = 0) {
-  const auto slopes = law.linear_slopes(lane);
+inline std::optional<double> constant_stiffness(const ContactLaw& law, int set = 0) {
+  const auto slopes = law.linear_slopes(set);
   if (!slopes || slopes->viscosity != 0) return std::nullopt;
   return slopes->stiffness + slopes->before;
 }

@@ -91,7 +91,14 @@ class GuardedMass final : public Guard<MassStrategy> {
 
 class GuardedLaw final : public Guard<ContactLaw> {
  public:
-  using Guard::Guard;
+  GuardedLaw(std::shared_ptr<const PluginIdentity> plugin, std::unique_ptr<ContactLaw> inner,
+             std::shared_ptr<const std::vector<ParameterSpec>> declared)
+      : Guard(std::move(plugin), std::move(inner)), declared_(std::move(declared)) {}
+  std::string parameter_of(ParameterRole role) const override {
+    for (const ParameterSpec& spec : *declared_)
+      if (role != ParameterRole::none && spec.role == role) return spec.key;
+    return {};
+  }
   bool absent() const override { RICOCHET_FORWARD(absent); }
   std::optional<Evaluation> reads() const override {
     const std::optional<Evaluation> answer = ask("reads", [](auto& inner) { return inner.reads(); });
@@ -117,6 +124,10 @@ class GuardedLaw final : public Guard<ContactLaw> {
     return refusal;
   }
   void prepare(int points, std::span<const Parameters> lanes) override { RICOCHET_FORWARD(prepare, points, lanes); }
+  bool per_point() const override { RICOCHET_FORWARD(per_point); }
+  void prepare_points(int points, int lanes, std::span<const Parameters> sets) override {
+    RICOCHET_FORWARD(prepare_points, points, lanes, sets);
+  }
   void solve(ReducedProblem& problem) override { RICOCHET_FORWARD(solve, problem); }
   double potential(double depth, int lane) const override { RICOCHET_FORWARD(potential, depth, lane); }
   std::optional<ContactSlopes> linear_slopes(int lane) const override { RICOCHET_FORWARD(linear_slopes, lane); }
@@ -135,6 +146,9 @@ class GuardedLaw final : public Guard<ContactLaw> {
   }
   bool closed_form(int points) const override { RICOCHET_FORWARD(closed_form, points); }
   std::string how_solved() const override { RICOCHET_FORWARD(how_solved); }
+
+ private:
+  std::shared_ptr<const std::vector<ParameterSpec>> declared_;
 };
 
 class GuardedScheme final : public Guard<TimeScheme> {
@@ -186,13 +200,13 @@ class GuardedReference final : public Guard<ReferenceSolver> {
 
 #undef RICOCHET_FORWARD
 
-template <class Guarded, class Interface>
-Maker<Interface> guard(PluginIdentity plugin, Maker<Interface> make) {
-  return [identity = std::make_shared<const PluginIdentity>(std::move(plugin)),
-          make = std::move(make)](const Parameters& parameters) -> std::unique_ptr<Interface> {
+template <class Guarded, class Interface, class... More>
+Maker<Interface> guard(PluginIdentity plugin, Maker<Interface> make, More... more) {
+  return [identity = std::make_shared<const PluginIdentity>(std::move(plugin)), make = std::move(make),
+          ... more = std::move(more)](const Parameters& parameters) -> std::unique_ptr<Interface> {
     std::unique_ptr<Interface> made = ask(*identity, "make", [&] { return make(parameters); });
     if (!made) throw PluginFault(*identity, "make", "its factory returned no object");
-    return std::make_unique<Guarded>(identity, std::move(made));
+    return std::make_unique<Guarded>(identity, std::move(made), more...);
   };
 }
 
@@ -201,8 +215,9 @@ Maker<Interface> guard(PluginIdentity plugin, Maker<Interface> make) {
 Maker<MassStrategy> guarded(PluginIdentity plugin, Maker<MassStrategy> make) {
   return guard<GuardedMass>(std::move(plugin), std::move(make));
 }
-Maker<ContactLaw> guarded(PluginIdentity plugin, Maker<ContactLaw> make) {
-  return guard<GuardedLaw>(std::move(plugin), std::move(make));
+Maker<ContactLaw> guarded(PluginIdentity plugin, Maker<ContactLaw> make, std::vector<ParameterSpec> declared) {
+  return guard<GuardedLaw>(std::move(plugin), std::move(make),
+                           std::make_shared<const std::vector<ParameterSpec>>(std::move(declared)));
 }
 Maker<TimeScheme> guarded(PluginIdentity plugin, Maker<TimeScheme> make) {
   return guard<GuardedScheme>(std::move(plugin), std::move(make));

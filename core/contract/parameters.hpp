@@ -23,8 +23,9 @@ struct Range {
 };
 
 /// What a parameter is to whoever does not know its plugin. A reference needs the restitution of a scheme and the
-/// stiffness of a law; it finds them by role, never by key.
-enum class ParameterRole { none, restitution, stiffness };
+/// stiffness of a law, and a stop may have its own; they are found by role, never by key. Of a law, `stiffness` is in
+/// N/m and `damping` in N s/m.
+enum class ParameterRole { none, restitution, stiffness, damping };
 
 /// One parameter of a plugin, declared once; checking, `describe` and the JSON Schema all read this.
 struct ParameterSpec {

@@ -100,9 +100,12 @@ void Registry::add(std::map<std::string, Entry<Interface>>& entries, Role role, 
   for (ParameterSpec& spec : manual.parameters) spec.text = one_line(spec.text);
   const std::string name = manual.name;
   if (!make) throw PluginError("the " + std::string(role_name(role)) + " plugin '" + name + "' registers no factory");
-  entries.emplace(name,
-                  Entry<Interface>{std::move(manual), guarded({role_name(role), name, current_file_}, std::move(make)),
-                                   current_file_});
+  PluginIdentity identity{role_name(role), name, current_file_};
+  if constexpr (std::is_same_v<Interface, ContactLaw>)
+    make = guarded(std::move(identity), std::move(make), manual.parameters);
+  else
+    make = guarded(std::move(identity), std::move(make));
+  entries.emplace(name, Entry<Interface>{std::move(manual), std::move(make), current_file_});
 }
 
 void Registry::add_mass(PluginManual manual, Maker<MassStrategy> make) {

@@ -24,7 +24,7 @@ using Maker = std::function<std::unique_ptr<Interface>(const Parameters&)>;
 /// without a sentence, a mass that is none (check_inertia), a motion that does not fit its grid. The registry puts
 /// every factory through this, so that nobody holds an unguarded object.
 Maker<MassStrategy> guarded(PluginIdentity plugin, Maker<MassStrategy> make);
-Maker<ContactLaw> guarded(PluginIdentity plugin, Maker<ContactLaw> make);
+Maker<ContactLaw> guarded(PluginIdentity plugin, Maker<ContactLaw> make, std::vector<ParameterSpec> declared = {});
 Maker<TimeScheme> guarded(PluginIdentity plugin, Maker<TimeScheme> make);
 Maker<ReferenceSolver> guarded(PluginIdentity plugin, Maker<ReferenceSolver> make);
 

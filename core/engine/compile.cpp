@@ -5,6 +5,8 @@
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/flight_choice.hpp>
+#include <ricochet/engine/own_parameters.hpp>
+#include <ricochet/scene/stop_parameters.hpp>
 #include <stdexcept>
 
 namespace ricochet {
@@ -179,6 +181,7 @@ void say_what_is_left_out(Program& program) {
     say("the mass matrix itself", "M = Bᵀ C_v⁻¹ B acts through its factors");
   if (problem.inertia.inverted() && program.kind != OperatorKind::modal)
     say("the mass matrix itself", "M⁻¹ is known: without K a stage is a product with it, with K it is a border");
+  say_unused(program);
   if (program.tangents == 0) say("tangent columns", "no exponent is asked for");
 }
 
@@ -276,6 +279,9 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   if (program.tangents > 0 && program.law->reads() && !program.law->offers_slopes())
     return Refusal{"the contact law offers no slopes, hence no tangents: its exponents are those of twins"};
   if (auto refusal = meet_law(*program.law, *problem, lanes)) return *refusal;
+  if (auto refusal = refuse_own(*program.law, problem->own, problem->stops)) return *refusal;
+  if (auto refusal = refuse_restitution(program)) return *refusal;
+  program.own_sets = sets_per_point(*program.law, problem->own);
   const auto restores = [](const Stage& stage) { return stage.impact && stage.impact->restores > 0; };
   if (program.tangents > 0 && !program.law->reads() && !program.law->absent() &&
       std::any_of(program.plan.stages.begin(), program.plan.stages.end(), restores))

@@ -103,12 +103,17 @@ struct Program {
   int tangents = 0;  ///< tangent columns per lane, behind the lanes
   OperatorKind kind = OperatorKind::band;
   std::vector<StageProgram> start, stages;
+  bool own_sets = false;  ///< whether the law has a set for each point and lane (stop_parameters.hpp)
   bool contact = false, support = false, load = false, load_constant = false, eager_delassus = false;
   bool bounded = true;                ///< whether a lane beyond its energy bound is stopped
   double predicted_step_seconds = 0;  ///< per step of the whole block
   double predicted_setup_seconds = 0;
   std::vector<LeftOut> left_out;
   std::shared_ptr<Flight> flight;  ///< null: every step is marched
+  /// Number of the law's parameter set of a point in a lane.
+  int law_set(int point, int lane) const { return own_sets ? point * width + lane : lane; }
+  /// Farthest before a stop that the law acts, m; of a law that is prepared for one lane.
+  double farthest_layer() const;
   std::string every_step_because;  ///< why no step can be left out; empty where one could be, or nobody asked
 };
 

@@ -120,7 +120,7 @@ void Marcher::connect_works() {
 // Which operators measure what the law reads: positions that no effort has moved yet, where no load is added to the
 // free step apart and one lane alone does not fly, which sums modes in another order.
 void Marcher::connect_tests() {
-  if (program_.load || program_.flight || slot_count() != 2) return;
+  if (program_.load || program_.flight || !motions().empty() || slot_count() != 2) return;
   const auto connect = [&](StageProgram& program, StageState& state) {
     if (!state.delassus || !program.driven || program.gate || state.restored || program.effort.size() > 1) return;
     if (state.rate.rows() > 0 || state.before.rows() > 0) return;

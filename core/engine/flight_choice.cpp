@@ -5,6 +5,7 @@
 #include <ricochet/engine/flight/flight_memory.hpp>
 #include <ricochet/engine/flight_choice.hpp>
 #include <ricochet/kernels/floating_point.hpp>
+#include <ricochet/scene/stop_parameters.hpp>
 
 namespace ricochet {
 namespace {
@@ -26,6 +27,7 @@ Refusal refuse_flight(const std::string& cause) {
 std::string why_grounded(const Program& program, const CompileOptions& options) {
   if (program.lanes.size() > 1) return "several lanes march as one block";
   if (program.load && !program.load_constant) return "the load depends on time";
+  if (!program.problem->motions.empty()) return "supports or stops move by histories";
   if (program.problem->damping.own()) return "the damping is not made of K and M";
   if (!program.problem->held || !kind_applies(OperatorKind::modal, *program.problem))
     return "the structure has no modes to fly by: it is not held, or has more than 1000 degrees of freedom";
@@ -40,13 +42,11 @@ std::string why_grounded(const Program& program, const CompileOptions& options) 
 }
 
 std::string let_fly(Program& program, const CompileOptions& options) {
-  double layer = 0;
   if (program.contact) {
     const Parameters parameters[] = {program.lanes.front().law};
-    program.law->prepare(program.problem->points(), parameters);
-    layer = program.law->layer(0);
+    prepare_law(*program.law, program.problem->points(), parameters, program.problem->own);
   }
-  auto flight = std::make_shared<Flight>(program, layer, options.expected_steps);
+  auto flight = std::make_shared<Flight>(program, program.farthest_layer(), options.expected_steps);
   if (!flight->cause().empty()) return flight->cause();
   program.flight = std::move(flight);
   const std::string &closed = program.flight->closed_cause(), &steps = program.flight->steps_cause();

@@ -39,7 +39,7 @@ bool same_problem(const SemiDiscrete& a, const SemiDiscrete& b) {
          same_matrix(a.inertia.velocity_mass, b.inertia.velocity_mass) &&
          same_matrix(a.inertia.inverse, b.inertia.inverse) && a.damping == b.damping &&
          a.support.pulsation == b.support.pulsation && a.contact_x == b.contact_x && a.stops == b.stops &&
-         same_load(a, b);
+         a.own == b.own && same_load(a, b);
 }
 
 // A load is a formula, which keeps what it works with inside: every program that may run beside others has its own.

@@ -9,6 +9,7 @@
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
 #include <ricochet/kernels/floating_point.hpp>
+#include <ricochet/scene/stop_parameters.hpp>
 
 namespace ricochet {
 
@@ -37,21 +38,21 @@ double Marcher::stored_at_start(int lane) const {
 // The law acts from its layer on.
 void Marcher::place_stops(int lane) {
   const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
-  const double layer = program_.law->layer(lane);
   for (int i = 0; i < lower_.rows(); ++i) {
+    const double layer = program_.law->layer(program_.law_set(i, lane));
     lower_.at(i, lane) = spec.lower[i] + layer;
     upper_.at(i, lane) = spec.upper[i] - layer;
   }
 }
 
-// The law's parameters, one set per lane of the block.
+// The law's parameters, one set per lane of the block, or per point and lane.
 void Marcher::prepare_law() {
   if (!program_.contact) return;
   std::vector<Parameters> parameters;
   for (int lane = 0; lane < program_.width; ++lane)
     parameters.push_back(program_.lanes[static_cast<std::size_t>(std::min(lane, lanes() - 1))].law);
   const int points = program_.problem->points();
-  program_.law->prepare(points, parameters);
+  ricochet::prepare_law(*program_.law, points, parameters, program_.problem->own);
   const int kept = program_.law->memory_per_point();
   if (kept > 0 && memory_.rows() == 0) memory_ = Block(points * kept, program_.width);
   for (int lane = 0; lane < lanes(); ++lane)
@@ -113,8 +114,7 @@ void Marcher::set_lane(int lane, const LaneSpec& spec, const LaneState& state) {
   frozen_now_ &= ~(1u << lane);
   for (int k = 0; k < program_.tangents; ++k) frozen_now_ &= ~(1u << tangent_lane(lane, k));
   if (program_.contact) place_stops(lane);
-  if (program_.flight && !(same_law && same_stops))
-    program_.flight->place(own, program_.contact ? program_.law->layer(0) : 0);
+  if (program_.flight && !(same_law && same_stops)) program_.flight->place(own, program_.farthest_layer());
   set_state_at(lane, state);
   if (lane_flight_) lane_flight_->forget();
 }

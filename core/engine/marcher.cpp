@@ -139,6 +139,9 @@ std::unique_ptr<StageState> Marcher::make_state(StageProgram& stage, const Stage
     state->fastest = Block(1, T);
     state->gate_lower = Block(points, T);
     state->gate_upper = Block(points, T);
+    state->rebound.assign(static_cast<std::size_t>(points), stage.gate->restitution);
+    for (std::size_t i = 0; i < program_.problem->own.size(); ++i)
+      state->rebound[i] = program_.problem->own[i].restitution.value_or(stage.gate->restitution);
     state->gap_weights = with_z(stage.gate->predictor);
     state->approach_weights = with_z(stage.gate->approach);
   }

@@ -76,10 +76,11 @@ double Marcher::tip(int lane) const {
 
 double Marcher::stored(int lane, int point, double relative, double lift) const {
   const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
-  const double place = relative + lift, layer = program_.law->layer(lane);
+  const int set = program_.law_set(point, lane);
+  const double place = relative + lift, layer = program_.law->layer(set);
   double sum = 0;
   for (const double depth : {spec.lower[point] - place, place - spec.upper[point]})
-    if (depth > -layer) sum += program_.law->potential(depth, lane);
+    if (depth > -layer) sum += program_.law->potential(depth, set);
   return sum;
 }
 

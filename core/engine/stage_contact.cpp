@@ -74,10 +74,11 @@ void Marcher::open_gates(StageProgram& program, StageState& state, std::span<con
     for (int i = 0; i < points; ++i) fastest = std::max(fastest, std::abs(state.approach.at(i, lane)));
     const double still = 1e-10 * fastest;
     for (int i = 0; i < points; ++i) {
+      const double restitution = state.rebound[static_cast<std::size_t>(i)];
       const double gap = state.gap.at(i, lane), speed = state.approach.at(i, lane);
       const bool lower = gap <= lower_.at(i, lane), upper = gap >= upper_.at(i, lane);
-      const double from_lower = speed > still ? -speed : -gate.restitution * std::min(speed, 0.0);
-      const double from_upper = speed < -still ? -speed : -gate.restitution * std::max(speed, 0.0);
+      const double from_lower = speed > still ? -speed : -restitution * std::min(speed, 0.0);
+      const double from_upper = speed < -still ? -speed : -restitution * std::max(speed, 0.0);
       state.gate_lower.at(i, lane) = lower ? from_lower : -infinity;
       state.gate_upper.at(i, lane) = upper ? from_upper : infinity;
     }

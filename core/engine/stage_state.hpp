@@ -26,6 +26,7 @@ struct StageState {
   Block w;                                ///< that unknown, rows × T; zero where nothing jumped
   bool jumped = false;                    ///< whether something did, in some lane
   Block free, weighted, rate, before, gap, gate_lower, gate_upper, approach;
+  std::vector<double> rebound;      ///< of a gate, e of each point's stop
   Block fastest;                    ///< largest speed seen at a closed point, per lane
   std::uint32_t contact_lanes = 0;  ///< lanes with a non-zero effort
   std::uint32_t closed_lanes = 0;   ///< lanes with a closed gate

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 
@@ -186,13 +187,19 @@ FiniteElementSpace make(const OscillatorSpec& oscillator, int elements) {
 }
 
 /// The matrices as they are; no element.
-FiniteElementSpace make(const AssembledSpec& spec, int elements) {
-  if (elements != 1)
+FiniteElementSpace make(const AssembledSpec& given, int elements) {
+  SceneSpec scene;
+  scene.structure = given;
+  scene = on_mesh(std::move(scene), elements);
+  const auto& spec = std::get<AssembledSpec>(scene.structure);
+  if (elements != 1 && !spec.bodies)
     throw InputError(
         "/mesh/elements",
         fmt::format("{} elements; an assembled structure has the mesh of its files: expected 1", elements));
   FiniteElementSpace space;
-  space.structure = spec.structure->modes ? "modal structure" : "assembled structure";
+  space.structure = spec.bodies             ? "structure of bodies"
+                    : spec.structure->modes ? "modal structure"
+                                            : "assembled structure";
   space.basis = FiniteElementSpace::Basis::linear;
   space.dofs = spec.structure->dofs();
   space.given = spec.structure->dofs_known;

@@ -7,6 +7,7 @@
 #include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
@@ -110,6 +111,8 @@ void check_load(const SceneSpec& scene, const FiniteElementSpace& space) {
     const char* one_point = "an oscillator has one point; expected an entry {\"force\": formula in t, in N}";
     require(!oscillator || term.force, load_pointer(k, "shape"), one_point);
     require(!oscillator || !term.at, load_pointer(k, "at"), one_point);
+    require(!term.place || term.force, load_pointer(k, "body"),
+            "the scene has one structure; expected no body of the load");
     require(!term.place, load_pointer(k, "at"),
             fmt::format("a {} has no nodes that are called; expected x in m", space.structure));
     require(oscillator || !term.force || term.at, load_pointer(k, "at"),
@@ -334,8 +337,14 @@ void check_fields(const SceneSpec& scene, const FiniteElementSpace& space, int e
 
 }  // namespace
 
+void check_structure_alone(const SceneSpec& scene, int elements) {
+  std::visit([&](const auto& structure) { check_structure(structure, elements); }, scene.structure);
+  check_magnitudes(scene, elements);
+}
+
 void check_scene(const SceneSpec& shared, int elements, const ForceBeyond& beyond) {
-  const SceneSpec scene = shared;  // formulas keep their variables inside: evaluate our own copies
+  // Formulas keep their variables inside: evaluate our own copies.
+  const SceneSpec scene = on_mesh(shared, elements);
   std::visit([&](const auto& structure) { check_structure(structure, elements); }, scene.structure);
   const auto space = make_space(scene.structure, elements);
   check_support(scene.support);
@@ -343,6 +352,8 @@ void check_scene(const SceneSpec& shared, int elements, const ForceBeyond& beyon
   check_magnitudes(scene, elements);
   check_variables(scene);
   if (!scene.stops.named.empty()) check_named_stops(scene, space);
+  require(!scene.initial.equilibrium || (scene.initial.displacement.is_zero() && scene.initial.dofs.empty()),
+          "/scene/initial/equilibrium", "stands beside a displacement; expected one of both");
   check_points(scene, space);
   check_tangents(scene, space);
   if (std::holds_alternative<AssembledSpec>(scene.structure)) return check_assembled(scene, space, beyond);
@@ -357,7 +368,7 @@ void check_scene(const SceneSpec& shared, int elements, const ForceBeyond& beyon
         scene.support.amplitude == 0 || !rigid_freedom(*beam).translates, "/scene/support/amplitude",
         "no support of the beam would move it; expected an amplitude of 0, or a clamped, pinned or elastic support");
 
-  if (!scene.motions.empty()) {
+  if (moves_by_histories(scene) || scene.initial.equilibrium) {
     // discretise() knows where the stops are at t = 0.
   } else if (scene.stops.named.empty()) {
     const auto x = touchable(scene, elements);

@@ -64,6 +64,9 @@ void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u,
                          const Eigen::VectorXd& upper, const std::string& pointer, const std::string& what,
                          const ForceBeyond& beyond = {}, const std::vector<std::string>& names = {});
 
+/// Throws InputError for a structure that is none, whatever acts on it, and by check_magnitudes().
+void check_structure_alone(const SceneSpec& scene, int elements);
+
 /// Throws InputError where numbers that are each in range make coefficients whose squares doubles cannot hold: the
 /// stiffness and the mass of an element, their ratio, damping, the acceleration of the support.
 void check_magnitudes(const SceneSpec& scene, int elements);

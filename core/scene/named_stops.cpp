@@ -6,6 +6,7 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
@@ -47,7 +48,11 @@ void check_name(const std::string& name, const std::string& pointer) {
 
 PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place,
                    const std::string& pointer) {
-  if (const AssembledStructure* assembled = assembled_of(scene)) return assembled->row(place, pointer);
+  const AssembledStructure* assembled = assembled_of(scene);
+  if (!place.body.empty() && !(assembled && assembled->joined))
+    throw InputError(pointer + "/body",
+                     fmt::format("\"{}\" in a scene of one structure; expected no body", shortened(place.body)));
+  if (assembled) return assembled->row(place, pointer);
   if (!place.x)
     throw InputError(
         pointer, fmt::format("a {} has no nodes that are called; expected {{\"x\": position in m}}", space.structure));
@@ -65,6 +70,10 @@ PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, cons
 
 PlaceRow section_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place, ShapeOf what,
                      const std::string& pointer) {
+  if (const JoinedBodies* bodies = bodies_of(scene.structure))
+    return bodies->row(place, pointer, [&](const SceneSpec& alone, const FiniteElementSpace& own, const Place& there) {
+      return section_row(alone, own, there, what, pointer);
+    });
   if (!std::holds_alternative<BeamSpec>(scene.structure) || !place.x)
     throw InputError(pointer, fmt::format("nothing bends in this {}; expected a beam", space.structure));
   place_row(scene, space, place, pointer);
@@ -113,6 +122,9 @@ ContactPoints contact_points(const SceneSpec& scene, const FiniteElementSpace& s
   }
   out.rows.resize(count, space.dofs);
   out.rows.setFromTriplets(entries.begin(), entries.end());
+  const auto& named = scene.stops.named;
+  if (std::any_of(named.begin(), named.end(), [](const NamedStop& stop) { return stop.own.any(); }))
+    for (const NamedStop& stop : named) out.own.push_back(stop.own);
   return out;
 }
 
@@ -204,8 +216,9 @@ Eigen::VectorXd initial_dofs(const AssembledStructure& structure, const InitialS
 }
 
 void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond) {
-  const bool modal = assembled_of(scene)->modes.has_value();
-  const std::string no_x = (modal ? "a " : "an ") + space.structure + " has no x; expected ";
+  const bool modal = assembled_of(scene)->modes.has_value(), bodies = assembled_of(scene)->joined != nullptr;
+  const std::string no_x = bodies ? "bodies have no x in common; expected "
+                                  : (modal ? "a " : "an ") + space.structure + " has no x; expected ";
   if (scene.support.amplitude != 0 && assembled_of(scene)->supports.empty())
     throw InputError("/scene/support/amplitude",
                      "the table of dofs names no support that could move; expected an amplitude of 0");
@@ -216,15 +229,25 @@ void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, co
   for (const auto& [formula, key] :
        {std::pair(&scene.initial.displacement, "displacement"), {&scene.initial.velocity, "velocity"}})
     if (!formula->is_zero())
-      throw InputError(fmt::format("/scene/initial/{}", key), no_x + "0, or the file of an initial state");
+      throw InputError(fmt::format("/scene/initial/{}", key),
+                       no_x + (bodies ? "0, or equilibrium" : "0, or the file of an initial state"));
   for (std::size_t k = 0; k < scene.load.terms.size(); ++k) {
     const LoadTerm& term = scene.load.terms[k];
     const std::string pointer = fmt::format("/scene/load/{}", k);
+    if (bodies && !term.force && term.place) {
+      const JoinedBody& body = assembled_of(scene)->joined->of(*term.place, pointer);
+      if (body.space.given)
+        throw InputError(pointer + "/body", "an assembled body has no x; expected forces at its places");
+      for (const double x : mesh_nodes(body.alone, body.elements)) term.shape(x);
+      term.history(0, 0);
+      continue;
+    }
     if (!term.force) throw InputError(pointer + "/shape", no_x + "{\"at\": place, \"force\": F(t)}");
     if (!term.place)
       throw InputError(pointer + "/at",
-                       modal ? "expected the place of the force: point"
-                             : "expected the place of the force: node and component, node and direction, or dofs");
+                       bodies  ? "expected the place of the force: body and its place there"
+                       : modal ? "expected the place of the force: point"
+                               : "expected the place of the force: node and component, node and direction, or dofs");
     if (place_row(scene, space, *term.place, pointer + "/at").free.empty())
       throw InputError(pointer + "/at", "the force acts where the structure is held: nothing there can move");
     term.history(0, 0);
@@ -237,7 +260,7 @@ void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, co
       throw InputError("/scene/initial/file",
                        fmt::format("dof {} is held, and would begin at {:.6g} with {:.6g}; expected 0 and 0", state.dof,
                                    state.displacement, state.velocity));
-  if (!scene.motions.empty() || scene.support.amplitude != 0)
+  if (moves_by_histories(scene) || scene.support.amplitude != 0 || scene.initial.equilibrium)
     return;  // discretise() knows where the stops are at t = 0
   const ContactPoints points = contact_points(scene, space, 1);
   const Eigen::VectorXd start = points.rows * initial_dofs(structure, scene.initial, &DofState::displacement);

@@ -32,11 +32,12 @@ PlaceRow stop_row(const SceneSpec& scene, const FiniteElementSpace& space, const
 
 /// The contact points of a scene.
 struct ContactPoints {
-  std::vector<double> x;           ///< m
-  std::vector<std::string> names;  ///< of the stops; empty where they have none
-  Eigen::VectorXd lower, upper;    ///< m; ±∞ where absent
-  SparseRows rows;                 ///< H, m × n
-  Eigen::MatrixXd on_supports;     ///< m × r: weights of the displacements of supports, beside H ψ
+  std::vector<double> x;            ///< m
+  std::vector<std::string> names;   ///< of the stops; empty where they have none
+  Eigen::VectorXd lower, upper;     ///< m; ±∞ where absent
+  SparseRows rows;                  ///< H, m × n
+  Eigen::MatrixXd on_supports;      ///< m × r: weights of the displacements of supports, beside H ψ
+  std::vector<StopParameters> own;  ///< of each stop; empty where none has parameters of its own
 };
 ContactPoints contact_points(const SceneSpec& scene, const FiniteElementSpace& space, int elements);
 

@@ -4,6 +4,7 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/observed_rows.hpp>
 #include <ricochet/scene/scene.hpp>
@@ -62,7 +63,9 @@ PlaceRow scaled(PlaceRow row, double factor) {
 PlaceRow field_row(const SceneSpec& scene, const FiniteElementSpace& space, const PointSpec& point, ShapeOf what,
                    const std::string& pointer) {
   const PlaceRow row = section_row(scene, space, point.at, what, pointer);
-  return scaled(row, part_at(uniform_parts(std::get<BeamSpec>(scene.structure)), row.x).section.EI);
+  const JoinedBodies* bodies = bodies_of(scene.structure);
+  const StructureSpec& bent = bodies ? bodies->of(point.at, pointer).alone.structure : scene.structure;
+  return scaled(row, part_at(uniform_parts(std::get<BeamSpec>(bent)), row.x).section.EI);
 }
 
 // The place of a node with another component or direction.

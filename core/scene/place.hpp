@@ -7,13 +7,14 @@
 namespace ricochet {
 
 /// A place of a structure, as a study writes it. Exactly one of: x; node and component; node and direction; dofs;
-/// point.
+/// point. Of several bodies with the name of one; that of an oscillator needs no more.
 struct Place {
   std::optional<double> x;                   ///< m, along a beam or a bar
   std::string node, component;               ///< of matrices that are given
   std::vector<double> direction;             ///< three numbers, normalised when it is used
   std::vector<std::pair<int, double>> dofs;  ///< dof of the table, from 1, and weight
   std::string point;                         ///< of a structure in modes
+  std::string body = {};                     ///< empty where there is one
 
   bool operator==(const Place&) const = default;
 };

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/scene.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
@@ -110,6 +111,11 @@ double Damping::rate(double square, std::size_t k) const {
   return by_modes() ? 2 * ratio(k) * std::sqrt(square) : stiffness * square + mass;
 }
 
+bool moves_by_histories(const SceneSpec& scene) {
+  return !scene.motions.empty() || std::any_of(scene.stops.named.begin(), scene.stops.named.end(),
+                                               [](const NamedStop& stop) { return stop.motion != nullptr; });
+}
+
 bool LoadSpec::uses_t() const {
   return formula.uses_t() || std::any_of(terms.begin(), terms.end(), [](const LoadTerm& term) {
            return !ricochet::is_zero(term) && term.history.uses_t();
@@ -125,6 +131,19 @@ double LoadSpec::spread(double x, double t) const {
   for (const LoadTerm& term : terms) sum += (term.force ? 1.0 : term.shape(x)) * term.history(0, t);
   return sum;
 }
+
+namespace {
+
+// A shape along one of several bodies.
+void add_on_body(const AssembledStructure& structure, const LoadTerm& term, Eigen::VectorXd& out) {
+  const JoinedBody& body = structure.joined->of(*term.place, "/scene/load");
+  const DistributedLoad own(LoadSpec(term.shape), body.space);
+  Eigen::VectorXd shape = Eigen::VectorXd::Zero(body.dofs());
+  own.assemble(0, shape.data());
+  out.segment(body.first, body.dofs()) += shape;
+}
+
+}  // namespace
 
 DistributedLoad::DistributedLoad(const LoadSpec& load, const FiniteElementSpace& space,
                                  const AssembledStructure* assembled)
@@ -148,7 +167,9 @@ DistributedLoad::DistributedLoad(const LoadSpec& load, const FiniteElementSpace&
     one.shape = Eigen::VectorXd::Zero(size_);
     one.history = term.history;
     terms_vary_ = terms_vary_ || term.history.uses_t();
-    if (assembled && term.place)
+    if (assembled && term.place && !term.force)
+      add_on_body(*assembled, term, one.shape);
+    else if (assembled && term.place)
       for (const auto& [dof, value] : assembled->row(*term.place, "/scene/load").free) one.shape[dof] = value;
     else if (term.force)
       for (const auto& [dof, value] : displacement_row(space, term.at.value_or(0))) one.shape[dof] = value;

@@ -131,15 +131,31 @@ struct BarSpec {
 };
 
 struct AssembledStructure;
-/// A structure given by its matrices, as its files say it (assembled_structure.hpp).
+struct Bodies;
+/// A structure given by its matrices, as its files say it (assembled_structure.hpp); or several bodies, joined on a
+/// mesh (bodies.hpp).
 struct AssembledSpec {
   std::shared_ptr<const AssembledStructure> structure;
-  Damping damping;
-  std::optional<Place> tip;  ///< the displacement shown to people; none: that of the first stop, else of the first load
+  Damping damping = {};
+  /// The displacement shown to people; none: that of the first stop, else of the first load.
+  std::optional<Place> tip = {};
+  std::shared_ptr<const Bodies> bodies = {};  ///< null: files
 };
 using StructureSpec = std::variant<BeamSpec, OscillatorSpec, BarSpec, AssembledSpec>;
 /// How it is damped; that of an oscillator is one of mass.
 Damping damping_of(const StructureSpec& structure);
+
+/// What a stop has of its own, in the place of the parameter of the law or scheme that has this role.
+struct StopParameters {
+  std::optional<double> stiffness = {};    ///< N/m
+  std::optional<double> damping = {};      ///< N s/m
+  std::optional<double> restitution = {};  ///< 1
+
+  bool any() const { return stiffness || damping || restitution; }
+  bool operator==(const StopParameters&) const = default;
+};
+
+struct MotionSpec;
 
 /// A stop of its own name: lower ≤ u(at) − u(to) ≤ upper, m.
 struct NamedStop {
@@ -149,6 +165,8 @@ struct NamedStop {
   std::optional<double> lower, upper;
   std::string moves_with = {};  ///< the support that carries it, or all; empty: it stands still
   std::optional<TangentSpec> tangent = {};
+  StopParameters own = {};
+  std::shared_ptr<const MotionSpec> motion = {};  ///< of its own; null: none
 };
 
 /// Two rigid stops g1(x) ≤ u ≤ g2(x); a missing formula is an absent stop. Or a list of stops that have names: then
@@ -194,6 +212,7 @@ struct InitialSpec {
   Formula displacement, velocity;
   Projection projection = Projection::none;
   std::vector<DofState> dofs = {};  ///< of matrices that are given: those that do not begin at rest at 0
+  bool equilibrium = false;         ///< the displacement is that at rest under F(0) and the stops
 };
 
 /// One part of a load whose form in space stays as it is: a shape that a history scales, or a force at a point.
@@ -202,7 +221,7 @@ struct LoadTerm {
   std::optional<double> at;                     ///< where that is, m; none of an oscillator, which has one point
   Formula shape;                                ///< f(x), N/m, of what is spread
   Formula history;                              ///< g(t), 1; of a force F(t), N
-  std::optional<ricochet::Place> place = {};    ///< of a force on matrices that are given, in the place of `at`
+  std::optional<ricochet::Place> place = {};    ///< of a force on matrices that are given; of a shape its body
   std::shared_ptr<const TimeTable> table = {};  ///< that the history was made of, where it was
   double period = 0;                            ///< s, after which a random history repeats; 0: none
 };
@@ -223,8 +242,9 @@ struct LoadSpec {
 
 /// The structure in its N slowest modes, in the place of its mesh.
 struct BasisSpec {
-  int modes = 0;         ///< N; 0: all that have mass
-  bool residual = true;  ///< whether the static shapes of its stops stand beside them
+  int modes = 0;                    ///< N; 0: all that have mass; of bodies those of each, or of all in of_bodies
+  bool residual = true;             ///< whether the static shapes of its stops stand beside them
+  std::vector<int> of_bodies = {};  ///< of each body; empty: `modes` of each
 
   bool operator==(const BasisSpec&) const = default;
 };
@@ -238,8 +258,11 @@ struct SceneSpec {
   std::vector<MotionSpec> motions;  ///< beside `support`, which is at rest then
   /// Whether the initial state, and the displacements that are shown, count from the supports that move by `motions`.
   bool from_supports = false;
-  std::vector<PointSpec> points = {};  ///< displacements that are shown; the first is where the tip is
+  std::vector<PointSpec> points = {};   ///< displacements that are shown; the first is where the tip is
   std::optional<BasisSpec> basis = {};  ///< none: all dofs of the mesh
 };
+
+/// Whether supports or stops move by histories, beside the harmonic support.
+bool moves_by_histories(const SceneSpec& scene);
 
 }  // namespace ricochet

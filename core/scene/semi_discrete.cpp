@@ -8,10 +8,13 @@
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/basis/shared_bases.hpp>
 #include <ricochet/scene/beam.hpp>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/equilibrium.hpp>
 #include <ricochet/scene/massless_part.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
+#include <ricochet/scene/stop_parameters.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/supports.hpp>
 #include <stdexcept>
@@ -159,28 +162,6 @@ void project_on_mass_constraint(SemiDiscrete& problem) {
 
 namespace {
 
-// Of several sections, the stiffest says how stiff the beam is.
-void add_stiffness(const BeamSpec& beam, SemiDiscrete& problem) {
-  for (const UniformPart& part : uniform_parts(beam)) problem.rigidity = std::max(problem.rigidity, part.section.EI);
-  problem.stiffness = beam_stiffness(beam, problem.space);
-}
-void add_stiffness(const BarSpec& bar, SemiDiscrete& problem) {
-  problem.rigidity = bar.EA;
-  problem.stiffness = axial_stiffness(problem.space, bar.EA);
-}
-void add_stiffness(const OscillatorSpec& oscillator, SemiDiscrete& problem) {
-  problem.rigidity = oscillator.stiffness;
-  problem.stiffness.resize(1, 1);
-  problem.stiffness.insert(0, 0) = oscillator.stiffness;
-  problem.stiffness.makeCompressed();
-}
-
-void add_stiffness(const AssembledSpec& spec, SemiDiscrete& problem) {
-  const AssembledStructure& structure = *spec.structure;
-  problem.stiffness = structure.stiffness;
-  problem.notes = structure.notes;
-}
-
 // An oscillator's harmonic force is one more term of its load.
 LoadSpec whole_load(const SceneSpec& scene) {
   LoadSpec load = scene.load;
@@ -247,10 +228,15 @@ void check_start(const SemiDiscrete& problem, const std::string& pointer, const 
 Eigen::VectorXd pushed_at_start(ContactLaw& law, const Parameters& parameters, const SemiDiscrete& problem) {
   const int points = problem.points();
   if (points == 0 || law.absent() || !law.reads()) return {};
-  law.prepare(points, {&parameters, 1});
-  const double layer = law.layer(0);
+  prepare_law(law, points, {&parameters, 1}, problem.own);
   const Eigen::VectorXd place = problem.measured() * problem.position + lift_at_start(problem);
-  const Eigen::VectorXd lower = problem.lower.array() + layer, upper = problem.upper.array() - layer;
+  const bool own = sets_per_point(law, problem.own);
+  Eigen::VectorXd lower = problem.lower, upper = problem.upper;
+  for (int i = 0; i < points; ++i) {
+    const double layer = law.layer(own ? i : 0);
+    lower[i] += layer;
+    upper[i] -= layer;
+  }
   const std::vector<double> force = standing_force(law, {points, 1, place.data(), lower.data(), upper.data()});
   const Eigen::Map<const Eigen::VectorXd> p(force.data(), points);
   if (p.isZero(0)) return {};
@@ -306,29 +292,30 @@ void march_in_basis(const SceneSpec& scene, const SparseMatrix& mass, SemiDiscre
 
 SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const MassStrategy& mass, ContactLaw* law,
                                  const Parameters* parameters) try {
-  const SceneSpec scene = shared;  // formulas keep their variables inside: evaluate our own copies
+  // Formulas keep their variables inside: evaluate our own copies.
+  const SceneSpec scene = on_mesh(shared, elements);
   const bool law_decides = law && parameters;
   // A law that changes the problem knows its force once it has.
   ForceBeyond beyond;
   if (law_decides) beyond = law->changes_problem() ? anywhere_beyond() : force_beyond(*law, *parameters);
   check_scene(scene, elements, beyond);
 
-  SemiDiscrete problem;
-  problem.space = make_space(scene.structure, elements);
+  SemiDiscrete problem = structure_alone(scene.structure, elements);
   ContactPoints points = contact_points(scene, problem.space, elements);
   problem.contact_x = std::move(points.x);
   problem.contact = std::move(points.rows);
   problem.stops = std::move(points.names);
+  problem.own = std::move(points.own);
   problem.space.contact_dofs = touched_dofs(problem.contact);
-  std::visit([&](const auto& structure) { add_stiffness(structure, problem); }, scene.structure);
-  problem.damping = damping_of(scene.structure);
   problem.support = scene.support;
-  problem.support_shape = rigid_motion_load(problem.space);
-  hold_by_supports(scene.structure, elements, problem);
+  const JoinedBodies* bodies = bodies_of(scene.structure);
   // The modes of K with the consistent or given mass, whatever mass is marched.
   const SparseMatrix whole = scene.basis ? consistent_mass(problem.space) : SparseMatrix();
-  if (scene.basis) problem.basis = shared_basis(problem.stiffness, whole, problem.contact, problem.held, *scene.basis);
-  auto built = build_mass(problem, mass);
+  if (scene.basis)
+    problem.basis = bodies ? std::make_shared<const ModalBasis>(join_bases(*bodies, problem, whole, *scene.basis))
+                           : shared_basis(problem.stiffness, whole, problem.contact, problem.held, *scene.basis);
+  const auto build = [&](const SemiDiscrete& one) { return build_mass(one, mass); };
+  auto built = bodies ? join_masses(*bodies, problem, build) : build(problem);
   if (auto* refusal = std::get_if<Refusal>(&built)) return *refusal;
   problem.inertia = std::get<Inertia>(std::move(built));
 
@@ -343,19 +330,31 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   if (shown_position(scene) != structure_length(scene) && std::holds_alternative<BeamSpec>(scene.structure))
     problem.notes.push_back(
         fmt::format("the displacement shown as that of the tip is at x = {:.6g} m", shown_position(scene)));
+  Eigen::VectorXd still;  // F(0), before supports accelerate
+  if (scene.initial.equilibrium) load->assemble(0, (still.resize(problem.space.dofs), still.data()));
   add_support(scene, points.on_supports, problem, *load);
   observe_rows(scene, problem);
   interpolate_initial(scene, problem);
   if (problem.basis) march_in_basis(scene, whole, problem, *load);
+  if (bodies && problem.damping.matrix)
+    problem.damping.matrix = std::make_shared<const SparseMatrix>(join_dampings(*bodies, problem));
   problem.load = std::move(load);
   if (law && law->changes_problem() && problem.points() > 0) {
     if (auto refusal = change_by(*law, problem)) return *refusal;
     if (law_decides) beyond = force_beyond(*law, *parameters);
   }
 
-  check_start(problem, "/scene/initial/displacement", "the initial displacement", beyond);
   Eigen::VectorXd pushed;
-  if (law_decides && problem.inertia.kernel_dimension > 0) pushed = pushed_at_start(*law, *parameters, problem);
+  if (scene.initial.equilibrium) {
+    if (problem.basis) still = problem.basis->shapes.transpose() * still;
+    if (law_decides) prepare_law(*law, std::max(1, problem.points()), {parameters, 1}, problem.own);
+    Equilibrium found = equilibrium(problem, still, lift_at_start(problem), law_decides ? law : nullptr);
+    problem.position = std::move(found.position);
+    if (!found.pushed.isZero(0)) pushed = std::move(found.pushed);
+  }
+  check_start(problem, "/scene/initial/displacement", "the initial displacement", beyond);
+  if (!scene.initial.equilibrium && law_decides && problem.inertia.kernel_dimension > 0)
+    pushed = pushed_at_start(*law, *parameters, problem);
   if (scene.initial.projection == InitialSpec::Projection::constraint) {
     if (pushed.size() > 0)
       return Refusal{

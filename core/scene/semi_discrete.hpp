@@ -97,6 +97,7 @@ struct SemiDiscrete {
   SparseMatrix own_stiffness;                        ///< K of the structure itself there; else empty
   std::vector<double> contact_x;                     ///< position of each contact point, m
   std::vector<std::string> stops;                    ///< name of each contact point's stop; empty where they have none
+  std::vector<StopParameters> own;                   ///< parameters of each point's stop; empty where none has its own
   Eigen::VectorXd lower, upper;                      ///< g1, g2 at the contact points; ±∞ where absent
   Eigen::SparseMatrix<double, Eigen::RowMajor> tip;  ///< 1 × n: the displacement shown to people
   Eigen::RowVectorXd tip_on_supports;                ///< 1 × r: ψ_j there, of matrices that are given
@@ -136,6 +137,9 @@ Eigen::MatrixXd motion_shapes(const SemiDiscrete& problem, const std::vector<dou
 /// The displacement space of the structure without contact dofs, on `elements` equal elements; of a beam with supports,
 /// sections or masses between its ends, on those of beam_intervals().
 FiniteElementSpace make_space(const StructureSpec& structure, int elements);
+
+/// A structure by itself: its space, K, supports and static modes. Nothing acts on it, and it has no mass yet.
+SemiDiscrete structure_alone(const StructureSpec& structure, int elements);
 
 /// Scene × mesh × mass strategy → matrices. Throws InputError with JSON pointers into the scene ("/scene/stops/lower",
 /// …) for stops that cross (lower > upper somewhere), a clamp that the support pushes through a stop, an initial state

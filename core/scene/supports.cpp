@@ -6,6 +6,7 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/discrete_problem.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
@@ -198,9 +199,9 @@ Eigen::MatrixXd motion_shapes(const SemiDiscrete& problem, const std::vector<dou
 
 void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, SemiDiscrete& problem,
                  DistributedLoad& load) {
-  if (scene.motions.empty()) return;
+  if (!moves_by_histories(scene)) return;
   SupportMotions& motions = problem.motions;
-  const Moved moved = moved_supports(scene);
+  const Moved moved = scene.motions.empty() ? Moved{} : moved_supports(scene);
   motions.supports = moved.supports;
   motions.from_supports = scene.from_supports;
   for (std::size_t k = 0; k < scene.motions.size(); ++k) {
@@ -209,6 +210,16 @@ void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, Sem
     for (const std::size_t j : moved.supports[k]) push -= problem.support_loads.col(static_cast<Eigen::Index>(j));
     load.add(push, Formula([history](double t) { return history->acceleration(t); }, "motion of supports",
                            fmt::format("/scene/motions/{}", k)));
+  }
+  // A stop that moves by itself is one more motion, of no support.
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> alone;
+  for (std::size_t i = 0; i < scene.stops.named.size(); ++i) {
+    const std::shared_ptr<const MotionSpec>& own = scene.stops.named[i].motion;
+    if (!own) continue;
+    alone.emplace_back(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(motions.histories.size()));
+    motions.histories.push_back(own->history);
+    motions.supports.emplace_back();
+    motions.carry_stops = true;
   }
   motions.at_points = of_motions(motions, problem.contact * problem.static_modes + on_supports);
   motions.at_tip = motion_shapes(problem, {shown_position(scene)});
@@ -219,6 +230,7 @@ void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, Sem
     const int motion = carried_by(carrier_of(scene, stop), scene, moved, carrier_pointer(scene, stop));
     if (motion >= 0) motions.at_points(i, motion) -= 1;
   }
+  for (const auto& [stop, motion] : alone) motions.at_points(stop, motion) = -1;
 }
 
 namespace {
@@ -253,7 +265,8 @@ bool support_bends(const SceneSpec& scene) {
   const auto* spec = std::get_if<AssembledSpec>(&scene.structure);
   if (!spec || scene.support.amplitude == 0) return false;
   SemiDiscrete problem;
-  problem.space = make_space(scene.structure, 1);
+  const JoinedBodies* bodies = bodies_of(scene.structure);
+  problem.space = make_space(scene.structure, bodies ? bodies->mesh : 1);
   ContactPoints points = contact_points(scene, problem.space, 1);
   problem.contact = std::move(points.rows);
   hold_by_supports(scene.structure, 1, problem);

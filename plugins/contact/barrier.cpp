@@ -35,7 +35,7 @@ struct BarrierLaw {
 class Barrier final : public PointwiseContact {
  public:
   using PointwiseContact::PointwiseContact;
-  double layer(int lane) const override { return law(lane).thickness; }
+  double layer(int set) const override { return law(set).thickness; }
 
  private:
   void set_lanes(std::span<const Parameters> lanes) override {
@@ -43,16 +43,16 @@ class Barrier final : public PointwiseContact {
     for (const Parameters& lane : lanes) laws_.push_back({lane.real("stiffness"), lane.real("thickness")});
   }
   PointForce at(const ContactState& state) const override {
-    const BarrierLaw& law = this->law(state.lane);
+    const BarrierLaw& law = this->law(state.set);
     return {.value = law.force(state.depth), .stiffness = law.slope(state.depth)};
   }
   PointForce gradient(const ContactState& state) const override {
-    const BarrierLaw& law = this->law(state.lane);
+    const BarrierLaw& law = this->law(state.set);
     const double left = law.thickness - std::max(state.depth, state.before);
     return mean_force(law, state.depth, state.before, std::min({state.depth, state.before, left}));
   }
-  double stored(double depth, int lane) const override { return law(lane).stored(depth); }
-  const BarrierLaw& law(int lane) const { return laws_[static_cast<std::size_t>(lane)]; }
+  double stored(double depth, int set) const override { return law(set).stored(depth); }
+  const BarrierLaw& law(int set) const { return laws_[static_cast<std::size_t>(set)]; }
 
   std::vector<BarrierLaw> laws_;
 };

@@ -27,7 +27,7 @@ struct ExponentialLaw {
 class Exponential final : public PointwiseContact {
  public:
   using PointwiseContact::PointwiseContact;
-  double layer(int lane) const override { return law(lane).reach * law(lane).length; }
+  double layer(int set) const override { return law(set).reach * law(set).length; }
 
  private:
   void set_lanes(std::span<const Parameters> lanes) override {
@@ -36,15 +36,15 @@ class Exponential final : public PointwiseContact {
       laws_.push_back({lane.real("force") * std::exp(-lane.real("reach")), lane.real("length"), lane.real("reach")});
   }
   PointForce at(const ContactState& state) const override {
-    const ExponentialLaw& law = this->law(state.lane);
+    const ExponentialLaw& law = this->law(state.set);
     return {.value = law.force(state.depth), .stiffness = law.slope(state.depth)};
   }
   PointForce gradient(const ContactState& state) const override {
-    const ExponentialLaw& law = this->law(state.lane);
+    const ExponentialLaw& law = this->law(state.set);
     return mean_force(law, state.depth, state.before, std::min({law.length, state.depth, state.before}));
   }
-  double stored(double depth, int lane) const override { return law(lane).stored(depth); }
-  const ExponentialLaw& law(int lane) const { return laws_[static_cast<std::size_t>(lane)]; }
+  double stored(double depth, int set) const override { return law(set).stored(depth); }
+  const ExponentialLaw& law(int set) const { return laws_[static_cast<std::size_t>(set)]; }
 
   std::vector<ExponentialLaw> laws_;
 };

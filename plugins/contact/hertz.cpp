@@ -8,19 +8,19 @@ using namespace ricochet;
 class Hertz final : public PointwiseContact {
  public:
   using PointwiseContact::PointwiseContact;
-  std::optional<ContactSlopes> linear_slopes(int lane) const override {
-    if (law(lane).exponent != 1) return std::nullopt;
-    return spring_slopes(law(lane).stiffness, reads());
+  std::optional<ContactSlopes> linear_slopes(int set) const override {
+    if (law(set).exponent != 1) return std::nullopt;
+    return spring_slopes(law(set).stiffness, reads());
   }
 
  private:
   void set_lanes(std::span<const Parameters> lanes) override { laws_ = power_laws(lanes); }
-  PointForce at(const ContactState& state) const override { return law(state.lane).at(state.depth); }
+  PointForce at(const ContactState& state) const override { return law(state.set).at(state.depth); }
   PointForce gradient(const ContactState& state) const override {
-    return law(state.lane).between(state.depth, state.before);
+    return law(state.set).between(state.depth, state.before);
   }
-  double stored(double depth, int lane) const override { return law(lane).stored(depth); }
-  const PowerLaw& law(int lane) const { return laws_[static_cast<std::size_t>(lane)]; }
+  double stored(double depth, int set) const override { return law(set).stored(depth); }
+  const PowerLaw& law(int set) const { return laws_[static_cast<std::size_t>(set)]; }
 
   std::vector<PowerLaw> laws_;
 };

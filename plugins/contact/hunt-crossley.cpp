@@ -19,14 +19,14 @@ class HuntCrossley final : public PointwiseContact {
     for (const Parameters& lane : lanes) damping_.push_back(lane.real("damping"));
   }
   PointForce at(const ContactState& state) const override {
-    const auto lane = static_cast<std::size_t>(state.lane);
-    return damped(laws_[lane].at(state.depth), damping_[lane], state.rate);
+    const auto set = static_cast<std::size_t>(state.set);
+    return damped(laws_[set].at(state.depth), damping_[set], state.rate);
   }
   PointForce gradient(const ContactState& state) const override {
-    const auto lane = static_cast<std::size_t>(state.lane);
-    return damped(laws_[lane].between(state.depth, state.before), damping_[lane], state.rate);
+    const auto set = static_cast<std::size_t>(state.set);
+    return damped(laws_[set].between(state.depth, state.before), damping_[set], state.rate);
   }
-  double stored(double depth, int lane) const override { return laws_[static_cast<std::size_t>(lane)].stored(depth); }
+  double stored(double depth, int set) const override { return laws_[static_cast<std::size_t>(set)].stored(depth); }
 
   std::vector<PowerLaw> laws_;
   std::vector<double> damping_;

@@ -17,9 +17,9 @@ class KelvinVoigt final : public PointwiseContact {
   using PointwiseContact::PointwiseContact;
   bool reads_rate() const override { return true; }
   // Beyond the stop at both ends of the step, all means over it are the mean of the ends.
-  std::optional<ContactSlopes> linear_slopes(int lane) const override {
-    ContactSlopes slopes = spring_slopes(laws_[static_cast<std::size_t>(lane)].stiffness, reads());
-    slopes.viscosity = dampers_[static_cast<std::size_t>(lane)];
+  std::optional<ContactSlopes> linear_slopes(int set) const override {
+    ContactSlopes slopes = spring_slopes(laws_[static_cast<std::size_t>(set)].stiffness, reads());
+    slopes.viscosity = dampers_[static_cast<std::size_t>(set)];
     return slopes;
   }
 
@@ -34,25 +34,25 @@ class KelvinVoigt final : public PointwiseContact {
   }
   PointForce at(const ContactState& state) const override {
     if (!(state.depth > 0)) return {};
-    const auto lane = static_cast<std::size_t>(state.lane);
-    const double elastic = laws_[lane].force(state.depth), viscous = dampers_[lane] * state.rate;
+    const auto set = static_cast<std::size_t>(state.set);
+    const double elastic = laws_[set].force(state.depth), viscous = dampers_[set] * state.rate;
     // It does not pull: what the spring gives back beyond that is lost too.
     if (!(elastic + viscous > 0)) return {.dissipation = -elastic * state.rate};
     return {.value = elastic + viscous,
-            .stiffness = laws_[lane].stiffness,
-            .viscosity = dampers_[lane],
+            .stiffness = laws_[set].stiffness,
+            .viscosity = dampers_[set],
             .dissipation = viscous * state.rate};
   }
   // The dashpot acts on the share of the step's way that lies beyond the stop, [δ₊ − δ⁻₊]/(δ − δ⁻): no jump at entry.
   PointForce gradient(const ContactState& state) const override {
-    const auto lane = static_cast<std::size_t>(state.lane);
-    const PointForce elastic = laws_[lane].between(state.depth, state.before), share = beyond(state);
-    const double viscosity = dampers_[lane] * share.value, viscous = viscosity * state.rate;
+    const auto set = static_cast<std::size_t>(state.set);
+    const PointForce elastic = laws_[set].between(state.depth, state.before), share = beyond(state);
+    const double viscosity = dampers_[set] * share.value, viscous = viscosity * state.rate;
     if (!(elastic.value + viscous > 0)) return {.dissipation = -elastic.value * state.rate};
     return {.value = elastic.value + viscous,
-            .stiffness = elastic.stiffness + dampers_[lane] * share.stiffness * state.rate,
+            .stiffness = elastic.stiffness + dampers_[set] * share.stiffness * state.rate,
             .viscosity = viscosity,
-            .before = elastic.before + dampers_[lane] * share.before * state.rate,
+            .before = elastic.before + dampers_[set] * share.before * state.rate,
             .dissipation = viscous * state.rate};
   }
   static PointForce beyond(const ContactState& state) {
@@ -61,7 +61,7 @@ class KelvinVoigt final : public PointwiseContact {
     if (state.depth > 0) return {state.depth / way, -state.before / square, 0, state.depth / square};
     return {-state.before / way, state.before / square, 0, -state.depth / square};
   }
-  double stored(double depth, int lane) const override { return laws_[static_cast<std::size_t>(lane)].stored(depth); }
+  double stored(double depth, int set) const override { return laws_[static_cast<std::size_t>(set)].stored(depth); }
 
   std::vector<PowerLaw> laws_;
   std::vector<double> dampers_;
@@ -84,8 +84,9 @@ void register_kelvin_voigt(Registry& registry) {
           restitution of the time scheme has no part in it. What the dashpot takes is reported as dissipated by the
           law.)",
        .source = "Goldsmith (1960), Impact, section 3.4; Brogliato (2016), Nonsmooth Mechanics, section 2.1",
-       .parameters = {stiffness_parameter("N/m", "k, stiffness of the spring at each contact point"), viscosity,
-                      evaluation_parameter()},
+       .parameters = {with_role(stiffness_parameter("N/m", "k, stiffness of the spring at each contact point"),
+                                ParameterRole::stiffness),
+                      with_role(viscosity, ParameterRole::damping), evaluation_parameter()},
        .words = "Kelvin–Voigt"},
       [](const Parameters& p) { return std::make_unique<KelvinVoigt>(evaluation_of(p)); });
 }

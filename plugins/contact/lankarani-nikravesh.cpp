@@ -51,16 +51,16 @@ class LankaraniNikravesh final : public PointwiseContact {
   }
   double damping(const ContactState& state) const {
     const double entry = std::abs(problem_->memory_of(state.lane)[state.point]);
-    return entry > 0 ? 0.75 * loss_[static_cast<std::size_t>(state.lane)] / entry : 0.0;
+    return entry > 0 ? 0.75 * loss_[static_cast<std::size_t>(state.set)] / entry : 0.0;
   }
   PointForce at(const ContactState& state) const override {
-    return damped(laws_[static_cast<std::size_t>(state.lane)].at(state.depth), damping(state), state.rate);
+    return damped(laws_[static_cast<std::size_t>(state.set)].at(state.depth), damping(state), state.rate);
   }
   PointForce gradient(const ContactState& state) const override {
-    return damped(laws_[static_cast<std::size_t>(state.lane)].between(state.depth, state.before), damping(state),
+    return damped(laws_[static_cast<std::size_t>(state.set)].between(state.depth, state.before), damping(state),
                   state.rate);
   }
-  double stored(double depth, int lane) const override { return laws_[static_cast<std::size_t>(lane)].stored(depth); }
+  double stored(double depth, int set) const override { return laws_[static_cast<std::size_t>(set)].stored(depth); }
 
   std::vector<PowerLaw> laws_;
   std::vector<double> loss_;

@@ -8,11 +8,11 @@ using namespace ricochet;
 class Layer final : public PointwiseContact {
  public:
   using PointwiseContact::PointwiseContact;
-  double layer(int lane) const override { return thickness_[static_cast<std::size_t>(lane)]; }
+  double layer(int set) const override { return thickness_[static_cast<std::size_t>(set)]; }
   // With a thickness the force is no multiple of the depth beyond the stop.
-  std::optional<ContactSlopes> linear_slopes(int lane) const override {
-    if (layer(lane) != 0) return std::nullopt;
-    return spring_slopes(laws_[static_cast<std::size_t>(lane)].stiffness, reads());
+  std::optional<ContactSlopes> linear_slopes(int set) const override {
+    if (layer(set) != 0) return std::nullopt;
+    return spring_slopes(laws_[static_cast<std::size_t>(set)].stiffness, reads());
   }
 
  private:
@@ -25,12 +25,12 @@ class Layer final : public PointwiseContact {
     }
   }
   PointForce at(const ContactState& state) const override {
-    return laws_[static_cast<std::size_t>(state.lane)].at(state.depth);
+    return laws_[static_cast<std::size_t>(state.set)].at(state.depth);
   }
   PointForce gradient(const ContactState& state) const override {
-    return laws_[static_cast<std::size_t>(state.lane)].between(state.depth, state.before);
+    return laws_[static_cast<std::size_t>(state.set)].between(state.depth, state.before);
   }
-  double stored(double depth, int lane) const override { return laws_[static_cast<std::size_t>(lane)].stored(depth); }
+  double stored(double depth, int set) const override { return laws_[static_cast<std::size_t>(set)].stored(depth); }
 
   std::vector<PowerLaw> laws_;
   std::vector<double> thickness_;
@@ -50,8 +50,9 @@ void register_layer(Registry& registry) {
                R"(With stops at all nodes the stiffness per metre grows as the mesh is refined. The restitution of the
           time scheme has no part in it.)",
        .source = "Winkler (1867), elastic foundation, one spring per contact point; " + std::string(evaluation_source),
-       .parameters = {stiffness_parameter("N/m", "k, stiffness of the layer at each contact point"), thickness,
-                      evaluation_parameter()}},
+       .parameters = {with_role(stiffness_parameter("N/m", "k, stiffness of the layer at each contact point"),
+                                ParameterRole::stiffness),
+                      thickness, evaluation_parameter()}},
       [](const Parameters& p) { return std::make_unique<Layer>(evaluation_of(p)); });
 }
 

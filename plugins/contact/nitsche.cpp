@@ -45,6 +45,7 @@ class Nitsche final : public PointwiseContact {
   Nitsche(double gamma, long long theta, const ForceEvaluation& evaluation)
       : PointwiseContact(evaluation), gamma_(gamma), theta_(theta) {}
   bool changes_problem() const override { return true; }
+  bool per_point() const override { return false; }
 
   std::optional<Refusal> prepare_problem(ContactStructure& structure) override {
     if (theta_ != 1)

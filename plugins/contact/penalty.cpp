@@ -17,11 +17,11 @@ class Penalty final : public ContactLaw, private PointwiseLaw {
   std::optional<Evaluation> reads() const override { return evaluation_; }
 
   void prepare(int points, std::span<const Parameters> lanes) override {
-    solver_.prepare(points);
-    crossed_.assign(lanes.size(), 0);
-    crosses_ = false;
-    stiffness_.clear();
-    for (const Parameters& lane : lanes) stiffness_.push_back(lane.real("stiffness"));
+    take(points, static_cast<int>(lanes.size()), lanes, false);
+  }
+  bool per_point() const override { return true; }
+  void prepare_points(int points, int lanes, std::span<const Parameters> sets) override {
+    take(points, lanes, sets, true);
   }
 
   void solve(ReducedProblem& problem) override {
@@ -29,41 +29,58 @@ class Penalty final : public ContactLaw, private PointwiseLaw {
       crossed_[static_cast<std::size_t>(lane)] = crosses(problem.lane(lane));
       // Prepared once, at the first such stops: scenes without them need no such memory.
       if (crossed_[static_cast<std::size_t>(lane)] != 0 && !std::exchange(crosses_, true))
-        both_sides_.prepare(problem.points, static_cast<int>(crossed_.size()));
+        both_sides_.prepare(problem.points, static_cast<int>(crossed_.size()), own_);
       problem.outcome[lane] = crossed_[static_cast<std::size_t>(lane)] != 0
                                   ? both_sides_.solve(*this, problem, lane)
-                                  : solver_.solve(problem.lane(lane), 1 / stiffness(lane));
+                                  : solver_.solve(problem.lane(lane), compliance(lane));
     }
   }
 
-  double potential(double depth, int lane) const override { return 0.5 * stiffness(lane) * depth * depth; }
-  std::optional<ContactSlopes> linear_slopes(int lane) const override {
-    return ContactSlopes{.stiffness = stiffness(lane)};
+  double potential(double depth, int set) const override { return 0.5 * stiffness(set) * depth * depth; }
+  std::optional<ContactSlopes> linear_slopes(int set) const override {
+    return ContactSlopes{.stiffness = stiffness(set)};
   }
   bool offers_slopes() const override { return true; }
   ContactSlopes slopes(int point, int lane) const override {
     if (crossed_[static_cast<std::size_t>(lane)] != 0) return both_sides_.slopes(point, lane);
-    return {.stiffness = stiffness(lane)};
+    return {.stiffness = stiffness(own_ ? point * static_cast<int>(crossed_.size()) + lane : lane)};
   }
   bool closed_form(int points) const override { return points == 1; }
   std::string how_solved() const override { return "one point: closed form; more: active set with a finite fallback"; }
 
  private:
-  double stiffness(int lane) const { return stiffness_[static_cast<std::size_t>(lane)]; }
+  void take(int points, int lanes, std::span<const Parameters> sets, bool own) {
+    solver_.prepare(points);
+    crossed_.assign(static_cast<std::size_t>(lanes), 0);
+    crosses_ = false;
+    own_ = own;
+    stiffness_.clear();
+    compliance_.clear();
+    for (const Parameters& set : sets) {
+      stiffness_.push_back(set.real("stiffness"));
+      compliance_.push_back(1 / stiffness_.back());
+    }
+  }
+  double stiffness(int set) const { return stiffness_[static_cast<std::size_t>(set)]; }
+  // 1/κ of each point.
+  Strided<const double> compliance(int lane) const {
+    return {compliance_.data() + lane, own_ ? static_cast<int>(crossed_.size()) : 0};
+  }
   static unsigned char crosses(const LaneProblem& lane) {
     for (int i = 0; i < lane.points; ++i)
       if (lane.lower[i] > lane.upper[i]) return 1;
     return 0;
   }
   PointForce force(const ContactState& state) const override {
-    return PowerLaw{stiffness(state.lane), 1}.at(state.depth);
+    return PowerLaw{stiffness(state.set), 1}.at(state.depth);
   }
   Evaluation evaluation_;
   BoxSolver solver_;
   PointwiseSolver both_sides_;
   std::vector<unsigned char> crossed_;  // of each lane, whether its last solve had stops that pass each other
   bool crosses_ = false;                // whether any has, and the solver of both sides is there
-  std::vector<double> stiffness_;
+  bool own_ = false;                    // whether each point has a set of its own
+  std::vector<double> stiffness_, compliance_;
 };
 
 /// The same springs by a mean over the step (see StepForce), U = ½κδ₊². Within contact all of them are the mean of both
@@ -71,8 +88,8 @@ class Penalty final : public ContactLaw, private PointwiseLaw {
 class MeanPenalty final : public PointwiseContact {
  public:
   using PointwiseContact::PointwiseContact;
-  std::optional<ContactSlopes> linear_slopes(int lane) const override {
-    return spring_slopes(law(lane).stiffness, reads());
+  std::optional<ContactSlopes> linear_slopes(int set) const override {
+    return spring_slopes(law(set).stiffness, reads());
   }
 
  private:
@@ -80,12 +97,12 @@ class MeanPenalty final : public PointwiseContact {
     laws_.clear();
     for (const Parameters& lane : lanes) laws_.push_back({lane.real("stiffness"), 1});
   }
-  PointForce at(const ContactState& state) const override { return law(state.lane).at(state.depth); }
+  PointForce at(const ContactState& state) const override { return law(state.set).at(state.depth); }
   PointForce gradient(const ContactState& state) const override {
-    return law(state.lane).between(state.depth, state.before);
+    return law(state.set).between(state.depth, state.before);
   }
-  double stored(double depth, int lane) const override { return law(lane).stored(depth); }
-  const PowerLaw& law(int lane) const { return laws_[static_cast<std::size_t>(lane)]; }
+  double stored(double depth, int set) const override { return law(set).stored(depth); }
+  const PowerLaw& law(int set) const { return laws_[static_cast<std::size_t>(set)]; }
 
   std::vector<PowerLaw> laws_;
 };

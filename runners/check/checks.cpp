@@ -30,6 +30,7 @@ const std::vector<Check<ContactLaw>>& law_checks() {
       {"lanes independent", lanes_are_independent},
       {"untouched lanes", untouched_lanes_are_left_alone},
       {"warm start", warm_start_changes_nothing},
+      {"sets of points", points_have_own_sets},
   };
   return all;
 }

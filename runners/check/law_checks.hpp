@@ -25,6 +25,7 @@ Verdict solve_allocates_nothing(const Law& law);
 Verdict lanes_are_independent(const Law& law);
 Verdict untouched_lanes_are_left_alone(const Law& law);
 Verdict warm_start_changes_nothing(const Law& law);
+Verdict points_have_own_sets(const Law& law);  // law_points.cpp
 
 const std::vector<Check<ContactLaw>>& law_checks();
 

@@ -44,8 +44,10 @@ void collect(const ObjectForm& form, const std::string& place, std::vector<FormW
         words.push_back({word, place + form.discriminator, &*key, &variant.keys});
     collect(variant.keys, place, words);
   }
-  for (const Field& field : form.fields)
+  for (const Field& field : form.fields) {
+    if (field.form == Field::Form::bodies) continue;  // as `structure`
     for (const ObjectForm& nested : field.nested) collect(nested, place + "/" + field.key(), words);
+  }
 }
 
 std::vector<FormWord> form_words() {
@@ -58,7 +60,7 @@ std::string type_of(const Field& field) {
   const std::string list = field.axis ? ", or a list" : "";
   switch (field.form) {
     case Field::Form::scalar:
-      return type_word(field.spec) + list;
+      return std::string(type_word(field.spec)) + (field.per_body ? ", or by body" : "") + list;
     case Field::Form::text:
       return "text";
     case Field::Form::formula:
@@ -69,6 +71,8 @@ std::string type_of(const Field& field) {
       return field.plain ? "number or place" : "place";
     case Field::Form::object:
       return field.listed.empty() ? "object" : "object, or a list of objects";
+    case Field::Form::bodies:
+      return "structures by name";
     case Field::Form::named:
     case Field::Form::files:
       return "object";
@@ -106,6 +110,7 @@ void add_keys(const ObjectForm& form, const std::string& path, const std::string
     table.add({name, type_of(field), field.spec.unit, default_of(field), number ? admissible_values(field.spec) : "",
                field.spec.text + when});
     if (default_of(field) == "see below") below += fmt::format("    {}: {}\n", name, plain(*field.fallback));
+    if (field.form == Field::Form::bodies) continue;  // as `structure`
     for (const ObjectForm& nested : field.nested) add_keys(nested, name + ".", when, table, below);
     for (const ObjectForm& one : field.listed) add_keys(one, name + "[].", when + " (in a list)", table, below);
   }

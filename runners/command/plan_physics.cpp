@@ -10,6 +10,7 @@
 
 #include "runners/march/table_steps.hpp"
 #include "runners/run/plan_cases.hpp"
+#include "runners/study/body_keys.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/text.hpp"
 
@@ -99,7 +100,15 @@ const StudyCase& representative(const Group& group) {
   return *found->study_case;
 }
 
-std::string place_text(const Json& place) {
+std::string place_text(const Json& whole) {
+  Json place = whole;
+  std::string body;
+  if (place.contains("body")) {
+    body = place["body"].get<std::string>();
+    place.erase("body");
+    if (place.empty()) return body;
+    return body + " " + place_text(place);
+  }
   if (place.contains("x")) return fmt::format("x = {:.6g} m", place["x"].get<double>());
   if (place.contains("component"))
     return place["node"].get<std::string>() + " " + place["component"].get<std::string>();
@@ -119,6 +128,9 @@ std::string stops_text(const Json& scene, const std::vector<double>& stiffness) 
                         stop["to"].is_null() ? "" : " less " + place_text(stop["to"]));
     for (const char* side : {"lower", "upper"})
       if (!stop[side].is_null()) text += fmt::format(", {} {:.6g} m", side, stop[side].get<double>());
+    for (const auto& [key, unit] : {std::pair("stiffness", "N/m"), {"damping", "N s/m"}, {"restitution", ""}})
+      if (const Json own = stop.value(key, Json()); !own.is_null())
+        text += fmt::format(", {} {:.4g}{}{}", key, own.get<double>(), *unit == '\0' ? "" : " ", unit);
     if (i < stiffness.size() && std::isfinite(stiffness[i]))
       text += fmt::format("; the structure has {:.4g} N/m there", stiffness[i]);
     text += "\n";
@@ -191,7 +203,7 @@ std::string structure_text(const Group& group, const StudyCase& one, const std::
 std::string physics_text(const std::vector<PlannedCase>& cases, const CasePlanner& planner, const Registry& registry) {
   std::vector<std::pair<std::string, Group>> groups;
   for (const PlannedCase& one : cases)
-    in_order_met(groups, one.study_case->scene_json.at("structure").dump()).push_back(&one);
+    in_order_met(groups, structures_of(one.study_case->scene_json).dump()).push_back(&one);
   std::string text;
   for (std::size_t g = 0; g < std::min(most_structures, groups.size()); ++g) {
     const Group& group = groups[g].second;

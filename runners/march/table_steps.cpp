@@ -15,6 +15,8 @@ std::vector<const TimeTable*> tables_of(const SceneSpec& scene) {
     if (term.table) found.push_back(term.table.get());
   for (const MotionSpec& motion : scene.motions)
     if (motion.table) found.push_back(motion.table.get());
+  for (const NamedStop& stop : scene.stops.named)
+    if (stop.motion && stop.motion->table) found.push_back(stop.motion->table.get());
   return found;
 }
 

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 
 #include "runners/json/json_text.hpp"
+#include "runners/study/body_keys.hpp"
 
 namespace ricochet {
-std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, bool modal) {
+std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, const Json& scene, bool modal) {
   if (!mesh.contains("modes") && !mesh.contains("residual")) return {std::nullopt};
   if (!mesh.contains("modes") && !modal)
     throw InputError("/mesh/residual", "there is no mesh.modes whose residual it could be; expected modes too");
@@ -16,7 +19,12 @@ std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, bool modal) {
   const Json counts = mesh.value("modes", Json(nullptr));
   for (const Json& modes : counts.is_array() ? counts : Json::array({counts}))
     for (const std::string& residual : one_or_each<std::string>(mesh.value("residual", Json("stops"))))
-      if (!modes.is_null())
+      if (modes.is_object()) {
+        const std::vector<int> each = of_bodies(modes, scene, "/mesh/modes");
+        if (std::find(each.begin(), each.end(), 0) != each.end())
+          throw InputError("/mesh/modes", "says no number for one of the bodies; expected one for each");
+        bases.push_back(BasisSpec{std::accumulate(each.begin(), each.end(), 0), residual == "stops", each});
+      } else if (!modes.is_null())
         bases.push_back(BasisSpec{modes.get<int>(), residual == "stops"});
       else if (modal && residual != "stops")
         bases.push_back(BasisSpec{0, false});
@@ -29,6 +37,7 @@ void check_bases(const std::vector<std::optional<BasisSpec>>& bases, const Json&
                  int coarsest) {
   const bool any = std::any_of(bases.begin(), bases.end(), [](const auto& basis) { return basis.has_value(); });
   const int dofs = any ? make_space(structure, coarsest).dofs : 0;
+  if (any && bodies_of(structure)) return;  // told by the body that has fewer
   for (const std::optional<BasisSpec>& basis : bases) {
     if (!basis || basis->modes <= dofs) continue;
     const Json& counts = mesh.at("modes");

@@ -9,7 +9,7 @@ namespace ricochet {
 /// The bases of modes that a study marches in, out of its `mesh`: mesh.modes times mesh.residual; one that is empty
 /// where all dofs march. `modal`: whether the structure is described by modes, whose residual may be left out alone.
 /// Throws InputError at /mesh/residual for a residual of no modes.
-std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, bool modal);
+std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, const Json& scene, bool modal);
 
 /// Throws InputError at /mesh/modes for more modes than the structure has dofs on one of the meshes.
 void check_bases(const std::vector<std::optional<BasisSpec>>& bases, const Json& mesh, const StructureSpec& structure,

@@ -6,6 +6,7 @@
 #include <ricochet/scene/formula.hpp>
 
 #include "runners/json/json_text.hpp"
+#include "runners/study/body_keys.hpp"
 #include "runners/study/check_place.hpp"
 
 namespace ricochet {
@@ -217,11 +218,15 @@ Json check_value(const Field& field, const Json& value, const std::string& point
     return list;
   }
   switch (field.form) {
+    case Field::Form::bodies:
+      return check_bodies(field, value, pointer, axes);
     case Field::Form::scalar:
+      if (field.per_body && value.is_object()) return check_per_body(field, value, pointer);
       if (value.is_array() && !field.axis)
         throw InputError(pointer, expectation(field) + "; a list is not possible here");
       return check_scalar(field, value, pointer);
     case Field::Form::text:
+      if (value.is_object() && !field.given.empty()) return check_object(field.given.front(), value, pointer, axes);
       if (!value.is_string()) throw InputError(pointer, "expected a text, found " + quote(value));
       return value;
     case Field::Form::formula:
@@ -328,6 +333,10 @@ bool replaced(const ObjectForm& form, const Json& value) {
 }
 
 }  // namespace
+
+Json check_single(const Field& field, const Json& value, const std::string& pointer) {
+  return check_scalar(field, value, pointer);
+}
 
 bool is_object_list(const Field& field, const Json& value) {
   return field.form == Field::Form::formula && !field.nested.empty() && value.is_array() && !value.empty() &&

@@ -18,6 +18,9 @@ struct Axis {
 /// that does not parse, an empty list.
 Json check_object(const ObjectForm& form, const Json& value, const std::string& pointer, std::vector<Axis>& axes);
 
+/// Checks a number, boolean or word as the field declares it.
+Json check_single(const Field& field, const Json& value, const std::string& pointer);
+
 /// Whether a list is one value of a formula that may also be a list of objects, and no axis.
 bool is_object_list(const Field& field, const Json& value);
 

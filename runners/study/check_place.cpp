@@ -8,7 +8,7 @@ namespace ricochet {
 namespace {
 
 const char* const place_forms =
-    R"({"x": m}, {"node": name, "component": name}, {"node": name, "direction": [3 numbers]} {"dofs": [{"dof", "weight"}]} or {"point": name})";
+    R"({"x": m}, {"node": name, "component": name}, {"node": name, "direction": [3 numbers]} {"dofs": [{"dof", "weight"}]} or {"point": name}; of bodies with "body": name)";
 
 void known_keys(const Json& object, const std::vector<std::string>& keys, const std::string& pointer) {
   for (const auto& [key, ignored] : object.items())
@@ -65,7 +65,15 @@ Json check_place(const Field& field, const Json& value, const std::string& point
   if (!value.is_object())
     throw InputError(pointer, std::string("expected ") + (field.plain ? "x in m, or a place: " : "a place: ") +
                                   place_forms + ", found " + quote(value));
-  known_keys(value, {"x", "node", "component", "direction", "dofs", "point"}, pointer);
+  known_keys(value, {"x", "node", "component", "direction", "dofs", "point", "body"}, pointer);
+  if (value.contains("body")) {
+    Json own = value, out;
+    own.erase("body");
+    // That of an oscillator needs no more.
+    if (!own.empty()) out = check_place(field, own, pointer);
+    out["body"] = word_at(value["body"], pointer_to(pointer, "body"));
+    return out;
+  }
   const auto has = [&](const char* key) { return value.contains(key); };
   const int ways = has("x") + has("node") + has("dofs") + has("point");
   if (ways != 1 || (has("node") && has("component") == has("direction")) ||
@@ -95,9 +103,11 @@ Json place_schema(const Field& field) {
                         {"component", word},
                         {"direction", direction_schema()},
                         {"dofs", {{"type", "array"}, {"items", dof}, {"minItems", 1}}},
-                        {"point", word}}},
+                        {"point", word},
+                        {"body", word}}},
                       {"additionalProperties", false},
-                      {"oneOf", Json::array({{{"required", {"x"}}},
+                      {"anyOf", Json::array({{{"required", {"body"}}},
+                                             {{"required", {"x"}}},
                                              {{"required", {"dofs"}}},
                                              {{"required", {"point"}}},
                                              {{"required", {"node", "component"}}},

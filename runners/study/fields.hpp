@@ -34,6 +34,7 @@ struct Field {
     formula,   ///< a number or a formula in `variables`; where there is a nested object, also a list of such objects
     place,     ///< one place of the structure (check_place.hpp)
     named,     ///< an object of any names, each with a text
+    bodies,    ///< an object of any names, each with a nested object (body_keys.hpp)
     files,     ///< the folder of the files that a study names, and their digests
     places,    ///< where stops act: "nodes", "tip" or a list of positions
     object,    ///< a nested object
@@ -55,6 +56,7 @@ struct Field {
   std::vector<ObjectForm> nested;         ///< one entry for Form::object, objects, starts and such formulas
   std::size_t count = 0;                  ///< for Form::objects; 3 for Form::numbers: a direction
   std::vector<ObjectForm> listed = {};    ///< of Form::object: a list of such objects is possible as well, one value
+  bool per_body = false;                  ///< of Form::scalar: an object of such numbers by body as well
   bool plain = false;                     ///< of Form::place: a number is x
   std::vector<ObjectForm> given = {};     ///< of Form::formula: an object that may stand for it (histories.hpp)
   std::vector<std::string> of_each = {};  ///< of Form::words: words that a name in brackets may follow

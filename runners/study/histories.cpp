@@ -19,7 +19,7 @@ std::vector<Field> table_fields(const char* unit, std::vector<std::string> betwe
   return {of_form(Field::Form::text, "file", std::nullopt, "CSV with a header, in the folder of the study."),
           of_form(Field::Form::text, "time", Json("t"), "Column of the instants, in s."),
           of_form(Field::Form::text, "value", std::nullopt, value.c_str()),
-          single(real("factor", "1", any, 1.0, "What the values are multiplied by.")),
+          real("factor", "1", any, 1.0, "What the values are multiplied by."),
           word("interpolation", std::move(between), first, "Between entries: straight, a natural spline, or steps."),
           word("before", beyond, "error", "Before the first entry."),
           word("after", beyond, "error", "After the last entry.")};
@@ -132,6 +132,12 @@ ObjectForm load_history(const char* unit) {
   return either;
 }
 
+ObjectForm stop_motion_form() {
+  ObjectForm keys;
+  keys.ways = motion_form().ways;
+  return keys;
+}
+
 ObjectForm motion_form() {
   ObjectForm acceleration;
   acceleration.fields = table_fields("m/s²", {"linear"}, {"error", "zero", "hold"});
@@ -162,7 +168,7 @@ void read_load_history(const Json& json, const std::string& pointer, StudyFiles*
 
 MotionSpec read_motion(const Json& json, const std::string& pointer, StudyFiles* files) {
   MotionSpec motion;
-  const Json& supports = json.at("supports");
+  const Json supports = json.value("supports", Json::array({all_supports}));
   if (supports != Json::array({all_supports})) motion.supports = supports.get<std::vector<std::string>>();
   const bool accelerates = json.contains("acceleration");
   const std::string key = accelerates ? "acceleration" : "displacement", here = pointer + "/" + key;
@@ -197,6 +203,10 @@ void check_tables(const SceneSpec& scene, double duration) {
   for (std::size_t i = 0; i < scene.motions.size(); ++i)
     check(scene.motions[i].table,
           fmt::format("/scene/motions/{}/{}", i, scene.motions[i].accelerates ? "acceleration" : "displacement"));
+  for (std::size_t i = 0; i < scene.stops.named.size(); ++i)
+    if (const auto& motion = scene.stops.named[i].motion)
+      check(motion->table,
+            fmt::format("/scene/stops/{}/moves_with/{}", i, motion->accelerates ? "acceleration" : "displacement"));
 }
 
 std::vector<Json*> histories_with_files(Json& scene) {
@@ -210,6 +220,11 @@ std::vector<Json*> histories_with_files(Json& scene) {
   };
   look("load", {"force", "time"});
   look("motions", {"acceleration", "displacement"});
+  if (scene.contains("stops") && scene["stops"].is_array())
+    for (Json& stop : scene["stops"])
+      for (const char* key : {"acceleration", "displacement"})
+        if (const Json::json_pointer file(std::string("/moves_with/") + key + "/file"); stop.contains(file))
+          found.push_back(&stop["moves_with"][key]);
   return found;
 }
 

@@ -15,6 +15,8 @@ class StudyFiles;
 ObjectForm load_history(const char* unit);
 /// One entry of scene.motions.
 ObjectForm motion_form();
+/// The same of a stop.
+ObjectForm stop_motion_form();
 
 /// The history of a term of the load, as it was checked; `number` tells random loads of one seed apart. Throws
 /// InputError for a table that is none, a spectrum that is none.

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <map>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 
 #include "runners/json/json_text.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/study/bases.hpp"
+#include "runners/study/body_keys.hpp"
 #include "runners/study/check_object.hpp"
 #include "runners/study/histories.hpp"
 #include "runners/study/product.hpp"
@@ -96,9 +98,7 @@ void check_steps(const Json& steps, double duration) {
 
 // An oscillator has one dof whatever the mesh: its study need not speak of one. Any other must.
 void require_mesh(const Json& study) {
-  const Json::json_pointer type("/scene/structure/type");
-  if (!study.is_object() || !study.contains(type)) return;
-  if (study.at(type) != "beam" && study.at(type) != "bar") return;
+  if (!study.is_object() || !study.contains("scene") || !has_structure(study.at("scene"), {"beam", "bar"})) return;
   if (!study.contains("mesh")) throw InputError("/mesh", "missing; this key is required");
   if (!study.at("mesh").contains("elements")) throw InputError("/mesh/elements", "missing; this key is required");
 }
@@ -162,9 +162,9 @@ std::vector<bool> start_beyond(const std::vector<MethodOption>& contacts, const 
 
 // Reads and checks every scene that is marched; an offending value that came from a list is named with its place in the
 // list. `beyond`: whether some law of the study lets it begin beyond a stop; `every_dof`: whether it marches all dofs.
-std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis>& axes, int finest, bool beyond,
-                                       const StudyKind& kind, const Json& settings, StudyFiles& files, double duration,
-                                       bool every_dof) {
+std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis>& axes, const MeshChoice& finest,
+                                       bool beyond, const StudyKind& kind, const Json& settings, StudyFiles& files,
+                                       double duration, bool every_dof) {
   std::vector<SceneOption> options;
   Product product;
   for (const Axis& axis : axes) product.add(axis.values.size());
@@ -182,17 +182,17 @@ std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis
       option.axes.emplace_back(column_of(axes[a].pointer), value);
     }
     try {
-      option.scene = read_scene(option.json, &files);
+      option.scene = on_mesh(read_scene(with_meshes(option.json, finest.of_bodies), &files), finest.elements);
       if (every_dof) check_size(option.scene.structure);
       files.add_digests(option.json);
-      check_scene(option.scene, finest, beyond ? anywhere_beyond() : ForceBeyond());
+      check_scene(option.scene, finest.elements, beyond ? anywhere_beyond() : ForceBeyond());
       if (duration > 0) check_tables(option.scene, duration);
     } catch (const InputError& error) {
       if (kind.marches_another) {
         StudyCase one;
         one.scene = option.scene;
         one.scene_json = option.json;
-        one.elements = finest;
+        one.elements = finest.elements;
         one.settings = settings;
         one.starts_beyond = beyond;
         if (kind.marches_another(one)) {
@@ -200,7 +200,7 @@ std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis
           continue;
         }
       }
-      std::string pointer = error.pointer();
+      std::string pointer = pointer_in_bodies(error.pointer(), scene);
       for (std::size_t a = 0; a < axes.size(); ++a)
         if (pointer == axes[a].pointer || pointer.starts_with(axes[a].pointer + "/"))
           pointer.insert(axes[a].pointer.size(), "/" + std::to_string(product[a]));
@@ -266,7 +266,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   if (kind.check) kind.check(resolved);
   if (!kind.shows_points && resolved["scene"].contains("points"))
     throw InputError("/scene/points", "a study of kind " + kind.name + " shows no points; expected kind trajectory");
-  const std::vector<int> meshes = one_or_each<int>(resolved["mesh"]["elements"]);
+  const std::vector<MeshChoice> meshes = meshes_of(resolved["mesh"], resolved["scene"]);
 
   std::vector<MethodOptions> methods;
   for (const Role role : {Role::mass, Role::contact, Role::time}) {
@@ -293,24 +293,25 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
     everything.add(size);
   everything.refuse_above(largest_study, "");
 
-  const std::vector<std::optional<BasisSpec>> bases =
-      bases_of(resolved["mesh"], resolved["scene"]["structure"]["type"] == "modal");
+  const bool modal = has_structure(resolved["scene"], {"modal"}) && !resolved["scene"].contains("bodies");
+  const std::vector<std::optional<BasisSpec>> bases = bases_of(resolved["mesh"], resolved["scene"], modal);
   everything.add(bases.size());
   everything.refuse_above(largest_study, "");
-  const int finest = *std::max_element(meshes.begin(), meshes.end());
+  const auto fewer = [](const MeshChoice& a, const MeshChoice& b) { return a.elements < b.elements; };
+  const MeshChoice &finest = *std::max_element(meshes.begin(), meshes.end(), fewer),
+                   &coarse = *std::min_element(meshes.begin(), meshes.end(), fewer);
   const std::vector<bool> beyond = start_beyond(contacts, catalogue, registry);
   const std::vector<SceneOption> scenes = expand_scenes(
       resolved["scene"], axes, finest, std::find(beyond.begin(), beyond.end(), true) != beyond.end(), kind, settings,
       *files, duration, std::find(bases.begin(), bases.end(), std::nullopt) != bases.end());
-  const int coarsest = *std::min_element(meshes.begin(), meshes.end());
-  for (const SceneOption& one : scenes) check_bases(bases, resolved["mesh"], one.scene.structure, coarsest);
+  for (const SceneOption& one : scenes) check_bases(bases, resolved["mesh"], one.scene.structure, coarse.elements);
   if (Json said = files->said(); !said.is_null()) {
     if (Json layout = structure_layout(scenes.front().scene); !layout.is_null()) said["layout"] = std::move(layout);
     resolved["files"] = std::move(said);
   }
   if (kind.check_methods)
     kind.check_methods(resolved, settings, registry, everything.count(),
-                       make_space(scenes.front().scene.structure, coarsest).dofs);
+                       make_space(scenes.front().scene.structure, coarse.elements).dofs);
 
   for (const MethodOptions& role : methods)
     for (const MethodOption& option : role.options) add_columns(option.axes, study.columns);
@@ -338,17 +339,20 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
     one.time = times[product[3]].choice;
     for (const MethodOption* option : {&masses[product[1]], &contacts[product[2]], &times[product[3]]})
       one.axes.insert(one.axes.end(), option->axes.begin(), option->axes.end());
-    one.elements = meshes[product[4]];
+    one.elements = meshes[product[4]].elements;
+    if (const Json& mesh = meshes[product[4]].of_bodies; mesh.is_object())
+      one.scene = read_scene(one.scene_json = with_meshes(one.scene_json, mesh), files.get());
+    one.scene = on_mesh(std::move(one.scene), one.elements);
     one.step = steps[product[5]];
     one.axes.emplace_back("elements", one.elements);
     if (const std::optional<BasisSpec>& basis = bases[product[8]]; bases.size() > 1 || basis) {
       one.scene.basis = basis;
-      const bool modal = resolved["scene"]["structure"]["type"] == "modal";
       const Json residual = !basis && !modal ? Json(nullptr) : Json(!basis || basis->residual ? "stops" : "none");
       if (resolved["mesh"].contains("modes"))
         one.axes.emplace_back("modes", basis && basis->modes > 0 ? Json(basis->modes) : Json(nullptr));
       if (resolved["mesh"].contains("residual")) one.axes.emplace_back(residual_axis, residual);
       if (basis) one.scene_json["basis"] = {{"modes", basis->modes}, {"residual", residual}};
+      if (basis && !basis->of_bodies.empty()) one.scene_json["basis"]["of_bodies"] = basis->of_bodies;
     }
     if (stepped) one.axes.emplace_back("step", one.step);
     one.steps_per_period = per_period[product[6]];

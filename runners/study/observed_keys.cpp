@@ -54,6 +54,7 @@ Place read_place(const Json& json) {
   place.node = json.value("node", "");
   place.component = json.value("component", "");
   place.point = json.value("point", "");
+  place.body = json.value("body", "");
   if (json.contains("direction")) place.direction = json.at("direction").get<std::vector<double>>();
   if (json.contains("dofs"))
     for (const Json& one : json.at("dofs"))
@@ -68,6 +69,25 @@ std::vector<PointSpec> read_points(const Json& scene) {
     points.push_back({one.at("name").get<std::string>(), read_place(one.at("at")),
                       one.value("frame", frame) == "supports", shows(one, "moment"), shows(one, "shear")});
   return points;
+}
+
+std::vector<Field> parameters_of_stops() {
+  const auto own = [](const char* key, const char* unit, const Range& range, const char* text) {
+    Field field = quiet(optional(real(key, unit, range, std::nullopt, text)));
+    field.axis = true;
+    return field;
+  };
+  return {own("stiffness", "N/m", positive, "Its own stiffness, in the place of the contact law's; absent: the law's."),
+          own("damping", "N s/m", non_negative, "Its own viscosity, in the place of the contact law's."),
+          own("restitution", "1", {0, 1, false, false}, "Its own restitution, in the place of the time scheme's.")};
+}
+
+StopParameters read_own(const Json& stop) {
+  const auto value = [&](const char* key) {
+    const Json given = stop.value(key, Json());
+    return given.is_null() ? std::nullopt : std::optional(given.get<double>());
+  };
+  return {value("stiffness"), value("damping"), value("restitution")};
 }
 
 std::optional<TangentSpec> read_tangent(const Json& stop) {

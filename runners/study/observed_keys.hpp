@@ -1,21 +1,24 @@
 #pragma once
 #include <optional>
-#include <ricochet/scene/place.hpp>
+#include <ricochet/scene/scene.hpp>
 #include <vector>
 
 #include "runners/study/fields.hpp"
 
 /// \file
-/// Keys of what is observed of a scene: points, and motions along the surfaces of stops.
+/// Keys of what is observed of a scene: points, and motions along the surfaces of stops; and parameters of stops.
 namespace ricochet {
 
 /// `points` of a scene.
 Field points_key();
 /// What a stop of a list may say of its surface.
 std::vector<Field> observed_of_stops();
+/// What a stop of a list may have of its own, in the place of the methods' parameters.
+std::vector<Field> parameters_of_stops();
 
 Place read_place(const Json& json);
 std::vector<PointSpec> read_points(const Json& scene);
 std::optional<TangentSpec> read_tangent(const Json& stop);
+StopParameters read_own(const Json& stop);
 
 }  // namespace ricochet

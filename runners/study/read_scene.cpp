@@ -1,6 +1,7 @@
 #include "runners/study/read_scene.hpp"
 
 #include "runners/json/json_text.hpp"
+#include "runners/study/body_keys.hpp"
 #include "runners/study/histories.hpp"
 #include "runners/study/observed_keys.hpp"
 
@@ -26,11 +27,13 @@ LoadSpec read_load(const Json& value, const std::string& pointer, StudyFiles* fi
     if (term.force && value[i].at("at").is_number()) term.at = value[i].at("at").get<double>();
     if (term.force && value[i].at("at").is_object()) {
       const Place place = read_place(value[i].at("at"));
-      if (place.x)
+      if (place.x && place.body.empty())
         term.at = place.x;
       else
         term.place = place;
     }
+    if (!term.force && !value[i].value("body", "").empty())
+      term.place.emplace().body = value[i].at("body").get<std::string>();
     if (!term.force) term.shape = read_formula(value[i].at("shape"), here + "/shape", "x");
     const char* history = term.force ? "force" : "time";
     const Json& given = value[i].at(history);
@@ -170,16 +173,29 @@ StructureSpec read_structure(const Json& json, StudyFiles* files) {
   return read_beam(json);
 }
 
-StopsSpec read_stops(const Json& json) {
+StopsSpec read_stops(const Json& json, StudyFiles* files) {
   StopsSpec stops;
   if (json.is_array()) {
     const auto bound = [](const Json& value) {
       return value.is_null() ? std::nullopt : std::optional(value.get<double>());
     };
-    for (const Json& one : json)
-      stops.named.push_back({one.at("name").get<std::string>(), read_place(one.at("at")), optional_place(one.at("to")),
-                             bound(one.at("lower")), bound(one.at("upper")), one.value("moves_with", ""),
-                             read_tangent(one)});
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      const Json& one = json[i];
+      NamedStop& stop = stops.named.emplace_back();
+      stop.name = one.at("name").get<std::string>();
+      stop.at = read_place(one.at("at"));
+      stop.to = optional_place(one.at("to"));
+      stop.lower = bound(one.at("lower"));
+      stop.upper = bound(one.at("upper"));
+      const Json with = one.value("moves_with", Json(""));
+      if (with.is_string())
+        stop.moves_with = with.get<std::string>();
+      else
+        stop.motion =
+            std::make_shared<const MotionSpec>(read_motion(with, pointer_to("/scene/stops", i) + "/moves_with", files));
+      stop.tangent = read_tangent(one);
+      stop.own = read_own(one);
+    }
     return stops;
   }
   if (!json.at("lower").is_null()) stops.lower = read_formula(json.at("lower"), "/scene/stops/lower", "x");
@@ -197,10 +213,12 @@ StopsSpec read_stops(const Json& json) {
 
 }  // namespace
 
-SceneSpec read_scene(const Json& scene, StudyFiles* files) {
+SceneSpec read_scene(const Json& given, StudyFiles* files) {
   SceneSpec spec;
-  spec.structure = read_structure(scene.at("structure"), files);
-  spec.stops = read_stops(scene.at("stops"));
+  const Json scene = without_body(given);
+  const auto structure = [&](const Json& json) { return read_structure(json, files); };
+  spec.structure = scene.contains("bodies") ? read_bodies(scene, structure) : structure(scene.at("structure"));
+  spec.stops = read_stops(scene.at("stops"), files);
   const Json& support = scene.at("support");
   spec.support = {support.at("amplitude").get<double>(), support.at("pulsation").get<double>(),
                   support.at("phase").get<double>()};
@@ -215,10 +233,16 @@ SceneSpec read_scene(const Json& scene, StudyFiles* files) {
   spec.initial.projection = initial.at("projection") == "constraint"      ? InitialSpec::Projection::constraint
                             : initial.at("projection") == "least-squares" ? InitialSpec::Projection::least_squares
                                                                           : InitialSpec::Projection::none;
+  spec.initial.equilibrium = initial.value("equilibrium", false);
   spec.points = read_points(scene);
   if (const Json basis = scene.value("basis", Json(nullptr)); !basis.is_null())
-    spec.basis = BasisSpec{basis.at("modes").get<int>(), basis.at("residual") == "stops"};
-  if (initial.contains("file") && files) spec.initial.dofs = files->initial(initial, scene.at("structure"));
+    spec.basis = BasisSpec{basis.at("modes").get<int>(), basis.at("residual") == "stops",
+                           basis.value("of_bodies", std::vector<int>())};
+  if (initial.contains("file") && files) {
+    if (scene.contains("bodies"))
+      throw InputError("/scene/initial/file", "bodies begin at rest or in equilibrium; expected no file");
+    spec.initial.dofs = files->initial(initial, scene.at("structure"));
+  }
   return spec;
 }
 

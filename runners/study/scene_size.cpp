@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <ricochet/engine/cost_model.hpp>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 
 namespace ricochet {
@@ -14,7 +15,8 @@ void check_size(const StructureSpec& structure) {
   if (!spec || spec->structure->dofs() <= most_dofs) return;
   const int n = spec->structure->dofs();
   SemiDiscrete problem;
-  problem.space = make_space(structure, 1);
+  const JoinedBodies* bodies = bodies_of(structure);
+  problem.space = make_space(structure, bodies ? bodies->mesh : 1);
   problem.stiffness = spec->structure->stiffness;
   problem.inertia.mass = spec->structure->mass;
   problem.position = Eigen::VectorXd::Zero(n);

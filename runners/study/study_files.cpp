@@ -229,10 +229,14 @@ void StudyFiles::add_digests(Json& scene) const {
   const auto digest = [&](const std::string& name) { return files_.at(name).digest; };
   for (Json* history : histories_with_files(scene))
     (*history)["digest"] = digest(history->at("file").get<std::string>());
-  Json& structure = scene["structure"];
-  const std::vector<std::string> keys = file_keys(structure);
-  if (keys.empty()) return;
-  for (const std::string& key : keys) structure["digests"][key] = digest(file_of(structure, key));
+  const auto add = [&](Json& structure) {
+    const std::vector<std::string> keys = file_keys(structure);
+    for (const std::string& key : keys) structure["digests"][key] = digest(file_of(structure, key));
+    return !keys.empty();
+  };
+  if (scene.contains("bodies"))
+    for (Json& structure : scene["bodies"]) add(structure);
+  if (!scene.contains("structure") || !add(scene["structure"])) return;
   if (Json& initial = scene["initial"]; initial.contains("file"))
     initial["digest"] = digest(initial.at("file").get<std::string>());
 }

@@ -227,8 +227,19 @@ ObjectForm named_stop() {
                  optional(real("lower", "m", any, std::nullopt, "Lower bound; null: none.")),
                  optional(real("upper", "m", any, std::nullopt, "Upper bound; null: none.")),
                  moves_with()};
+  keys.fields[3].axis = keys.fields[4].axis = true;
+  keys.fields.back().given.push_back(stop_motion_form());
+  keys.fields.back().spec.text = "The support that carries it, \"all\", or a motion of its own; absent: none.";
+  for (Field& field : parameters_of_stops()) keys.fields.push_back(std::move(field));
   for (Field& field : observed_of_stops()) keys.fields.push_back(std::move(field));
   return keys;
+}
+
+Field bodies() {
+  Field field = of_form(Field::Form::bodies, "bodies", Json::object(),
+                        "Structures by name that meet at stops, in the place of `structure`.");
+  field.nested.push_back(structure());
+  return quiet(std::move(field));
 }
 
 ObjectForm scene() {
@@ -258,6 +269,9 @@ ObjectForm scene() {
       of_form(Field::Form::text, "file", Json(""),
               "CSV of an assembled structure: dof, or node and component; displacement, velocity."));
   initial.fields.back().quiet = true;
+  initial.fields.push_back(quiet(of_form(Field::Form::scalar, "equilibrium", Json(false),
+                                         "Whether it begins at rest under F(0) and its stops: K q = F(0) + Hᵀp.")));
+  initial.fields.back().spec.type = ParameterSpec::Type::boolean;
 
   ObjectForm point;
   point.fields = {place("at", Json(nullptr), "Where the force acts: x in m, or a place; an oscillator has none."),
@@ -268,6 +282,8 @@ ObjectForm scene() {
   spread.fields = {single(formula("shape", "N/m", "x", false, std::nullopt, "f(x) of a load f(x) g(t).")),
                    single(formula("time", "1", "t", false, std::nullopt, "g(t); or a table, or a spectrum."))};
   spread.fields.back().given.push_back(load_history("1"));
+  spread.fields.push_back(
+      quiet(of_form(Field::Form::text, "body", Json(""), "Of several bodies, the one it is along.")));
   Field load = formula("load", "N/m", "xt", false, Json("0"), "Load f(x,t), or a list of forces and of shapes.");
   load.nested.emplace_back();
   load.nested.back().ways = {point, spread};
@@ -278,6 +294,7 @@ ObjectForm scene() {
   ObjectForm keys;
   keys.fields = {
       object("structure", std::nullopt, "The structure.", structure()),
+      bodies(),
       object("stops", Json::object(),
              "Two rigid stops g1(x) ≤ u ≤ g2(x), or a list of stops that have names; absent: none.", stops),
       object("support", Json{{"amplitude", 0.0}, {"pulsation", 0.0}, {"phase", 0.0}},
@@ -289,7 +306,8 @@ ObjectForm scene() {
                  "What the initial state and the displacements shown count from, with `motions`.")),
       quiet(seed),
       points_key()};
-  keys.fields[1].listed.push_back(named_stop());
+  keys.fields[0].unless = "bodies";
+  keys.fields[2].listed.push_back(named_stop());
   return keys;
 }
 
@@ -304,13 +322,13 @@ ObjectForm study() {
   Field modes = integer("modes", {1, 100000, false, false}, std::nullopt,
                         "March the N slowest modes of the structure in the place of its dofs; null: all dofs.");
   modes.fallback = Json(nullptr);
-  modes.axis = modes.nullable = true;
+  modes.axis = modes.nullable = modes.per_body = true;
   Field residual = word("residual", {"stops", "none"}, "stops",
                         "With `modes`: whether the static shapes of the stops stand beside them.");
   residual.axis = true;
   mesh.fields = {integer("elements", {1, 100000, false, false}, 1, "Number of equal elements of a beam or a bar."),
                  quiet(std::move(modes)), quiet(std::move(residual))};
-  mesh.fields.front().axis = true;
+  mesh.fields.front().axis = mesh.fields.front().per_body = true;
 
   ObjectForm chosen;
   chosen.fields = {methods("mass", Role::mass, "How velocities are discretised."),

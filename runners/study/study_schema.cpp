@@ -127,9 +127,14 @@ class SchemaWriter {
 
   Json single(const Field& field) {
     switch (field.form) {
+      case Field::Form::bodies:
+        return {{"type", "object"}, {"additionalProperties", object(field.nested.front())}, {"minProperties", 1}};
       case Field::Form::scalar:
+        if (field.per_body)
+          return either("object", {{"additionalProperties", scalar(field.spec)}}, or_null(field, scalar(field.spec)));
         return or_null(field, scalar(field.spec));
       case Field::Form::text:
+        if (!field.given.empty()) return either("object", object(field.given.front()), {{"type", "string"}});
         return {{"type", "string"}};
       case Field::Form::formula:
         return formula(field);

@@ -39,6 +39,8 @@ struct Law : ContactLaw {
     return (act(), structure.rigidity = 7, std::nullopt);
   }
   void prepare(int, std::span<const Parameters>) override { act(); }
+  bool per_point() const override { return (act(), true); }
+  void prepare_points(int, int, std::span<const Parameters>) override { act(); }
   void solve(ReducedProblem& problem) override { (act(), problem.points = 7); }
   double potential(double depth, int lane) const override { return (act(), depth + lane); }
   std::optional<ContactSlopes> linear_slopes(int lane) const override {
@@ -124,6 +126,8 @@ TEST_CASE("every function of a law is guarded and forwarded") {
       {"changes_problem", [&] { return law->changes_problem(); }},
       {"prepare_problem", [&] { return !law->prepare_problem(structure) && structure.rigidity == 7; }},
       {"prepare", [&] { return (law->prepare(1, {}), true); }},
+      {"per_point", [&] { return law->per_point(); }},
+      {"prepare_points", [&] { return (law->prepare_points(1, 1, {}), true); }},
       {"solve", [&] { return (law->solve(problem), problem.points == 7); }},
       {"potential", [&] { return law->potential(0.5, 2) == 2.5; }},
       {"linear_slopes", [&] { return law->linear_slopes(3)->viscosity == 3; }}};

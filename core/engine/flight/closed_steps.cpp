@@ -24,6 +24,7 @@ std::string ClosedSteps::why_not(const Program& program) {
   if (program.tangents > 0) return "tangents are taken along";
   if (program.problem->changed_by_law()) return "the law measures no displacements";
   if (program.law->memory_per_point() > 0) return "the law keeps a memory";
+  if (program.own_sets) return "stops have parameters of their own";
   if (program.law->layer(0) != 0) return "the law acts before the stop";
   if (program.law->reads() && !program.law->linear_slopes(0)) return "the force of the law is not linear in the depth";
   const StageProgram* last = nullptr;

@@ -19,7 +19,8 @@ StartContact::StartContact(const Marcher& marcher, int lane) : lane_(lane) {
   if (!program.contact || marcher.step() > 0) return;
   const SparseRows& contact = program.problem->contact;
   const LaneSpec& spec = program.lanes[static_cast<std::size_t>(lane)];
-  layer_ = marcher.law().layer(lane);
+  for (int point = 0; point < program.problem->points(); ++point)
+    layers_.push_back(marcher.law().layer(program.law_set(point, lane)));
   const double lifted = marcher.support(lane, 0), rising = marcher.support_rate(lane, 0);
   for (int point = 0; point < program.problem->points(); ++point) {
     const double raised = marcher.motions().point_rate(point, 0);
@@ -45,7 +46,8 @@ bool StartContact::Held::left() const {
 }
 
 StartContact::Gap StartContact::gap(const LaneSpec& spec, const Held& held, double place) const {
-  const double stop = held.side > 0 ? spec.lower[held.point] + layer_ : spec.upper[held.point] - layer_;
+  const double layer = layers_[static_cast<std::size_t>(held.point)];
+  const double stop = held.side > 0 ? spec.lower[held.point] + layer : spec.upper[held.point] - layer;
   return {held.side * (place - stop), round_off_of_sums * (std::abs(place) + std::abs(stop))};
 }
 

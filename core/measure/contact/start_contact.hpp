@@ -40,7 +40,7 @@ class StartContact {
   Gap gap(const LaneSpec& spec, const Held& held, double place) const;
 
   int lane_ = 0;
-  double layer_ = 0;
+  std::vector<double> layers_;  // of each point
   std::vector<Held> held_;
 };
 

@@ -5,9 +5,10 @@
 
 namespace ricochet {
 
-std::optional<ContactSpring> contact_spring(const SemiDiscrete& problem, double stiffness) {
+std::optional<ContactSpring> contact_spring(const SemiDiscrete& problem, double stiffness, int point) {
   if (problem.points() == 0) return std::nullopt;
-  const Eigen::VectorXd h = Eigen::MatrixXd(problem.contact).row(problem.points() - 1).transpose();
+  if (point < 0) point = problem.points() - 1;
+  const Eigen::VectorXd h = Eigen::MatrixXd(problem.contact).row(point).transpose();
   const Eigen::MatrixXd held = Eigen::MatrixXd(problem.stiffness) + stiffness * h * h.transpose();
   const SymmetricModes modes = symmetric_modes(dense_mass(problem.inertia), held);
   if (!modes.found) return std::nullopt;

@@ -13,12 +13,13 @@ struct ContactSpring {
   double pulsation = 0;            ///< rad/s, of the mass on it and on the structure behind it
 };
 
-/// What a spring κ behind the last point of contact turns back: the mode that has most of its energy in that spring,
+/// What a spring κ behind a point of contact turns back, the last one where none is said: the mode that has most of its
+/// energy in that spring,
 ///
 ///     M φ = μ (K + κ hᵀh) φ,   φᵀ(K + κ hᵀh) φ = 1,   κ (h φ)² largest:   m = κ μ,   ω = 1/√μ,
 ///
 /// a dense problem of n dofs. Nothing where it has no points, no modes are found, or that one has no mass.
-std::optional<ContactSpring> contact_spring(const SemiDiscrete& problem, double stiffness);
+std::optional<ContactSpring> contact_spring(const SemiDiscrete& problem, double stiffness, int point = -1);
 
 /// How much a contact law gives way, m/N: 0 for a rigid law; 1/κ of one that declares a constant stiffness κ; of any
 /// other the secant d²/2U(d) of the energy U that it stores at the depth `depth` (m). Nothing for a compliant law that

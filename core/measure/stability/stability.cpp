@@ -133,16 +133,6 @@ constexpr double modal_marginal = 1e-9, dense_marginal = 1e-7;
 
 }  // namespace
 
-LinearLaw linear_law(ContactLaw& law, int points, const Parameters& parameters) {
-  LinearLaw out;
-  out.absent = law.absent() || points == 0;
-  if (out.absent) return out;
-  law.prepare(points, std::span<const Parameters>(&parameters, 1));
-  out.evaluation = law.reads();
-  out.stiffness = constant_stiffness(law);
-  return out;
-}
-
 StabilityPredictor::~StabilityPredictor() = default;
 StabilityPredictor::StabilityPredictor(StabilityPredictor&&) noexcept = default;
 
@@ -278,6 +268,10 @@ SpectrumOrRefusal StabilityPredictor::dense(const StepPlan& plan, double h, cons
   MatrixXd rows(points, n);
   for (Index i = 0; i < points; ++i)
     rows.row(i) = Eigen::RowVectorXd(problem_->measured().row(set.points[static_cast<std::size_t>(i)])) * modes.shapes;
+  // κ_i h_i h_iᵀ = κ (√(κ_i/κ) h_i)(√(κ_i/κ) h_i)ᵀ: rows of this length share one κ.
+  for (Index i = 0; i < points && law_.stiffness && !law_.own.empty(); ++i)
+    rows.row(i) *=
+        std::sqrt(law_.own[static_cast<std::size_t>(set.points[static_cast<std::size_t>(i)])] / *law_.stiffness);
   // Within Ker M any orthogonal basis serves: one in which only the first directions move the points.
   const Index kernel = n - modes.regular;
   Index felt = n;

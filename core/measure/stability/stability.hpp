@@ -29,9 +29,11 @@ struct LinearLaw {
   bool absent = false;                   ///< no contact at all
   std::optional<Evaluation> evaluation;  ///< of a compliant law; absent: rigid
   std::optional<double> stiffness;       ///< κ, N/m; a compliant law without has no linear step
+  std::vector<double> own = {};          ///< κ of each point, N/m, where stops have their own; else empty
 };
-/// Prepares the law for `points` contact points and reads its linearisation.
-LinearLaw linear_law(ContactLaw& law, int points, const Parameters& parameters);
+/// Prepares the law for `points` contact points and reads its linearisation. `stops`: what these have of their own.
+LinearLaw linear_law(ContactLaw& law, int points, const Parameters& parameters,
+                     const std::vector<StopParameters>& stops = {});
 
 /// Points that are closed together.
 struct ClosedSet {

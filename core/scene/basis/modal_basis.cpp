@@ -136,6 +136,15 @@ ModalBasis modal_basis(const SparseMatrix& stiffness, const SparseMatrix& mass, 
 
 VectorXd in_basis(const ModalBasis& basis, const SparseMatrix& mass, const SparseRows& contact,
                   const VectorXd& displacement) {
+  if (!basis.parts.empty()) {
+    VectorXd all = VectorXd::Zero(basis.dofs());
+    for (const ModalBasis::Part& part : basis.parts) {
+      const VectorXd own =
+          in_basis(*part.basis, part.mass, part.contact, displacement.segment(part.first, part.basis->shapes.rows()));
+      for (Index k = 0; k < own.size(); ++k) all[part.where[static_cast<std::size_t>(k)]] = own[k];
+    }
+    return all;
+  }
   const auto phi = basis.shapes.leftCols(basis.modes);
   VectorXd out(basis.dofs());
   out.head(basis.modes) = phi.transpose() * (mass * displacement);

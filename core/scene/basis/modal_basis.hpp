@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <memory>
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/scene/scene.hpp>
@@ -25,6 +26,16 @@ struct ModalBasis {
   Eigen::VectorXd squares;      ///< ω² of the modes, N
   Eigen::VectorXd left_out;     ///< R_ii, m/N, whether or not a shape holds it
   Eigen::VectorXd flexibility;  ///< (HK⁻¹Hᵀ)_ii, m/N; of a structure that moves rigidly that of its elastic modes
+
+  /// Of several bodies, that of each: modes of all bodies stand first, then the coordinates of stops.
+  struct Part {
+    int first = 0;  ///< its first dof
+    std::shared_ptr<const ModalBasis> basis = {};
+    SparseMatrix mass = {};
+    SparseRows contact = {};      ///< of all stops, on its dofs
+    std::vector<int> where = {};  ///< where its coordinates stand
+  };
+  std::vector<Part> parts = {};  ///< empty: one structure
 
   int dofs() const { return static_cast<int>(shapes.cols()); }
   /// The coordinates ζ.

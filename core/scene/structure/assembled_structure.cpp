@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/files/text_file.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/structure/band_order.hpp>
@@ -66,8 +67,8 @@ Eigen::VectorXd row_sizes(const SparseMatrix& matrix) {
 
 /// The most negative pivot of A + 1e-11 of its own scale, in the units of A, and its row; nothing where none is.
 struct NegativePivot {
-  int row = 0;
-  double value = 0;
+  int row;
+  double value;
 };
 std::optional<NegativePivot> negative_pivot(const SparseMatrix& matrix) {
   constexpr double round_off = 1e-11;
@@ -327,6 +328,7 @@ PlaceRow point_row(const AssembledStructure& structure, const Place& place, cons
 }  // namespace
 
 PlaceRow AssembledStructure::row(const Place& place, const std::string& pointer) const {
+  if (joined) return joined->row(place, pointer);
   if (modes) return point_row(*this, place, pointer);
   if (!place.point.empty())
     throw InputError(pointer,

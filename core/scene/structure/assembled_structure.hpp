@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <map>
+#include <memory>
 #include <ricochet/scene/files/dof_table.hpp>
 #include <ricochet/scene/files/matrix_market.hpp>
 #include <ricochet/scene/place.hpp>
@@ -8,6 +9,8 @@
 #include <vector>
 
 namespace ricochet {
+
+struct JoinedBodies;
 
 /// What an assembled structure is made of: matrices over all dofs of the table, held ones too.
 struct AssembledFiles {
@@ -68,9 +71,9 @@ struct AssembledStructure {
     std::array<double, 3> place{};
   };
   std::map<std::string, Node> nodes;
-  std::vector<std::pair<int, int>> links =
-      {};                               ///< pairs of nodes, by their order in `nodes`, that K joins; to be drawn
-  std::optional<ModalPart> modes = {};  ///< of a structure in modes
+  std::vector<std::pair<int, int>> links = {};  ///< pairs of nodes, by their order in `nodes`, that K joins; to be drawn
+  std::optional<ModalPart> modes = {};              ///< of a structure in modes
+  std::shared_ptr<const JoinedBodies> joined = {};  ///< of several bodies (bodies.hpp); their places are the bodies'
 
   int dofs() const { return static_cast<int>(names.size()); }
   /// The displacement at a place. Throws InputError, its pointer below `pointer`, for a place that is not there, with

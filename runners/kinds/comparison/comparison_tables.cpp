@@ -10,6 +10,7 @@
 
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
+#include "runners/study/body_keys.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet {
@@ -59,7 +60,7 @@ bool single_valued(const StudyResults& results, const std::string& column) {
 
 // An oscillator has no mesh whose error could be in the way.
 bool meshed(const StudyResults& results) {
-  return results.study.at("scene").at("structure").at("type") != "oscillator";
+  return has_structure(results.study.at("scene"), {"beam", "bar", "assembled", "modal"});
 }
 
 /// What errors that do not fall may have met.

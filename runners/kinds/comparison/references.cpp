@@ -4,11 +4,13 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <ricochet/measure/motion/motion_errors.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 #include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/discrete_problem.hpp>
 #include <ricochet/scene/supports.hpp>
@@ -158,6 +160,17 @@ std::string References::key(const StudyCase& study_case, const MethodChoice& cho
 std::optional<BasisSpec> References::richer_basis(const SceneSpec& scene, int elements) const {
   std::optional<BasisSpec> basis = bases_.front();
   if (!basis || bases_.size() == 1) return basis;
+  const SceneSpec meshed = on_mesh(scene, elements);
+  if (const JoinedBodies* bodies = bodies_of(meshed.structure)) {
+    std::vector<int> each;
+    for (std::size_t b = 0; b < bodies->all.size(); ++b) {
+      const int own = basis->of_bodies.empty() ? basis->modes : basis->of_bodies[b];
+      each.push_back(std::max(own, std::min(2 * own, semidefinite_rank(consistent_mass(bodies->all[b].space)))));
+    }
+    basis->modes = std::accumulate(each.begin(), each.end(), 0);
+    basis->of_bodies = std::move(each);
+    return basis;
+  }
   const int with_mass = semidefinite_rank(consistent_mass(make_space(scene.structure, elements)));
   basis->modes = std::max(basis->modes, std::min(2 * basis->modes, with_mass));
   return basis;
@@ -219,8 +232,14 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
     known.refusal = "damping is not made of K and M, and references know C = αK + ηM: use the reference self";
     return known;
   }
-  if (!study_case.scene.motions.empty() || support_bends(study_case.scene)) {
-    known.refusal = "supports move by motions, and references know the harmonic support: use the reference self";
+  if (std::any_of(study_case.scene.stops.named.begin(), study_case.scene.stops.named.end(),
+                  [](const NamedStop& stop) { return stop.own.any(); })) {
+    known.refusal = "stops have parameters of their own, and references know one set for all: use the reference self";
+    return known;
+  }
+  if (moves_by_histories(study_case.scene) || support_bends(study_case.scene)) {
+    known.refusal =
+        "supports or stops move by motions, and references know the harmonic support: use the reference self";
     return known;
   }
   if (solver->of_the_mesh()) {

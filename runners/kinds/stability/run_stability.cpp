@@ -10,6 +10,7 @@
 #include <ricochet/measure/stability/observed_stability.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
 #include <ricochet/measure/stability/stability.hpp>
+#include <ricochet/scene/stop_parameters.hpp>
 
 #include "runners/kinds/stability/stability.hpp"
 #include "runners/kinds/stability/stability_roots.hpp"
@@ -73,7 +74,8 @@ class StabilityRun {
     record_.notes = problem_->notes;
     scheme_ = make_scheme(case_, registry_);
     facts_ = problem_facts(*problem_, *law);
-    const LinearLaw linear = linear_law(*law, problem_->points(), case_.contact.parameters);
+    if (const auto refusal = refuse_own(*law, problem_->own, problem_->stops)) return refused(refusal->sentence);
+    const LinearLaw linear = linear_law(*law, problem_->points(), case_.contact.parameters, problem_->own);
     if (law->reads_rate())
       record_.notes.push_back("closed contact is predicted without the law's own damping, which only its marches show");
     touches_ = !linear.absent && stops_somewhere();

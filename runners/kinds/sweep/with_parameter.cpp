@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/supports.hpp>
@@ -36,6 +37,12 @@ void collect(const ObjectForm& form, const Json& value, const std::string& point
         collect(field->listed.front(), (*found)[i], pointer_to(here, i), scalars);
     else if (field->form == Field::Form::object)
       collect(field->nested.front(), *found, here, scalars);
+    else if (field->form == Field::Form::objects && found->is_array())
+      for (std::size_t i = 0; i < found->size(); ++i)
+        collect(field->nested.front(), (*found)[i], pointer_to(here, i), scalars);
+    else if (field->form == Field::Form::bodies)
+      for (const auto& [name, body] : found->items())
+        collect(field->nested.front(), body, pointer_to(here, name), scalars);
     else if (is_object_list(*field, *found))
       for (std::size_t i = 0; i < found->size(); ++i)
         collect(field->nested.front(), (*found)[i], pointer_to(here, i), scalars);
@@ -125,7 +132,7 @@ StudyCase with_parameters(const StudyCase& study_case, const std::vector<std::pa
     }
   }
   if (scene) {
-    one.scene = read_scene(one.scene_json, one.files.get());
+    one.scene = on_mesh(read_scene(one.scene_json, one.files.get()), one.elements);
     check_scene(one.scene, one.elements, one.starts_beyond ? anywhere_beyond() : ForceBeyond());
   }
   if (one.steps_per_period > 0) check_forcing(one.scene);
@@ -188,7 +195,7 @@ void check_repeats(const Formula& load, const std::string& pointer, const std::s
 }  // namespace
 
 void check_forcing(const SceneSpec& scene) {
-  if (!scene.motions.empty())
+  if (moves_by_histories(scene))
     throw InputError("/scene/motions",
                      "motions by tables have no period, and steps per period need one: expected the "
                      "harmonic `support`");

@@ -225,8 +225,8 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   plan.coarsest_step = plan.finest_step = study_case.step;
   plan.operator_name = operator_name(prepared.program->kind);
   plan.left_out = left_out_pairs(prepared.program->left_out);
-  const bool driven =
-      !study_case.scene.load.is_zero() || study_case.scene.support.amplitude != 0 || !study_case.scene.motions.empty();
+  const bool driven = !study_case.scene.load.is_zero() || study_case.scene.support.amplitude != 0 ||
+                      moves_by_histories(study_case.scene);
   const double beside = !prepared.program->flight                  ? audit_seconds_per_step
                         : driven && prepared.problem->points() > 0 ? held_seconds_per_step
                                                                    : 0;

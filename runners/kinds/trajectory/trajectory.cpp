@@ -17,6 +17,7 @@
 #include "runners/kinds/trajectory/window_means.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/snapshots.hpp"
+#include "runners/study/body_keys.hpp"
 #include "runners/study/fields.hpp"
 
 namespace ricochet {
@@ -342,7 +343,8 @@ Json minimal_study(const StudyResults& results, const CaseRecord& record) {
   for (const auto& [column, value] : record.axes) {
     const std::string role = column.substr(0, column.find('.'));
     if (column == "elements" || column == "modes" || column == residual_axis) {
-      if (!value.is_null()) mesh[column == residual_axis ? "residual" : column] = value;
+      const std::string key = column == residual_axis ? "residual" : column;
+      if (!value.is_null()) mesh[key] = column == residual_axis ? value : said_of_mesh(results.study, key, value);
     } else if (column == "step")
       step = value;
     else if (column == "march")

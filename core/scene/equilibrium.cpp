@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ricochet/contract/errors.hpp>
+#include <ricochet/kernels/sparse_ldlt.hpp>
+#include <ricochet/scene/equilibrium.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
+#include <ricochet/scene/stop_parameters.hpp>
+
+namespace ricochet {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr const char* said_at = "/scene/initial/equilibrium";
+
+class KnownColumns final : public DelassusColumns {
+ public:
+  explicit KnownColumns(MatrixXd columns) : columns_(std::move(columns)) {}
+  const double* column(int j) override { return columns_.col(j).data(); }
+
+ private:
+  MatrixXd columns_;
+};
+
+class Balance {
+ public:
+  Balance(const SemiDiscrete& problem, const VectorXd& lift, ContactLaw* law, double shift)
+      : problem_(problem), lift_(lift), law_(law), columns_(MatrixXd()) {
+    diagonal_ = problem.stiffness.diagonal();
+    const double largest = diagonal_.maxCoeff() > 0 ? diagonal_.maxCoeff() : 1.0;
+    for (double& one : diagonal_) one = shift * (one > 0 ? one : largest);
+    SparseMatrix D(problem.stiffness.rows(), problem.stiffness.cols());
+    for (Index i = 0; i < D.rows(); ++i) D.insert(i, i) = diagonal_[i];
+    if (!ldlt_.factorise(problem.stiffness + D))
+      throw InputError(said_at, "the stiffness of the structure has no factor: " + ldlt_.reason());
+    const Index points = problem.points();
+    moved_.resize(problem.stiffness.rows(), points);
+    for (Index i = 0; i < points; ++i) moved_.col(i) = solved(problem.measured().row(i).transpose());
+    columns_ = KnownColumns(problem.measured() * moved_);
+    const bool own = law && sets_per_point(*law, problem.own);
+    lower_ = problem.lower;
+    upper_ = problem.upper;
+    for (int i = 0; law && i < problem.points(); ++i) {
+      lower_[i] += law->layer(own ? i : 0);
+      upper_[i] -= law->layer(own ? i : 0);
+    }
+    effort_ = VectorXd::Zero(points);
+  }
+
+  /// q and p of K + D under F + D q⁻.
+  VectorXd step(const VectorXd& load, const VectorXd& before) {
+    const VectorXd open = solved(load + diagonal_.cwiseProduct(before));
+    if (law_ && problem_.points() > 0) push(problem_.measured() * open + lift_);
+    return open + moved_ * effort_;
+  }
+  const VectorXd& effort() const { return effort_; }
+
+ private:
+  VectorXd solved(const VectorXd& right) {
+    VectorXd x(right.size());
+    ldlt_.solve(right.data(), x.data());
+    return x;
+  }
+
+  // A mean over a step knows the depth before it, which at rest is the depth.
+  void push(const VectorXd& free) {
+    constexpr int most = 200;
+    constexpr double settled = 1e-14;
+    const auto points = static_cast<std::size_t>(problem_.points());
+    std::vector<double> still(points, 0.0), memory(points * static_cast<std::size_t>(law_->memory_per_point()), 0.0);
+    VectorXd place = free + problem_.measured() * (moved_ * effort_);
+    const bool mean = law_->reads() == Evaluation::conserving;
+    const std::array<int, 1> touched{0};
+    LaneOutcome outcome;
+    for (int k = 0; k < (mean ? most : 1); ++k) {
+      ReducedProblem reduced;
+      reduced.points = problem_.points();
+      reduced.lanes = 1;
+      reduced.delassus = &columns_;
+      reduced.reach = 1;
+      reduced.free = free.data();
+      reduced.lower = lower_.data();
+      reduced.upper = upper_.data();
+      reduced.rate_free = still.data();
+      reduced.before = mean ? place.data() : nullptr;
+      reduced.memory = memory.empty() ? nullptr : memory.data();
+      reduced.effort = effort_.data();
+      reduced.touched = touched;
+      reduced.outcome = &outcome;
+      law_->solve(reduced);
+      const VectorXd next = free + problem_.measured() * (moved_ * effort_);
+      const double change = (next - place).norm();
+      place = next;
+      if (change <= settled * place.norm()) break;
+    }
+    if (!outcome.converged || !effort_.allFinite())
+      throw InputError(said_at, "the contact law finds no force that holds the structure at rest");
+  }
+
+  const SemiDiscrete& problem_;
+  VectorXd lift_;
+  ContactLaw* law_;
+  SparseLdlt ldlt_;
+  MatrixXd moved_;  // (K + D)⁻¹Gᵀ
+  KnownColumns columns_;
+  VectorXd diagonal_, lower_, upper_, effort_;
+};
+
+bool has_factor(const SparseMatrix& stiffness) {
+  SparseLdlt ldlt;
+  return ldlt.factorise(stiffness);
+}
+
+}  // namespace
+
+Equilibrium equilibrium(const SemiDiscrete& problem, const VectorXd& load, const VectorXd& lift, ContactLaw* law) {
+  constexpr double epsilon = 1e-3;
+  constexpr int most_steps = 2000;
+  ContactLaw* acting = law && !law->absent() ? law : nullptr;
+  const bool held = (problem.held || problem.in_modes()) && has_factor(problem.stiffness);
+  Balance balance(problem, lift, acting, held ? 0 : epsilon);
+  VectorXd q = VectorXd::Zero(problem.stiffness.rows());
+  const double size = load.norm();
+  for (int k = 0; k < (held ? 1 : most_steps); ++k) {
+    q = balance.step(load, q);
+    const VectorXd residual = problem.stiffness * q - load - problem.measured().transpose() * balance.effort();
+    constexpr double balanced = 1e-12;
+    if (held || residual.norm() <= balanced * std::max(size, (problem.stiffness * q).norm()))
+      return {q, problem.measured().transpose() * balance.effort()};
+  }
+  throw InputError(said_at,
+                   "no stop balances what pushes a structure that nothing holds; expected supports, or stops against "
+                   "the load");
+}
+
+}  // namespace ricochet

@@ -1,0 +1,54 @@
+#pragma once
+#include <functional>
+#include <ricochet/scene/scene.hpp>
+#include <string>
+#include <vector>
+
+#include "runners/study/check_object.hpp"
+
+/// \file
+/// Several bodies in the place of one structure, and what meshes and modes they have.
+namespace ricochet {
+
+/// An object of names, each with a structure.
+Json check_bodies(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes);
+
+/// A number for each body by name.
+Json check_per_body(const Field& field, const Json& value, const std::string& pointer);
+
+/// A mesh as a study says it: what it is called by, and the elements of each body where it says them.
+struct MeshChoice {
+  int elements = 1;
+  Json of_bodies = nullptr;
+};
+/// Those of `mesh.elements`. Throws InputError for a body that has no number or is not there, and for two meshes with
+/// as many elements in all.
+std::vector<MeshChoice> meshes_of(const Json& mesh, const Json& scene);
+
+/// What a study says of mesh.elements or mesh.modes (`key`) where a case calls it by this number: an entry by body, or
+/// the number itself.
+Json said_of_mesh(const Json& study, const std::string& key, const Json& number);
+
+/// A scene that says the elements of each body; null: of none.
+Json with_meshes(Json scene, const Json& of_bodies);
+
+/// The entries of an object with a number for each body, in the order of the bodies; `pointer` names the object.
+std::vector<int> of_bodies(const Json& numbers, const Json& scene, const std::string& pointer);
+
+/// The structure of a scene, or its bodies.
+const Json& structures_of(const Json& scene);
+
+/// Whether some structure of a scene has a type out of these.
+bool has_structure(const Json& scene, const std::vector<std::string>& types);
+
+/// The structures of a checked scene that has bodies, joined on the mesh that scene["elements"] says, else on one
+/// element each. One body is a structure like any other.
+StructureSpec read_bodies(const Json& scene, const std::function<StructureSpec(const Json&)>& read);
+
+/// The scene of one body without the name of that body at its places; else as it is.
+Json without_body(Json scene);
+
+/// Of an error below /scene/structure in a scene of one body: the pointer that the study has.
+std::string pointer_in_bodies(const std::string& pointer, const Json& scene);
+
+}  // namespace ricochet

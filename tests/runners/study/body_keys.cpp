@@ -1,0 +1,150 @@
+// Studies of several bodies: meshes and modes of each, places, what is refused; and stops with keys of their own.
+#include "runners/study/body_keys.hpp"
+
+#include <catch2/catch.hpp>
+#include <ricochet/scene/bodies.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
+
+#include "tests/runners/study/study_fixture.hpp"
+
+using namespace ricochet;
+using namespace ricochet::tests;
+using Catch::Matchers::Contains;
+
+namespace {
+
+Json bodies_study() {
+  Json study = small_study();
+  study["scene"] = Json::parse(R"json({
+    "bodies": {"rod": {"type": "beam", "length": 1, "section": {"type": "given", "EI": 1, "rhoS": 1}},
+               "ball": {"type": "oscillator", "mass": 2, "stiffness": 3}},
+    "stops": [{"name": "gap", "at": {"body": "rod", "x": 1}, "to": {"body": "ball"}, "upper": 0.1}],
+    "load": [{"at": {"body": "ball"}, "force": "sin(t)"}]})json");
+  return study;
+}
+
+Json with_body_key(const std::string& pointer, const Json& value) {
+  Json study = bodies_study();
+  study[Json::json_pointer(pointer)] = value;
+  return study;
+}
+
+const AssembledStructure& structure_of(const StudyCase& one) {
+  return *std::get<AssembledSpec>(one.scene.structure).structure;
+}
+
+}  // namespace
+
+TEST_CASE("bodies of a study are joined on the mesh of each case") {
+  const Study study = parse(with_body_key("/mesh/elements", Json::array({4, 8})));
+  REQUIRE(study.cases.size() == 16);
+  for (const StudyCase& one : study.cases) {
+    REQUIRE(structure_of(one).joined);
+    CHECK(structure_of(one).dofs() == 2 * one.elements + 1);
+    CHECK(one.scene.load.terms.at(0).place->body == "ball");
+  }
+  CHECK(study.resolved["scene"].contains("bodies"));
+  CHECK_FALSE(study.resolved["scene"].contains("structure"));
+}
+
+TEST_CASE("numbers by body are those of each body, and a mesh is called by their sum") {
+  Json given = with_body_key("/mesh/elements", Json::parse(R"([{"rod": 3, "bar": 2}, {"bar": 5, "rod": 7}])"));
+  given["scene"]["bodies"]["bar"] = {{"type", "bar"}, {"length", 1}, {"EA", 1}, {"rhoA", 1}, {"fixed", "right"}};
+  const Study study = parse(given);
+  for (const StudyCase& one : study.cases) {
+    const std::vector<JoinedBody>& all = structure_of(one).joined->all;
+    REQUIRE(all.size() == 3);
+    CHECK(one.elements == (all[0].elements == 3 ? 5 : 12));
+    CHECK(all[0].elements == (one.elements == 5 ? 3 : 7));
+    CHECK(all[1].elements == 1);
+    CHECK(all[2].elements == (one.elements == 5 ? 2 : 5));
+  }
+  CHECK(said_of_mesh(study.resolved, "elements", 12) == Json{{"rod", 7}, {"bar", 5}});
+  CHECK(said_of_mesh(study.resolved, "elements", 6) == 6);
+  given["mesh"]["modes"] = {{"rod", 2}, {"ball", 1}, {"bar", 2}};
+  CHECK(parse(given).cases.front().scene.basis == BasisSpec{5, true, {2, 1, 2}});
+  given["mesh"]["modes"].erase("ball");
+  CHECK(refusal(given) == "/mesh/modes: says no number for one of the bodies; expected one for each");
+}
+
+TEST_CASE("one body is a structure like any other") {
+  Json single = small_study(), body = small_study();
+  body["scene"]["bodies"]["tube"] = body["scene"]["structure"];
+  body["scene"].erase("structure");
+  const Study a = parse(single), b = parse(body);
+  REQUIRE(std::holds_alternative<BeamSpec>(b.cases.front().scene.structure));
+  CHECK(make_space(a.cases.front().scene.structure, 4).dofs == make_space(b.cases.front().scene.structure, 4).dofs);
+  body["scene"]["bodies"]["tube"]["length"] = 1.5;
+  body["scene"]["stops"] = Json::parse(R"([{"name": "a", "at": {"body": "tube", "x": 1}, "upper": 0.1}])");
+  CHECK(parse(body).cases.front().scene.stops.named.at(0).at.body.empty());
+}
+
+TEST_CASE("a load is spread along one of the bodies") {
+  const Json spread = Json::parse(R"json([{"shape": "1 + x", "time": "cos(t)", "body": "rod"}])json");
+  const Study study = parse(with_body_key("/scene/load", spread));
+  const StudyCase& one = study.cases.front();
+  const DistributedLoad load(one.scene.load, make_space(one.scene.structure, one.elements), &structure_of(one));
+  Eigen::VectorXd all(structure_of(one).dofs());
+  load.assemble(0, all.data());
+  // Against the deflection x² of the rod, clamped at 0: ∫(1 + x) x² dx = 1/3 + 1/4.
+  double work = 0;
+  for (int node = 1; node <= one.elements; ++node) {
+    const double x = node / static_cast<double>(one.elements);
+    work += all[2 * (node - 1)] * x * x + all[2 * (node - 1) + 1] * 2 * x;
+  }
+  CHECK(work == Approx(1.0 / 3 + 0.25).epsilon(1e-12));
+  CHECK(all[2 * one.elements] == 0);
+  CHECK_THAT(refusal(with_body_key("/scene/load/0/body", "rod")), Contains("does not go together"));
+  CHECK_THAT(refusal(with("/scene/load", spread)), Contains("/scene/load/0/body: the scene has one structure"));
+  Json assembled = spread;
+  assembled[0]["body"] = "bal";
+  CHECK_THAT(refusal(with_body_key("/scene/load", assembled)), Contains("nearest ball"));
+}
+
+TEST_CASE("bodies that cannot be are refused at their place") {
+  CHECK_THAT(refusal(with_body_key("/scene/bodies", Json::object())),
+             Contains("/scene/bodies: expected bodies by name"));
+  CHECK(refusal(with_body_key("/scene/bodies/rod/length", -1)) ==
+        "/scene/bodies/rod/length: expected a number in ]0, ∞[, in m, found -1");
+  CHECK_THAT(refusal(with_body_key("/scene/structure", small_study()["scene"]["structure"])),
+             Contains("does not go together with \"bodies\""));
+  CHECK_THAT(refusal(with_body_key("/scene/stops/0/at/body", "rood")),
+             Contains("/scene/stops/0/at/body: no body \"rood\"; "
+                      "nearest rod"));
+  CHECK_THAT(refusal(with_body_key("/mesh/elements", {{"rood", 4}})), Contains("did you mean \"rod\"?"));
+  CHECK(refusal(with_body_key("/mesh/elements", {{"ball", 4}, {"rod", 1}})) ==
+        "/mesh/elements/ball: 4 elements; body ball has no mesh, expected 1");
+  CHECK(refusal(with_body_key("/mesh/elements", {{"ball", 1}})) ==
+        "/mesh/elements: says no number for body rod; expected one for each beam or bar");
+  CHECK_THAT(refusal(with("/mesh/elements", {{"rod", 4}})), Contains("the scene has one structure"));
+  CHECK(refusal(with_body_key("/scene/initial", {{"file", "state.csv"}})) ==
+        "/scene/initial/file: bodies begin at rest or in equilibrium; expected no file");
+  CHECK_THAT(refusal(with_body_key("/scene/initial", {{"displacement", "x"}})),
+             Contains("/scene/initial/displacement: bodies have no x in common; expected 0, or equilibrium"));
+  CHECK_THAT(refusal(with_body_key("/scene/load", "1")), Contains("bodies have no x in common"));
+}
+
+TEST_CASE("a stop has parameters and a motion of its own, and lists of its numbers are axes") {
+  Json study = bodies_study();
+  Json& stop = study["scene"]["stops"][0];
+  stop["stiffness"] = Json::array({1e4, 2e4});
+  stop["damping"] = 3;
+  stop["restitution"] = 0.5;
+  stop["upper"] = Json::array({0.1, 0.2, 0.3});
+  stop["moves_with"] = Json::parse(R"({"displacement": {"formula": "0.01*t", "every": 0.01, "until": 1}})");
+  const Study made = parse(study);
+  CHECK(made.cases.size() == 8 * 6);
+  CHECK(std::find(made.columns.begin(), made.columns.end(), "stops.0.stiffness") != made.columns.end());
+  const NamedStop& one = made.cases.front().scene.stops.named.at(0);
+  CHECK(one.own == StopParameters{1e4, 3, 0.5});
+  REQUIRE(one.motion);
+  CHECK(one.motion->history->value(0.3) == Approx(0.003).epsilon(1e-12));
+  stop["moves_with"]["displacement"]["until"] = 0.05;
+  CHECK_THAT(refusal(study), Contains("/scene/stops/0/moves_with/displacement/after: "));
+  stop["moves_with"] = "plate";
+  CHECK_THAT(refusal(study), Contains("/scene/stops/0/moves_with: no support moves by motions"));
+  stop.erase("moves_with");
+  stop["restitution"] = 1.5;
+  CHECK_THAT(refusal(study), Contains("/scene/stops/0/restitution: expected a number in [0, 1]"));
+}
