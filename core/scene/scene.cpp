@@ -6,6 +6,7 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/planes.hpp>
 #include <ricochet/scene/scene.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
@@ -126,6 +127,23 @@ double LoadSpec::spread(double x, double t) const {
   return sum;
 }
 
+namespace {
+
+// A term along a component or a direction, made of the same term of each plane.
+Eigen::VectorXd plane_load(LoadTerm term, const FiniteElementSpace& space) {
+  const std::array<double, 2> shares = plane_shares(term.towards, !space.across.empty(), "/scene/load");
+  term.towards = {};
+  LoadSpec alone;
+  alone.terms.push_back(std::move(term));
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(space.dofs);
+  for (const int plane : {0, 1})
+    if (const double share = shares[static_cast<std::size_t>(plane)]; share != 0)
+      sum += share * DistributedLoad(alone, plane_elements(space, plane)).shape(0);
+  return sum;
+}
+
+}  // namespace
+
 DistributedLoad::DistributedLoad(const LoadSpec& load, const FiniteElementSpace& space,
                                  const AssembledStructure* assembled)
     : formula_(load.formula), size_(space.dofs) {
@@ -150,6 +168,8 @@ DistributedLoad::DistributedLoad(const LoadSpec& load, const FiniteElementSpace&
     terms_vary_ = terms_vary_ || term.history.uses_t();
     if (assembled && term.place)
       for (const auto& [dof, value] : assembled->row(*term.place, "/scene/load").free) one.shape[dof] = value;
+    else if (term.towards != Place{})
+      one.shape = plane_load(term, space);
     else if (term.force)
       for (const auto& [dof, value] : displacement_row(space, term.at.value_or(0))) one.shape[dof] = value;
     else
