@@ -3,6 +3,7 @@
 #include "runners/json/json_text.hpp"
 #include "runners/study/histories.hpp"
 #include "runners/study/observed_keys.hpp"
+#include "runners/study/plane_keys.hpp"
 
 namespace ricochet {
 namespace {
@@ -26,11 +27,15 @@ LoadSpec read_load(const Json& value, const std::string& pointer, StudyFiles* fi
     if (term.force && value[i].at("at").is_number()) term.at = value[i].at("at").get<double>();
     if (term.force && value[i].at("at").is_object()) {
       const Place place = read_place(value[i].at("at"));
-      if (place.x)
+      if (place.x) {
         term.at = place.x;
-      else
+        term.towards.component = place.component;
+        term.towards.direction = place.direction;
+      } else {
         term.place = place;
+      }
     }
+    if (!term.force) term.towards.component = value[i].value("component", "");
     if (!term.force) term.shape = read_formula(value[i].at("shape"), here + "/shape", "x");
     const char* history = term.force ? "force" : "time";
     const Json& given = value[i].at(history);
@@ -60,6 +65,7 @@ Section read_section(const Json& json) {
     section.type = Section::Type::given;
     section.EI = json.at("EI").get<double>();
     section.rhoS = json.at("rhoS").get<double>();
+    section.EI_z = json.value("EI_z", 0.0);
   }
   return section;
 }
@@ -96,12 +102,15 @@ void read_material(const Json& json, Part& part) {
 BeamSupport read_support(const Json& json) {
   using Type = BeamSupport::Type;
   const auto type = json.at("type").get<std::string>();
-  return {json.at("name").get<std::string>(), json.at("x").get<double>(),
+  return {json.at("name").get<std::string>(),
+          json.at("x").get<double>(),
           type == "clamped"   ? Type::clamped
           : type == "pinned"  ? Type::pinned
           : type == "sliding" ? Type::sliding
                               : Type::elastic,
-          json.value("stiffness", 0.0), json.value("rotation", 0.0)};
+          json.value("stiffness", 0.0),
+          json.value("rotation", 0.0),
+          read_components(json)};
 }
 
 BeamSpec read_beam(const Json& json) {
@@ -119,6 +128,7 @@ BeamSpec read_beam(const Json& json) {
   }
   for (const Json& one : json.value("masses", Json::array()))
     beam.masses.push_back({one.at("x").get<double>(), one.at("mass").get<double>(), one.at("inertia").get<double>()});
+  beam.planes = json.value("planes", 1);
   beam.added_mass = json.value("added_mass", 0.0);
   beam.tension = json.value("tension", 0.0);
   beam.foundation = json.value("foundation", 0.0);
@@ -176,10 +186,12 @@ StopsSpec read_stops(const Json& json) {
     const auto bound = [](const Json& value) {
       return value.is_null() ? std::nullopt : std::optional(value.get<double>());
     };
-    for (const Json& one : json)
-      stops.named.push_back({one.at("name").get<std::string>(), read_place(one.at("at")), optional_place(one.at("to")),
-                             bound(one.at("lower")), bound(one.at("upper")), one.value("moves_with", ""),
-                             read_tangent(one)});
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      const Json& one = json[i];
+      add_stop({one.at("name").get<std::string>(), read_place(one.at("at")), optional_place(one.at("to")),
+                bound(one.at("lower")), bound(one.at("upper")), one.value("moves_with", ""), read_tangent(one)},
+               one, i, stops.named);
+    }
     return stops;
   }
   if (!json.at("lower").is_null()) stops.lower = read_formula(json.at("lower"), "/scene/stops/lower", "x");
@@ -215,6 +227,10 @@ SceneSpec read_scene(const Json& scene, StudyFiles* files) {
   spec.initial.projection = initial.at("projection") == "constraint"      ? InitialSpec::Projection::constraint
                             : initial.at("projection") == "least-squares" ? InitialSpec::Projection::least_squares
                                                                           : InitialSpec::Projection::none;
+  if (initial.contains("displacement_z"))
+    spec.initial.displacement_z = read_formula(initial.at("displacement_z"), "/scene/initial/displacement_z", "x");
+  if (initial.contains("velocity_z"))
+    spec.initial.velocity_z = read_formula(initial.at("velocity_z"), "/scene/initial/velocity_z", "x");
   spec.points = read_points(scene);
   if (const Json basis = scene.value("basis", Json(nullptr)); !basis.is_null())
     spec.basis = BasisSpec{basis.at("modes").get<int>(), basis.at("residual") == "stops"};
