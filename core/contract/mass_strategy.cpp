@@ -1,4 +1,5 @@
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <ricochet/contract/mass_strategy.hpp>
 
 namespace ricochet {
@@ -63,9 +64,9 @@ MassFactors mass_factors(const Inertia& inertia) {
 SparseMatrix consistent_mass(const FiniteElementSpace& space) {
   if (space.given) return space.given->mass;
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(16 * space.elements.size() + space.point_masses.size());
+  entries.reserve(16 * (space.elements.size() + space.across.size()) + space.point_masses.size());
   const int functions = space.functions();
-  for (const auto& element : space.elements) {
+  const auto add = [&](const FiniteElementSpace::Element& element) {
     for (int a = 0; a < functions; ++a) {
       for (int b = 0; b <= a; ++b) {
         const int row = element.dof[a], column = element.dof[b];
@@ -85,7 +86,9 @@ SparseMatrix consistent_mass(const FiniteElementSpace& space) {
         if (a != b) entries.emplace_back(column, row, integral);
       }
     }
-  }
+  };
+  std::for_each(space.elements.begin(), space.elements.end(), add);
+  std::for_each(space.across.begin(), space.across.end(), add);
   for (const auto& point : space.point_masses) entries.emplace_back(point.dof, point.dof, point.mass);
   SparseMatrix mass(space.dofs, space.dofs);
   mass.setFromTriplets(entries.begin(), entries.end());

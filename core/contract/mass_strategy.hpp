@@ -59,6 +59,9 @@ struct FiniteElementSpace {
   /// strategies that leave such dofs without inertia; whether a contact law acts there is not known here.
   std::vector<int> contact_dofs;
   std::optional<GivenMass> given;  ///< of matrices that are given: then there are no elements
+  /// Of a beam in two planes, the same elements as they bend across (along z), with dofs of their own. A mass strategy
+  /// is asked for one plane at a time, and sees none.
+  std::vector<Element> across = {};
 
   int functions() const { return basis == Basis::hermite ? 4 : 2; }
 };

@@ -6,6 +6,7 @@
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/bodies.hpp>
+#include <ricochet/scene/planes.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 
@@ -57,20 +58,28 @@ SparseMatrix axial_stiffness(const FiniteElementSpace& space, double EA) {
 std::vector<DofPlace> dof_places(const FiniteElementSpace& space) {
   std::vector<DofPlace> places(static_cast<std::size_t>(space.dofs));
   const bool hermite = space.basis == FiniteElementSpace::Basis::hermite;
-  for (std::size_t e = 0; e < space.elements.size(); ++e) {
-    const auto& element = space.elements[e];
-    // The right end is the next element's left one, to the last bit.
-    const double right = e + 1 < space.elements.size() ? space.elements[e + 1].left : element.left + element.length;
-    for (int a = 0; a < space.functions(); ++a) {
-      if (element.dof[a] < 0) continue;
-      const bool second = hermite ? a >= 2 : a == 1;
-      places[static_cast<std::size_t>(element.dof[a])] = {second ? right : element.left, hermite && a % 2 == 1};
+  for (const auto* elements : {&space.elements, &space.across})
+    for (std::size_t e = 0; e < elements->size(); ++e) {
+      const auto& element = (*elements)[e];
+      // The right end is the next element's left one, to the last bit.
+      const double right = e + 1 < elements->size() ? (*elements)[e + 1].left : element.left + element.length;
+      for (int a = 0; a < space.functions(); ++a) {
+        if (element.dof[a] < 0) continue;
+        const bool second = hermite ? a >= 2 : a == 1;
+        places[static_cast<std::size_t>(element.dof[a])] = {second ? right : element.left, hermite && a % 2 == 1,
+                                                            elements == &space.across};
+      }
     }
-  }
   return places;
 }
 
 Eigen::VectorXd rigid_motion_load(const FiniteElementSpace& space) {
+  if (!space.across.empty()) {
+    const PlaneSpace plane = plane_space(space, 0);
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(space.dofs);
+    load(plane.dofs) = rigid_motion_load(plane.space);
+    return load;
+  }
   Eigen::VectorXd load = Eigen::VectorXd::Zero(space.dofs);
   for (const auto& element : space.elements) {
     const double mass = element.line_density * element.length, half = mass / 2, moment = mass * element.length / 12;

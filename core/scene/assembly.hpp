@@ -16,10 +16,11 @@ SparseMatrix bending_stiffness(const FiniteElementSpace& space, const std::vecto
 /// K_ij = ∫EA φ_i' φ_j' dx (n × n, both triangles) for a linear space; EA in N.
 SparseMatrix axial_stiffness(const FiniteElementSpace& space, double EA);
 
-/// Where each dof stands and what it is: the displacement there, or (Hermite) its slope.
+/// Where each dof stands and what it is: the displacement there, or (Hermite) its slope; of which plane.
 struct DofPlace {
   double x = 0;
   bool slope = false;
+  bool across = false;  ///< along z
 };
 std::vector<DofPlace> dof_places(const FiniteElementSpace& space);
 

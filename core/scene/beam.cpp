@@ -7,6 +7,7 @@
 #include <ricochet/kernels/sparse_ldlt.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>
+#include <ricochet/scene/planes.hpp>
 #include <stdexcept>
 
 namespace ricochet {
@@ -199,11 +200,16 @@ std::vector<double> beam_nodes(const BeamSpec& beam, int elements) {
 }
 
 FiniteElementSpace beam_space(const BeamSpec& beam, int elements) {
+  if (beam.planes == 2)
+    return join_planes(beam_space(in_plane(beam, 0), elements), beam_space(in_plane(beam, 1), elements));
   const FiniteElementSpace whole = whole_space(beam, elements);
   return held_space(whole, free_dofs(beam, whole));
 }
 
 SparseMatrix beam_stiffness(const BeamSpec& beam, const FiniteElementSpace& space) {
+  if (beam.planes == 2)
+    return join_planes(space, {beam_stiffness(in_plane(beam, 0), plane_space(space, 0).space),
+                               beam_stiffness(in_plane(beam, 1), plane_space(space, 1).space)});
   const std::vector<UniformPart> parts = uniform_parts(beam);
   std::vector<double> EI;
   for (const auto& element : space.elements) EI.push_back(part_at(parts, element.left + element.length / 2).section.EI);
@@ -220,6 +226,10 @@ SparseMatrix beam_stiffness(const BeamSpec& beam, const FiniteElementSpace& spac
 }
 
 RigidFreedom rigid_freedom(const BeamSpec& beam) {
+  if (beam.planes == 2) {
+    const RigidFreedom y = rigid_freedom(in_plane(beam, 0)), z = rigid_freedom(in_plane(beam, 1));
+    return {y.translates || z.translates, y.turns || z.turns};
+  }
   int places = beam.foundation > 0 ? 2 : 0;
   bool turning_held = beam.tension > 0;
   for (const BeamSupport& support : supports_of(beam)) {
@@ -230,6 +240,9 @@ RigidFreedom rigid_freedom(const BeamSpec& beam) {
 }
 
 StaticModes static_modes(const BeamSpec& beam, int elements) {
+  if (beam.planes == 2)
+    return join_planes(beam_space(beam, elements),
+                       {static_modes(in_plane(beam, 0), elements), static_modes(in_plane(beam, 1), elements)});
   const FiniteElementSpace whole = whole_space(beam, elements);
   const std::vector<int> number = free_dofs(beam, whole);
   const FiniteElementSpace space = held_space(whole, number);
@@ -271,6 +284,8 @@ StaticModes static_modes(const BeamSpec& beam, int elements) {
 }
 
 double buckling_load(const BeamSpec& beam, int elements) {
+  if (beam.planes == 2)
+    return std::min(buckling_load(in_plane(beam, 0), elements), buckling_load(in_plane(beam, 1), elements));
   constexpr int most = 100;
   BeamSpec unloaded = beam;
   unloaded.tension = 0;

@@ -37,7 +37,7 @@ std::vector<BeamInterval> beam_intervals(const BeamSpec& beam, int elements);
 /// Nodes of these intervals, x_0 = 0 to exactly L.
 std::vector<double> beam_nodes(const BeamSpec& beam, int elements);
 
-/// Dofs (w, w') node by node, those that a support holds left out: half-bandwidth 3.
+/// Dofs (w, w') node by node, those that a support holds left out: half-bandwidth 3. Of two planes: planes.hpp.
 FiniteElementSpace beam_space(const BeamSpec& beam, int elements);
 
 /// K_ij = ∫EI φ_i''φ_j'' + T φ_i'φ_j' + k_f φ_iφ_j dx + springs of elastic supports (n × n, both triangles), on a space
@@ -58,7 +58,7 @@ struct StaticModes {
 };
 /// K ψ_j = −K_fs e_j and s_j = M ψ_j + M_fs e_j with the consistent mass, e_j a displacement 1 of support j (of an
 /// elastic one, of the ground end of its springs; its rotation stays 0). A foundation's ground stays at rest. Where one
-/// support alone holds a beam that turns, ψ is the translation.
+/// support alone holds a beam that turns, ψ is the translation. Of two planes: supports along y, then along z.
 StaticModes static_modes(const BeamSpec& beam, int elements);
 
 /// The least compression (N, above 0) at which K is not positive definite, on a mesh of at most 100 elements: the first

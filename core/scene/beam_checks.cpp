@@ -81,6 +81,20 @@ void check_tension(const BeamSpec& beam, int elements) {
                      beam.tension, -limit));
 }
 
+void check_planes(const BeamSpec& beam) {
+  demand(beam.planes == 1 || beam.planes == 2, "planes", fmt::format("{} planes; expected 1 or 2", beam.planes));
+  if (beam.planes == 2) return;
+  const auto one_plane = [](const Section& section, const std::string& key) {
+    demand(section.EI_z == 0, key + "/EI_z", "a beam of one plane bends with EI alone; expected planes 2");
+  };
+  one_plane(beam.section, "section");
+  for (std::size_t i = 0; i < beam.sections.size(); ++i)
+    one_plane(beam.sections[i].section, fmt::format("sections/{}/section", i));
+  for (std::size_t i = 0; beam.supports && i < beam.supports->size(); ++i)
+    demand((*beam.supports)[i].in_plane == std::array<bool, 2>{true, true}, fmt::format("supports/{}/components", i),
+           "a beam of one plane moves along uy alone; expected planes 2");
+}
+
 void check_shear(const BeamSpec& beam) {
   if (!beam.shear) return;
   const double poisson = beam.shear->poisson;
@@ -94,6 +108,7 @@ void check_shear(const BeamSpec& beam) {
 }  // namespace
 
 void check_beam(const BeamSpec& beam, int elements) {
+  check_planes(beam);
   check_supports(beam);
   check_sections(beam);
   check_masses(beam);

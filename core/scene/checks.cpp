@@ -10,6 +10,7 @@
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/named_stops.hpp>
+#include <ricochet/scene/planes.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/supports.hpp>
@@ -81,6 +82,11 @@ void check_variables(const SceneSpec& scene) {
   if (scene.stops.upper) only_x(*scene.stops.upper, "/scene/stops/upper", "a stop");
   only_x(scene.initial.displacement, "/scene/initial/displacement", "the initial displacement");
   only_x(scene.initial.velocity, "/scene/initial/velocity", "the initial velocity");
+  const auto* beam = std::get_if<BeamSpec>(&scene.structure);
+  for (const auto& [formula, key] :
+       {std::pair(&scene.initial.displacement_z, "displacement_z"), {&scene.initial.velocity_z, "velocity_z"}})
+    require(formula->is_zero() || (beam && beam->planes == 2), std::string("/scene/initial/") + key,
+            "only a beam of planes 2 moves along uz; expected 0");
 }
 
 std::string load_pointer(std::size_t term, const char* key) {
@@ -119,6 +125,7 @@ void check_load(const SceneSpec& scene, const FiniteElementSpace& space) {
             "missing; expected where the force acts, x in m");
     if (term.at) {
       const double x = *term.at;
+      if (check_force_across(scene, space, k)) continue;
       const bool held = displacement_held(scene, x);
       require(on_free_part(scene, x), load_pointer(k, "at"),
               fmt::format("a force at x = {:.6g} m {}; expected {}", x,
@@ -127,6 +134,7 @@ void check_load(const SceneSpec& scene, const FiniteElementSpace& space) {
     }
     term.history(0, 0);
     if (term.force) continue;
+    plane_shares(term.towards, !space.across.empty(), fmt::format("/scene/load/{}", k));
     for (const auto& element : space.elements)
       for (const auto& point : gauss_points()) term.shape(element.left + point.xi * element.length);
   }
@@ -223,7 +231,7 @@ std::vector<HeldPlace> held_places(const SceneSpec& scene) {
   std::vector<HeldPlace> places;
   if (const auto* beam = std::get_if<BeamSpec>(&scene.structure)) {
     for (const BeamSupport& support : supports_of(*beam))
-      if (support.holds_displacement() || support.holds_rotation())
+      if (support.in_plane[0] && (support.holds_displacement() || support.holds_rotation()))
         places.push_back({support.x, support.holds_displacement(), support.holds_rotation(),
                           beam->supports ? "the support " + support.name : "the clamp"});
   } else if (const auto* bar = std::get_if<BarSpec>(&scene.structure); bar && bar->fixed != BarSpec::Fixed::none) {
@@ -240,7 +248,7 @@ bool displacement_held(const SceneSpec& scene, double x) {
   if (!beam->supports) return x == 0;
   const double rounding = one_place * beam->length;
   return std::any_of(beam->supports->begin(), beam->supports->end(), [&](const BeamSupport& support) {
-    return support.holds_displacement() && std::abs(support.x - x) <= rounding;
+    return support.in_plane[0] && support.holds_displacement() && std::abs(support.x - x) <= rounding;
   });
 }
 
@@ -328,6 +336,8 @@ void check_fields(const SceneSpec& scene, const FiniteElementSpace& space, int e
   for (double node : mesh_nodes(scene, elements)) {
     scene.initial.displacement(node);
     scene.initial.velocity(node);
+    scene.initial.displacement_z(node);
+    scene.initial.velocity_z(node);
   }
   for (const auto& element : space.elements)
     for (const auto& point : gauss_points()) scene.load.formula(element.left + point.xi * element.length, 0);

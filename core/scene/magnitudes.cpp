@@ -4,6 +4,7 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/planes.hpp>
 
 namespace ricochet {
 
@@ -52,6 +53,10 @@ void check(const BeamSpec& beam, const SectionProperties& section, double length
 }
 
 void check(const BeamSpec& beam, int elements) {
+  if (beam.planes == 2) {
+    for (const int plane : {0, 1}) check(in_plane(beam, plane), elements);
+    return;
+  }
   const std::vector<UniformPart> parts = uniform_parts(beam);
   for (const BeamInterval& interval : beam_intervals(beam, elements)) {
     const double length = interval.length / interval.elements;

@@ -8,7 +8,9 @@
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/clearances.hpp>
 #include <ricochet/scene/named_stops.hpp>
+#include <ricochet/scene/planes.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/supports.hpp>
 
@@ -46,6 +48,48 @@ void check_name(const std::string& name, const std::string& pointer) {
                                           shortened(name), longest));
 }
 
+namespace {
+
+// What a beam, a bar or an oscillator has at x: of two planes, a sum of what each has.
+PlaceRow beam_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place, ShapeOf what,
+                  const std::string& pointer) {
+  const std::array<double, 2> shares = plane_shares(place, !space.across.empty(), pointer);
+  const std::vector<double> supports = support_places(scene.structure);
+  const std::size_t count = space.across.empty() ? supports.size() : supports.size() / 2;
+  PlaceRow out;
+  out.x = *place.x;
+  for (const int plane : {0, 1}) {
+    const double share = shares[static_cast<std::size_t>(plane)];
+    if (share == 0) continue;
+    const FiniteElementSpace own = plane_elements(space, plane);
+    const auto first = static_cast<std::ptrdiff_t>(plane == 0 ? 0 : count);
+    const std::vector<double> places(supports.begin() + first,
+                                     supports.begin() + first + static_cast<std::ptrdiff_t>(count));
+    for (const auto& [dof, value] : displacement_row(own, out.x, what)) out.free.emplace_back(dof, share * value);
+    for (const auto& [support, weight] : held_by(places, own, out.x, what))
+      out.held.emplace_back(support + static_cast<int>(first), share * weight);
+  }
+  std::sort(out.free.begin(), out.free.end());
+  return out;
+}
+
+}  // namespace
+
+std::array<double, 2> stop_shares(const SceneSpec& scene, std::size_t stop) {
+  const auto* beam = std::get_if<BeamSpec>(&scene.structure);
+  if (!beam || scene.stops.named.empty()) return {1, 0};
+  const NamedStop& one = scene.stops.named[stop];
+  const auto shares_at = [&](const Place& place) {
+    return plane_shares(place, beam->planes == 2, stop_pointer(stop, "/at"));
+  };
+  std::array<double, 2> shares = shares_at(one.at);
+  if (!one.side) return shares;
+  const std::array<double, 2> across = shares_at(one.side->across);
+  const auto [first, second] = side_direction(one.side->angle);
+  for (const std::size_t p : {0, 1}) shares[p] = first * shares[p] + second * across[p];
+  return shares;
+}
+
 PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place,
                    const std::string& pointer) {
   const AssembledStructure* assembled = assembled_of(scene);
@@ -60,12 +104,7 @@ PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, cons
   if (!(x >= 0 && x <= length))
     throw InputError(pointer + "/x",
                      fmt::format("{:.6g} m is beyond the {}; expected 0 to {:.6g} m", x, space.structure, length));
-  PlaceRow out;
-  out.free = displacement_row(space, x);
-  std::sort(out.free.begin(), out.free.end());
-  out.held = held_by(support_places(scene.structure), space, x);
-  out.x = x;
-  return out;
+  return beam_row(scene, space, place, ShapeOf::displacement, pointer);
 }
 
 PlaceRow section_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place, ShapeOf what,
@@ -77,17 +116,25 @@ PlaceRow section_row(const SceneSpec& scene, const FiniteElementSpace& space, co
   if (!std::holds_alternative<BeamSpec>(scene.structure) || !place.x)
     throw InputError(pointer, fmt::format("nothing bends in this {}; expected a beam", space.structure));
   place_row(scene, space, place, pointer);
-  PlaceRow out;
-  out.free = displacement_row(space, *place.x, what);
-  std::sort(out.free.begin(), out.free.end());
-  out.held = held_by(support_places(scene.structure), space, *place.x, what);
-  out.x = *place.x;
-  return out;
+  return beam_row(scene, space, place, what, pointer);
 }
 
 PlaceRow stop_row(const SceneSpec& scene, const FiniteElementSpace& space, const NamedStop& stop, std::size_t number) {
+  if (stop.side) return side_row(scene, space, stop, number);
   const PlaceRow at = place_row(scene, space, stop.at, stop_pointer(number, "/at"));
   return stop.to ? difference(at, place_row(scene, space, *stop.to, stop_pointer(number, "/to"))) : at;
+}
+
+bool check_force_across(const SceneSpec& scene, const FiniteElementSpace& space, std::size_t k) {
+  const LoadTerm& term = scene.load.terms[k];
+  const std::string pointer = fmt::format("/scene/load/{}/at", k);
+  if (plane_shares(term.towards, !space.across.empty(), pointer)[1] == 0) return false;
+  Place place = term.towards;
+  place.x = term.at;
+  if (place_row(scene, space, place, pointer).free.empty())
+    throw InputError(pointer, "the force acts where the structure is held: nothing there can move");
+  term.history(0, 0);
+  return true;
 }
 
 ContactPoints contact_points(const SceneSpec& scene, const FiniteElementSpace& space, int elements) {
@@ -173,9 +220,11 @@ void check_named_stops(const SceneSpec& scene, const FiniteElementSpace& space) 
   for (std::size_t i = 0; i < scene.stops.named.size(); ++i) {
     const NamedStop& stop = scene.stops.named[i];
     check_name(stop.name, stop_pointer(i, "/name"));
-    if (!names.emplace(stop.name, i).second)
+    if (const auto [first, fresh] = names.emplace(stop.name, i);
+        !fresh && !(stop.side && scene.stops.named[first->second].entry == stop.entry))
       throw InputError(stop_pointer(i, "/name"), fmt::format("two stops are called \"{}\"", stop.name));
     check_bounds(stop, i);
+    if (stop.side && stop.side->number == 0) check_clearance(scene, space, stop, i);
     if (stop.to && scene.support.amplitude != 0 && !space.given)
       throw InputError(stop_pointer(i, "/to"),
                        fmt::format("stop {} is between two points of a structure whose clamp moves; expected an "
@@ -195,13 +244,30 @@ void check_named_stops(const SceneSpec& scene, const FiniteElementSpace& space) 
   }
 }
 
+namespace {
+
+// The initial displacement of a beam, a bar or an oscillator at a place, m.
+double initial_at(const SceneSpec& scene, const Place& place) {
+  const std::array<double, 2> shares = plane_shares(place, true, "");
+  double sum = 0;
+  if (shares[0] != 0) sum += shares[0] * scene.initial.displacement(*place.x);
+  if (shares[1] != 0) sum += shares[1] * scene.initial.displacement_z(*place.x);
+  return sum;
+}
+
+}  // namespace
+
 void check_named_start(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond) {
   const ContactPoints points = contact_points(scene, space, 1);
   Eigen::VectorXd start(points.rows.rows());
   for (std::size_t i = 0; i < points.x.size(); ++i) {
     const NamedStop& stop = scene.stops.named[i];
-    start[static_cast<Eigen::Index>(i)] =
-        scene.initial.displacement(*stop.at.x) - (stop.to ? scene.initial.displacement(*stop.to->x) : 0);
+    double& at = start[static_cast<Eigen::Index>(i)];
+    at = initial_at(scene, stop.at) - (stop.to ? initial_at(scene, *stop.to) : 0);
+    if (!stop.side) continue;
+    const auto& [across, across_to] = std::tie(stop.side->across, stop.side->across_to);
+    const auto [first, second] = side_direction(stop.side->angle);
+    at = first * at + second * (initial_at(scene, across) - (across_to ? initial_at(scene, *across_to) : 0));
   }
   check_between_stops(points.x, start, points.lower, points.upper, "/scene/initial/displacement",
                       "the initial displacement", beyond, points.names);

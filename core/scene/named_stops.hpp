@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/scene/assembly.hpp>
@@ -24,11 +25,18 @@ PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, cons
 PlaceRow section_row(const SceneSpec& scene, const FiniteElementSpace& space, const Place& place, ShapeOf what,
                      const std::string& pointer);
 
+/// Shares of u_y and u_z in what a stop of a beam bounds: (1, 0) of any other structure.
+std::array<double, 2> stop_shares(const SceneSpec& scene, std::size_t stop);
+
 /// Throws InputError at `pointer` for a name that is not 1 to 40 letters, digits, '-' or '_'.
 void check_name(const std::string& name, const std::string& pointer);
 
 /// The row of a stop: that of `at` less that of `to`. `number`: of the stop in its list, for pointers.
 PlaceRow stop_row(const SceneSpec& scene, const FiniteElementSpace& space, const NamedStop& stop, std::size_t number);
+
+/// Throws InputError for a force on a beam, the term number k of its load, that no component has or that acts along z
+/// where nothing can move; false where it acts along y alone.
+bool check_force_across(const SceneSpec& scene, const FiniteElementSpace& space, std::size_t k);
 
 /// The contact points of a scene.
 struct ContactPoints {

@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/observed_rows.hpp>
+#include <ricochet/scene/planes.hpp>
 #include <ricochet/scene/scene.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/supports.hpp>
@@ -59,13 +61,23 @@ PlaceRow scaled(PlaceRow row, double factor) {
   return row;
 }
 
+// How much of a motion of all supports along y a place sees.
+double share_along_y(const SceneSpec& scene, const Place& place) {
+  const auto* beam = std::get_if<BeamSpec>(&scene.structure);
+  return beam ? plane_shares(place, beam->planes == 2, "")[0] : 1.0;
+}
+
 // M = EI θ' or M' at a point of a beam; where the section changes, of what stands to the right.
 PlaceRow field_row(const SceneSpec& scene, const FiniteElementSpace& space, const PointSpec& point, ShapeOf what,
                    const std::string& pointer) {
   const PlaceRow row = section_row(scene, space, point.at, what, pointer);
   const JoinedBodies* bodies = bodies_of(scene.structure);
   const StructureSpec& bent = bodies ? bodies->of(point.at, pointer).alone.structure : scene.structure;
-  return scaled(row, part_at(uniform_parts(std::get<BeamSpec>(bent)), row.x).section.EI);
+  const auto& beam = std::get<BeamSpec>(bent);
+  const double along = plane_shares(point.at, beam.planes == 2, pointer)[0];
+  if (along != 0 && along != 1)
+    throw InputError(pointer, "a moment bends in one plane; expected a point along uy or uz");
+  return scaled(row, part_at(uniform_parts(in_plane(beam, along == 1 ? 0 : 1)), row.x).section.EI);
 }
 
 // The place of a node with another component or direction.
@@ -75,6 +87,25 @@ Place turned(const Place& place, const TangentSpec& tangent) {
   out.component = tangent.component;
   out.direction = tangent.direction;
   return out;
+}
+
+// Of a clearance: u₁, u₂, and of a surface that bends r θ₁, r θ₂.
+std::vector<PlaceRow> round_tangents(const SceneSpec& scene, const FiniteElementSpace& space, const NamedStop& stop,
+                                     std::size_t number) {
+  std::vector<PlaceRow> rows{axis_row(scene, space, stop, number, 0), axis_row(scene, space, stop, number, 1)};
+  if (!stop.tangent) return rows;
+  const std::string pointer = tangent_pointer(number) + "/slope_radius";
+  if (!(stop.tangent->slope_radius > 0))
+    throw InputError(tangent_pointer(number),
+                     fmt::format("{} is a clearance, which knows its circle; expected slope_radius", stop.name));
+  const auto turned_by = [&](const Place& at, const std::optional<Place>& to) {
+    const PlaceRow row = section_row(scene, space, at, ShapeOf::rotation, pointer);
+    return scaled(to ? difference(row, section_row(scene, space, *to, ShapeOf::rotation, pointer)) : row,
+                  stop.tangent->slope_radius);
+  };
+  rows.push_back(turned_by(stop.at, stop.to));
+  rows.push_back(turned_by(stop.side->across, stop.side->across_to));
+  return rows;
 }
 
 PlaceRow tangent_row(const SceneSpec& scene, const FiniteElementSpace& space, const NamedStop& stop,
@@ -111,6 +142,8 @@ void check_points(const SceneSpec& scene, const FiniteElementSpace& space) {
                        fmt::format("another point or stop is called \"{}\"; expected another name", point.name));
     names.push_back(point.name);
     place_row(scene, space, point.at, point_pointer(i, "/at"));
+    if (i == 0 && share_along_y(scene, point.at) != 1)
+      throw InputError(point_pointer(i, "/at"), "the first point is the tip, along uy; expected one along uy first");
     if (point.moment || point.shear) field_row(scene, space, point, ShapeOf::curvature, point_pointer(i, "/fields"));
   }
   const auto* assembled = std::get_if<AssembledSpec>(&scene.structure);
@@ -120,7 +153,10 @@ void check_points(const SceneSpec& scene, const FiniteElementSpace& space) {
 
 void check_tangents(const SceneSpec& scene, const FiniteElementSpace& space) {
   for (std::size_t i = 0; i < scene.stops.named.size(); ++i)
-    if (scene.stops.named[i].tangent) tangent_row(scene, space, scene.stops.named[i], i);
+    if (const NamedStop& stop = scene.stops.named[i]; stop.side && stop.side->number == 0)
+      round_tangents(scene, space, stop, i);
+    else if (stop.tangent && !stop.side)
+      tangent_row(scene, space, stop, i);
 }
 
 void observe_rows(const SceneSpec& scene, SemiDiscrete& problem) {
@@ -129,7 +165,7 @@ void observe_rows(const SceneSpec& scene, SemiDiscrete& problem) {
   for (std::size_t i = 0; i < scene.points.size(); ++i) {
     const PointSpec& point = scene.points[i];
     points.add(point.name, place_row(scene, problem.space, point.at, point_pointer(i, "/at")),
-               point.from_supports ? 0.0 : 1.0, !point.from_supports);
+               point.from_supports ? 0.0 : share_along_y(scene, point.at), !point.from_supports);
   }
   problem.observed = points.make();
   RowMaker fields(problem, 2 * scene.points.size());
@@ -144,15 +180,32 @@ void observe_rows(const SceneSpec& scene, SemiDiscrete& problem) {
   problem.fields = fields.make();
 
   const std::vector<NamedStop>& stops = scene.stops.named;
-  RowMaker tangents(problem, stops.size());
+  RowMaker tangents(problem, 4 * stops.size());
   problem.tangent_of.assign(stops.size(), -1);
   int count = 0;
   for (std::size_t i = 0; i < stops.size(); ++i) {
-    if (!stops[i].tangent) continue;
+    if (stops[i].side && stops[i].side->number == 0) {
+      problem.tangent_of[i] = count;
+      for (const PlaceRow& row : round_tangents(scene, problem.space, stops[i], i)) {
+        tangents.add(stops[i].name, row, 0, true);
+        ++count;
+      }
+    }
+    if (!stops[i].tangent || stops[i].side) continue;
     problem.tangent_of[i] = count++;
     tangents.add(stops[i].name, tangent_row(scene, problem.space, stops[i], i), 0, true);
   }
   problem.tangents = tangents.make();
+  // What slides along a clearance does so against what it moves with.
+  if (problem.motions.carry_stops)
+    for (const Clearance& clearance : problem.clearances) {
+      const Eigen::Index row = problem.tangent_of[static_cast<std::size_t>(clearance.first)];
+      const auto [cosine, sine] = side_direction(clearance.angles[1]);
+      const auto& at = problem.motions.at_points;
+      problem.tangents.on_motions.row(row) = at.row(clearance.first);
+      problem.tangents.on_motions.row(row + 1) =
+          (at.row(clearance.first + 1) - cosine * at.row(clearance.first)) / sine;
+    }
 }
 
 }  // namespace ricochet

@@ -7,6 +7,7 @@
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/planes.hpp>
 #include <ricochet/scene/scene.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
@@ -143,6 +144,19 @@ void add_on_body(const AssembledStructure& structure, const LoadTerm& term, Eige
   out.segment(body.first, body.dofs()) += shape;
 }
 
+// A term along a component or a direction, made of the same term of each plane.
+Eigen::VectorXd plane_load(LoadTerm term, const FiniteElementSpace& space) {
+  const std::array<double, 2> shares = plane_shares(term.towards, !space.across.empty(), "/scene/load");
+  term.towards = {};
+  LoadSpec alone;
+  alone.terms.push_back(std::move(term));
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(space.dofs);
+  for (const int plane : {0, 1})
+    if (const double share = shares[static_cast<std::size_t>(plane)]; share != 0)
+      sum += share * DistributedLoad(alone, plane_elements(space, plane)).shape(0);
+  return sum;
+}
+
 }  // namespace
 
 DistributedLoad::DistributedLoad(const LoadSpec& load, const FiniteElementSpace& space,
@@ -171,6 +185,8 @@ DistributedLoad::DistributedLoad(const LoadSpec& load, const FiniteElementSpace&
       add_on_body(*assembled, term, one.shape);
     else if (assembled && term.place)
       for (const auto& [dof, value] : assembled->row(*term.place, "/scene/load").free) one.shape[dof] = value;
+    else if (term.towards != Place{})
+      one.shape = plane_load(term, space);
     else if (term.force)
       for (const auto& [dof, value] : displacement_row(space, term.at.value_or(0))) one.shape[dof] = value;
     else

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <memory>
 #include <optional>
 #include <ricochet/contract/mass_strategy.hpp>
@@ -22,6 +23,7 @@ struct Section {
   double diameter = 0;                  ///< circle
   double width = 0, height = 0;         ///< rectangle, bending across height
   double EI = 0, rhoS = 0;              ///< given
+  double EI_z = 0;                      ///< given: EI of bending along z where it differs; 0: EI
 };
 
 struct SectionProperties {
@@ -61,8 +63,9 @@ struct BeamSupport {
   std::string name;
   double x = 0;  ///< m, 0 to L
   Type type = Type::clamped;
-  double stiffness = 0;  ///< elastic: N/m, against w
-  double rotation = 0;   ///< elastic: N m/rad, against w'
+  double stiffness = 0;                         ///< elastic: N/m, against w
+  double rotation = 0;                          ///< elastic: N m/rad, against w'
+  std::array<bool, 2> in_plane = {true, true};  ///< whether it holds u_y, u_z; of a beam in two planes
 
   bool holds_displacement() const { return type == Type::clamped || type == Type::pinned; }
   bool holds_rotation() const { return type == Type::clamped || type == Type::sliding; }
@@ -104,6 +107,7 @@ struct BeamSpec {
   double foundation = 0;                             ///< k_f, N/m²
   std::vector<BeamMass> masses;
   std::optional<BeamShear> shear;  ///< none: Euler–Bernoulli
+  int planes = 1;                  ///< 2: it bends along z as well (planes.hpp)
 };
 
 /// One mass on a spring and a dashpot, m w'' + c w' + k w = F cos(ωt + ψ) + load(t) − m φ''. Its only point is the tip.
@@ -157,7 +161,17 @@ struct StopParameters {
 
 struct MotionSpec;
 
-/// A stop of its own name: lower ≤ u(at) − u(to) ≤ upper, m.
+/// A side of a clearance, the polygon round a circle: the stop bounds cos α u₁ + sin α u₂, u₁ at its own places and u₂
+/// at those here. Opposite sides are one row with two bounds.
+struct ClearanceSide {
+  int number = 0;     ///< from 0
+  double angle = 0;   ///< α, rad
+  double radius = 0;  ///< m
+  Place across;
+  std::optional<Place> across_to = {};
+};
+
+/// A stop of its own name: lower ≤ u(at) − u(to) ≤ upper, m. The sides of a clearance have one name.
 struct NamedStop {
   std::string name;  ///< letters, digits, '-' and '_'
   Place at;
@@ -167,6 +181,8 @@ struct NamedStop {
   std::optional<TangentSpec> tangent = {};
   StopParameters own = {};
   std::shared_ptr<const MotionSpec> motion = {};  ///< of its own; null: none
+  std::optional<ClearanceSide> side = {};         ///< of a clearance, whose sides follow each other
+  std::size_t entry = 0;                          ///< its number in the list of the study
 };
 
 /// Two rigid stops g1(x) ≤ u ≤ g2(x); a missing formula is an absent stop. Or a list of stops that have names: then
@@ -195,6 +211,7 @@ struct MotionSpec {
   std::shared_ptr<const TimeHistory> history;   ///< φ, m
   std::shared_ptr<const TimeTable> table = {};  ///< what it was made of; null: of something else
   bool accelerates = true;                      ///< whether the table gives φ'', and not φ
+  std::string component = {};                   ///< of a beam in two planes: uy or uz; empty: uy
 };
 
 /// The word for all supports together, where a name may stand.
@@ -211,8 +228,10 @@ struct InitialSpec {
   enum class Projection { none, constraint, least_squares };
   Formula displacement, velocity;
   Projection projection = Projection::none;
-  std::vector<DofState> dofs = {};  ///< of matrices that are given: those that do not begin at rest at 0
-  bool equilibrium = false;         ///< the displacement is that at rest under F(0) and the stops
+  std::vector<DofState> dofs = {};               ///< of matrices that are given: those that do not begin at rest at 0
+  bool equilibrium = false;                      ///< the displacement is that at rest under F(0) and the stops
+  std::vector<DofState> dofs = {};               ///< of matrices that are given: those that do not begin at rest at 0
+  Formula displacement_z = {}, velocity_z = {};  ///< of u_z of a beam in two planes
 };
 
 /// One part of a load whose form in space stays as it is: a shape that a history scales, or a force at a point.
@@ -224,6 +243,7 @@ struct LoadTerm {
   std::optional<ricochet::Place> place = {};    ///< of a force on matrices that are given; of a shape its body
   std::shared_ptr<const TimeTable> table = {};  ///< that the history was made of, where it was
   double period = 0;                            ///< s, after which a random history repeats; 0: none
+  Place towards = {};                           ///< component or direction of a load on a beam; neither: uy
 };
 
 /// What pushes the structure, beside its support: a formula, and terms that are added to it.

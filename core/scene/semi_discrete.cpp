@@ -13,6 +13,7 @@
 #include <ricochet/scene/equilibrium.hpp>
 #include <ricochet/scene/massless_part.hpp>
 #include <ricochet/scene/named_stops.hpp>
+#include <ricochet/scene/planes.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/stop_parameters.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
@@ -77,14 +78,20 @@ Eigen::VectorXd load_at_start(const SemiDiscrete& problem) {
 
 void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem) {
   const double length = structure_length(scene);
-  const auto support = support_at_start(scene.support);
+  // At rest where it has become a motion among others.
+  const auto support = support_at_start(problem.support);
   problem.position.resize(problem.space.dofs);
   problem.velocity.resize(problem.space.dofs);
   const auto places = dof_places(problem.space);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    const auto [x, slope] = places[i];
+    const auto [x, slope, across] = places[i];
     const InitialSpec& initial = scene.initial;
+    if (across) {
+      problem.position[row] = initial_across(initial.displacement_z, places[i], length);
+      problem.velocity[row] = initial_across(initial.velocity_z, places[i], length);
+      continue;
+    }
     // The last node, i·(L/N), may lie an ulp beyond the end.
     problem.position[row] =
         slope ? initial.displacement.slope(std::min(x, length), 0, length) : initial.displacement(x) - support.position;
@@ -245,6 +252,7 @@ Eigen::VectorXd pushed_at_start(ContactLaw& law, const Parameters& parameters, c
 
 InertiaOrRefusal build_mass(const SemiDiscrete& problem, const MassStrategy& mass) {
   if (!problem.in_modes()) {
+    if (!problem.space.across.empty()) return mass_by_plane(mass, problem.space);
     if (problem.space.given && !mass.takes_given())
       return Refusal{
           "this mass is made of velocities on elements, and an assembled structure has matrices alone: use consistent "
@@ -306,6 +314,7 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   problem.contact = std::move(points.rows);
   problem.stops = std::move(points.names);
   problem.own = std::move(points.own);
+  problem.clearances = clearances_of(scene.stops);
   problem.space.contact_dofs = touched_dofs(problem.contact);
   problem.support = scene.support;
   const JoinedBodies* bodies = bodies_of(scene.structure);

@@ -5,6 +5,7 @@
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/clearances.hpp>
 #include <ricochet/scene/history/support_motions.hpp>
 #include <ricochet/scene/observed_rows.hpp>
 #include <ricochet/scene/scene.hpp>
@@ -98,6 +99,7 @@ struct SemiDiscrete {
   std::vector<double> contact_x;                     ///< position of each contact point, m
   std::vector<std::string> stops;                    ///< name of each contact point's stop; empty where they have none
   std::vector<StopParameters> own;                   ///< parameters of each point's stop; empty where none has its own
+  std::vector<Clearance> clearances;                 ///< whose sides are contact points of one name
   Eigen::VectorXd lower, upper;                      ///< g1, g2 at the contact points; ±∞ where absent
   Eigen::SparseMatrix<double, Eigen::RowMajor> tip;  ///< 1 × n: the displacement shown to people
   Eigen::RowVectorXd tip_on_supports;                ///< 1 × r: ψ_j there, of matrices that are given

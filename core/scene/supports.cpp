@@ -9,6 +9,7 @@
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/discrete_problem.hpp>
 #include <ricochet/scene/named_stops.hpp>
+#include <ricochet/scene/planes.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/supports.hpp>
@@ -27,7 +28,7 @@ void hold_rigidly(SemiDiscrete& problem) {
 
 void hold(const BeamSpec& beam, int elements, SemiDiscrete& problem) {
   problem.held = rigid_freedom(beam).held();
-  if (!beam.supports && beam.foundation == 0) return hold_rigidly(problem);
+  if (!beam.supports && beam.foundation == 0 && beam.planes == 1) return hold_rigidly(problem);
   StaticModes found = static_modes(beam, elements);
   problem.static_modes = std::move(found.modes);
   problem.support_loads = std::move(found.loads);
@@ -61,6 +62,22 @@ std::size_t number_of(const std::string& name, const std::vector<std::string>& n
                                         nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
 }
 
+// The number of the first support along z; without such, how many supports there are.
+std::size_t first_across(const StructureSpec& structure) {
+  const auto* beam = std::get_if<BeamSpec>(&structure);
+  return support_names(structure).size() / static_cast<std::size_t>(beam ? beam->planes : 1);
+}
+
+// The number of the first support along a component.
+std::size_t first_along(const StructureSpec& structure, const std::string& component, const std::string& pointer) {
+  if (component.empty()) return 0;
+  const auto* beam = std::get_if<BeamSpec>(&structure);
+  if (!beam) throw InputError(pointer + "/component", "only supports of a beam in two planes move along a component");
+  Place towards;
+  towards.component = component;
+  return plane_shares(towards, beam->planes == 2, pointer)[1] == 1 ? first_across(structure) : 0;
+}
+
 // The supports that each motion moves, and the motion of each support, −1 where it rests.
 struct Moved {
   std::vector<std::vector<std::size_t>> supports;
@@ -76,8 +93,9 @@ Moved moved_supports(const SceneSpec& scene) {
     const MotionSpec& motion = scene.motions[k];
     const std::string pointer = fmt::format("/scene/motions/{}/supports", k);
     std::vector<std::size_t>& mine = moved.supports.emplace_back();
-    for (std::size_t j = 0; j < (motion.supports.empty() ? names.size() : motion.supports.size()); ++j)
-      mine.push_back(motion.supports.empty() ? j : number_of(motion.supports[j], names, pointer));
+    const std::size_t first = first_along(scene.structure, motion.component, fmt::format("/scene/motions/{}", k));
+    for (std::size_t j = 0; j < (motion.supports.empty() ? first_across(scene.structure) : motion.supports.size()); ++j)
+      mine.push_back(first + (motion.supports.empty() ? j : number_of(motion.supports[j], names, pointer)));
     for (const std::size_t j : mine) {
       if (moved.motion[j] >= 0)
         throw InputError(pointer, fmt::format("motions/{} moves the support \"{}\" too; expected one motion of each "
@@ -89,12 +107,15 @@ Moved moved_supports(const SceneSpec& scene) {
   return moved;
 }
 
-// The motion that carries a stop, −1: none.
-int carried_by(const std::string& carrier, const SceneSpec& scene, const Moved& moved, const std::string& pointer) {
+// The motion that carries a stop along y or z, −1: none.
+int carried_by(const std::string& carrier, const SceneSpec& scene, const Moved& moved, const std::string& pointer,
+               int plane = 0) {
   if (carrier.empty()) return -1;
-  const int first = moved.motion.front();
-  if (carrier != all_supports) return moved.motion[number_of(carrier, support_names(scene.structure), pointer)];
-  if (!std::all_of(moved.motion.begin(), moved.motion.end(), [&](int one) { return one == first; }))
+  const std::size_t count = first_across(scene.structure), begin = plane == 0 ? 0 : count;
+  const int first = moved.motion[begin];
+  if (carrier != all_supports) return moved.motion[begin + number_of(carrier, support_names(scene.structure), pointer)];
+  const auto mine = moved.motion.begin() + static_cast<std::ptrdiff_t>(begin);
+  if (!std::all_of(mine, mine + static_cast<std::ptrdiff_t>(count), [&](int one) { return one == first; }))
     throw InputError(pointer, "the supports move apart; expected the name of one");
   return first;
 }
@@ -112,7 +133,8 @@ const std::string& carrier_of(const SceneSpec& scene, std::size_t stop) {
 std::vector<std::string> support_names(const StructureSpec& structure) {
   if (const auto* beam = std::get_if<BeamSpec>(&structure)) {
     std::vector<std::string> names;
-    for (const BeamSupport& support : supports_of(*beam)) names.push_back(support.name);
+    for (int plane = 0; plane < beam->planes; ++plane)
+      for (const BeamSupport& support : supports_of(*beam)) names.push_back(support.name);
     return names;
   }
   if (const auto* assembled = std::get_if<AssembledSpec>(&structure)) return assembled->structure->supports;
@@ -125,8 +147,9 @@ std::vector<double> support_places(const StructureSpec& structure) {
   constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
   if (const auto* beam = std::get_if<BeamSpec>(&structure)) {
     std::vector<double> places;
-    for (const BeamSupport& support : supports_of(*beam))
-      places.push_back(support.holds_displacement() ? support.x : nowhere);
+    for (int plane = 0; plane < beam->planes; ++plane)
+      for (const BeamSupport& support : supports_of(in_plane(*beam, plane)))
+        places.push_back(support.holds_displacement() ? support.x : nowhere);
     return places;
   }
   const auto* bar = std::get_if<BarSpec>(&structure);
@@ -166,6 +189,13 @@ void check_motions(const SceneSpec& scene) {
     throw InputError("/scene/support",
                      "support and motions stand together; expected the motion of supports among motions");
   const Moved moved = moved_supports(scene);
+  for (std::size_t i = 0; i < scene.stops.named.size(); ++i)
+    if (const NamedStop& stop = scene.stops.named[i];
+        stop.side && !stop.moves_with.empty() && !std::holds_alternative<BeamSpec>(scene.structure))
+      throw InputError(
+          carrier_pointer(scene, i),
+          "where a support of matrices or modes moves in the plane of a clearance is not known; expected a "
+          "clearance that stands still");
   for (std::size_t i = 0; i < stops; ++i) carried_by(carrier_of(scene, i), scene, moved, carrier_pointer(scene, i));
 }
 
@@ -227,16 +257,31 @@ void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, Sem
   for (Eigen::Index i = 0; i < problem.points(); ++i) {
     const auto stop = static_cast<std::size_t>(i);
     motions.carry_stops = motions.carry_stops || !carrier_of(scene, stop).empty();
-    const int motion = carried_by(carrier_of(scene, stop), scene, moved, carrier_pointer(scene, stop));
-    if (motion >= 0) motions.at_points(i, motion) -= 1;
+    const std::array<double, 2> shares = stop_shares(scene, stop);
+    for (const int plane : {0, 1}) {
+      const double share = shares[static_cast<std::size_t>(plane)];
+      if (share == 0) continue;
+      const int motion = carried_by(carrier_of(scene, stop), scene, moved, carrier_pointer(scene, stop), plane);
+      if (motion >= 0) motions.at_points(i, motion) -= share;
+    }
   }
   for (const auto& [stop, motion] : alone) motions.at_points(stop, motion) = -1;
 }
 
 namespace {
 
+// Whether all rows of a matrix have nothing across: then supports that move along y lift stops along y by 1.
+bool along_y(const SemiDiscrete& problem, const SparseRows& rows) {
+  const std::vector<int> across = plane_space(problem.space, 1).dofs;
+  for (int i = 0; i < rows.outerSize(); ++i)
+    for (SparseRows::InnerIterator it(rows, i); it; ++it)
+      if (std::binary_search(across.begin(), across.end(), static_cast<int>(it.col()))) return false;
+  return true;
+}
+
 // Whether the supports, moved together by 1, lift the stops and the tip by 1.
 bool lift_alike(const SemiDiscrete& problem, const Eigen::MatrixXd& on_supports) {
+  if (!problem.space.given) return problem.space.across.empty() || along_y(problem, problem.contact);
   constexpr double alike = 1e-9;  // round-off of static modes
   const Eigen::VectorXd points = (problem.contact * problem.static_modes + on_supports).rowwise().sum();
   return (points.size() == 0 || (points.array() - 1).abs().maxCoeff() <= alike) &&
@@ -247,11 +292,18 @@ bool lift_alike(const SemiDiscrete& problem, const Eigen::MatrixXd& on_supports)
 
 void add_support(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, SemiDiscrete& problem,
                  DistributedLoad& load) {
-  if (!problem.space.given || scene.support.amplitude == 0) return add_motions(scene, on_supports, problem, load);
-  if (lift_alike(problem, on_supports)) {
+  const bool lifts_alike = scene.support.amplitude == 0 || lift_alike(problem, on_supports);
+  if (scene.support.amplitude == 0 || (lifts_alike && !problem.space.given))
+    return add_motions(scene, on_supports, problem, load);
+  if (lifts_alike) {
     problem.support_shape = problem.support_loads.rowwise().sum();
     return;
   }
+  const auto* beam = std::get_if<BeamSpec>(&scene.structure);
+  if (beam && beam->foundation > 0)
+    throw InputError("/scene/support",
+                     "the ground of the foundation would move too, past stops across; expected "
+                     "motions, or stops along uy");
   const SupportSpec& support = scene.support;
   SceneSpec moved = scene;
   moved.support.amplitude = problem.support.amplitude = 0;
@@ -262,8 +314,9 @@ void add_support(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, Sem
 }
 
 bool support_bends(const SceneSpec& scene) {
-  const auto* spec = std::get_if<AssembledSpec>(&scene.structure);
-  if (!spec || scene.support.amplitude == 0) return false;
+  const auto* beam = std::get_if<BeamSpec>(&scene.structure);
+  const bool many = std::holds_alternative<AssembledSpec>(scene.structure) || (beam && beam->planes == 2);
+  if (!many || scene.support.amplitude == 0) return false;
   SemiDiscrete problem;
   const JoinedBodies* bodies = bodies_of(scene.structure);
   problem.space = make_space(scene.structure, bodies ? bodies->mesh : 1);

@@ -109,7 +109,12 @@ std::string place_text(const Json& whole) {
     if (place.empty()) return body;
     return body + " " + place_text(place);
   }
-  if (place.contains("x")) return fmt::format("x = {:.6g} m", place["x"].get<double>());
+  if (place.contains("x"))
+    return fmt::format("x = {:.6g} m{}", place["x"].get<double>(),
+                       place.contains("component")   ? " along " + place["component"].get<std::string>()
+                       : place.contains("direction") ? " along " + place["direction"].dump()
+                                                     : "");
+  if (place.contains("node") && place.size() == 1) return place["node"].get<std::string>();
   if (place.contains("component"))
     return place["node"].get<std::string>() + " " + place["component"].get<std::string>();
   if (place.contains("point")) return place["point"].get<std::string>();
@@ -122,6 +127,7 @@ std::string stops_text(const Json& scene, const std::vector<double>& stiffness) 
   const Json& stops = scene.at("stops");
   if (!stops.is_array()) return "";
   std::string text;
+  std::size_t row = 0;
   for (std::size_t i = 0; i < std::min(most_stops, stops.size()); ++i) {
     const Json& stop = stops[i];
     text += fmt::format("    stop {}: {}{}", stop["name"].get<std::string>(), place_text(stop["at"]),
@@ -131,8 +137,22 @@ std::string stops_text(const Json& scene, const std::vector<double>& stiffness) 
     for (const auto& [key, unit] : {std::pair("stiffness", "N/m"), {"damping", "N s/m"}, {"restitution", ""}})
       if (const Json own = stop.value(key, Json()); !own.is_null())
         text += fmt::format(", {} {:.4g}{}{}", key, own.get<double>(), *unit == '\0' ? "" : " ", unit);
-    if (i < stiffness.size() && std::isfinite(stiffness[i]))
-      text += fmt::format("; the structure has {:.4g} N/m there", stiffness[i]);
+    std::size_t rows = 1;
+    if (stop.contains("clearance")) {
+      const Json& clearance = stop["clearance"];
+      const int sides = clearance["sides"].get<int>();
+      rows = static_cast<std::size_t>(sides % 2 == 0 ? sides / 2 : sides);
+      text += fmt::format(", within {:.6g} m: a polygon of {} sides in {} rows, its corners {:.2g} % further",
+                          clearance["radius"].get<double>(), sides, rows,
+                          100 * (1 / std::cos(std::numbers::pi / sides) - 1));
+    }
+    if (row < stiffness.size() && std::isfinite(stiffness[row])) {
+      const auto [softest, stiffest] = std::minmax_element(stiffness.begin() + static_cast<std::ptrdiff_t>(row),
+                                                           stiffness.begin() + static_cast<std::ptrdiff_t>(row + rows));
+      text += fmt::format("; the structure has {:.4g}{} N/m there", *softest,
+                          *stiffest > 1.001 * *softest ? fmt::format(" to {:.4g}", *stiffest) : "");
+    }
+    row += rows;
     text += "\n";
   }
   if (stops.size() > most_stops) text += fmt::format("    and {} more stops\n", stops.size() - most_stops);

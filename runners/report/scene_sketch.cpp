@@ -127,8 +127,12 @@ std::vector<double> point_forces(const SceneValues& scene) {
   const auto* load = scene.at("/scene/load");
   if (!load || !load->is_array()) return places;
   for (const auto& term : *load) {
-    if (!term.is_object() || !term.contains("force") || !term.contains("at") || !term["at"].is_number()) return {};
-    places.push_back(term["at"].get<double>());
+    if (!term.is_object() || !term.contains("force") || !term.contains("at")) return {};
+    const auto& at = term["at"].is_object() && term["at"].contains("x") ? term["at"]["x"] : term["at"];
+    if (!at.is_number()) return {};
+    // Forces along y and z at one place are one arrow.
+    if (const double x = at.get<double>(); std::find(places.begin(), places.end(), x) == places.end())
+      places.push_back(x);
   }
   return places;
 }

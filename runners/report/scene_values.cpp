@@ -41,10 +41,14 @@ std::string with(const std::string& number, const std::string& unit) {
 }  // namespace
 
 std::string place_words(const SceneJson& one) {
-  if (one.contains("component")) return one.value("node", "") + " " + one.value("component", "");
-  if (one.contains("direction")) return one.value("node", "") + " along " + one["direction"].dump();
-  if (one.contains("point")) return "point " + one.value("point", "");
-  return one.contains("x") ? "x = " + number_text(one["x"].get<double>(), scene_digits) + " m" : std::string("dofs");
+  std::string where = one.value("body", "");
+  const auto add = [&where](const std::string& part) { where += (where.empty() || part.empty() ? "" : " ") + part; };
+  if (one.contains("x")) add("x = " + number_text(one["x"].get<double>(), scene_digits) + " m");
+  add(one.value("node", ""));
+  if (one.contains("point")) add("point " + one.value("point", ""));
+  if (one.contains("component")) add((one.contains("x") ? "along " : "") + one.value("component", ""));
+  if (one.contains("direction")) add("along " + one["direction"].dump());
+  return where.empty() ? "dofs" : where;
 }
 
 const SceneJson* SceneValues::at(const std::string& pointer) const {
@@ -115,6 +119,10 @@ std::vector<std::pair<std::string, std::string>> SceneValues::named_stops() cons
     for (const char* side : {"lower", "upper"})
       if (stop.contains(side) && !stop[side].is_null())
         text += fmt::format(", {} {} m", side, number_text(stop[side].get<double>(), scene_digits));
+    if (stop.contains("clearance"))
+      text += fmt::format(", within {} m in a polygon of {} sides",
+                          number_text(stop["clearance"].at("radius").get<double>(), scene_digits),
+                          number_text(first_number(&stop["clearance"].at("sides")).value_or(0), scene_digits));
     out.emplace_back(stop.value("name", ""), text);
   }
   return out;
@@ -123,11 +131,19 @@ std::vector<std::pair<std::string, std::string>> SceneValues::named_stops() cons
 std::vector<SceneValues::Stop> SceneValues::stops(double length) const {
   if (const SceneJson* list = at("/scene/stops"); list && list->is_array()) {
     std::vector<Stop> out;
-    for (const SceneJson& stop : *list)
-      if (const SceneJson& place = stop.at("at");
-          place.contains("x") && out.size() < most_stops && (!stop.contains("to") || stop["to"].is_null()))
-        out.push_back({place["x"].get<double>(), first_number(&stop["lower"]), first_number(&stop["upper"]),
-                       stop.value("name", "")});
+    for (const SceneJson& stop : *list) {
+      const SceneJson& place = stop.at("at");
+      if (!place.contains("x") || out.size() >= most_stops || (stop.contains("to") && !stop["to"].is_null())) continue;
+      // The sketch shows what bounds uy.
+      if (place.value("component", "uy") != "uy" || place.contains("direction")) continue;
+      Stop shown{place["x"].get<double>(), first_number(&stop["lower"]), first_number(&stop["upper"]),
+                 stop.value("name", "")};
+      if (stop.contains("clearance")) {
+        shown.upper = first_number(&stop["clearance"].at("radius"));
+        if (shown.upper) shown.lower = -*shown.upper;
+      }
+      out.push_back(std::move(shown));
+    }
     return out;
   }
   const SceneJson *lower = at("/scene/stops/lower"), *upper = at("/scene/stops/upper"), *where = at("/scene/stops/at");

@@ -10,6 +10,9 @@
 namespace ricochet {
 namespace {
 
+// How the column of a clearance's sides ends.
+constexpr const char* sides_of_clearance = ".clearance.sides";
+
 const std::vector<std::string> method_roles = {"mass", "contact", "time"};
 
 std::vector<std::string> split(const std::string& column) {
@@ -113,6 +116,7 @@ std::string spoken_choice(const std::string& column) {
   if (column == "modes") return "the number of modes";
   if (column == residual_axis) return "the residual of the modes";
   if (column == "steps_per_period") return "the number of steps per period";
+  if (column.ends_with(sides_of_clearance)) return "the number of sides";
   static const std::pair<const char*, const char*> scene[] = {
       {"structure.damping.stiffness", "the viscosity α"},
       {"structure.damping.mass", "the damping η"},
@@ -145,6 +149,7 @@ std::string axis_role(const std::string& column) {
 }
 
 Column axis_meaning(const std::string& column, const Json& resolved) {
+  if (column.ends_with(sides_of_clearance)) return {column, "1", "Sides of the polygon of a clearance."};
   const std::vector<std::string> path = split(column);
   if (const auto spec = spec_of(path, resolved))
     return {column, spec->type == ParameterSpec::Type::real ? spec->unit : unit_of(*spec), spec->text};

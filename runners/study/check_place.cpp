@@ -9,6 +9,19 @@ namespace {
 
 const char* const place_forms =
     R"({"x": m}, {"node": name, "component": name}, {"node": name, "direction": [3 numbers]} {"dofs": [{"dof", "weight"}]} or {"point": name}; of bodies with "body": name)";
+// What of a place says where it points: one at most of a position, one of a node unless a clearance stands there.
+bool one_way(const Field& field, const Json& place) {
+  const int ways = place.contains("component") + place.contains("direction");
+  if (place.contains("x")) return ways <= 1;
+  if (place.contains("node")) return ways == 1 || (ways == 0 && field.node_alone);
+  return ways == 0;
+}
+
+Json check_plane_direction(const Json& value, const std::string& pointer) {
+  if (!value.is_array() || value.size() != 2 || !value[0].is_number() || !value[1].is_number())
+    throw InputError(pointer, "expected two numbers, along y and z, found " + quote(value));
+  return {value[0].get<double>(), value[1].get<double>()};
+}
 
 void known_keys(const Json& object, const std::vector<std::string>& keys, const std::string& pointer) {
   for (const auto& [key, ignored] : object.items())
@@ -76,10 +89,15 @@ Json check_place(const Field& field, const Json& value, const std::string& point
   }
   const auto has = [&](const char* key) { return value.contains(key); };
   const int ways = has("x") + has("node") + has("dofs") + has("point");
-  if (ways != 1 || (has("node") && has("component") == has("direction")) ||
-      (!has("node") && (has("component") || has("direction"))))
+  if (ways != 1 || !one_way(field, value))
     throw InputError(pointer, std::string("expected one of ") + place_forms + ", found " + quote(value));
-  if (has("x")) return {{"x", number_at(value["x"], pointer_to(pointer, "x"))}};
+  if (has("x")) {
+    Json out = {{"x", number_at(value["x"], pointer_to(pointer, "x"))}};
+    if (has("component")) out["component"] = word_at(value["component"], pointer_to(pointer, "component"));
+    if (has("direction"))
+      out["direction"] = check_plane_direction(value["direction"], pointer_to(pointer, "direction"));
+    return out;
+  }
   if (has("point")) return {{"point", word_at(value["point"], pointer_to(pointer, "point"))}};
   if (has("dofs")) return {{"dofs", check_dofs(value["dofs"], pointer_to(pointer, "dofs"))}};
   Json out = {{"node", word_at(value["node"], pointer_to(pointer, "node"))}};
@@ -87,6 +105,7 @@ Json check_place(const Field& field, const Json& value, const std::string& point
     out["component"] = word_at(value["component"], pointer_to(pointer, "component"));
     return out;
   }
+  if (!has("direction")) return out;
   out["direction"] = check_direction(value["direction"], pointer_to(pointer, "direction"));
   return out;
 }
@@ -97,21 +116,22 @@ Json place_schema(const Field& field) {
                     {"properties", {{"dof", {{"type", "integer"}, {"minimum", 1}}}, {"weight", number}}},
                     {"required", {"dof"}},
                     {"additionalProperties", false}};
-  const Json place = {{"properties",
-                       {{"x", number},
-                        {"node", word},
-                        {"component", word},
-                        {"direction", direction_schema()},
-                        {"dofs", {{"type", "array"}, {"items", dof}, {"minItems", 1}}},
-                        {"point", word},
-                        {"body", word}}},
-                      {"additionalProperties", false},
-                      {"anyOf", Json::array({{{"required", {"body"}}},
-                                             {{"required", {"x"}}},
-                                             {{"required", {"dofs"}}},
-                                             {{"required", {"point"}}},
-                                             {{"required", {"node", "component"}}},
-                                             {{"required", {"node", "direction"}}}})}};
+  Json place = {{"properties",
+                 {{"x", number},
+                  {"node", word},
+                  {"component", word},
+                  {"direction", {{"type", "array"}, {"items", number}, {"minItems", 2}, {"maxItems", 3}}},
+                  {"dofs", {{"type", "array"}, {"items", dof}, {"minItems", 1}}},
+                  {"point", word},
+                  {"body", word}}},
+                {"additionalProperties", false},
+                {"anyOf", Json::array({{{"required", {"body"}}},
+                                       {{"required", {"x"}}},
+                                       {{"required", {"dofs"}}},
+                                       {{"required", {"point"}}},
+                                       {{"required", {"node", "component"}}},
+                                       {{"required", {"node", "direction"}}}})}};
+  if (field.node_alone) place["anyOf"].push_back({{"required", {"node"}}});
   Json types = {"object"};
   if (field.plain) types.push_back("number");
   if (field.nullable) types.push_back("null");

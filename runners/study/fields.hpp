@@ -58,6 +58,7 @@ struct Field {
   std::vector<ObjectForm> listed = {};    ///< of Form::object: a list of such objects is possible as well, one value
   bool per_body = false;                  ///< of Form::scalar: an object of such numbers by body as well
   bool plain = false;                     ///< of Form::place: a number is x
+  bool node_alone = false;                ///< of Form::place: a node may stand without component
   std::vector<ObjectForm> given = {};     ///< of Form::formula: an object that may stand for it (histories.hpp)
   std::vector<std::string> of_each = {};  ///< of Form::words: words that a name in brackets may follow
   bool repeats = false;                   ///< of Form::numbers: one number may stand several times

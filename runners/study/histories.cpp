@@ -6,6 +6,7 @@
 #include <ricochet/scene/history/random_load.hpp>
 
 #include "runners/json/json_text.hpp"
+#include "runners/study/plane_keys.hpp"
 #include "runners/study/study_files.hpp"
 
 namespace ricochet {
@@ -153,7 +154,7 @@ ObjectForm motion_form() {
       of_form(Field::Form::words, "supports", Json("all"), "Names of the supports that move so, or \"all\".");
   supports.spec.type = ParameterSpec::Type::word;
   ObjectForm keys;
-  keys.fields = {std::move(supports)};
+  keys.fields = {std::move(supports), component_key("What moves, of a beam of `planes` 2.")};
   keys.ways = {by_acceleration, by_displacement};
   return keys;
 }
@@ -170,6 +171,7 @@ MotionSpec read_motion(const Json& json, const std::string& pointer, StudyFiles*
   MotionSpec motion;
   const Json supports = json.value("supports", Json::array({all_supports}));
   if (supports != Json::array({all_supports})) motion.supports = supports.get<std::vector<std::string>>();
+  motion.component = json.value("component", "");
   const bool accelerates = json.contains("acceleration");
   const std::string key = accelerates ? "acceleration" : "displacement", here = pointer + "/" + key;
   const Json& given = json.at(key);

@@ -13,6 +13,7 @@
 #include "runners/study/body_keys.hpp"
 #include "runners/study/check_object.hpp"
 #include "runners/study/histories.hpp"
+#include "runners/study/plane_keys.hpp"
 #include "runners/study/product.hpp"
 #include "runners/study/read_methods.hpp"
 #include "runners/study/read_scene.hpp"
@@ -200,7 +201,7 @@ std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis
           continue;
         }
       }
-      std::string pointer = pointer_in_bodies(error.pointer(), scene);
+      std::string pointer = pointer_in_bodies(pointer_in_study(option.scene.stops, error.pointer()), scene);
       for (std::size_t a = 0; a < axes.size(); ++a)
         if (pointer == axes[a].pointer || pointer.starts_with(axes[a].pointer + "/"))
           pointer.insert(axes[a].pointer.size(), "/" + std::to_string(product[a]));

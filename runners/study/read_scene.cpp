@@ -4,6 +4,7 @@
 #include "runners/study/body_keys.hpp"
 #include "runners/study/histories.hpp"
 #include "runners/study/observed_keys.hpp"
+#include "runners/study/plane_keys.hpp"
 
 namespace ricochet {
 namespace {
@@ -27,13 +28,17 @@ LoadSpec read_load(const Json& value, const std::string& pointer, StudyFiles* fi
     if (term.force && value[i].at("at").is_number()) term.at = value[i].at("at").get<double>();
     if (term.force && value[i].at("at").is_object()) {
       const Place place = read_place(value[i].at("at"));
-      if (place.x && place.body.empty())
+      if (place.x && place.body.empty()) {
         term.at = place.x;
-      else
+        term.towards.component = place.component;
+        term.towards.direction = place.direction;
+      } else {
         term.place = place;
+      }
     }
     if (!term.force && !value[i].value("body", "").empty())
       term.place.emplace().body = value[i].at("body").get<std::string>();
+    if (!term.force) term.towards.component = value[i].value("component", "");
     if (!term.force) term.shape = read_formula(value[i].at("shape"), here + "/shape", "x");
     const char* history = term.force ? "force" : "time";
     const Json& given = value[i].at(history);
@@ -63,6 +68,7 @@ Section read_section(const Json& json) {
     section.type = Section::Type::given;
     section.EI = json.at("EI").get<double>();
     section.rhoS = json.at("rhoS").get<double>();
+    section.EI_z = json.value("EI_z", 0.0);
   }
   return section;
 }
@@ -99,12 +105,15 @@ void read_material(const Json& json, Part& part) {
 BeamSupport read_support(const Json& json) {
   using Type = BeamSupport::Type;
   const auto type = json.at("type").get<std::string>();
-  return {json.at("name").get<std::string>(), json.at("x").get<double>(),
+  return {json.at("name").get<std::string>(),
+          json.at("x").get<double>(),
           type == "clamped"   ? Type::clamped
           : type == "pinned"  ? Type::pinned
           : type == "sliding" ? Type::sliding
                               : Type::elastic,
-          json.value("stiffness", 0.0), json.value("rotation", 0.0)};
+          json.value("stiffness", 0.0),
+          json.value("rotation", 0.0),
+          read_components(json)};
 }
 
 BeamSpec read_beam(const Json& json) {
@@ -122,6 +131,7 @@ BeamSpec read_beam(const Json& json) {
   }
   for (const Json& one : json.value("masses", Json::array()))
     beam.masses.push_back({one.at("x").get<double>(), one.at("mass").get<double>(), one.at("inertia").get<double>()});
+  beam.planes = json.value("planes", 1);
   beam.added_mass = json.value("added_mass", 0.0);
   beam.tension = json.value("tension", 0.0);
   beam.foundation = json.value("foundation", 0.0);
@@ -181,20 +191,15 @@ StopsSpec read_stops(const Json& json, StudyFiles* files) {
     };
     for (std::size_t i = 0; i < json.size(); ++i) {
       const Json& one = json[i];
-      NamedStop& stop = stops.named.emplace_back();
-      stop.name = one.at("name").get<std::string>();
-      stop.at = read_place(one.at("at"));
-      stop.to = optional_place(one.at("to"));
-      stop.lower = bound(one.at("lower"));
-      stop.upper = bound(one.at("upper"));
       const Json with = one.value("moves_with", Json(""));
-      if (with.is_string())
-        stop.moves_with = with.get<std::string>();
-      else
+      NamedStop stop{one.at("name").get<std::string>(), read_place(one.at("at")), optional_place(one.at("to")),
+                     bound(one.at("lower")), bound(one.at("upper")), with.is_string() ? with.get<std::string>() : "",
+                     read_tangent(one)};
+      if (!with.is_string())
         stop.motion =
             std::make_shared<const MotionSpec>(read_motion(with, pointer_to("/scene/stops", i) + "/moves_with", files));
-      stop.tangent = read_tangent(one);
       stop.own = read_own(one);
+      add_stop(std::move(stop), one, i, stops.named);
     }
     return stops;
   }
@@ -234,6 +239,10 @@ SceneSpec read_scene(const Json& given, StudyFiles* files) {
                             : initial.at("projection") == "least-squares" ? InitialSpec::Projection::least_squares
                                                                           : InitialSpec::Projection::none;
   spec.initial.equilibrium = initial.value("equilibrium", false);
+  if (initial.contains("displacement_z"))
+    spec.initial.displacement_z = read_formula(initial.at("displacement_z"), "/scene/initial/displacement_z", "x");
+  if (initial.contains("velocity_z"))
+    spec.initial.velocity_z = read_formula(initial.at("velocity_z"), "/scene/initial/velocity_z", "x");
   spec.points = read_points(scene);
   if (const Json basis = scene.value("basis", Json(nullptr)); !basis.is_null())
     spec.basis = BasisSpec{basis.at("modes").get<int>(), basis.at("residual") == "stops",

@@ -3,6 +3,7 @@
 #include "runners/study/fields.hpp"
 #include "runners/study/histories.hpp"
 #include "runners/study/observed_keys.hpp"
+#include "runners/study/plane_keys.hpp"
 
 namespace ricochet {
 
@@ -42,7 +43,7 @@ ObjectForm section() {
         {}}},
       {{"given"},
        {{real("EI", "N m²", positive, std::nullopt, "Bending stiffness."),
-         real("rhoS", "kg/m", positive, std::nullopt, "Mass per length.")},
+         real("rhoS", "kg/m", positive, std::nullopt, "Mass per length."), EI_z_key()},
         "",
         {}}},
   };
@@ -97,7 +98,8 @@ ObjectForm beam_support() {
   keys.fields = {of_form(Field::Form::text, "name", std::nullopt, "Its name, for motions and tables."),
                  real("x", "m", non_negative, std::nullopt, "Where it holds the beam, 0 to L."),
                  word("type", {"clamped", "pinned", "sliding", "elastic"}, std::nullopt,
-                      "What it holds: w and w', w, w', or the ground end of springs.")};
+                      "What it holds: w and w', w, w', or the ground end of springs."),
+                 components_of_support()};
   keys.discriminator = "/type";
   keys.variants = {{{"clamped", "pinned", "sliding"}, {}},
                    {{"elastic"},
@@ -150,7 +152,8 @@ std::vector<Field> beam_extras() {
       quiet(real("tension", "N", any, 0.0, "Axial force T; below 0 it compresses.")),
       quiet(real("foundation", "N/m²", non_negative, 0.0, "Elastic foundation k_f, which moves with the supports.")),
       quiet(objects("masses", "Point masses on the beam.", beam_mass())),
-      quiet(object("shear", Json(nullptr), "Deformation in shear; absent: Euler–Bernoulli.", beam_shear()))};
+      quiet(object("shear", Json(nullptr), "Deformation in shear; absent: Euler–Bernoulli.", beam_shear())),
+      planes_key()};
 }
 
 /// C = αK + ηM, or ratios of the modes of the matrices that are marched.
@@ -231,7 +234,10 @@ ObjectForm named_stop() {
   keys.fields.back().given.push_back(stop_motion_form());
   keys.fields.back().spec.text = "The support that carries it, \"all\", or a motion of its own; absent: none.";
   for (Field& field : parameters_of_stops()) keys.fields.push_back(std::move(field));
+  keys.fields[1].node_alone = true;
+  keys.fields[2].node_alone = true;
   for (Field& field : observed_of_stops()) keys.fields.push_back(std::move(field));
+  keys.fields.push_back(clearance_key());
   return keys;
 }
 
@@ -272,6 +278,7 @@ ObjectForm scene() {
   initial.fields.push_back(quiet(of_form(Field::Form::scalar, "equilibrium", Json(false),
                                          "Whether it begins at rest under F(0) and its stops: K q = F(0) + Hᵀp.")));
   initial.fields.back().spec.type = ParameterSpec::Type::boolean;
+  for (Field& field : initial_across_keys()) initial.fields.push_back(std::move(field));
 
   ObjectForm point;
   point.fields = {place("at", Json(nullptr), "Where the force acts: x in m, or a place; an oscillator has none."),
@@ -284,6 +291,7 @@ ObjectForm scene() {
   spread.fields.back().given.push_back(load_history("1"));
   spread.fields.push_back(
       quiet(of_form(Field::Form::text, "body", Json(""), "Of several bodies, the one it is along.")));
+  spread.fields.push_back(component_key("What it pushes along, of a beam of `planes` 2."));
   Field load = formula("load", "N/m", "xt", false, Json("0"), "Load f(x,t), or a list of forces and of shapes.");
   load.nested.emplace_back();
   load.nested.back().ways = {point, spread};

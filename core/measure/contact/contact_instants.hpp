@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <limits>
 
@@ -18,6 +19,7 @@ struct ContactInstant {
   double speed_in = 0;  ///< towards the stop when the point last closed, m/s
   /// Its row in the list of impacts; above any row where it has none.
   std::size_t impact = std::numeric_limits<std::size_t>::max();
+  std::array<double, 2> normal = {0, 0};  ///< of a clearance, the direction in which it is met
 };
 
 /// Is told of the instants of lane 0, those of steps that were left out too, in order of time.
@@ -25,6 +27,8 @@ class ContactListener {
  public:
   virtual ~ContactListener() = default;
   virtual void instant(const ContactInstant& one) = 0;
+  /// After those of one time, also of a time at which what was closed is not pushed.
+  virtual void over(double /*time*/) {}
 };
 
 }  // namespace ricochet

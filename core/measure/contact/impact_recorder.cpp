@@ -115,6 +115,7 @@ void ImpactRecorder::press_left_out(const Marcher& marcher, const StepInterval& 
       lane.force = 0;
       const double time = begins + stage.facts.instant * h_;
       for (const ClosedPoint& closed : steps.closed) press(lane, closed.point, lasts, time, false);
+      for (ContactListener* listener : listeners_) listener->over(time);
     }
     if (at + 1 == static_cast<int>(stages.size())) begins += h_;
   });
@@ -170,8 +171,16 @@ void ImpactRecorder::press(Lane& lane, int point, double lasts, double time, boo
   }
   if (&lane == &lanes_.front())
     for (ContactListener* listener : listeners_)
-      listener->instant({point, one.side > 0 ? StopSide::lower : StopSide::upper, time, lasts, one.given, force, closes,
-                         one.came, one.row});
+      listener->instant({point,
+                         one.side > 0 ? StopSide::lower : StopSide::upper,
+                         time,
+                         lasts,
+                         one.given,
+                         force,
+                         closes,
+                         one.came,
+                         one.row,
+                         {}});
   one.pushed = one.given;
   one.given = 0;
 }
@@ -313,6 +322,8 @@ void ImpactRecorder::close_instant(const Marcher& marcher, const StageView& view
     const bool closes = now != before && begin(marcher, view, lane, point, now);
     press(state, point, lasts_, view.time + view.program->facts.instant * h_, closes);
   });
+  if (lane == 0)
+    for (ContactListener* listener : listeners_) listener->over(view.time + view.program->facts.instant * h_);
   if (state.closed.idle() && state.leaving.empty()) busy_ &= ~(1U << lane);
 }
 

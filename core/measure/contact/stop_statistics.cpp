@@ -13,15 +13,15 @@ void PushTotals::add(const PushTotals& other) {
 StopStatistics::StopStatistics(const Marcher& marcher, const WindowParts& window)
     : window_(window),
       h_(marcher.program().h),
-      rows_(RowReadings::of_stops(marcher)),
-      places_(static_cast<std::size_t>(rows_.count()) * static_cast<std::size_t>(window.count)),
+      stops_(marcher),
+      places_(static_cast<std::size_t>(stops_.count()) * static_cast<std::size_t>(window.count)),
       pushes_(2 * places_.size()) {}
 
 void StopStatistics::see(const Marcher& marcher) {
   seen_ = marcher.time();
   const int part = window_.of(seen_, 1e-6 * h_);
   if (part < 0) return;
-  for (int point = 0; point < rows_.count(); ++point) places_[at(point, part)].add(rows_.displacement(marcher, point));
+  for (int stop = 0; stop < stops_.count(); ++stop) places_[at(stop, part)].add(stops_.displacement(marcher, stop));
 }
 
 void StopStatistics::instant(const ContactInstant& one) {

@@ -1,6 +1,6 @@
 #pragma once
 #include <ricochet/measure/contact/contact_instants.hpp>
-#include <ricochet/measure/motion/row_readings.hpp>
+#include <ricochet/measure/contact/stop_places.hpp>
 #include <ricochet/measure/statistics/running_moments.hpp>
 #include <vector>
 
@@ -23,8 +23,8 @@ struct PushTotals {
   double rms(double time) const { return std::sqrt(squares / time); }
 };
 
-/// Displacements and forces of every contact point over the parts of a window. Displacements are those that the bounds
-/// are put on, at whole steps.
+/// Displacements and forces of every stop over the parts of a window. Displacements are those that the bounds are put
+/// on (StopPlaces), at whole steps.
 class StopStatistics final : public ContactListener {
  public:
   StopStatistics(const Marcher& marcher, const WindowParts& window);
@@ -46,14 +46,14 @@ class StopStatistics final : public ContactListener {
 
  private:
   std::size_t at(int point, int part) const {
-    return static_cast<std::size_t>(part) * static_cast<std::size_t>(rows_.count()) + static_cast<std::size_t>(point);
+    return static_cast<std::size_t>(part) * static_cast<std::size_t>(stops_.count()) + static_cast<std::size_t>(point);
   }
 
   WindowParts window_;
   double h_, seen_ = 0;
-  RowReadings rows_;
-  std::vector<RunningMoments> places_;  // parts × points
-  std::vector<PushTotals> pushes_;      // parts × points × sides
+  StopPlaces stops_;
+  std::vector<RunningMoments> places_;  // parts × stops
+  std::vector<PushTotals> pushes_;      // parts × stops × sides
 };
 
 }  // namespace ricochet

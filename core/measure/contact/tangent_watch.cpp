@@ -1,25 +1,41 @@
+#include <cmath>
+#include <ricochet/measure/contact/stop_places.hpp>
 #include <ricochet/measure/contact/tangent_watch.hpp>
 
 namespace ricochet {
 
 TangentWatch::TangentWatch(const Marcher& marcher, const WindowParts& window)
-    : window_(window),
-      h_(marcher.program().h),
-      rows_(marcher, marcher.program().problem->tangents),
-      tangents_of_(marcher.program().problem->tangent_of),
-      tangents_(static_cast<std::size_t>(rows_.count())),
-      work_(tangents_.size() * static_cast<std::size_t>(window.count)) {
+    : window_(window), h_(marcher.program().h), rows_(marcher, marcher.program().problem->tangents) {
   asks_.next_shown = any() ? 0 : never;
   if (!any()) return;
-  // Of the initial state.
   const SemiDiscrete& problem = *marcher.program().problem;
-  const Eigen::VectorXd speeds = problem.tangents.rows * marcher.program().lanes.front().velocity;
-  for (std::size_t i = 0; i < tangents_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    tangents_[i].speed = speeds[row];
-    if (!problem.motions.empty())
-      tangents_[i].speed += problem.motions.sum(problem.tangents.on_motions.row(row), 0, true);
+  const StopList stops = stop_list(problem);
+  for (int stop = 0; stop < stops.count(); ++stop) {
+    const int row = problem.tangent_of[static_cast<std::size_t>(stops.row[static_cast<std::size_t>(stop)])];
+    tangents_of_.push_back(row < 0 ? -1 : static_cast<int>(tangents_.size()));
+    if (row < 0) continue;
+    if (!tangents_.empty()) tangents_.back().count = row - tangents_.back().first;
+    tangents_.emplace_back().first = row;
+    tangents_.back().count = rows_.count() - row;
   }
+  work_.resize(tangents_.size() * static_cast<std::size_t>(window.count));
+  // Of the initial state.
+  const Eigen::VectorXd speeds = problem.tangents.rows * marcher.program().lanes.front().velocity;
+  for (Tangent& one : tangents_) {
+    one.waiting.reserve(4);
+    for (int k = 0; k < one.count; ++k) {
+      const Eigen::Index row = one.first + k;
+      double& speed = one.speed[static_cast<std::size_t>(k)];
+      speed = speeds[row];
+      if (!problem.motions.empty()) speed += problem.motions.sum(problem.tangents.on_motions.row(row), 0, true);
+    }
+  }
+}
+
+double TangentWatch::Tangent::along(const std::array<double, 2>& normal) const {
+  if (count == 1) return speed[0];
+  const double circle = normal[0] * speed[1] - normal[1] * speed[0];
+  return count == 2 ? std::abs(circle) : std::hypot(circle, normal[0] * speed[2] + normal[1] * speed[3]);
 }
 
 void TangentWatch::stage_solved(const Marcher& marcher, const StageView& view) {
@@ -31,17 +47,21 @@ void TangentWatch::know(const Marcher& marcher, const double* position, double t
   const bool moves = known_ && t > time_ + 1e-9 * h_;
   for (std::size_t i = 0; i < tangents_.size(); ++i) {
     Tangent& one = tangents_[i];
-    const int row = static_cast<int>(i);
-    const double place = rows_.relative(row, position) + rows_.lift(marcher, row, t);
-    if (moves) {
-      one.speed = (place - one.place) / (t - time_);
-      if (one.given > 0)
-        if (const int part = window_.of(one.time, 1e-6 * h_); part >= 0)
-          work_[i * static_cast<std::size_t>(window_.count) + static_cast<std::size_t>(part)] +=
-              0.5 * (one.slid + one.given * std::abs(one.speed));
-      one.given = one.slid = 0;
+    for (int k = 0; k < one.count; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      const double place = rows_.relative(one.first + k, position) + rows_.lift(marcher, one.first + k, t);
+      if (moves) one.speed[at] = (place - one.place[at]) / (t - time_);
+      one.place[at] = place;
     }
-    one.place = place;
+    if (!moves) continue;
+    if (!one.waiting.empty())
+      if (const int part = window_.of(one.time, 1e-6 * h_); part >= 0) {
+        double slid = one.slid;
+        for (const Waiting& push : one.waiting) slid += push.given * std::abs(one.along(push.normal));
+        work_[i * static_cast<std::size_t>(window_.count) + static_cast<std::size_t>(part)] += 0.5 * slid;
+      }
+    one.waiting.clear();
+    one.slid = 0;
   }
   known_ = true;
   time_ = t;
@@ -51,12 +71,18 @@ void TangentWatch::instant(const ContactInstant& one) {
   const int tangent = tangent_of(one.point);
   if (tangent < 0) return;
   Tangent& state = tangents_[static_cast<std::size_t>(tangent)];
-  state.given += one.given;
-  state.slid += one.given * std::abs(state.speed);
+  const double speed = state.along(one.normal);
+  if (one.given > 0) {
+    if (!state.waiting.empty() && state.waiting.back().normal == one.normal)
+      state.waiting.back().given += one.given;
+    else
+      state.waiting.push_back({one.given, one.normal});
+  }
+  state.slid += one.given * std::abs(speed);
   state.time = one.time;
   if (!one.closes || one.impact == std::numeric_limits<std::size_t>::max()) return;
   at_impacts_.resize(one.impact + 1, std::numeric_limits<double>::quiet_NaN());
-  at_impacts_[one.impact] = state.speed;
+  at_impacts_[one.impact] = speed;
 }
 
 void TangentWatch::finish(const Marcher& marcher) {

@@ -12,7 +12,9 @@ namespace ricochet {
 ///
 ///     wear power = (1/T) Σ I ½ (|V⁻| + |V⁺|)   (W),
 ///
-/// V⁻ over the sub-step before the instant and V⁺ over that of the instant. Tangents are read, never pushed. It looks
+/// V⁻ over the sub-step before the instant and V⁺ over that of the instant. Of a clearance met in the direction n,
+/// |V|² = (n × v)² + (r n·θ')², along the circle and, of a surface of radius r that bends, along the beam: its rows are
+/// u₁, u₂ and r θ₁, r θ₂. Tangents are read, never pushed; points are stops. It looks
 /// at a step before the ImpactRecorder that tells it of instants. Every step is shown to it where there are tangents.
 class TangentWatch final : public StepObserver, public ContactListener {
  public:
@@ -26,7 +28,7 @@ class TangentWatch final : public StepObserver, public ContactListener {
   void finish(const Marcher& marcher);
 
   bool has(int point) const { return tangent_of(point) >= 0; }
-  /// Work of a contact point in a part of the window, J; of one that has a tangent.
+  /// Work of a stop in a part of the window, J; of one that has a tangent.
   double work(int point, int part) const;
   /// Mean power over the window, W.
   double power(int point) const;
@@ -34,10 +36,17 @@ class TangentWatch final : public StepObserver, public ContactListener {
   double speed_at(std::size_t impact) const;
 
  private:
+  struct Waiting {
+    double given = 0;
+    std::array<double, 2> normal{};
+  };
   struct Tangent {
-    double place = 0, speed = 0;  // at the last opening, over the sub-step before it
-    double given = 0, slid = 0;   // of instants that wait for V⁺: Σ I, Σ I |V⁻|
-    double time = 0;              // of the last of them
+    int first = 0, count = 1;                // its rows
+    std::array<double, 4> place{}, speed{};  // at the last opening, over the sub-step before it
+    std::vector<Waiting> waiting = {};       // Σ I of instants that wait for V⁺, by their directions
+    double slid = 0;                         // Σ I |V⁻| of these
+    double time = 0;                         // of the last of them
+    double along(const std::array<double, 2>& normal) const;  // V; of a clearance without a sign
   };
   int tangent_of(int point) const {
     const auto j = static_cast<std::size_t>(point);

@@ -10,6 +10,7 @@
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/basis/modal_basis.hpp>
 #include <ricochet/scene/beam.hpp>
+#include <ricochet/scene/planes.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 
 namespace ricochet {
@@ -92,6 +93,8 @@ struct Numbers {
     if (beam.sections.empty()) {
       const SectionProperties section = section_properties(beam.section, beam.young, beam.density);
       numbers = {{"EI", section.EI, "N m²"}, {"ρS", section.rhoS, "kg/m"}};
+      const double EI_z = uniform_parts(in_plane(beam, 1)).front().section.EI;
+      if (beam.planes == 2 && EI_z != section.EI) numbers.push_back({"EI along z", EI_z, "N m²"});
     }
     numbers.push_back({"length", beam.length, "m"});
     if (beam.added_mass != 0) numbers.push_back({"added mass", beam.added_mass, "kg/m"});
@@ -120,6 +123,7 @@ std::string support_text(const BeamSupport& support) {
   constexpr const char* types[] = {"clamped", "pinned", "sliding", "elastic"};
   std::string text =
       fmt::format("{} {} at {:.6g} m", support.name, types[static_cast<std::size_t>(support.type)], support.x);
+  if (!support.in_plane[0] || !support.in_plane[1]) text += support.in_plane[0] ? " along uy" : " along uz";
   if (support.type != BeamSupport::Type::elastic) return text;
   std::vector<std::string> springs;
   if (support.stiffness > 0) springs.push_back(fmt::format("{:.4g} N/m", support.stiffness));
@@ -132,11 +136,14 @@ struct Details {
 
   std::vector<std::string> operator()(const BeamSpec& beam) const {
     const std::vector<BeamInterval> intervals = beam_intervals(beam, elements);
-    if (!beam.supports && intervals.size() == 1) return {};
+    if (!beam.supports && intervals.size() == 1 && beam.planes == 1) return {};
     std::vector<std::string> lines, parts;
     for (const BeamSupport& support : supports_of(beam)) parts.push_back(support_text(support));
-    const RigidFreedom freedom = rigid_freedom(beam);
-    const int rigid = (freedom.translates ? 1 : 0) + (freedom.turns ? 1 : 0);
+    int rigid = 0;
+    for (int plane = 0; plane < beam.planes; ++plane) {
+      const RigidFreedom freedom = rigid_freedom(in_plane(beam, plane));
+      rigid += (freedom.translates ? 1 : 0) + (freedom.turns ? 1 : 0);
+    }
     lines.push_back(fmt::format("supports: {}{}", parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", ")),
                                 rigid == 0 ? "" : fmt::format("; {} rigid motion{}", rigid, rigid == 1 ? "" : "s")));
     double from = 0;
@@ -157,7 +164,8 @@ struct Details {
       count += interval.elements;
     }
     lines.push_back(fmt::format("elements: {}", fmt::join(parts, ", ")));
-    lines.push_back(fmt::format("dofs: {}, held {}", dofs, 2 * (count + 1) - dofs));
+    lines.push_back(fmt::format("dofs: {}, held {}{}", dofs, 2 * beam.planes * (count + 1) - dofs,
+                                beam.planes == 2 ? "; two planes" : ""));
     return lines;
   }
   std::vector<std::string> operator()(const AssembledSpec& spec) const {
@@ -216,14 +224,22 @@ std::vector<std::string> basis_lines(const SemiDiscrete& problem) {
                   basis.dofs() - basis.modes, basis.dofs() - basis.modes == 1 ? "" : "s", problem.space.dofs)};
   constexpr int most_lines = 12;
   constexpr double percent = 100;
-  for (int i = 0; i < std::min(most_lines, problem.points()); ++i)
+  int more = 0;
+  for (int i = 0; i < problem.points(); ++i) {
+    // Of a clearance, its first side.
+    const bool side = std::any_of(problem.clearances.begin(), problem.clearances.end(),
+                                  [&](const Clearance& one) { return i > one.first && i <= one.last(); });
+    if (side || static_cast<int>(lines.size()) > most_lines) {
+      more += side ? 0 : 1;
+      continue;
+    }
     lines.push_back(fmt::format(
         "{}: the modes leave out {:.2g} % of the flexibility, {:.3g} m/N",
         problem.stops.empty() ? fmt::format("contact point at {:.6g} m", problem.contact_x[static_cast<std::size_t>(i)])
                               : "stop " + problem.stops[static_cast<std::size_t>(i)],
         percent * basis.left_out[i] / basis.flexibility[i], basis.left_out[i]));
-  if (problem.points() > most_lines)
-    lines.push_back(fmt::format("and {} more contact points", problem.points() - most_lines));
+  }
+  if (more > 0) lines.push_back(fmt::format("and {} more contact points", more));
   return lines;
 }
 

@@ -136,7 +136,7 @@ std::function<double(double)> of_stops(const std::vector<NamedStop>& stops, std:
 
 void describe(const BeamSpec& beam, ReferenceProblem& problem) {
   problem.other_beam = beam.supports || !beam.sections.empty() || !beam.masses.empty() || beam.shear ||
-                       beam.tension != 0 || beam.foundation != 0 || beam.added_mass != 0;
+                       beam.tension != 0 || beam.foundation != 0 || beam.added_mass != 0 || beam.planes == 2;
   const SectionProperties section = uniform_parts(beam).front().section;
   problem.structure = "beam";
   problem.length = beam.length;

@@ -90,6 +90,7 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
 
   const double run = thread_seconds(), budget = budget_of(study_case);
   ImpactRecorder recorder(marcher);
+  StopContacts contacts(marcher, recorder);
   MotionSampler sampler(marcher, set.grid, &recorder);
   sampler.march([&] {
     if (stop) throw Interrupted{};
@@ -105,7 +106,8 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   put_measure(record, "reference_of_mesh", of_the_mesh ? 1 : 0);
   put_measure(record, "reference_of_law", rigid || of_the_mesh ? 1 : 0);
   recorder.finish(marcher);
-  add_contact(record, recorder, marcher);
+  contacts.finish();
+  add_contact(record, contacts, marcher);
   put_measure(record, "active_set_changes", static_cast<double>(sampler.contact().changes()));
   if (whole) {
     record.status = "done";

@@ -142,10 +142,12 @@ StudyCase with_parameters(const StudyCase& study_case, const std::vector<std::pa
 StudyCase at_rest(const StudyCase& study_case) {
   StudyCase one = study_case;
   one.scene.initial.displacement = one.scene.initial.velocity = Formula(0.0);
+  one.scene.initial.displacement_z = one.scene.initial.velocity_z = Formula();
   one.scene.initial.dofs.clear();
   if (one.scene_json.is_object())
     for (const char* key : {"displacement", "velocity"}) one.scene_json["initial"][key] = "0";
-  if (one.scene_json.is_object()) one.scene_json["initial"].erase("file");
+  if (one.scene_json.is_object())
+    for (const char* key : {"file", "displacement_z", "velocity_z"}) one.scene_json["initial"].erase(key);
   return one;
 }
 

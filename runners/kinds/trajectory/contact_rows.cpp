@@ -64,21 +64,26 @@ Table stops_head() {
       {}};
 }
 
-void add_impacts(CaseRecord& record, const ImpactRecorder& recorder, const SemiDiscrete& problem,
+// Where a stop stands, m.
+double position_of(int stop, const StopList& list, const SemiDiscrete& problem) {
+  return problem.contact_x[static_cast<std::size_t>(list.row[static_cast<std::size_t>(stop)])];
+}
+
+void add_impacts(CaseRecord& record, const StopContacts& contacts, const SemiDiscrete& problem,
                  const StopWatches& watches) {
-  const std::vector<double>& x = problem.contact_x;
+  const StopList& list = contacts.list();
   NumberTable table = impacts_head();
   table.words = {{"side", {side_names[0], side_names[1]}}, {"open_end", {"false", "true"}}};
-  for (const Impact& impact : recorder.impacts(0))
-    table.add({impact.time, static_cast<double>(impact.point), x[static_cast<std::size_t>(impact.point)],
+  for (const Impact& impact : contacts.impacts())
+    table.add({impact.time, static_cast<double>(impact.point), position_of(impact.point, list, problem),
                static_cast<double>(impact.side), impact.speed_in, impact.speed_out, impact.impulse, impact.peak_force,
                impact.duration, impact.release_force, impact.open_end ? 1.0 : 0.0});
   if (!problem.stops.empty()) {
     table.columns.push_back(stop_column);
     table.values.push_back(*table.series(point_column.name));
-    table.words.emplace_back(stop_column.name, problem.stops);
+    table.words.emplace_back(stop_column.name, list.names);
   }
-  const std::vector<Impact>& impacts = recorder.impacts(0);
+  const std::vector<Impact>& impacts = contacts.impacts();
   if (watches.tangents && watches.tangents->any()) {
     table.columns.push_back(tangent_speed_column);
     Series& speeds = table.values.emplace_back();
@@ -91,27 +96,27 @@ void add_impacts(CaseRecord& record, const ImpactRecorder& recorder, const SemiD
     for (const Impact& impact : impacts) numbers.push_back(shock_of(impact, shocks));
   }
   const auto listed = static_cast<long long>(table.rows());
-  if (listed < recorder.count(0))
+  if (listed < contacts.count())
     record.notes.push_back(fmt::format("impacts.csv has the first {} of {} impacts; counts and sums have all of them",
-                                       listed, recorder.count(0)));
+                                       listed, contacts.count()));
   record.numbers.push_back(std::move(table));
 }
 
 }  // namespace
 
-void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const Marcher& marcher,
-                 const StopWatches& watches) {
-  put_measure(record, "impacts", static_cast<double>(recorder.count(0)));
+void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher& marcher, const StopWatches& watches) {
+  put_measure(record, "impacts", static_cast<double>(contacts.count()));
   if (!marcher.program().contact) return;
   const SemiDiscrete& problem = *marcher.program().problem;
+  const StopList& list = contacts.list();
   Table stops = stops_head();
   const bool named = !problem.stops.empty();
   if (named) stops.columns.push_back(stop_column);
   // Means over a window that was not reached are none.
   const StopWatches ended = record.status == "done" ? watches : StopWatches{};
   StopReading known;
-  for (int point = 0; point < problem.points(); ++point) {
-    const StopReading one = stop_reading(recorder, ended, point);
+  for (int point = 0; point < list.count(); ++point) {
+    const StopReading one = stop_reading(contacts, ended, point);
     if (one.pushed) known.pushed = one.pushed;
     if (one.shocks) known.shocks = one.shocks;
     if (one.wear_power) known.wear_power = one.wear_power;
@@ -119,27 +124,27 @@ void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const March
   const std::vector<Column> readings = stop_reading_columns(known);
   stops.columns.insert(stops.columns.end(), readings.begin(), readings.end());
   double peak = 0, time = 0;
-  for (int point = 0; point < problem.points(); ++point) {
+  for (int point = 0; point < list.count(); ++point) {
     if (named)
-      put_stop_measures(record, problem.stops[static_cast<std::size_t>(point)], stop_reading(recorder, ended, point));
+      put_stop_measures(record, list.names[static_cast<std::size_t>(point)], stop_reading(contacts, ended, point));
     for (const StopSide side : {StopSide::lower, StopSide::upper}) {
-      const StopTotals& totals = recorder.totals(0, point, side);
+      const StopTotals& totals = contacts.totals(point, side);
       if (totals.impacts == 0 && totals.contact_time == 0) continue;
       peak = std::max(peak, totals.peak_force);
       time += totals.contact_time;
-      stops.rows.push_back({point, problem.contact_x[static_cast<std::size_t>(point)],
-                            side_names[static_cast<std::size_t>(side)], totals.impacts, totals.peak_force,
-                            totals.mean_force(), totals.rms_force(), totals.contact_time, totals.impulse,
-                            totals.normal_work, totals.impacts > 0 ? Cell(totals.fastest) : Cell()});
-      if (named) stops.rows.back().push_back(problem.stops[static_cast<std::size_t>(point)]);
-      const Row cells = stop_reading_cells(stop_reading(recorder, ended, point, side));
+      stops.rows.push_back({point, position_of(point, list, problem), side_names[static_cast<std::size_t>(side)],
+                            totals.impacts, totals.peak_force, totals.mean_force(), totals.rms_force(),
+                            totals.contact_time, totals.impulse, totals.normal_work,
+                            totals.impacts > 0 ? Cell(totals.fastest) : Cell()});
+      if (named) stops.rows.back().push_back(list.names[static_cast<std::size_t>(point)]);
+      const Row cells = stop_reading_cells(stop_reading(contacts, ended, point, side));
       stops.rows.back().insert(stops.rows.back().end(), cells.begin(), cells.end());
       stops.rows.back().resize(stops.columns.size());
     }
   }
   put_measure(record, "peak_contact_force", peak);
   put_measure(record, "contact_time", time);
-  add_impacts(record, recorder, problem, watches);
+  add_impacts(record, contacts, problem, watches);
   record.tables.push_back(std::move(stops));
   add_stop_tables(record, problem, watches);
 }

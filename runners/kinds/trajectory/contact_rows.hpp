@@ -1,5 +1,5 @@
 #pragma once
-#include <ricochet/measure/contact/impact_recorder.hpp>
+#include <ricochet/measure/contact/stop_contacts.hpp>
 
 #include "runners/kinds/trajectory/stop_tables.hpp"
 #include "runners/store/record.hpp"
@@ -7,11 +7,11 @@
 
 namespace ricochet {
 
-/// What a recorder saw of lane 0, as the record keeps it: `impacts`, a row per impact; `stops`, a row per contact point
-/// and side that ever closed; the measures impacts, peak_contact_force and contact_time; and a note where the list of
-/// impacts ended before the run did. Without contact there are no impacts, and nothing else is said.
-/// What else looks at the stops adds columns at their ends, and tables.
-void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const Marcher& marcher,
+/// The contacts of lane 0, as the record keeps them: `impacts`, a row per impact; `stops`, a row per contact point, or
+/// clearance, and side that ever closed; the measures impacts, peak_contact_force and contact_time; and a note where
+/// the list of impacts ended before the run did. Without contact there are no impacts, and nothing else is said. What
+/// else looks at the stops adds columns at their ends, and tables.
+void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher& marcher,
                  const StopWatches& watches = {});
 
 /// Units and meanings of these tables, for records that come from a store.

@@ -21,25 +21,28 @@ SpectrumTaker::SpectrumTaker(const Marcher& marcher, const AskedOutputs& asked, 
     : of_(of),
       window_(asked.window),
       rate_(asked.rate),
-      rows_(RowReadings::of_stops(marcher)),
-      row_(place_of(marcher.program().problem->stops, of.of)),
+      stops_(marcher),
+      points_(marcher, marcher.program().problem->observed),
+      stop_(place_of(stop_list(*marcher.program().problem).names, of.of)),
+      point_(stop_ < 0 ? place_of(marcher.program().problem->observed.names, of.of) : -1),
       spectrum_(asked.rate, asked.segment_samples()),
       last_(static_cast<long long>(std::floor((window_.to - window_.from) * rate_ + rounding))) {
-  if (row_ < 0) {
-    rows_ = RowReadings(marcher, marcher.program().problem->observed);
-    row_ = place_of(marcher.program().problem->observed.names, of.of);
-  }
   const Eigen::VectorXd start = marcher.program().model->to_model(marcher.program().lanes.front().position);
-  value_ = rows_.relative(row_, start.data()) + rows_.lift(marcher, row_, 0);
+  value_ = place(marcher, start.data(), 0);
   // A step or two may be under way while a sample waits.
   if (of_.force) bins_.resize(8 + static_cast<std::size_t>(std::ceil(4 * rate_ * marcher.program().h)));
+}
+
+double SpectrumTaker::place(const Marcher& marcher, const double* position, double t) const {
+  if (stop_ >= 0) return stops_.displacement(marcher, stop_, position, t);
+  return points_.relative(point_, position) + points_.lift(marcher, point_, t);
 }
 
 void SpectrumTaker::see(const Marcher& marcher) {
   const double t = marcher.time(), h = marcher.program().h;
   if (of_.force) return flush(t - 2 * h);
   if (t < window_.from - 2 * h || next_ > last_) return;
-  const double value = rows_.displacement(marcher, row_);
+  const double value = place(marcher, marcher.slot(0), t);
   for (; next_ <= last_; ++next_) {
     const double at = window_.from + static_cast<double>(next_) / rate_;
     if (at > t + rounding * h) break;
@@ -50,7 +53,7 @@ void SpectrumTaker::see(const Marcher& marcher) {
 }
 
 void SpectrumTaker::instant(const ContactInstant& one) {
-  if (!of_.force || one.point != row_) return;
+  if (!of_.force || one.point != stop_) return;
   const double at = (one.time - window_.from) * rate_;
   if (at < 0 || at >= static_cast<double>(last_)) return;
   flush(one.time - (static_cast<double>(bins_.size()) - 2) / rate_);
@@ -71,25 +74,25 @@ void SpectrumTaker::finish(double time) {
   if (of_.force) flush(time * (1 + 1e-9));
 }
 
-OutputWatch::OutputWatch(const StudyCase& study_case, const Marcher& marcher, ImpactRecorder& recorder)
+OutputWatch::OutputWatch(const StudyCase& study_case, const Marcher& marcher, StopContacts& contacts)
     : asked_(asked_outputs(study_case)) {
   const SemiDiscrete& problem = *marcher.program().problem;
   const bool contact = marcher.program().contact;
   if (contact && asked_.windowed && (asked_.any || !problem.stops.empty())) {
     statistics_.emplace(marcher, asked_.window);
-    recorder.tell(&*statistics_);
+    contacts.tell(&*statistics_);
     reads_steps_ = true;
   }
   if (contact && asked_.shocks) {
-    shocks_.emplace(problem.points(), *asked_.shocks, asked_.window);
-    recorder.tell(&*shocks_);
+    shocks_.emplace(contacts.list().count(), *asked_.shocks, asked_.window);
+    contacts.tell(&*shocks_);
   }
   spectra_.reserve(asked_.spectra.size());
   for (const AskedSpectrum& one : asked_.spectra) {
     spectra_.emplace_back(marcher, asked_, one);
     reads_steps_ = reads_steps_ || spectra_.back().reads_steps();
   }
-  for (SpectrumTaker& one : spectra_) recorder.tell(&one);
+  for (SpectrumTaker& one : spectra_) contacts.tell(&one);
   ask(marcher);
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <optional>
 #include <ricochet/engine/marcher.hpp>
-#include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/contact/shocks.hpp>
+#include <ricochet/measure/contact/stop_contacts.hpp>
 #include <ricochet/measure/contact/stop_statistics.hpp>
 #include <ricochet/measure/statistics/welch.hpp>
 #include <vector>
@@ -32,19 +32,22 @@ class SpectrumTaker final : public ContactListener {
   AskedSpectrum of_;
   WindowParts window_;
   double rate_;
-  RowReadings rows_;
-  int row_ = -1;
+  double place(const Marcher& marcher, const double* position, double t) const;
+
+  StopPlaces stops_;
+  RowReadings points_;
+  int stop_ = -1, point_ = -1;  // one of both is read
   WelchSpectrum spectrum_;
   long long next_ = 0, last_;      // samples: the next one, and the last of the window
   double before_ = 0, value_ = 0;  // when the step before ended, and what was read there
   std::vector<double> bins_;       // impulses of the samples to come, N s
 };
 
-/// What `outputs`, and a window over stops that have names, ask of an integration. The recorder, which tells it of
-/// instants, looks at a step before it. Every step of the window is shown to it where it reads displacements.
+/// What `outputs`, and a window over stops that have names, ask of an integration. The recorder, whose contacts tell it
+/// of instants, looks at a step before it. Every step of the window is shown to it where it reads displacements.
 class OutputWatch final : public StepObserver {
  public:
-  OutputWatch(const StudyCase& study_case, const Marcher& marcher, ImpactRecorder& recorder);
+  OutputWatch(const StudyCase& study_case, const Marcher& marcher, StopContacts& contacts);
   OutputWatch(const OutputWatch&) = delete;
 
   /// Whether it has anything to look at.

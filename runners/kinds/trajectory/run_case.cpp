@@ -7,11 +7,12 @@
 #include <limits>
 #include <ricochet/engine/flight/step_interval.hpp>
 #include <ricochet/engine/marcher.hpp>
-#include <ricochet/measure/contact/impact_recorder.hpp>
+#include <ricochet/measure/contact/stop_contacts.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
 #include <ricochet/measure/motion/row_readings.hpp>
 
 #include "runners/kinds/trajectory/contact_rows.hpp"
+#include "runners/kinds/trajectory/orbit_taker.hpp"
 #include "runners/kinds/trajectory/snapshot_taker.hpp"
 #include "runners/kinds/trajectory/window_means.hpp"
 #include "runners/march/load_changes.hpp"
@@ -32,9 +33,9 @@ constexpr double held_seconds_per_step = 0.5 * 1.6e-7;
 // samples. Audit and recorder look at a step before it.
 class Sampler final : public StepObserver {
  public:
-  Sampler(const Marcher& marcher, const EnergyAudit& audit, ImpactRecorder& recorder)
+  Sampler(const Marcher& marcher, const EnergyAudit& audit, StopContacts& contacts)
       : audit_(audit),
-        recorder_(recorder),
+        contacts_(contacts),
         gaps_(marcher),
         points_(marcher, marcher.program().problem->observed),
         fields_(marcher, marcher.program().problem->fields) {
@@ -71,11 +72,11 @@ class Sampler final : public StepObserver {
                           energy.contact,
                           energy.common(),
                           energy.scheme,
-                          contact.force,
+                          contacts_.merges() ? contacts_.upwards() : contact.force,
                           audit_.penetration(0),
                           static_cast<double>(contact.active),
-                          recorder_.force(0),
-                          recorder_.take_peak(0),
+                          contacts_.force(),
+                          contacts_.take_peak(),
                           low_,
                           high_,
                           deepest_};
@@ -106,7 +107,7 @@ class Sampler final : public StepObserver {
   }
 
   const EnergyAudit& audit_;
-  ImpactRecorder& recorder_;
+  StopContacts& contacts_;
   double low_ = infinity, high_ = -infinity, deepest_ = 0;  // since the last sample
   double largest_tip_ = 0;                                  // until then
   GapWatch gaps_;
@@ -120,9 +121,11 @@ struct Watched {
   EnergyAudit audit;
   TangentWatch tangents;
   ImpactRecorder recorder;
+  StopContacts contacts;
   OutputWatch outputs;
   WindowMeans means;
   ForceWindow forces;
+  OrbitTaker orbits;
   SnapshotTaker snapshots;
   Sampler sampler;
   Observers observers;
@@ -130,27 +133,32 @@ struct Watched {
       : audit(marcher, SamplingMode::seldom),
         tangents(marcher, asked_outputs(study_case).window),
         recorder(marcher),
-        outputs(study_case, marcher, recorder),
-        means(study_case.settings, marcher, audit),
+        contacts(marcher, recorder),
+        outputs(study_case, marcher, contacts),
+        means(study_case.settings, marcher, audit, &contacts),
         forces(study_case.settings, marcher),
+        orbits(marcher, asked_outputs(study_case).window, steps),
         snapshots(study_case.scene, marcher, steps, snapshots_asked(study_case.settings)),
-        sampler(marcher, audit, recorder),
+        sampler(marcher, audit, contacts),
         observers{&audit} {
     // Before the recorder, which tells it what a step gave.
     if (tangents.any()) {
       observers.add(&tangents);
-      recorder.tell(&tangents);
+      contacts.tell(&tangents);
     }
     observers.add(&recorder);
     if (outputs.any()) observers.add(&outputs);
     if (means.asked()) observers.add(&means);
-    if (has_window(study_case.settings)) observers.add(&forces);
+    // Sides of a clearance have no sum that is a force.
+    if (has_window(study_case.settings) && !contacts.merges()) observers.add(&forces);
+    if (orbits.any()) observers.add(&orbits);
     if (snapshots.taken()) observers.add(&snapshots);
     observers.add(&sampler);
   }
 };
 
-void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit& audit, const SemiDiscrete& problem) {
+void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit& audit, const SemiDiscrete& problem,
+                   const StopContacts& contacts) {
   const EnergyTotals& energy = audit.totals(0);
   const ContactTotals& contact = audit.contact(0);
   const auto put = [&](const char* name, double value) { put_measure(record, name, value); };
@@ -195,7 +203,7 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
   put("deepest_penetration", contact.deepest_penetration);
   put("contact_instants", static_cast<double>(contact.contact_steps));
   put("active_set_changes", static_cast<double>(contact.active_set_changes));
-  put("impulse", contact.impulse);
+  put("impulse", contacts.merges() ? contacts.impulse() : contact.impulse);
   put("complementarity_residual", contact.residual);
   put("law_iterations", contact.most_iterations);
   if (marcher.law().reads()) put("dissipated_by_law", energy.work_of_law);
@@ -245,7 +253,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   const std::shared_ptr<const SemiDiscrete> problem = prepared.problem;
   Marcher marcher(std::move(*prepared.program));
   Watched watched(study_case, marcher, prepared.steps);
-  auto& [audit, tangents, recorder, outputs, means, forces, snapshots, sampler, observers] = watched;
+  auto& [audit, tangents, recorder, contacts, outputs, means, forces, orbits, snapshots, sampler, observers] = watched;
   record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 
   const double run = thread_seconds(), budget = budget_of(study_case);
@@ -283,12 +291,14 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
     record_early_end(record, marcher, prepared.steps, budget);
   tangents.finish(marcher);
   recorder.finish(marcher);
+  contacts.finish();
   outputs.finish(marcher);
-  fill_measures(record, marcher, audit, *problem);
-  add_contact(record, recorder, marcher, {&outputs, &tangents});
+  fill_measures(record, marcher, audit, *problem, contacts);
+  add_contact(record, contacts, marcher, {&outputs, &tangents});
   doubts.push_back(GapWatch::crossed(marcher, recorder));
   doubts.push_back(sampler.gaps().passed());
   add_doubts(record, doubts);
+  if (orbits.any()) record.numbers.push_back(orbits.finish());
   if (snapshots.taken()) record.numbers.push_back(table_of(snapshots.finish()));
   put_measure(record, "largest_tip_displacement", sampler.largest_tip());
   put_measure(record, "steps_visited", static_cast<double>(marcher.steps_visited()));

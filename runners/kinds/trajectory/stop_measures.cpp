@@ -204,7 +204,7 @@ std::string missing_for(const StopMeasure& one, const nlohmann::ordered_json& st
     return "counts shocks; give outputs.shocks";
   if (one.needs == Needs::tangent)
     for (const auto& other : study.at("scene").at("stops"))
-      if (other.at("name") == stop && !other.contains("tangent"))
+      if (other.at("name") == stop && !other.contains("tangent") && !other.contains("clearance"))
         return "needs what slides there; give tangent to the stop";
   return "";
 }

@@ -8,6 +8,7 @@
 #include <ricochet/measure/statistics/block_bootstrap.hpp>
 
 #include "runners/kinds/trajectory/octave_measures.hpp"
+#include "runners/kinds/trajectory/orbit_taker.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
@@ -68,9 +69,9 @@ Table parts_head(const StopReading& known) {
 }
 
 std::vector<std::string> stop_names(const SemiDiscrete& problem) {
-  if (!problem.stops.empty()) return problem.stops;
-  std::vector<std::string> names;
-  for (int point = 0; point < problem.points(); ++point) names.push_back(std::to_string(point));
+  std::vector<std::string> names = stop_list(problem).names;
+  if (problem.stops.empty())
+    for (std::size_t point = 0; point < names.size(); ++point) names[point] = std::to_string(point);
   return names;
 }
 
@@ -178,11 +179,12 @@ void add_parts(CaseRecord& record, const StopWatches& watches, const SemiDiscret
   // Columns that one stop has, all have.
   StopReading known;
   known.pushed.emplace();
-  for (int point = 0; watches.tangents && point < problem.points(); ++point)
+  const int stops = static_cast<int>(names.size());
+  for (int point = 0; watches.tangents && point < stops; ++point)
     if (watches.tangents->has(point)) known.wear_power = 0;
   Table table = parts_head(known);
   const std::vector<Column> columns = stop_reading_columns(known);
-  for (int point = 0; point < problem.points(); ++point) {
+  for (int point = 0; point < stops; ++point) {
     for (int part = 0; part < window.count && statistics.complete(part); ++part) {
       Row row = {names[static_cast<std::size_t>(point)], part, window.begin(part), window.begin(part + 1)};
       const StopReading reading = part_reading(watches, point, part);
@@ -218,11 +220,10 @@ void add_spectra(CaseRecord& record, const OutputWatch& outputs) {
 
 }  // namespace
 
-StopReading stop_reading(const ImpactRecorder& recorder, const StopWatches& watches, int point,
+StopReading stop_reading(const StopContacts& contacts, const StopWatches& watches, int stop,
                          std::optional<StopSide> side) {
   StopReading reading;
-  const StopTotals &lower = recorder.totals(0, point, StopSide::lower),
-                   &upper = recorder.totals(0, point, StopSide::upper);
+  const StopTotals &lower = contacts.totals(stop, StopSide::lower), &upper = contacts.totals(stop, StopSide::upper);
   reading.run = side == StopSide::lower ? lower : side == StopSide::upper ? upper : lower;
   if (!side) {
     reading.run.impacts += upper.impacts;
@@ -231,19 +232,19 @@ StopReading stop_reading(const ImpactRecorder& recorder, const StopWatches& watc
     reading.run.contact_time = lower.contact_time + upper.contact_time;
     reading.run.squares = lower.squares + upper.squares;
   }
-  if (watches.tangents && watches.tangents->has(point)) reading.wear_power = watches.tangents->power(point);
+  if (watches.tangents && watches.tangents->has(stop)) reading.wear_power = watches.tangents->power(stop);
   if (!watches.outputs) return reading;
   const OutputWatch& outputs = *watches.outputs;
   reading.window = outputs.asked().window.to - outputs.asked().window.from;
   if (const StopStatistics* statistics = outputs.statistics();
       statistics && statistics->complete(statistics->window().count - 1)) {
-    reading.displacement = statistics->displacement(point);
-    reading.pushed = statistics->pushed(point, side.value_or(StopSide::lower));
-    if (!side) reading.pushed->add(statistics->pushed(point, StopSide::upper));
+    reading.displacement = statistics->displacement(stop);
+    reading.pushed = statistics->pushed(stop, side.value_or(StopSide::lower));
+    if (!side) reading.pushed->add(statistics->pushed(stop, StopSide::upper));
   }
   if (const ShockRecorder* shocks = outputs.shocks()) {
-    reading.shocks = shocks->totals(point, side.value_or(StopSide::lower));
-    if (!side) reading.shocks->add(shocks->totals(point, StopSide::upper));
+    reading.shocks = shocks->totals(stop, side.value_or(StopSide::lower));
+    if (!side) reading.shocks->add(shocks->totals(stop, StopSide::upper));
   }
   return reading;
 }
@@ -288,7 +289,7 @@ void describe_stop_tables(CaseRecord& record) {
   for (const Table& head : {histogram_head(), parts, third_octaves_head()})
     for (Table& table : record.tables)
       if (table.name == head.name) describe(table, head);
-  for (const NumberTable& head : {shocks_head(), spectra_head()})
+  for (const NumberTable& head : {shocks_head(), spectra_head(), orbits_head()})
     for (NumberTable& table : record.numbers)
       if (table.name == head.name) {
         table.text = head.text;

@@ -13,8 +13,8 @@ struct StopWatches {
   const TangentWatch* tangents = nullptr;
 };
 
-/// What is known of a contact point, on one side or on both.
-StopReading stop_reading(const ImpactRecorder& recorder, const StopWatches& watches, int point,
+/// What is known of a stop, on one side or on both.
+StopReading stop_reading(const StopContacts& contacts, const StopWatches& watches, int stop,
                          std::optional<StopSide> side = {});
 
 /// The shock that an impact belongs to, by its row in shocks.csv; NaN where there is none.

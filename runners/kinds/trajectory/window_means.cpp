@@ -10,7 +10,8 @@
 
 namespace ricochet {
 
-WindowMeans::WindowMeans(const Json& settings, const Marcher& marcher, EnergyAudit& audit) : audit_(audit) {
+WindowMeans::WindowMeans(const Json& settings, const Marcher& marcher, EnergyAudit& audit, const StopContacts* contacts)
+    : audit_(audit), contacts_(contacts && contacts->merges() ? contacts : nullptr) {
   if (!has_window(settings)) return;
   const Json& window = settings.at("window");
   from_ = window.at("from").get<double>();
@@ -22,6 +23,8 @@ WindowMeans::WindowMeans(const Json& settings, const Marcher& marcher, EnergyAud
 }
 
 WindowMeans::Totals WindowMeans::now(const Marcher& marcher) const {
+  if (contacts_)
+    return {marcher.time(), audit_.lost_at_stops(0), contacts_->impulse(), static_cast<double>(contacts_->count())};
   const ContactTotals& contact = audit_.contact(0);
   return {marcher.time(), audit_.lost_at_stops(0), contact.impulse, static_cast<double>(contact.impacts)};
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/contact/stop_contacts.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
 #include <ricochet/measure/statistics/block_bootstrap.hpp>
 #include <string>
@@ -21,8 +22,9 @@ class WindowMeans final : public StepObserver {
   static constexpr int fewest_parts = fewest_resampled;
 
   /// `settings` are those of a trajectory, with or without a window in parts; without, it has nothing to look at. What
-  /// stops of a compliant law store is asked for at every step. The audit looks at a step before it.
-  WindowMeans(const Json& settings, const Marcher& marcher, EnergyAudit& audit);
+  /// stops of a compliant law store is asked for at every step. The audit looks at a step before it. Momentum and
+  /// impacts of clearances are those of `contacts`.
+  WindowMeans(const Json& settings, const Marcher& marcher, EnergyAudit& audit, const StopContacts* contacts = nullptr);
 
   bool asked() const { return parts_ > 0; }
   void stage_solved(const Marcher&, const StageView&) override {}
@@ -46,6 +48,7 @@ class WindowMeans final : public StepObserver {
   Totals now(const Marcher& marcher) const;
 
   const EnergyAudit& audit_;
+  const StopContacts* contacts_;
   double from_ = 0, to_ = 0;
   int parts_ = 0;
   Totals begin_;  // of the part under way

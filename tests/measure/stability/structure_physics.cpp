@@ -18,6 +18,20 @@ StructurePhysics physics_of(const SceneSpec& scene, int elements, const char* ma
 
 }  // namespace
 
+TEST_CASE("physics: a beam in two planes has the frequencies of each plane") {
+  SceneSpec scene;
+  BeamSpec beam;
+  beam.section = {.type = Section::Type::given, .EI = 1, .rhoS = 1, .EI_z = 4};
+  beam.planes = 2;
+  scene.structure = beam;
+  const StructurePhysics physics = physics_of(scene, 10);
+  // ω grows with √EI.
+  CHECK(physics.pulsations[1] == Approx(2 * physics.pulsations[0]).epsilon(1e-9));
+  CHECK(physics.numbers[2].value == 4);
+  REQUIRE(physics.details.size() >= 3);
+  CHECK_THAT(physics.details[2], Catch::Contains("dofs: 40, held 4; two planes"));
+}
+
 TEST_CASE("physics: the frequencies of a cantilever are β²√(EI/ρSL⁴), whatever the mass matrix") {
   SceneSpec scene;
   BeamSpec beam;

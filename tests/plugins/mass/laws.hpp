@@ -95,7 +95,8 @@ inline Eigen::Matrix2d rigid_mass(const Inertia& inertia, const FiniteElementSpa
   const auto places = dof_places(space);
   Eigen::MatrixXd X(space.dofs, 2);
   for (int i = 0; i < space.dofs; ++i) {
-    const auto [x, slope] = places[static_cast<std::size_t>(i)];
+    const auto [x, slope, across] = places[static_cast<std::size_t>(i)];
+    REQUIRE_FALSE(across);
     X.row(i) << (slope ? 0.0 : 1.0), (slope ? 1.0 : x);
   }
   return X.transpose() * dense_mass(inertia) * X;

@@ -4,6 +4,7 @@
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/limits.hpp"
+#include "runners/kinds/trajectory/page/orbits.hpp"
 #include "runners/kinds/trajectory/page/stops.hpp"
 #include "runners/kinds/trajectory/page/summary_measures.hpp"
 
@@ -12,10 +13,10 @@ namespace ricochet::report {
 KindPage trajectory_page() {
   KindPage page;
   page.scripts = scripts({"along_axis", "over_time", "final_energy", "energy", "tip", "force", "penetration", "impacts",
-                          "shocks", "spectra"});
-  page.tables = {"energy_changes", "shock_points", "spectrum_bands"};
+                          "shocks", "clearances", "spectra"});
+  page.tables = {"energy_changes", "shock_points", "orbit_points", "spectrum_bands"};
   page.curves = {"energy", "tip_displacement", "contact_force_peak"};
-  page.derived = {energy_changes, shock_points, spectrum_bands};
+  page.derived = {energy_changes, shock_points, orbit_points, spectrum_bands};
   page.answer = [](const CaseView& view) {
     return answers::evidence_html(answers::Compared(view.results())) + stops_html(view);
   };

@@ -32,20 +32,6 @@ const std::vector<std::string> first_measures = {"impacts",
 
 constexpr std::size_t most_shocks_drawn = 3000, most_lines_drawn = 400;
 
-/// The cases of each method, finest mesh and step first.
-std::vector<Cases> methods_from_finest(const answers::Compared& study) {
-  InOrderMet<std::string, Cases> groups;
-  for (const CaseRecord* record : with_status(all_cases(study.results()), "done"))
-    groups[study.key(*record)].push_back(record);
-  std::vector<Cases> out;
-  for (auto& [key, cases] : std::move(groups).list()) {
-    std::stable_sort(cases.begin(), cases.end(),
-                     [&](const CaseRecord* a, const CaseRecord* b) { return study.finer(*a, *b); });
-    out.push_back(std::move(cases));
-  }
-  return out;
-}
-
 /// Densities of one record by series: "bar-a\nforce".
 std::map<std::string, std::vector<double>> densities(const CaseRecord& record, std::vector<double>* frequencies) {
   std::map<std::string, std::vector<double>> out;
@@ -78,6 +64,19 @@ void widen_band(Band& band, const std::vector<double>& finest, const std::vector
 }
 
 }  // namespace
+
+std::vector<Cases> methods_from_finest(const answers::Compared& study) {
+  InOrderMet<std::string, Cases> groups;
+  for (const CaseRecord* record : with_status(all_cases(study.results()), "done"))
+    groups[study.key(*record)].push_back(record);
+  std::vector<Cases> out;
+  for (auto& [key, cases] : std::move(groups).list()) {
+    std::stable_sort(cases.begin(), cases.end(),
+                     [&](const CaseRecord* a, const CaseRecord* b) { return study.finer(*a, *b); });
+    out.push_back(std::move(cases));
+  }
+  return out;
+}
 
 std::string stops_html(const CaseView& view) {
   const Table* table = find_table(view.results().derived, "uncertainty");

@@ -1,0 +1,53 @@
+#pragma once
+#include <array>
+#include <ricochet/measure/motion/row_readings.hpp>
+#include <string>
+#include <vector>
+
+namespace ricochet {
+
+/// The stops of a problem: contact points, of which a clearance has several, its sides.
+struct StopList {
+  std::vector<std::string> names;  ///< empty strings where stops have none
+  std::vector<int> row;            ///< first contact point of each
+  std::vector<int> clearance;      ///< number of its clearance, −1: none
+  std::vector<int> stop_of;        ///< of each contact point
+
+  int count() const { return static_cast<int>(row.size()); }
+  bool round(int stop) const { return clearance[static_cast<std::size_t>(stop)] >= 0; }
+};
+StopList stop_list(const SemiDiscrete& problem);
+
+/// What the bounds of each stop are put on: the displacement of its contact point, of a clearance the distance from its
+/// axis, √(u₁² + u₂²), m. Allocates when constructed.
+class StopPlaces {
+ public:
+  explicit StopPlaces(const Marcher& marcher);
+
+  int count() const { return static_cast<int>(stops_.size()); }
+  /// At the end of the last step.
+  double displacement(const Marcher& marcher, int stop) const {
+    return displacement(marcher, stop, marcher.slot(0), marcher.time());
+  }
+  /// Of a position in the coordinates of the march.
+  double displacement(const Marcher& marcher, int stop, const double* position, double t) const;
+  /// u₁ and u₂ of a clearance at the end of the last step, m; of another stop its displacement and 0.
+  std::array<double, 2> components(const Marcher& marcher, int stop) const {
+    return components(marcher, stop, marcher.slot(0), marcher.time());
+  }
+  /// Of a clearance, m.
+  double radius(int stop) const { return stops_[static_cast<std::size_t>(stop)].radius; }
+
+ private:
+  // u₁ is row `first`, u₂ = (row `other` − cosine u₁)/sine.
+  struct Stop {
+    int first = 0, other = -1;
+    double cosine = 0, sine = 1, radius = 0;
+  };
+  std::array<double, 2> components(const Marcher& marcher, int stop, const double* position, double t) const;
+
+  RowReadings rows_;
+  std::vector<Stop> stops_;
+};
+
+}  // namespace ricochet
