@@ -72,15 +72,15 @@ std::vector<Field> continuation_keys() {
                    of_form(Field::Form::text, "case", std::nullopt, "Case of it, or the beginning of its id."),
                    single(real("parameter", "as the parameter", any, std::nullopt, "Value at which it was marched.")),
                    of_form(Field::Form::text, "start", std::nullopt, "Start of the orbit there.")};
-  Field from = of_form(Field::Form::starts, "from", Json::array({"rest"}),
-                       "Where the orbit is looked for: rest, state (the scene's own), free (the orbit without contact), "
-                       "or an orbit of a bifurcation study.");
+  Field from =
+      of_form(Field::Form::starts, "from", Json::array({"rest"}),
+              "Where the orbit is looked for: rest, state (the scene's own), free (the orbit without contact), "
+              "or an orbit of a bifurcation study.");
   from.spec = word_parameter("from", words_of(sources), std::nullopt, from.spec.text);
   from.nested.push_back(std::move(stored));
   ObjectForm orbit;
   orbit.fields = {
-      single(real("at", "as the parameter", any, std::nullopt, "Value at which the orbit is solved.")),
-      std::move(from),
+      single(real("at", "as the parameter", any, std::nullopt, "Value at which the orbit is solved.")), std::move(from),
       integer("periods", {0, 100000000, false, false}, 300, "Forcing periods marched before the first solve."),
       integer("period", {1, 1000, false, false}, 1, "Forcing periods after which the orbit repeats."),
       word("symmetric", words_of(halves), "auto",
@@ -88,7 +88,8 @@ std::vector<Field> continuation_keys() {
   Field orbits = of_form(Field::Form::objects, "orbits", std::nullopt, "The orbits that branches begin with.");
   orbits.nested.push_back(std::move(orbit));
 
-  Field marked = of_form(Field::Form::numbers, "parameter", std::nullopt, "Values at which the orbit is solved exactly.");
+  Field marked =
+      of_form(Field::Form::numbers, "parameter", std::nullopt, "Values at which the orbit is solved exactly.");
   marked.spec = real_parameter("parameter", "as the parameter", std::nullopt, any, marked.spec.text);
   ObjectForm mark;
   mark.fields = {std::move(marked)};
@@ -98,23 +99,23 @@ std::vector<Field> continuation_keys() {
   ObjectForm at_most;
   at_most.fields = {integer("pieces", {1, 1000000000, false, false}, 200000, "Pieces or steps of a branch."),
                     single(real("arc", "m", positive, 1.0, "Length of a branch."))};
-  return {object("parameter", std::nullopt, "What branches are followed along.", std::move(parameter)),
-          steps_per_period(),
-          std::move(orbits),
-          word("follow", words_of(follows), "auto",
-               "By pieces of a piecewise affine map, by steps of arclength, or not at all."),
-          flag("both_ways", true, "Whether branches are followed both ways from their first orbit."),
-          kinds_of_points("switch", {"symmetry", "flip"}, Json::array({"symmetry", "flip"}),
-                          "Kinds of points at which other branches begin that are followed too; null: none."),
-          integer("switch_depth", {0, 8, false, false}, 1, "Branches on branches, at most so deep."),
-          optional(real("prominence", "as the parameter", positive, std::nullopt,
-                        "Least way that the parameter goes back by at a fold; null: from the turns that steps share.")),
-          integer("multipliers", {1, 64, false, false}, 4, "Number of multipliers told, largest first."),
-          kinds_of_points("stop_at", special_kinds(), std::nullopt,
-                          "Kinds of points at which a branch ends; null: none."),
-          std::move(marks),
-          object("at_most", Json::object(), "Where a branch ends at the latest.", std::move(at_most)),
-          budget()};
+  return {
+      object("parameter", std::nullopt, "What branches are followed along.", std::move(parameter)),
+      steps_per_period(),
+      std::move(orbits),
+      word("follow", words_of(follows), "auto",
+           "By pieces of a piecewise affine map, by steps of arclength, or not at all."),
+      flag("both_ways", true, "Whether branches are followed both ways from their first orbit."),
+      kinds_of_points("switch", {"symmetry", "flip"}, Json::array({"symmetry", "flip"}),
+                      "Kinds of points at which other branches begin that are followed too; null: none."),
+      integer("switch_depth", {0, 8, false, false}, 1, "Branches on branches, at most so deep."),
+      optional(real("prominence", "as the parameter", positive, std::nullopt,
+                    "Least way that the parameter goes back by at a fold; null: from the turns that steps share.")),
+      integer("multipliers", {1, 64, false, false}, 4, "Number of multipliers told, largest first."),
+      kinds_of_points("stop_at", special_kinds(), std::nullopt, "Kinds of points at which a branch ends; null: none."),
+      std::move(marks),
+      object("at_most", Json::object(), "Where a branch ends at the latest.", std::move(at_most)),
+      budget()};
 }
 
 Json continuation_settings(const Json& resolved) {

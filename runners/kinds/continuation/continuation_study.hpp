@@ -19,11 +19,11 @@ enum class HalfMap { automatic, yes, no };
 
 /// An orbit that branches begin with.
 struct WantedOrbit {
-  std::string name;    ///< "orbit-1": what its branches are called by
-  double at = 0;       ///< value of the parameter
+  std::string name;  ///< "orbit-1": what its branches are called by
+  double at = 0;     ///< value of the parameter
   OrbitSource from = OrbitSource::rest;
-  int periods = 300;   ///< marched before the first solve
-  int period = 1;      ///< p of P^p(x) = x
+  int periods = 300;  ///< marched before the first solve
+  int period = 1;     ///< p of P^p(x) = x
   HalfMap symmetric = HalfMap::automatic;
   std::string study, case_id, start;  ///< of a stored orbit
   std::optional<double> parameter;

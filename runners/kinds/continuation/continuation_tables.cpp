@@ -11,8 +11,12 @@ namespace {
 const Column branch_column{"branch", "", "The orbit that the branch began with, and the way: + up or − down."};
 
 using Part = double (*)(const std::complex<double>&);
-double real_part(const std::complex<double>& value) { return value.real(); }
-double imaginary_part(const std::complex<double>& value) { return value.imag(); }
+double real_part(const std::complex<double>& value) {
+  return value.real();
+}
+double imaginary_part(const std::complex<double>& value) {
+  return value.imag();
+}
 
 void add_multiplier(RowType<BranchRow>& type, std::size_t k, const char* suffix, const char* text, Part part,
                     void (*put)(std::complex<double>&, double)) {
@@ -101,19 +105,18 @@ TableType<SpecialRow> special_points_type(const SweptColumns& swept) {
       .add({"low", swept.parameter.unit, "Lower end of where the point may be."}, &SpecialRow::low)
       .add({"high", swept.parameter.unit, "Upper end of where the point may be."}, &SpecialRow::high)
       .add({"arc", "m", "Length of the branch from its first orbit."}, &SpecialRow::arc)
-      .add({"tip_displacement", "m", "Displacement of the tip at the strobe, absolute."},
-           &SpecialRow::tip_displacement)
+      .add({"tip_displacement", "m", "Displacement of the tip at the strobe, absolute."}, &SpecialRow::tip_displacement)
       .add({"multiplier_re", "1", "Real part of the multiplier that crosses."}, &SpecialRow::multiplier_re)
       .add({"multiplier_im", "1", "Its imaginary part."}, &SpecialRow::multiplier_im)
       .add({"angle", "rad", "Its angle on the circle, 0 to π."}, &SpecialRow::angle)
       .add({"crossings", "1", "Crossings of the frozen multipliers that are this one point."}, &SpecialRow::crossings)
-      .add({"prominence", swept.parameter.unit, "Of a fold: the smaller way that the parameter goes back by, before "
-                                                "and after."},
+      .add({"prominence", swept.parameter.unit,
+            "Of a fold: the smaller way that the parameter goes back by, before "
+            "and after."},
            &SpecialRow::prominence)
       .add({"side", "", "Where the branch lies of a fold, below or above; the stop of a contact, lower or upper."},
            &SpecialRow::side)
-      .add({"contact_phase", "rad", "Phase ωt of the step at which contact comes or goes."},
-           &SpecialRow::contact_phase)
+      .add({"contact_phase", "rad", "Phase ωt of the step at which contact comes or goes."}, &SpecialRow::contact_phase)
       .add({"contact_x", "m", "Where the point stands that touches."}, &SpecialRow::contact_x)
       .add({"runs_before", "1", "Runs of contact before the point."}, &SpecialRow::runs_before)
       .add({"runs_after", "1", "Runs of contact after it."}, &SpecialRow::runs_after)
