@@ -144,8 +144,7 @@ bool BranchRun::advance(long long pieces) {
       const double s = (mark - before.parameter) / before.parameter_along;
       if (!(s >= 0) || s >= piece.length) continue;
       const BranchState there = follower_.at(s);
-      trace_.marks.push_back(
-          {mark, there.arc, static_cast<long long>(trace_.corners.size()) - 1, std::move(there.x)});
+      trace_.marks.push_back({mark, there.arc, static_cast<long long>(trace_.corners.size()) - 1, std::move(there.x)});
     }
     follower_.go(piece);
     if (piece.end != BranchEnd::none) {

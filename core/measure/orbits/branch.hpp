@@ -10,23 +10,23 @@ namespace ricochet {
 /// What is read of the multipliers of a corner.
 struct CornerRoots {
   Outside outside;
-  double real = 0;        ///< the real one nearest −1; 0: there is none
-  double modulus = 0;     ///< of the pair nearest the circle, angle in (0.01, π − 0.01); 0: none
-  double angle = 0;       ///< of that pair
+  double real = 0;     ///< the real one nearest −1; 0: there is none
+  double modulus = 0;  ///< of the pair nearest the circle, angle in (0.01, π − 0.01); 0: none
+  double angle = 0;    ///< of that pair
 };
 CornerRoots roots_at(const std::vector<std::complex<double>>& multipliers);
 
 /// A corner of a branch: where a piece begins.
 struct BranchCorner {
   double parameter = 0, arc = 0, tip = 0;
-  int way = 0;           ///< sign of dλ/ds on the piece
-  int runs = 0;          ///< runs of contact over the steps of the map
-  int shortest = 0;      ///< steps of the shortest of them; 0: there is none
-  CornerRoots raw;       ///< of the frozen step, all along the piece
-  CornerRoots smooth;    ///< by the half-step rule, at the corner
+  int way = 0;                                ///< sign of dλ/ds on the piece
+  int runs = 0;                               ///< runs of contact over the steps of the map
+  int shortest = 0;                           ///< steps of the shortest of them; 0: there is none
+  CornerRoots raw;                            ///< of the frozen step, all along the piece
+  CornerRoots smooth;                         ///< by the half-step rule, at the corner
   std::vector<std::complex<double>> leading;  ///< raw, largest modulus first
-  SetChange change;      ///< that made it; none of the first corner
-  double residual = 0;   ///< m
+  SetChange change;                           ///< that made it; none of the first corner
+  double residual = 0;                        ///< m
 };
 
 /// Runs of steps in which a point is closed by one stop, over the steps of a map, round its end.

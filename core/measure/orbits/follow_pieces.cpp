@@ -52,8 +52,8 @@ void PieceFollower::new_direction() {
   state_.parameter_along = found[D] / size;
 }
 
-// The orbit and its direction over the steps. Where the next piece ends is as uncertain as the orbit is: one that is not
-// solved to round-off is solved again. The new margin of what changed must grow along the branch.
+// The orbit and its direction over the steps. Where the next piece ends is as uncertain as the orbit is: one that is
+// not solved to round-off is solved again. The new margin of what changed must grow along the branch.
 void PieceFollower::sweep() {
   constexpr int most = 3;
   const Index D = map_->size();

@@ -21,10 +21,10 @@ struct BranchState {
   Eigen::VectorXd x;
   double parameter = 0;
   SetSequence sets;
-  Eigen::VectorXd along;         ///< dx/ds, s the arclength
-  double parameter_along = 0;    ///< dλ/ds
-  SetChange change;              ///< what ended the piece before; none at first
-  double arc = 0;                ///< m
+  Eigen::VectorXd along;       ///< dx/ds, s the arclength
+  double parameter_along = 0;  ///< dλ/ds
+  SetChange change;            ///< what ended the piece before; none at first
+  double arc = 0;              ///< m
   long long pieces = 0;
 };
 
@@ -47,8 +47,8 @@ struct Piece {
 class PieceFollower {
  public:
   /// An orbit (of shoot()) and the way: +1 towards larger λ.
-  PieceFollower(PeriodicMap& map, const MapClock& clock, Eigen::VectorXd x, double parameter, SetSequence sets,
-                int way, double round_off);
+  PieceFollower(PeriodicMap& map, const MapClock& clock, Eigen::VectorXd x, double parameter, SetSequence sets, int way,
+                double round_off);
   /// From what another one had. `round_off`: that of the map, m.
   PieceFollower(PeriodicMap& map, const MapClock& clock, BranchState state, double round_off);
 

@@ -60,8 +60,8 @@ MatrixXd half_step_derivative(PeriodicMap& map, const SetSequence& sets, const M
   for (std::size_t k = 1; k < sets.size(); ++k) {
     if (sets[k] == sets[k - 1]) continue;
     const SetStep &before = map.sets()[sets[k - 1]], &after = map.sets()[sets[k]];
-    const auto row = std::mismatch(before.side.begin(), before.side.end(), after.side.begin()).first -
-                     before.side.begin();
+    const auto row =
+        std::mismatch(before.side.begin(), before.side.end(), after.side.begin()).first - before.side.begin();
     const auto r = static_cast<std::size_t>(row), n = static_cast<std::size_t>(rows);
     const bool upper = before.side[r] + after.side[r] > 0;
     const double m0 = margin(map, before, static_cast<int>(row), measures.value[(k - 1) * n + r], upper, parameter);

@@ -21,7 +21,8 @@ struct Outside {
 };
 Outside outside(const std::vector<std::complex<double>>& multipliers);
 
-/// The derivative of sign · P with the half-step rule. Where a contact set changes from one step to the next, θ = m₀/(m₀
+/// The derivative of sign · P with the half-step rule. Where a contact set changes from one step to the next, θ =
+/// m₀/(m₀
 /// + m₁) is where in the step the motion would change it: m₀ and m₁ are the margins of the free measure to the bound
 /// before and after. The derivative of
 ///
@@ -30,7 +31,7 @@ Outside outside(const std::vector<std::complex<double>>& multipliers);
 ///
 /// is that of the frozen sets at θ = ½ and continuous where a change moves from step to step. Of a step that both ends
 /// of a run would blend the later one counts. `measures`: of the sweep that the sets belong to.
-Eigen::MatrixXd half_step_derivative(PeriodicMap& map, const SetSequence& sets, const MapClock& clock,
-                                     double parameter, const PeriodicMap::Measures& measures);
+Eigen::MatrixXd half_step_derivative(PeriodicMap& map, const SetSequence& sets, const MapClock& clock, double parameter,
+                                     const PeriodicMap::Measures& measures);
 
 }  // namespace ricochet

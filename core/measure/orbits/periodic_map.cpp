@@ -113,8 +113,7 @@ std::vector<int> displacements_of(const SemiDiscrete& problem) {
 
 }  // namespace
 
-StateMetric::StateMetric(const Program& program, int state_size, double parameter_metres)
-    : metres_(parameter_metres) {
+StateMetric::StateMetric(const Program& program, int state_size, double parameter_metres) : metres_(parameter_metres) {
   const SemiDiscrete& problem = *program.problem;
   const MarchModel& model = *program.model;
   const int rows = model.rows();
@@ -330,7 +329,7 @@ void PeriodicMap::sweep(const SetSequence& sets, const MapClock& clock, std::vec
     if (constant.empty())
       for (const Column& column : columns) constant.push_back(constant_drive(sets[k], column));
     const auto at = static_cast<Index>(k % static_cast<std::size_t>(clock.steps_per_period));
-    const double *x[2] = {now[0].data(), count > 1 ? now[1].data() : nullptr};
+    const double* x[2] = {now[0].data(), count > 1 ? now[1].data() : nullptr};
     double* y[2] = {next[0].data(), count > 1 ? next[1].data() : nullptr};
     count > 1 ? multiply<2>(step.state, x, y) : multiply<1>(step.state, x, y);
     for (std::size_t c = 0; c < count; ++c) {
@@ -338,8 +337,7 @@ void PeriodicMap::sweep(const SetSequence& sets, const MapClock& clock, std::vec
       if (support)
         next[c] += amplitude[c] * (sine_[static_cast<std::size_t>(at)] * step.drive.col(0) +
                                    cosine_[static_cast<std::size_t>(at)] * step.drive.col(1));
-      if (layout.loads > 0 && !columns[c].direction)
-        next[c] += step.drive.rightCols(layout.loads) * loads_.col(at);
+      if (layout.loads > 0 && !columns[c].direction) next[c] += step.drive.rightCols(layout.loads) * loads_.col(at);
     }
     if (measures) {
       const auto from = static_cast<std::ptrdiff_t>(k) * rows;

@@ -14,15 +14,14 @@ namespace ricochet {
 
 /// Lanes whose amplitude and stops are affine in λ.
 struct AffineLane {
-  LaneSpec origin;      ///< at λ = at
+  LaneSpec origin;  ///< at λ = at
   double at = 0;
-  double amplitude = 0;  ///< dA/dλ
+  double amplitude = 0;          ///< dA/dλ
   Eigen::VectorXd lower, upper;  ///< of the bounds
   LaneSpec lane(double parameter) const;
 };
 /// The affine lane through two, or nothing where phases or laws differ.
-std::optional<AffineLane> affine_lane(const LaneSpec& first, double at_first, const LaneSpec& second,
-                                      double at_second);
+std::optional<AffineLane> affine_lane(const LaneSpec& first, double at_first, const LaneSpec& second, double at_second);
 /// Whether it gives this one, to round-off.
 bool passes_through(const AffineLane& affine, const LaneSpec& lane, double at);
 
@@ -41,9 +40,9 @@ using SetSequence = std::vector<int>;
 
 /// What one march of the map shows.
 struct MapMarch {
-  Eigen::VectorXd image;  ///< sign · P
-  SetSequence sets;       ///< empty where the program has no steps by sets
-  LaneEnd end;            ///< none: the march went to its end
+  Eigen::VectorXd image;             ///< sign · P
+  SetSequence sets;                  ///< empty where the program has no steps by sets
+  LaneEnd end;                       ///< none: the march went to its end
   double tip = 0, tip_velocity = 0;  ///< at the strobe, absolute; the velocity central over two steps
   double penetration = 0;            ///< m
 };
@@ -108,7 +107,8 @@ class PeriodicMap {
   };
   /// Marches columns over given sets: their images, sign included. `measures`: v of the first column, and of the second
   /// as slope.
-  void sweep(const SetSequence& sets, const MapClock& clock, std::vector<Column>& columns, Measures* measures = nullptr);
+  void sweep(const SetSequence& sets, const MapClock& clock, std::vector<Column>& columns,
+             Measures* measures = nullptr);
   /// The bounds that a row of v is held against, at λ or per λ; infinite where there is none.
   double bound(int row, bool upper, double parameter, bool direction) const;
   /// Displacement of the tip of a state at t = 0, absolute.

@@ -41,8 +41,8 @@ struct DriveLayout {
 /// One contact set: rows of X after the step, then of v, over X and over r.
 struct SetStep {
   ContactSet closed;
-  Eigen::MatrixXd state;                ///< (D + rows) × D
-  Eigen::MatrixXd drive;                ///< (D + rows) × r
+  Eigen::MatrixXd state;  ///< (D + rows) × D
+  Eigen::MatrixXd drive;  ///< (D + rows) × r
   /// Per closed row what one newton moves the measure by, the point alone being free to move, m/N: the free measure is
   /// beyond the bound by that times the effort.
   std::vector<double> give;

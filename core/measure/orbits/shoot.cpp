@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <ricochet/measure/orbits/shoot.hpp>
+#include <utility>
 
 namespace ricochet {
 
@@ -12,6 +13,7 @@ ShotOrbit shoot(PeriodicMap& map, VectorXd x, double parameter, const MapClock& 
   ShotOrbit orbit;
   orbit.parameter = parameter;
   orbit.nearest = std::numeric_limits<double>::infinity();
+  constexpr double largest_round_off = 1e-9;  // m
   SetSequence before;
   const MatrixXd one = MatrixXd::Identity(map.size(), map.size());
   for (;; ++orbit.iterations) {
@@ -19,10 +21,12 @@ ShotOrbit shoot(PeriodicMap& map, VectorXd x, double parameter, const MapClock& 
     orbit.end = made.end;
     if (made.end) break;
     const VectorXd left = made.image - x;
-    orbit.residual = map.metric().size(left);
+    const double last = std::exchange(orbit.residual, map.metric().size(left));
     orbit.nearest = std::min(orbit.nearest, orbit.residual);
     before = std::exchange(orbit.sets, std::move(made.sets));
-    orbit.found = orbit.residual <= tolerance;
+    // With the sets of an orbit one iteration is exact: what a second one leaves is round-off.
+    const bool settled = orbit.iterations > 1 && before == orbit.sets && orbit.residual < largest_round_off;
+    orbit.found = orbit.residual <= tolerance || (settled && orbit.residual > 0.1 * last);
     if (orbit.found || orbit.iterations == most || !std::isfinite(orbit.residual)) break;
     const VectorXd correction = DenseLu(one - map.derivative(orbit.sets, clock)).solve(left);
     if (!correction.allFinite()) break;
@@ -53,8 +57,7 @@ double round_off_of_map(PeriodicMap& map, const VectorXd& x, double parameter, c
   for (double& number : near)
     if (number != 0) number = std::nextafter(number, std::numeric_limits<double>::infinity());
   const VectorXd first = map.march(x, parameter, clock).image, second = map.march(near, parameter, clock).image;
-  return std::max(map.metric().size(second - first),
-                  std::numeric_limits<double>::epsilon() * map.metric().size(x));
+  return std::max(map.metric().size(second - first), std::numeric_limits<double>::epsilon() * map.metric().size(x));
 }
 
 }  // namespace ricochet

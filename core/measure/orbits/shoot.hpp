@@ -9,7 +9,7 @@ struct ShotOrbit {
   bool found = false;
   Eigen::VectorXd x;
   double parameter = 0;
-  SetSequence sets;     ///< of the last march
+  SetSequence sets;  ///< of the last march
   int iterations = 0;
   double residual = 0;  ///< |P(x) − x|, m
   double nearest = 0;   ///< the least residual met, m
@@ -20,7 +20,8 @@ struct ShotOrbit {
 };
 
 /// P(x, λ) = x by Newton's method with the derivative at the contact sets of each march: exact once the sets are those
-/// of the orbit. Converged where the residual is at most `tolerance`; at most `most` iterations.
+/// of the orbit. Converged where the residual is at most `tolerance`, or the sets stay and it falls no more; at most
+/// `most` iterations.
 ShotOrbit shoot(PeriodicMap& map, Eigen::VectorXd x, double parameter, const MapClock& clock, double tolerance,
                 int most = 30);
 

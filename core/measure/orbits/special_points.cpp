@@ -217,8 +217,8 @@ std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSe
   const Corners& corners = trace.corners;
   if (corners.empty()) return points;
   add_folds(trace, search.prominence, points);
-  const Circle minus = search.half ? Circle{"symmetry", "BP", &Outside::below, false}
-                                   : Circle{"flip", "PD", &Outside::below, false};
+  const Circle minus =
+      search.half ? Circle{"symmetry", "BP", &Outside::below, false} : Circle{"flip", "PD", &Outside::below, false};
   add_crossings(corners, minus, points);
   add_crossings(corners, {"torus", "TR", &Outside::pairs, true}, points);
   add_contacts(corners, points);
