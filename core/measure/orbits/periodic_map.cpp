@@ -270,7 +270,7 @@ VectorXd PeriodicMap::constant_drive(int set, const Column& column) const {
   const DriveLayout& layout = sets_.layout();
   const SetStep& step = sets_[set];
   VectorXd sum = VectorXd::Zero(step.drive.rows());
-  for (const ClosedPoint& one : step.closed)
+  for (const SetPoint& one : step.closed)
     sum += bound(sets_.row_of(one), one.upper, column.parameter, column.direction) *
            step.drive.col(one.upper ? layout.upper(one.point) : layout.lower(one.point));
   return sum;

@@ -94,7 +94,7 @@ SetSteps::SetSteps(const Program& program)
   number({});
 }
 
-int SetSteps::row_of(const ClosedPoint& at) const {
+int SetSteps::row_of(const SetPoint& at) const {
   const auto stage = std::find(reading_.begin(), reading_.end(), at.stage) - reading_.begin();
   return static_cast<int>(stage) * layout_.points + at.point;
 }
@@ -135,7 +135,7 @@ SetStep SetSteps::make(const ContactSet& set) const {
         y.col(size_ + 1).array() += folded.measure_phase.across;
       }
       std::vector<Index> active;
-      for (const ClosedPoint& one : set)
+      for (const SetPoint& one : set)
         if (one.stage == static_cast<int>(k)) {
           active.push_back(one.point);
           step.side[static_cast<std::size_t>(reading * points + one.point)] = one.upper ? 1 : -1;
@@ -190,9 +190,9 @@ int SetSteps::number(const ContactSet& set) {
 
 int SetSteps::toggled(int number, int row, bool upper) {
   ContactSet set = steps_[static_cast<std::size_t>(number)].closed;
-  ClosedPoint at = place(row);
-  const auto found = std::find_if(
-      set.begin(), set.end(), [&](const ClosedPoint& one) { return one.stage == at.stage && one.point == at.point; });
+  SetPoint at = place(row);
+  const auto found = std::find_if(set.begin(), set.end(),
+                                  [&](const SetPoint& one) { return one.stage == at.stage && one.point == at.point; });
   if (found != set.end()) {
     set.erase(found);
   } else {

@@ -20,13 +20,13 @@
 namespace ricochet {
 
 /// A point that is closed in a stage of a step, and by which of its stops.
-struct ClosedPoint {
+struct SetPoint {
   int stage = 0, point = 0;
   bool upper = false;
-  auto operator<=>(const ClosedPoint&) const = default;
+  auto operator<=>(const SetPoint&) const = default;
 };
 /// The closed points of one step, ascending.
-using ContactSet = std::vector<ClosedPoint>;
+using ContactSet = std::vector<SetPoint>;
 
 /// What drives a step: A sin(ωt + ψ) and A cos(ωt + ψ) of the support, then the lower and the upper bounds of all
 /// points (0 where there is none), then Σ φ_k F(t + c_k h) of each stage where there is a load.
@@ -66,10 +66,10 @@ class SetSteps {
   int measure_rows() const { return static_cast<int>(reading_.size()) * layout_.points; }
   int points() const { return layout_.points; }
   /// The stage of a row, and its point.
-  ClosedPoint place(int row) const {
+  SetPoint place(int row) const {
     return {reading_[static_cast<std::size_t>(row / layout_.points)], row % layout_.points, false};
   }
-  int row_of(const ClosedPoint& at) const;
+  int row_of(const SetPoint& at) const;
   const DriveLayout& layout() const { return layout_; }
 
   int number(const ContactSet& set);
