@@ -57,7 +57,7 @@ struct BranchLimits {
   double least = 0, largest = 0;  ///< λ
   long long pieces = 200000;
   double arc = 1;  ///< m
-  std::vector<double> marks;
+  std::vector<double> marks = {};
   int multipliers = 4;
   std::size_t most_states = 2000;  ///< evenly spaced ones
 };
@@ -74,6 +74,7 @@ class BranchRun {
   bool advance(long long pieces);
   const BranchTrace& trace() const { return trace_; }
   const BranchState& state() const { return follower_.state(); }
+  const BranchState& entry() const { return follower_.entry(); }
   const SetSequence& first_sets() const { return first_; }
   const MapClock& clock() const { return clock_; }
 

@@ -9,25 +9,28 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-PieceFollower::PieceFollower(PeriodicMap& map, const MapClock& clock, VectorXd x, double parameter, SetSequence sets,
-                             int way, double round_off)
-    : map_(&map), clock_(clock), round_off_(round_off) {
-  state_.x = std::move(x);
-  state_.parameter = parameter;
-  state_.sets = std::move(sets);
-  state_.along = VectorXd::Zero(map.size());
-  state_.parameter_along = way;
+BranchState branch_start(VectorXd x, double parameter, SetSequence sets, int way) {
+  BranchState state;
+  state.along = VectorXd::Zero(x.size());
+  state.x = std::move(x);
+  state.parameter = parameter;
+  state.sets = std::move(sets);
+  state.parameter_along = way;
+  return state;
+}
+
+PieceFollower::PieceFollower(PeriodicMap& map, const MapClock& clock, BranchState entry, double round_off)
+    : map_(&map), clock_(clock), entry_(std::move(entry)), round_off_(round_off) {
+  enter();
+}
+
+void PieceFollower::enter() {
+  state_ = entry_;
   new_direction();
-  if ((state_.parameter_along > 0) != (way > 0)) {
+  if (state_.change.step < 0 && state_.parameter_along * entry_.parameter_along < 0) {
     state_.along = -state_.along;
     state_.parameter_along = -state_.parameter_along;
   }
-  sweep();
-}
-
-PieceFollower::PieceFollower(PeriodicMap& map, const MapClock& clock, BranchState state, double round_off)
-    : map_(&map), clock_(clock), state_(std::move(state)), round_off_(round_off) {
-  new_direction();
   sweep();
 }
 
@@ -148,14 +151,16 @@ BranchState PieceFollower::at(double s) const {
 }
 
 void PieceFollower::go(const Piece& piece) {
-  state_ = at(piece.length);
-  if (piece.end != BranchEnd::none) return;
-  state_.change = piece.change;
-  ++state_.pieces;
-  int& set = state_.sets[static_cast<std::size_t>(piece.change.step)];
+  entry_ = at(piece.length);
+  if (piece.end != BranchEnd::none) {
+    state_ = entry_;
+    return;
+  }
+  entry_.change = piece.change;
+  ++entry_.pieces;
+  int& set = entry_.sets[static_cast<std::size_t>(piece.change.step)];
   set = map_->sets().toggled(set, piece.change.row, piece.change.upper);
-  new_direction();
-  sweep();
+  enter();
 }
 
 }  // namespace ricochet

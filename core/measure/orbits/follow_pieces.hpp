@@ -40,18 +40,21 @@ struct Piece {
   std::string why;      ///< of an unresolved one
 };
 
+/// An orbit (of shoot()), and the way: +1 towards larger λ.
+BranchState branch_start(Eigen::VectorXd x, double parameter, SetSequence sets, int way);
+
 /// Follows a branch of −P½(x, λ) = x or P^p(x, λ) = x, P piecewise affine and continuous, piece by piece. On a piece
 /// the contact sets stay and the branch is a line, x + s t with [P' − 1, P_λ] t = 0. The piece ends at the least s > 0
 /// at which an effort or the distance to a bound vanishes; there the point changes its set in that step, and the new
 /// line leaves so that the new margin grows. No step size, no tolerance: any fold is passed.
 class PieceFollower {
  public:
-  /// An orbit (of shoot()) and the way: +1 towards larger λ.
-  PieceFollower(PeriodicMap& map, const MapClock& clock, Eigen::VectorXd x, double parameter, SetSequence sets, int way,
-                double round_off);
-  /// From what another one had. `round_off`: that of the map, m.
-  PieceFollower(PeriodicMap& map, const MapClock& clock, BranchState state, double round_off);
+  /// From an orbit (branch_start()), or from the entry of another follower: both then go on alike, bit for bit.
+  /// `round_off`: that of the map, m.
+  PieceFollower(PeriodicMap& map, const MapClock& clock, BranchState entry, double round_off);
 
+  /// Where the piece under way was entered, with the direction before it.
+  const BranchState& entry() const { return entry_; }
   const BranchState& state() const { return state_; }
   /// ∂(sign·P)/∂x on the piece under way.
   const Eigen::MatrixXd& derivative() const { return derivative_; }
@@ -66,12 +69,13 @@ class PieceFollower {
   BranchState at(double s) const;
 
  private:
+  void enter();
   void new_direction();
   void sweep();
 
   PeriodicMap* map_;
   MapClock clock_;
-  BranchState state_;
+  BranchState entry_, state_;
   Eigen::MatrixXd derivative_;
   Eigen::VectorXd by_parameter_;
   DenseLu bordered_;

@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <limits>
 #include <ricochet/measure/orbits/shoot.hpp>
+#include <ricochet/measure/orbits/switch_branch.hpp>
 
+#include "runners/kinds/continuation/branch_checkpoints.hpp"
 #include "runners/kinds/continuation/branch_tables.hpp"
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continued_map.hpp"
@@ -24,9 +28,11 @@ constexpr long long breath = 64;
 
 class ContinuationRun {
  public:
-  ContinuationRun(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop)
+  ContinuationRun(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
+                  const std::atomic<bool>& stop)
       : case_(study_case),
         stop_(stop),
+        checkpoints_(context.checkpoints, context.key),
         plan_(continuation_plan(study_case.settings)),
         continued_(study_case, registry, plan_) {}
 
@@ -38,9 +44,11 @@ class ContinuationRun {
     describe_march(record_, continued_.scenes(), case_);
     if (!continued_.no_pieces().empty()) return refused(continued_.no_pieces());
     map_ = continued_.map();
+    checkpoints_.find(map_->sets());
     record_.setup_seconds = thread_seconds() - begun;
     for (const WantedOrbit& orbit : plan_.orbits) follow(orbit);
     finish();
+    checkpoints_.forget();
     record_.run_seconds = thread_seconds() - begun - record_.setup_seconds;
     return std::move(record_);
   }
@@ -93,7 +101,7 @@ class ContinuationRun {
       if (way < 0 && !plan_.both_ways) break;
       FollowedBranch branch = first;
       branch.name += way > 0 ? "+" : "-";
-      run_branch(branch, shot, way);
+      run_branch(branch, shot, way, 0);
     }
   }
 
@@ -144,23 +152,136 @@ class ContinuationRun {
     rows_.push_back(std::move(row));
   }
 
-  void run_branch(FollowedBranch& branch, const ShotOrbit& shot, int way) {
+  BranchRun begin(const FollowedBranch& branch, const ShotOrbit& shot, int way) {
     BranchLimits limits{plan_.from, plan_.to, plan_.most_pieces, plan_.longest, plan_.marks, plan_.multipliers};
-    // Newton's method leaves more than the round-off of one period where multipliers are near 1.
+    // A residual that several steps of Newton's method leave.
     const double drift = std::max(100 * round_off_, 1e-15);
-    BranchRun run(*map_, branch.clock,
-                  PieceFollower(*map_, branch.clock, shot.x, shot.parameter, shot.sets, way, drift), limits);
-    while (run.advance(breath)) {
-      if (stop_) throw Interrupted{};
+    if (const KeptBranch* kept = checkpoints_.branch(branch.name))
+      return {*map_,  branch.clock, PieceFollower(*map_, branch.clock, kept->entry, drift),
+              limits, kept->trace,  kept->first};
+    return {*map_, branch.clock,
+            PieceFollower(*map_, branch.clock, branch_start(shot.x, shot.parameter, shot.sets, way), drift), limits};
+  }
+
+  PointSearch search(const FollowedBranch& branch) const {
+    return {branch.clock.half, plan_.prominence.value_or(least_fold * continued_.parameter_scale())};
+  }
+
+  // The first point of a kind at which branches stop, once nothing that follows can change it.
+  std::optional<SpecialPoint> stopping_point(const FollowedBranch& branch, const BranchTrace& trace) const {
+    if (plan_.stop_at.empty()) return std::nullopt;
+    for (SpecialPoint& point : special_points(trace, search(branch))) {
+      if (point.kind == "end" ||
+          std::find(plan_.stop_at.begin(), plan_.stop_at.end(), point.kind) == plan_.stop_at.end())
+        continue;
+      const auto last = static_cast<long long>(trace.corners.size()) - 1;
+      const bool settled = trace.ended() || (last - point.corner > 2 * group_pieces &&
+                                             trace.corners.back().arc - point.arc > 2 * group_arc);
+      return settled ? std::optional(std::move(point)) : std::nullopt;
+    }
+    return std::nullopt;
+  }
+
+  static void cut(BranchTrace& trace, const SpecialPoint& point) {
+    const auto left = static_cast<std::size_t>(std::max(point.corner, 1LL)) + 1;
+    if (left < trace.corners.size()) trace.corners.resize(left);
+    std::erase_if(trace.states, [&](const auto& one) { return one.first >= static_cast<long long>(left); });
+    std::erase_if(trace.marks, [&](const MarkedOrbit& one) { return one.corner >= static_cast<long long>(left); });
+    trace.end = fmt::format("stopped at the first {}, at {:.10g}", point.kind, point.parameter);
+  }
+
+  void run_branch(FollowedBranch& branch, const ShotOrbit& shot, int way, int depth) {
+    BranchRun run = begin(branch, shot, way);
+    std::optional<SpecialPoint> stopping;
+    bool more = !run.trace().ended();
+    for (long long round = 0; more; ++round) {
+      more = run.advance(breath);
+      checkpoints_.keep_sometimes(branch.name, run, map_->sets());
+      if (stop_) {
+        checkpoints_.keep(branch.name, run, map_->sets());
+        throw Interrupted{};
+      }
       if (thread_seconds() - begun_ > budget_of(case_)) over_budget_ = true;
       if (over_budget_) break;
+      if (round % 8 == 7) stopping = stopping_point(branch, run.trace());
+      if (stopping) break;
     }
     branch.trace = run.trace();
+    if (!stopping && !over_budget_) stopping = stopping_point(branch, branch.trace);
+    if (stopping) cut(branch.trace, *stopping);
     if (over_budget_) branch.trace.end = fmt::format("the budget of {:g} s was spent", budget_of(case_));
+    checkpoints_.keep(branch.name, run, map_->sets());
     pieces_ += run.state().pieces;
-    branch.points = special_points(
-        branch.trace, {branch.clock.half, plan_.prominence.value_or(least_fold * continued_.parameter_scale())});
-    add_branch(branch);
+    branch.points = special_points(branch.trace, search(branch));
+    const std::size_t number = followed_.size();
+    followed_.push_back(branch);
+    if (depth < plan_.depth && !over_budget_) switch_at(number, depth);
+  }
+
+  // Follows what begins at the points of a branch.
+  void switch_at(std::size_t number, int depth) {
+    for (std::size_t i = 0; i < followed_[number].points.size(); ++i) {
+      const SpecialPoint point = followed_[number].points[i];
+      if (std::find(plan_.branch_at.begin(), plan_.branch_at.end(), point.kind) == plan_.branch_at.end()) continue;
+      const std::string name = fmt::format("{}.{}", followed_[number].name, i + 1);
+      const MapClock clock = followed_[number].clock;
+      const double tolerance = round_offs * round_off_;
+      const auto switched = switch_branch(*map_, clock, point, continued_.gap(), tolerance, [&](double parameter) {
+        return shoot(*map_, near(followed_[number].trace, point.corner, parameter), parameter, clock, tolerance);
+      });
+      if (!switched) {
+        SpecialPoint& failed = followed_[number].points[i];
+        failed.note += (failed.note.empty() ? "" : "; ") + std::string("switch failed: no orbit was found near it");
+        continue;
+      }
+      if (const std::string known = branch_through(*switched); !known.empty()) {
+        followed_[number].leaves.emplace_back(point.corner, known);
+        continue;
+      }
+      for (const int way : {1, -1}) {
+        FollowedBranch branch{name + (way > 0 ? "+" : "-"), switched->clock, {}, {}, switched->orbit.iterations, {}};
+        followed_[number].leaves.emplace_back(point.corner, branch.name);
+        run_branch(branch, switched->orbit, way, depth + 1);
+        // A branch that closes has been followed both ways.
+        if (followed_.back().trace.end.starts_with("closed") || over_budget_) break;
+      }
+      if (over_budget_) return;
+    }
+  }
+
+  // The kept state of a branch nearest to a corner, by the value that is wanted.
+  static Eigen::VectorXd near(const BranchTrace& trace, long long corner, double parameter) {
+    const auto at = [&](long long number) { return trace.corners[static_cast<std::size_t>(number)]; };
+    auto best = trace.states.begin();
+    double least = std::numeric_limits<double>::infinity();
+    for (auto state = trace.states.begin(); state != trace.states.end(); ++state) {
+      if (std::abs(at(state->first).arc - at(corner).arc) > 10 * group_arc) continue;
+      if (const double far = std::abs(at(state->first).parameter - parameter); far < least) least = far, best = state;
+    }
+    return best->second;
+  }
+
+  // A branch that has been followed through this orbit or its image; "" where none was. Between corners the tip is
+  // linear in the parameter.
+  std::string branch_through(const SwitchedOrbit& switched) {
+    constexpr double same_tip = 1e-7;  // of the gap
+    const ShotOrbit& orbit = switched.orbit;
+    std::vector<double> tips = {map_->tip(orbit.x, orbit.parameter)};
+    if (continued_.no_image().empty())
+      tips.push_back(map_->tip(mirrored(*map_, orbit.x, orbit.parameter, case_.steps_per_period), orbit.parameter));
+    for (const FollowedBranch& branch : followed_) {
+      if (!(branch.clock == switched.clock)) continue;
+      const auto& corners = branch.trace.corners;
+      for (std::size_t i = 1; i < corners.size(); ++i) {
+        const BranchCorner &a = corners[i - 1], &b = corners[i];
+        if ((a.parameter - orbit.parameter) * (b.parameter - orbit.parameter) > 0 || a.parameter == b.parameter)
+          continue;
+        const double tip = a.tip + (b.tip - a.tip) * (orbit.parameter - a.parameter) / (b.parameter - a.parameter);
+        for (const double own : tips)
+          if (std::abs(tip - own) < same_tip * continued_.gap()) return branch.name;
+      }
+    }
+    return "";
   }
 
   void add_branch(const FollowedBranch& branch) {
@@ -174,6 +295,7 @@ class ContinuationRun {
   }
 
   void finish() {
+    for (const FollowedBranch& branch : followed_) add_branch(branch);
     record_.tables.push_back(branches_table(plan_.multipliers, rows_));
     record_.tables.push_back(special_points_type().with(special_));
     record_.tables.push_back(turns_type().with(turns_));
@@ -190,11 +312,13 @@ class ContinuationRun {
 
   const StudyCase& case_;
   const std::atomic<bool>& stop_;
+  BranchCheckpoints checkpoints_;
   ContinuationPlan plan_;
   ContinuedMap continued_;
   std::unique_ptr<PeriodicMap> map_;
   CaseRecord record_;
   double round_off_ = 0, begun_ = thread_seconds();
+  std::deque<FollowedBranch> followed_;
   std::vector<BranchRow> rows_;
   std::vector<SpecialRow> special_;
   std::vector<TurnRow> turns_;
@@ -230,9 +354,9 @@ CasePlan plan_continuation(const StudyCase& study_case, const Registry& registry
   return out;
 }
 
-CaseRecord run_continuation(const StudyCase& study_case, const Registry& registry, const CaseContext&,
+CaseRecord run_continuation(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                             const std::atomic<bool>& stop) {
-  return ContinuationRun(study_case, registry, stop).run();
+  return ContinuationRun(study_case, registry, context, stop).run();
 }
 
 }  // namespace ricochet

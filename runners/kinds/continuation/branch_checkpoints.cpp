@@ -1,0 +1,141 @@
+#include "runners/kinds/continuation/branch_checkpoints.hpp"
+
+#include <cereal/archives/binary.hpp>
+#include <cereal/types/complex.hpp>
+#include <cereal/types/map.hpp>
+#include <cereal/types/string.hpp>
+#include <cereal/types/vector.hpp>
+#include <sstream>
+
+#include "runners/march/seconds.hpp"
+
+// Vectors as their numbers.
+namespace cereal {
+
+template <class Archive>
+void save(Archive& archive, const Eigen::VectorXd& x) {
+  archive(std::vector<double>(x.begin(), x.end()));
+}
+
+template <class Archive>
+void load(Archive& archive, Eigen::VectorXd& x) {
+  std::vector<double> numbers;
+  archive(numbers);
+  x = Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+}  // namespace cereal
+
+namespace ricochet {
+
+// Of what a branch consists, for those who write it as bytes.
+
+template <class Archive>
+void serialize(Archive& archive, SetPoint& point) {
+  archive(point.stage, point.point, point.upper);
+}
+
+template <class Archive>
+void serialize(Archive& archive, SetChange& change) {
+  archive(change.step, change.row, change.closes, change.upper);
+}
+
+template <class Archive>
+void serialize(Archive& archive, CornerRoots& roots) {
+  archive(roots.outside.total, roots.outside.above, roots.outside.below, roots.outside.pairs, roots.real, roots.modulus,
+          roots.angle);
+}
+
+template <class Archive>
+void serialize(Archive& archive, BranchCorner& corner) {
+  archive(corner.parameter, corner.arc, corner.tip, corner.way, corner.runs, corner.shortest, corner.raw, corner.smooth,
+          corner.leading, corner.change, corner.residual);
+}
+
+template <class Archive>
+void serialize(Archive& archive, MarkedOrbit& mark) {
+  archive(mark.parameter, mark.arc, mark.corner, mark.x);
+}
+
+template <class Archive>
+void serialize(Archive& archive, BranchTrace& trace) {
+  archive(trace.corners, trace.states, trace.stride, trace.marks, trace.end);
+}
+
+template <class Archive>
+void serialize(Archive& archive, BranchState& state) {
+  archive(state.x, state.parameter, state.sets, state.along, state.parameter_along, state.change, state.arc,
+          state.pieces);
+}
+
+template <class Archive>
+void serialize(Archive& archive, KeptBranch& kept) {
+  archive(kept.trace, kept.entry, kept.first);
+}
+
+namespace {
+
+constexpr int version = 1;
+constexpr double interval = 2;  // s
+
+struct Kept {
+  std::vector<ContactSet> sets;
+  std::map<std::string, KeptBranch> branches;
+};
+
+Kept kept_branches(const std::string& bytes) {
+  std::istringstream in(bytes);
+  cereal::BinaryInputArchive archive(in);
+  int written = 0;
+  archive(written);
+  if (written != version) throw std::runtime_error("branches of another version");
+  Kept kept;
+  archive(kept.sets, kept.branches);
+  return kept;
+}
+
+}  // namespace
+
+void BranchCheckpoints::find(SetSteps& sets) {
+  auto kept = recall(store_, key_, kept_branches);
+  if (!kept) return;
+  std::vector<int> numbers;
+  for (const ContactSet& set : kept->sets) numbers.push_back(sets.number(set));
+  for (auto& [name, branch] : kept->branches)
+    for (SetSequence* sequence : {&branch.entry.sets, &branch.first})
+      for (int& number : *sequence) number = numbers.at(static_cast<std::size_t>(number));
+  branches_ = std::move(kept->branches);
+}
+
+const KeptBranch* BranchCheckpoints::branch(const std::string& name) const {
+  const auto found = branches_.find(name);
+  return found == branches_.end() ? nullptr : &found->second;
+}
+
+void BranchCheckpoints::keep_sometimes(const std::string& name, const BranchRun& run, const SetSteps& sets) {
+  if (store_.keep && seconds_since(saved_) >= interval) keep(name, run, sets);
+}
+
+void BranchCheckpoints::keep(const std::string& name, const BranchRun& run, const SetSteps& sets) {
+  branches_[name] = {run.trace(), run.entry(), run.first_sets()};
+  save(sets);
+}
+
+void BranchCheckpoints::save(const SetSteps& sets) {
+  if (!store_.keep) return;
+  Kept kept;
+  for (int number = 0; number < sets.count(); ++number) kept.sets.push_back(sets[number].closed);
+  std::ostringstream out;
+  {
+    cereal::BinaryOutputArchive archive(out);
+    archive(version, kept.sets, branches_);
+  }
+  store_.keep(key_, out.str());
+  saved_ = std::chrono::steady_clock::now();
+}
+
+void BranchCheckpoints::forget() {
+  if (store_.keep) store_.keep(key_, "");
+}
+
+}  // namespace ricochet
