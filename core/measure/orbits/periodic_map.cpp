@@ -177,13 +177,14 @@ Program checked(Program program) {
 
 }  // namespace
 
-PeriodicMap::PeriodicMap(Program program, AffineLane lanes, double parameter_metres)
+PeriodicMap::PeriodicMap(Program program, AffineLane lanes, double parameter_metres, AffineLoad load)
     : marcher_(checked(std::move(program))),
       lanes_(std::move(lanes)),
       sets_(marcher_.program()),
       vector_(marcher_.program(), sets_.past_efforts()),
       metric_(marcher_.program(), sets_.state_size(), parameter_metres),
-      template_(marcher_.lane_state(0)) {
+      template_(marcher_.lane_state(0)),
+      affine_load_(std::move(load)) {
   const MarchModel& model = *this->program().model;
   tip_ = Eigen::RowVectorXd::Zero(model.rows());
   for (int i = 0; i < model.rows(); ++i)
@@ -195,29 +196,40 @@ double PeriodicMap::tip(const VectorXd& x, double parameter) const {
   return tip_.dot(x.head(tip_.size())) + A * std::sin(lanes_.origin.phase);
 }
 
+Marcher& PeriodicMap::marcher_at(double parameter) {
+  if (!affine_load_.program || parameter == lanes_.at) return marcher_;
+  if (!other_ || other_at_ != parameter) {
+    other_.reset();
+    other_.emplace(affine_load_.program(parameter));
+    other_at_ = parameter;
+  }
+  return *other_;
+}
+
 MapMarch PeriodicMap::march(const VectorXd& x, double parameter, const MapClock& clock, bool read) {
   MapMarch made;
+  Marcher& marcher = marcher_at(parameter);
   LaneState state = template_;
   vector_.write(x, state);
-  marcher_.set_clock(0);
-  marcher_.set_lane(0, lanes_.lane(parameter), state);
+  marcher.set_clock(0);
+  marcher.set_lane(0, lanes_.lane(parameter), state);
   Recorder recorder(sets_, read);
   const long long steps = clock.steps();
   recorder.found.reserve(static_cast<std::size_t>(steps));
   double first = 0, last = 0;
   if (read) {
-    made.tip = marcher_.tip(0);
-    marcher_.march(1, &recorder);
-    first = marcher_.tip(0);
-    marcher_.march(steps - 2, &recorder);
-    last = marcher_.tip(0);
-    marcher_.march(1, &recorder);
+    made.tip = marcher.tip(0);
+    marcher.march(1, &recorder);
+    first = marcher.tip(0);
+    marcher.march(steps - 2, &recorder);
+    last = marcher.tip(0);
+    marcher.march(1, &recorder);
     made.tip_velocity = (first - clock.sign() * last) / (2 * program().h);
   } else {
-    marcher_.march(steps, &recorder);
+    marcher.march(steps, &recorder);
   }
-  made.end = marcher_.status(0).end;
-  made.image = clock.sign() * vector_.read(marcher_.lane_state(0));
+  made.end = marcher.status(0).end;
+  made.image = clock.sign() * vector_.read(marcher.lane_state(0));
   made.sets = std::move(recorder.found);
   made.penetration = recorder.deepest;
   return made;
@@ -247,13 +259,20 @@ void PeriodicMap::set_period(int steps_per_period) {
     cosine_.push_back(std::cos(angle) * std::cos(phase) - std::sin(angle) * std::sin(phase));
   }
   if (!own.load) return;
-  const int rows = own.model->rows();
-  loads_.resize(sets_.layout().loads, steps_per_period);
-  LoadWindow window(own);
-  for (int k = 0; k < steps_per_period; ++k)
-    for (std::size_t stage = 0; stage < own.stages.size(); ++stage)
-      std::copy_n(window.sum(own.plan.stages[stage].load, k * own.h), rows,
-                  loads_.col(k).data() + static_cast<Index>(stage) * rows);
+  const auto table = [&](const Program& of) {
+    const int rows = of.model->rows();
+    MatrixXd loads(sets_.layout().loads, steps_per_period);
+    LoadWindow window(of);
+    for (int k = 0; k < steps_per_period; ++k)
+      for (std::size_t stage = 0; stage < of.stages.size(); ++stage)
+        std::copy_n(window.sum(of.plan.stages[stage].load, k * of.h), rows,
+                    loads.col(k).data() + static_cast<Index>(stage) * rows);
+    return loads;
+  };
+  loads_ = table(own);
+  load_slopes_ = MatrixXd::Zero(loads_.rows(), loads_.cols());
+  if (affine_load_.program)
+    load_slopes_ = (table(affine_load_.program(affine_load_.other)) - loads_) / (affine_load_.other - lanes_.at);
 }
 
 double PeriodicMap::bound(int row, bool upper, double parameter, bool direction) const {

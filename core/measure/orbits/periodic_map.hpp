@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <ricochet/engine/marcher.hpp>
@@ -76,12 +77,21 @@ class StateMetric {
   double metres_;
 };
 
+/// Loads that are affine in λ: what makes a program at a value, and another value than that of the lanes' origin.
+/// Without a program loads are the same at every value.
+struct AffineLoad {
+  std::function<Program(double parameter)> program;
+  double other = 0;
+};
+
 /// The map by marching, and what its contact sets make of it: image and derivatives are affine in (x, λ) as long as the
 /// sets stay. One lane; not to be shared between threads.
 class PeriodicMap {
  public:
   /// `program` has one lane and no tangents. Throws Refusal where SetSteps refuses it.
-  PeriodicMap(Program program, AffineLane lanes, double parameter_metres);
+  PeriodicMap(Program program, AffineLane lanes, double parameter_metres, AffineLoad load = {});
+
+  PeriodicMap(const PeriodicMap&) = delete;
 
   int size() const { return sets_.state_size(); }
   const StateMetric& metric() const { return metric_; }
@@ -117,6 +127,7 @@ class PeriodicMap {
  private:
   class Recorder;
   Eigen::VectorXd constant_drive(int set, const Column& column) const;
+  Marcher& marcher_at(double parameter);
 
   Marcher marcher_;
   AffineLane lanes_;
@@ -125,8 +136,11 @@ class PeriodicMap {
   StateMetric metric_;
   LaneState template_;
   Eigen::RowVectorXd tip_;
-  std::vector<double> sine_, cosine_;  // of ωt + ψ at the steps of a period
-  Eigen::MatrixXd loads_;              // stages n × steps of a period; empty without load
+  std::vector<double> sine_, cosine_;    // of ωt + ψ at the steps of a period
+  Eigen::MatrixXd loads_, load_slopes_;  // stages n × steps of a period, at the origin and per λ; empty without load
+  AffineLoad affine_load_;
+  std::optional<Marcher> other_;  // with the loads of another value
+  double other_at_ = 0;
   int clocked_ = 0;
   void set_period(int steps_per_period);
 };

@@ -131,12 +131,35 @@ void ContinuedMap::look_at_ends() {
     values.push_back(value);
   }
   const ForcedScene &first = scenes_[known[1]], &last = scenes_[known[2]];
-  bool affine = true;
-  for (const int scene : known) affine = affine && scenes_[scene].group == scenes_[reference_].group;
+  const bool one_group = first.group == last.group && scenes_[known[3]].group == first.group;
+  bool affine = one_group || affine_loads(known[1], known[3], known[2]);
   if (affine) lanes_ = affine_lane(first.lane, values[1], last.lane, values[2]);
   affine = affine && lanes_ && passes_through(*lanes_, scenes_[known[3]].lane, values[3]);
   if (!affine && no_pieces_.empty()) no_pieces_ = plan_.pointer + " does not enter linearly";
   if (!affine) lanes_.reset();
+  origin_ = known[1];
+  moves_loads_ = !one_group;
+}
+
+// Whether three scenes have the same steps, and loads on a line: at the ends of the range, and half way between.
+bool ContinuedMap::affine_loads(int low, int middle, int high) {
+  if (!no_pieces_.empty()) return false;
+  const Program first = program(low), second = program(high), between = program(middle);
+  if (!first.load || !second.load || !between.load || first.h != second.h) return false;
+  const SetSteps one(first), other(second);
+  if (one.state_size() != other.state_size() || one[0].state != other[0].state || one[0].drive != other[0].drive)
+    return false;
+  const auto dofs = static_cast<Eigen::Index>(first.problem->dofs());
+  Eigen::VectorXd a = Eigen::VectorXd::Zero(dofs), b = a, c = a;
+  constexpr int looks = 16;
+  for (int k = 0; k < looks; ++k) {
+    const double t = (k + 0.37) * first.h * case_.steps_per_period / looks;
+    first.problem->load->assemble(t, a.data());
+    between.problem->load->assemble(t, b.data());
+    second.problem->load->assemble(t, c.data());
+    if ((0.5 * (a + c) - b).cwiseAbs().maxCoeff() > round_off * (a.cwiseAbs() + c.cwiseAbs()).maxCoeff()) return false;
+  }
+  return true;
 }
 
 void ContinuedMap::look_at_image(int scene) {
@@ -161,8 +184,18 @@ void ContinuedMap::look_at_image(int scene) {
     no_image_ = "the scene is not its own image: " + load;
 }
 
-std::unique_ptr<PeriodicMap> ContinuedMap::map() const {
-  return std::make_unique<PeriodicMap>(program(reference_), *lanes_, metres_);
+std::unique_ptr<PeriodicMap> ContinuedMap::map() {
+  AffineLoad load;
+  if (moves_loads_) {
+    load.other = plan_.to;
+    load.program = [this](double value) {
+      std::string reason;
+      const int scene = scene_at(value, false, reason);
+      if (scene < 0) throw Refusal{reason};
+      return program(scene);
+    };
+  }
+  return std::make_unique<PeriodicMap>(program(origin_), *lanes_, metres_, std::move(load));
 }
 
 }  // namespace ricochet

@@ -32,19 +32,21 @@ class ContinuedMap {
   double parameter_metres() const { return metres_; }
   /// Unit of prominences: the gap for a length, else the value.
   double parameter_scale() const { return gap_ / metres_; }
-  /// The map; only where no_pieces() is "".
-  std::unique_ptr<PeriodicMap> map() const;
+  /// The map, which this outlives; only where no_pieces() is "".
+  std::unique_ptr<PeriodicMap> map();
 
  private:
   void look_at_class(int scene);
   void look_at_ends();
+  bool affine_loads(int low, int middle, int high);
   void look_at_image(int scene);
 
   const StudyCase& case_;
   const ContinuationPlan& plan_;
   ForcedScenes scenes_;
   std::string refusal_, no_pieces_, no_image_;
-  int reference_ = -1;
+  int reference_ = -1, origin_ = -1;  // scenes: that of an orbit, and the one that lanes begin with
+  bool moves_loads_ = false;
   std::optional<AffineLane> lanes_;
   double gap_ = 1, metres_ = 1;
 };

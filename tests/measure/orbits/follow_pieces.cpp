@@ -13,17 +13,14 @@ namespace {
 constexpr double round_off = 2e-13;  // m, of a period of some thousand steps
 
 struct Started {
+  Started(int steps, bool half, double amplitude) : map(tube_map(steps)), clock{steps, 1, half} {
+    orbit = shoot(map, settled_tube(map, amplitude, steps), amplitude, clock, 1e-12);
+    REQUIRE(orbit.found);
+  }
   PeriodicMap map;
   MapClock clock;
   ShotOrbit orbit;
 };
-
-Started start(int steps, bool half, double amplitude) {
-  Started made{tube_map(steps), {steps, 1, half}, {}};
-  made.orbit = shoot(made.map, settled_tube(made.map, amplitude, steps), amplitude, made.clock, 1e-12);
-  REQUIRE(made.orbit.found);
-  return made;
-}
 
 BranchRun run(Started& from, int way, double least, double largest) {
   BranchRun branch(from.map, from.clock,
@@ -65,7 +62,7 @@ TEST_CASE("a branch without contact meets its stop where the linear response doe
 }
 
 TEST_CASE("the branch of the shaken tube folds and touches where a prototype does") {
-  Started from = start(2000, true, 0.08);
+  Started from(2000, true, 0.08);
   SECTION("upwards") {
     const BranchRun branch = run(from, 1, 0.06, 0.1005);
     const auto points = special_points(branch.trace(), {true, 5e-4});
@@ -84,7 +81,7 @@ TEST_CASE("the branch of the shaken tube folds and touches where a prototype doe
 }
 
 TEST_CASE("every corner of a branch is an orbit of the march") {
-  Started from = start(500, true, 0.08);
+  Started from(500, true, 0.08);
   const BranchRun branch = run(from, 1, 0.06, 0.09);
   REQUIRE(branch.trace().corners.size() > 20);
   for (const auto& [number, x] : branch.trace().states) {
@@ -96,7 +93,7 @@ TEST_CASE("every corner of a branch is an orbit of the march") {
 }
 
 TEST_CASE("a branch followed back ends where it began") {
-  Started from = start(500, true, 0.08);
+  Started from(500, true, 0.08);
   BranchRun there = run(from, 1, 0.06, 0.09);
   const Eigen::VectorXd end = there.state().x;
   const MapMarch made = from.map.march(end, there.state().parameter, from.clock);
@@ -147,7 +144,7 @@ TEST_CASE("runs of contact are counted round the end of a map") {
 }
 
 TEST_CASE("the half-step rule is continuous where a change moves from step to step") {
-  Started from = start(500, true, 0.08);
+  Started from(500, true, 0.08);
   const BranchRun branch = run(from, 1, 0.06, 0.0808);
   const auto& corners = branch.trace().corners;
   REQUIRE(corners.size() > 3);

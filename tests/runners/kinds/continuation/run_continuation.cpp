@@ -1,0 +1,99 @@
+// Branches of a case, their rows, and what becomes of a case that is stopped.
+#include <map>
+#include <ricochet/measure/orbits/branch.hpp>
+
+#include "runners/kinds/bifurcation/run_bifurcation.hpp"
+#include "runners/kinds/sweep/orbit_rows.hpp"
+#include "tests/runners/kinds/continuation/tube_study.hpp"
+#include "tests/runners/kinds/sweep/sweep_case.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+
+TEST_CASE("an orbit at a given value is that of a bifurcation study") {
+  Json study = tube_continuation();
+  study["follow"] = "none";
+  const CaseRecord record = continued(study);
+  REQUIRE(record.status == "done");
+  const auto rows = rows_of(record);
+  REQUIRE(rows.size() == 1);
+  CHECK(*rows[0].residual < 1e-12);
+  Json sweep = beam_sweep({0.085});
+  sweep["scene"] = study["scene"];
+  sweep["mesh"] = study["mesh"];
+  sweep["transient"] = {{"periods", 400}, {"at_most", 400}};
+  const OpenedSweep opened = opened_sweep(sweep);
+  const std::atomic<bool> stop{false};
+  const CaseRecord marched = run_bifurcation(opened.first(), *opened.registry, {}, stop);
+  const auto values = orbits_of(marched);
+  REQUIRE(values.size() == 1);
+  if (values[0].regime != "periodic" || values[0].period != 1) return;
+  const auto strobes = orbit_numbers(marched, points_type(), &SectionColumns::displacement, 0.085, "rest");
+  REQUIRE_FALSE(strobes.empty());
+  CHECK(std::abs(strobes.back() - *rows[0].tip_displacement) < 1e-9);
+}
+
+TEST_CASE("every row of a branch is an orbit, and rows go on from each other") {
+  const CaseRecord record = continued(tube_continuation());
+  REQUIRE(record.status == "done");
+  const auto rows = rows_of(record);
+  REQUIRE(rows.size() > 10);
+  std::map<std::string, double> arcs;
+  for (const BranchRow& row : rows) {
+    INFO(row.branch << " " << row.row);
+    CHECK(*row.residual < 1e-11);
+    CHECK(*row.parameter >= 0.07 - 1e-12);
+    CHECK(*row.parameter <= 0.09 + 1e-12);
+    if (const auto last = arcs.find(row.branch); last != arcs.end()) CHECK(*row.arc >= last->second);
+    arcs[row.branch] = *row.arc;
+  }
+  CHECK(arcs.size() == 2);
+  const auto points = points_of(record);
+  CHECK(std::count_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "end"; }) == 2);
+}
+
+TEST_CASE("marks are solved where they are asked for, and a branch stops where the study says") {
+  Json study = tube_continuation();
+  study["mark"] = {{"parameter", {0.0865}}};
+  study["stop_at"] = "contact";
+  study["both_ways"] = false;
+  const auto points = points_of(continued(study));
+  REQUIRE_FALSE(points.empty());
+  CHECK(points.back().kind == "end");
+  const auto mark =
+      std::find_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "mark"; });
+  if (mark != points.end()) CHECK(*mark->parameter == 0.0865);
+  const auto contacts =
+      std::count_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "contact"; });
+  CHECK(contacts <= 1);
+}
+
+TEST_CASE("a branch that was stopped and goes on has the rows of one that was not") {
+  const Json study = tube_continuation();
+  const CaseRecord whole = continued(study);
+  const OpenedContinuation opened = opened_continuation(study);
+  std::string kept;
+  CaseContext context;
+  context.key = "tube";
+  context.checkpoints.find = [&](const std::string&) { return kept; };
+  context.checkpoints.keep = [&](const std::string&, const std::string& content) { kept = content; };
+  // Stopped at once: one batch of pieces is made, and kept.
+  const std::atomic<bool> stop{true};
+  for (int times = 0; times < 3; ++times) {
+    CHECK_THROWS_AS(run_continuation(opened.study.cases.front(), *opened.registry, context, stop), Interrupted);
+    CHECK_FALSE(kept.empty());
+  }
+  const std::atomic<bool> go_on{false};
+  const CaseRecord resumed = run_continuation(opened.study.cases.front(), *opened.registry, context, go_on);
+  CHECK(kept.empty());
+  REQUIRE(resumed.tables.size() == whole.tables.size());
+  for (std::size_t t = 0; t < whole.tables.size(); ++t) {
+    REQUIRE(resumed.tables[t].rows.size() == whole.tables[t].rows.size());
+    for (std::size_t r = 0; r < whole.tables[t].rows.size(); ++r) {
+      bool same = true;
+      for (std::size_t c = 0; c < whole.tables[t].rows[r].size(); ++c)
+        same = same && resumed.tables[t].rows[r][c].text() == whole.tables[t].rows[r][c].text();
+      CHECK(same);
+    }
+  }
+}
