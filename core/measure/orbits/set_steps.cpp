@@ -40,6 +40,9 @@ std::optional<std::string> SetSteps::refusal(const Program& program) {
   if (!program.contact) return std::nullopt;
   if (program.law->memory_per_point() > 0) return "its law keeps a memory";
   if (program.law->reads()) {
+    // As Marcher prepares it: a law knows its parameters then.
+    program.law->prepare(program.problem->points(),
+                         std::vector<Parameters>(static_cast<std::size_t>(program.width), program.lanes.front().law));
     const auto slopes = program.law->linear_slopes(0);
     if (!slopes) return "its law is not linear";
     if (slopes->viscosity != 0 || slopes->before != 0) return "its law has a damper, or a mean over the step";

@@ -94,6 +94,6 @@ TEST_CASE("stops that are closed by velocities, and laws that are not linear, ha
   methods.time = {"moreau-jean"};
   CHECK(refused(methods) == "its stops are closed by velocities");
   methods.time = {"newmark-dumont-paoli"};
-  methods.contact = {"hertz"};
+  methods.contact = {"hertz", {{"stiffness", 1e7}}};
   CHECK(refused(methods) == "its law is not linear");
 }
