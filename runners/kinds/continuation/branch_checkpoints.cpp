@@ -75,8 +75,8 @@ void serialize(Archive& archive, KeptBranch& kept) {
 
 namespace {
 
-constexpr int version = 1;
-constexpr double interval = 2;  // s
+constexpr int branches_version = 1;
+constexpr double keep_interval = 2;  // s
 
 struct Kept {
   std::vector<ContactSet> sets;
@@ -88,7 +88,7 @@ Kept kept_branches(const std::string& bytes) {
   cereal::BinaryInputArchive archive(in);
   int written = 0;
   archive(written);
-  if (written != version) throw std::runtime_error("branches of another version");
+  if (written != branches_version) throw std::runtime_error("branches of another version");
   Kept kept;
   archive(kept.sets, kept.branches);
   return kept;
@@ -113,7 +113,7 @@ const KeptBranch* BranchCheckpoints::branch(const std::string& name) const {
 }
 
 void BranchCheckpoints::keep_sometimes(const std::string& name, const BranchRun& run, const SetSteps& sets) {
-  if (store_.keep && seconds_since(saved_) >= interval) keep(name, run, sets);
+  if (store_.keep && seconds_since(saved_) >= keep_interval) keep(name, run, sets);
 }
 
 void BranchCheckpoints::keep(const std::string& name, const BranchRun& run, const SetSteps& sets) {
@@ -128,7 +128,7 @@ void BranchCheckpoints::save(const SetSteps& sets) {
   std::ostringstream out;
   {
     cereal::BinaryOutputArchive archive(out);
-    archive(version, kept.sets, branches_);
+    archive(branches_version, kept.sets, branches_);
   }
   store_.keep(key_, out.str());
   saved_ = std::chrono::steady_clock::now();
