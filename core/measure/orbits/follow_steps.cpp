@@ -123,12 +123,24 @@ bool StepFollower::advance(long long steps) {
     int iterations = 0;
     for (;; step_ *= 0.5) {
       if (step_ < smallest_step * range) {
-        trace_.end = fmt::format("the branch was left at {:.10g}: step below {:.3g} m; {}", now_.parameter,
-                                 smallest_step * range, failure_);
+        const bool graze = rebounds_ > 0 && last_.runs != trace_.corners.back().runs;
+        if (graze)
+          trace_.end = fmt::format(
+              "the derivative is infinite at a graze with e > 0; ended at a speed of {:.3g} m/s, at "
+              "{:.10g}",
+              last_.slowest, now_.parameter);
+        else
+          trace_.end = fmt::format("the branch was left at {:.10g}: step below {:.3g} m; {}", now_.parameter,
+                                   smallest_step * range, failure_);
         return false;
       }
       next = {now_.x + step_ * along_.x, now_.parameter + step_ * along_.parameter};
-      if (!correct(next, along_, iterations)) continue;
+      try {
+        if (!correct(next, along_, iterations)) continue;
+      } catch (const Refusal& refusal) {  // of a value of the parameter
+        failure_ = refusal.sentence;
+        continue;
+      }
       const VectorXd by = next.x - now_.x;
       const double far = metric.size(by, next.parameter - now_.parameter);
       const double metres = metric.parameter_metres();

@@ -96,6 +96,7 @@ class PeriodicMap {
   int size() const { return sets_.state_size(); }
   const StateMetric& metric() const { return metric_; }
   SetSteps& sets() { return sets_; }
+  const SetSteps& sets() const { return sets_; }
   const Program& program() const { return marcher_.program(); }
   const AffineLane& lanes() const { return lanes_; }
   const StateVector& vector() const { return vector_; }

@@ -84,14 +84,14 @@ double distance(const CornerRoots& roots, bool pair) {
   return roots.real == 0 ? NAN : -1 - roots.real;
 }
 
-std::vector<Crossing> crossings_of(const Corners& corners, const Circle& circle) {
+std::vector<Crossing> crossings_of(const Corners& corners, const Circle& circle, bool by_steps) {
   std::vector<Crossing> all;
   for (std::size_t i = 1; i < corners.size(); ++i) {
     const BranchCorner &was = corners[i - 1], &now = corners[i];
     if (was.runs != now.runs) continue;  // multipliers jump with a contact that comes or goes
     // Pairs that meet on the axis outside the circle cross nothing.
     const int counted = now.raw.outside.*circle.count - was.raw.outside.*circle.count;
-    if (counted * (now.raw.outside.total - was.raw.outside.total) > 0)
+    if (!by_steps && counted * (now.raw.outside.total - was.raw.outside.total) > 0)
       all.push_back({i, true, counted > 0 ? 1 : -1, now.parameter, now.arc, now.tip, {}});
     if (was.smooth.outside.*circle.count == now.smooth.outside.*circle.count) continue;
     const double before = distance(was.smooth, circle.pair), after = distance(now.smooth, circle.pair);
@@ -156,25 +156,47 @@ void add_group(const Corners& corners, const Circle& circle, const std::vector<C
   points.push_back(std::move(point));
 }
 
-void add_crossings(const Corners& corners, const Circle& circle, std::vector<SpecialPoint>& points) {
+void add_crossings(const Corners& corners, const Circle& circle, bool by_steps, std::vector<SpecialPoint>& points) {
   std::vector<Crossing> group;
   const auto flush = [&] {
     if (!group.empty()) add_group(corners, circle, group, points);
     group.clear();
   };
-  for (const Crossing& one : crossings_of(corners, circle)) {
+  for (const Crossing& one : crossings_of(corners, circle, by_steps)) {
     if (!group.empty()) {
       const std::size_t last = group.back().corner;
       const bool near = static_cast<long long>(one.corner - last) < group_pieces ||
                         corners[one.corner].arc - corners[last].arc < group_arc;
-      if (!near) flush();
+      if (!near || by_steps) flush();
     }
     group.push_back(one);
   }
   flush();
 }
 
-void add_folds(const BranchTrace& trace, double prominence, std::vector<SpecialPoint>& points) {
+// λ at the vertex of the parabola through a corner at which it turns and its neighbours.
+double vertex(const Corners& corners, std::size_t i) {
+  const BranchCorner &a = corners[i - 1], &b = corners[i], &c = corners[i + 1];
+  const double before = b.arc - a.arc, after = c.arc - b.arc;
+  if (!(before > 0) || !(after > 0)) return b.parameter;
+  const double left = (b.parameter - a.parameter) / before, right = (c.parameter - b.parameter) / after;
+  const double curve = (right - left) / (before + after), slope = (left * after + right * before) / (before + after);
+  return curve == 0 ? b.parameter : b.parameter - slope * slope / (4 * curve);
+}
+
+// Widens an interval by what is not known of the orbits along the branch.
+void place(const Corners& corners, double placed, SpecialPoint& point) {
+  const auto i = static_cast<std::size_t>(std::max(1LL, point.corner));
+  if (i >= corners.size()) return;
+  const double far = corners[i].arc - corners[i - 1].arc;
+  if (!(far > 0)) return;
+  const double by = placed * std::abs(corners[i].parameter - corners[i - 1].parameter) / far;
+  point.low -= by;
+  point.high += by;
+  point.note += (point.note.empty() ? "" : "; ") + std::string("stops give back speed: the interval is not exact");
+}
+
+void add_folds(const BranchTrace& trace, double prominence, bool by_steps, std::vector<SpecialPoint>& points) {
   const Corners& corners = trace.corners;
   for (const Turn& turn : turns_of(trace)) {
     if (turn.prominence < prominence) continue;
@@ -182,6 +204,7 @@ void add_folds(const BranchTrace& trace, double prominence, std::vector<SpecialP
     SpecialPoint point = at_corner(corners, i, "fold", "LP");
     const double half = 0.5 * std::max(std::abs(corners[i].parameter - corners[i - 1].parameter),
                                        std::abs(corners[i + 1].parameter - corners[i].parameter));
+    if (by_steps) point.parameter = vertex(corners, i);
     point.low = point.parameter - half;
     point.high = point.parameter + half;
     point.multiplier = 1;
@@ -192,10 +215,18 @@ void add_folds(const BranchTrace& trace, double prominence, std::vector<SpecialP
 }
 
 // A run that appears with its first step, or vanishes with its last one.
-void add_contacts(const Corners& corners, std::vector<SpecialPoint>& points) {
+void add_contacts(const Corners& corners, bool by_steps, std::vector<SpecialPoint>& points) {
   for (std::size_t i = 1; i < corners.size(); ++i) {
     const BranchCorner &was = corners[i - 1], &now = corners[i];
-    if (was.runs == now.runs || now.change.step < 0) continue;
+    if (was.runs == now.runs || (now.change.step < 0 && !by_steps)) continue;
+    if (by_steps) {
+      SpecialPoint point = at_corner(corners, i, "contact", "GR");
+      point.low = point.high = was.parameter;
+      widen(point, now.parameter);
+      if (std::min(was.runs, now.runs) == 0) point.note = "first contact";
+      points.push_back(std::move(point));
+      continue;
+    }
     const bool appears = now.change.closes && now.runs > was.runs, vanishes = !now.change.closes && now.runs < was.runs;
     if (!appears && !vanishes) continue;  // a run is cut in two, or two become one
     SpecialPoint point = at_corner(corners, i, "contact", "GR");
@@ -216,12 +247,14 @@ std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSe
   std::vector<SpecialPoint> points;
   const Corners& corners = trace.corners;
   if (corners.empty()) return points;
-  add_folds(trace, search.prominence, points);
+  add_folds(trace, search.prominence, search.by_steps, points);
   const Circle minus =
       search.half ? Circle{"symmetry", "BP", &Outside::below, false} : Circle{"flip", "PD", &Outside::below, false};
-  add_crossings(corners, minus, points);
-  add_crossings(corners, {"torus", "TR", &Outside::pairs, true}, points);
-  add_contacts(corners, points);
+  add_crossings(corners, minus, search.by_steps, points);
+  add_crossings(corners, {"torus", "TR", &Outside::pairs, true}, search.by_steps, points);
+  add_contacts(corners, search.by_steps, points);
+  if (search.placed > 0)
+    for (SpecialPoint& point : points) place(corners, search.placed, point);
   for (const MarkedOrbit& mark : trace.marks) {
     SpecialPoint point = at_corner(corners, static_cast<std::size_t>(mark.corner), "mark", "UZ");
     point.parameter = point.low = point.high = mark.parameter;

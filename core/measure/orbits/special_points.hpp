@@ -25,6 +25,8 @@ struct SpecialPoint {
 struct PointSearch {
   bool half = false;
   double prominence = 0;  ///< least one of a fold, in units of λ
+  bool by_steps = false;  ///< corners are orbits along a curve: what is between two of them is interpolated
+  double placed = 0;      ///< m: arclength to which orbits are known, where stops give back speed
 };
 
 /// Raw crossings this near along a branch are one group, by pieces or by arc (m).

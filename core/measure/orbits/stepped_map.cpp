@@ -59,10 +59,12 @@ class ContactWatch final : public StepObserver {
           return places_[static_cast<std::size_t>(at)][static_cast<Index>(point)];
         };
         const double before = place(k - 1) - place(k - 2), after = place(end + 1) - place(end);
-        if (before * after < 0) out.rebounds += std::abs(after - before);  // h |v⁺ − v⁻|
+        if (!(before * after < 0)) continue;
+        out.rebounds += std::abs(after - before);  // h |v⁺ − v⁻|
+        const double speed = std::abs(before) / h;
+        out.slowest = out.slowest == 0 ? speed : std::min(out.slowest, speed);
       }
     out.penetration = deepest;
-    (void)h;
   }
   double deepest = 0;
 

@@ -35,6 +35,7 @@ class SteppedMap {
     LaneEnd end;
     int runs = 0, shortest = 0;
     double rebounds = 0;  ///< u = h Σ|v⁺ − v⁻| over contacts that rebound, m
+    double slowest = 0;   ///< least approach among these, m/s; 0: none rebounds
     double tip = 0, tip_velocity = 0, penetration = 0;
     bool untold = false;  ///< an impact had no jump
   };
@@ -78,7 +79,7 @@ class StepFollower {
   /// Makes up to so many steps; false where the branch has ended.
   bool advance(long long steps);
   const BranchTrace& trace() const { return trace_; }
-  /// Largest residual of the orbits found, and of rebounds, m.
+  /// The largest u of its orbits, m; 0 where no stop gives back speed.
   double rebounds() const { return rebounds_; }
 
  private:

@@ -24,24 +24,41 @@ BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::Vector
   return row;
 }
 
-std::vector<BranchRow> rows_of(PeriodicMap& map, const FollowedBranch& branch, int multipliers) {
-  const auto& corners = branch.trace.corners;
+SpecialRow missing_orbit(const std::string& name, double at, std::string why) {
+  SpecialRow row;
+  row.branch = name;
+  row.point = 1;
+  row.kind = "end";
+  row.label = "EP";
+  row.parameter = at;
+  row.note = std::move(why);
+  return row;
+}
+
+std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipliers) {
   std::map<long long, int> numbers;  // of special points, by corner
   for (std::size_t i = 0; i < branch.points.size(); ++i)
     numbers.emplace(branch.points[i].corner, static_cast<int>(i) + 1);
   std::vector<BranchRow> rows;
   long long last = 0;
   for (const auto& [number, x] : branch.trace.states) {
-    const BranchCorner& corner = corners[static_cast<std::size_t>(number)];
-    BranchRow row = orbit_row(map, branch.clock, x, corner.parameter);
+    const BranchCorner& corner = branch.trace.corners[static_cast<std::size_t>(number)];
+    BranchRow row;
     row.branch = branch.name;
     row.row = static_cast<long long>(rows.size());
     row.arc = corner.arc;
+    row.parameter = corner.parameter;
+    row.tip_displacement = corner.tip;
+    row.period = branch.clock.period;
+    row.symmetric = branch.clock.half;
     row.stable = corner.raw.outside.total == 0;
     row.unstable = corner.raw.outside.total;
     row.multipliers.assign(corner.leading.begin(), corner.leading.end());
     row.multipliers.resize(static_cast<std::size_t>(multipliers));
+    row.contact_runs = corner.runs * (branch.clock.half ? 2 : 1);
+    row.impacts_per_period = static_cast<double>(*row.contact_runs) / branch.clock.period;
     row.iterations = number == 0 ? branch.iterations : 0;
+    row.residual = corner.residual;
     row.pieces = number - last;
     row.direction = corner.way;
     if (const auto found = numbers.find(number); found != numbers.end()) row.point = found->second;
@@ -51,9 +68,31 @@ std::vector<BranchRow> rows_of(PeriodicMap& map, const FollowedBranch& branch, i
   return rows;
 }
 
-std::vector<SpecialRow> special_rows_of(PeriodicMap& map, const FollowedBranch& branch) {
-  std::vector<SpecialRow> rows;
+std::vector<BranchRow> rows_of(PeriodicMap& map, const FollowedBranch& branch, int multipliers) {
+  std::vector<BranchRow> rows = corner_rows_of(branch, multipliers);
+  auto row = rows.begin();
+  for (const auto& [number, x] : branch.trace.states) {
+    const BranchRow marched = orbit_row(map, branch.clock, x, *row->parameter);
+    row->tip_displacement = marched.tip_displacement;
+    row->tip_velocity = marched.tip_velocity;
+    row->penetration = marched.penetration;
+    row->residual = marched.residual;
+    ++row;
+  }
+  return rows;
+}
+
+std::vector<double> x_of_rows(const PeriodicMap& map) {
   const auto& x = map.program().problem->contact_x;
+  std::vector<double> all;
+  for (int row = 0; row < map.sets().measure_rows(); ++row)
+    if (const auto point = static_cast<std::size_t>(map.sets().place(row).point); point < x.size())
+      all.push_back(x[point]);
+  return all;
+}
+
+std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std::vector<double>& x_of_rows) {
+  std::vector<SpecialRow> rows;
   for (const SpecialPoint& point : branch.points) {
     SpecialRow row;
     row.branch = branch.name;
@@ -76,8 +115,8 @@ std::vector<SpecialRow> special_rows_of(PeriodicMap& map, const FollowedBranch& 
     if (point.change) {
       const int period = branch.clock.steps_per_period;
       row.contact_phase = 2 * std::numbers::pi * static_cast<double>((point.change->step + 1) % period) / period;
-      const auto place = static_cast<std::size_t>(map.sets().place(point.change->row).point);
-      if (place < x.size()) row.contact_x = x[place];
+      const auto place = static_cast<std::size_t>(point.change->row);
+      if (place < x_of_rows.size()) row.contact_x = x_of_rows[place];
     }
     const int times = branch.clock.half ? 2 : 1;
     if (point.kind != "end" && point.kind != "mark") {

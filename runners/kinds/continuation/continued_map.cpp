@@ -198,4 +198,19 @@ std::unique_ptr<PeriodicMap> ContinuedMap::map() {
   return std::make_unique<PeriodicMap>(program(origin_), *lanes_, metres_, std::move(load));
 }
 
+SteppedMap ContinuedMap::stepped_map(double at) {
+  const auto make = [this](double value, int tangents) {
+    const auto [place, added] = marched_.try_emplace(value, -1);
+    if (added) {
+      std::string reason;
+      place->second = scene_at(value, false, reason);
+    }
+    if (place->second < 0) throw Refusal{scenes_[scenes_.count() - 1].refusal};
+    const ForcedScene& scene = scenes_[place->second];
+    return SteppedMap::Scene{scenes_.program(scene.group, {scene.lane}, tangents), scene.group};
+  };
+  const auto carry = [this](const LaneState& state, int from, int to) { return scenes_.carry(state, from, to); };
+  return {make, carry, at, metres_};
+}
+
 }  // namespace ricochet

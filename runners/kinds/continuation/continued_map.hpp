@@ -1,7 +1,8 @@
 #pragma once
+#include <map>
 #include <memory>
 #include <optional>
-#include <ricochet/measure/orbits/periodic_map.hpp>
+#include <ricochet/measure/orbits/stepped_map.hpp>
 #include <string>
 
 #include "runners/kinds/continuation/continuation_study.hpp"
@@ -34,6 +35,8 @@ class ContinuedMap {
   double parameter_scale() const { return gap_ / metres_; }
   /// The map, which this outlives; only where no_pieces() is "".
   std::unique_ptr<PeriodicMap> map();
+  /// The map at any value, in the coordinates of one; this outlives it.
+  SteppedMap stepped_map(double at);
 
  private:
   void look_at_class(int scene);
@@ -47,6 +50,7 @@ class ContinuedMap {
   std::string refusal_, no_pieces_, no_image_;
   int reference_ = -1, origin_ = -1;  // scenes: that of an orbit, and the one that lanes begin with
   bool moves_loads_ = false;
+  std::map<double, int> marched_;  // scenes by value
   std::optional<AffineLane> lanes_;
   double gap_ = 1, metres_ = 1;
 };

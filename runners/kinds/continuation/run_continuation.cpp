@@ -13,14 +13,13 @@
 #include "runners/kinds/continuation/branch_tables.hpp"
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continued_map.hpp"
+#include "runners/kinds/continuation/run_steps.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
 namespace {
 
-// Folds below this share of the parameter's scale are not listed where the study names no prominence.
-constexpr double least_fold = 1e-4;
 // Of the gap: an orbit this near to its own image is solved as one.
 constexpr double image_tolerance = 1e-6;
 // Pieces between two looks at the clock.
@@ -42,7 +41,12 @@ class ContinuationRun {
     record_.axes = case_.axes;
     if (!continued_.refusal().empty()) return refused(continued_.refusal());
     describe_march(record_, continued_.scenes(), case_);
-    if (!continued_.no_pieces().empty()) return refused(continued_.no_pieces());
+    if (!continued_.no_pieces().empty() || plan_.follow == Follow::steps) {
+      if (!continued_.no_pieces().empty()) record_.notes.push_back("followed by steps: " + continued_.no_pieces());
+      run_by_steps(continued_, case_, plan_, stop_, record_);
+      record_.run_seconds = thread_seconds() - begun;
+      return std::move(record_);
+    }
     map_ = continued_.map();
     checkpoints_.find(map_->sets());
     record_.setup_seconds = thread_seconds() - begun;
@@ -62,14 +66,7 @@ class ContinuationRun {
 
   // An orbit that was not found is a row that says so.
   void missing(const WantedOrbit& orbit, std::string why) {
-    SpecialRow row;
-    row.branch = orbit.name;
-    row.point = 1;
-    row.kind = "end";
-    row.label = "EP";
-    row.parameter = orbit.at;
-    row.note = std::move(why);
-    special_.push_back(std::move(row));
+    special_.push_back(missing_orbit(orbit.name, orbit.at, std::move(why)));
   }
 
   void follow(const WantedOrbit& orbit) {
@@ -286,7 +283,7 @@ class ContinuationRun {
 
   void add_branch(const FollowedBranch& branch) {
     for (BranchRow& row : rows_of(*map_, branch, plan_.multipliers)) rows_.push_back(std::move(row));
-    for (SpecialRow& row : special_rows_of(*map_, branch)) {
+    for (SpecialRow& row : special_rows_of(branch, x_of_rows(*map_))) {
       found_ += row.kind != "end";
       special_.push_back(std::move(row));
     }
@@ -333,9 +330,12 @@ CasePlan plan_continuation(const StudyCase& study_case, const Registry& registry
   CasePlan out;
   const ContinuationPlan plan = continuation_plan(study_case.settings);
   ContinuedMap continued(study_case, registry, plan);
-  out.refusal = continued.refusal().empty() ? continued.no_pieces() : continued.refusal();
+  out.refusal = continued.refusal();
   if (!out.refusal.empty()) return out;
+  if (!continued.no_pieces().empty()) out.notes.push_back("followed by steps: " + continued.no_pieces());
+  const auto notes = out.notes;
   describe_march(out, continued.scenes(), study_case);
+  out.notes.insert(out.notes.end(), notes.begin(), notes.end());
   const double steps = study_case.steps_per_period, branches = static_cast<double>(plan.orbits.size());
   double transient = 0;
   for (const WantedOrbit& orbit : plan.orbits) transient += orbit.periods * steps;
