@@ -20,7 +20,7 @@ constexpr double growth = 1.5, sharpest = 0.70710678118654752;                  
 }  // namespace
 
 StepFollower::StepFollower(SteppedMap& map, const MapClock& clock, VectorXd x, double parameter, int way,
-                           const StepLimits& limits)
+                           const ArcSteps& limits)
     : map_(&map), clock_(clock), limits_(limits) {
   now_ = {std::move(x), parameter};
   const double range = map.metric().parameter_metres() * (limits.branch.largest - limits.branch.least);

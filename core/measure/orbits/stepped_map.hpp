@@ -61,7 +61,7 @@ ShotOrbit shoot(SteppedMap& map, Eigen::VectorXd x, double parameter, const MapC
                 int most = 30);
 
 /// How a branch is followed by steps.
-struct StepLimits {
+struct ArcSteps {
   BranchLimits branch;
   double tolerance = 1e-12;  ///< of residuals, m
   double first = 0;          ///< step, m
@@ -74,7 +74,7 @@ struct StepLimits {
 class StepFollower {
  public:
   StepFollower(SteppedMap& map, const MapClock& clock, Eigen::VectorXd x, double parameter, int way,
-               const StepLimits& limits);
+               const ArcSteps& limits);
 
   /// Makes up to so many steps; false where the branch has ended.
   bool advance(long long steps);
@@ -93,7 +93,7 @@ class StepFollower {
 
   SteppedMap* map_;
   MapClock clock_;
-  StepLimits limits_;
+  ArcSteps limits_;
   Point now_, along_;  // the last orbit, the unit secant
   double step_ = 0, rebounds_ = 0;
   SteppedMap::Image last_;

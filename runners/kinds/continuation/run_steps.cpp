@@ -74,7 +74,7 @@ class StepsRun {
           orbit.period, shot.iterations, orbit.at, shot.nearest, orbit.periods);
       return missing(orbit, std::move(why));
     }
-    StepLimits limits;
+    ArcSteps limits;
     limits.branch = {plan_.from, plan_.to, plan_.most_pieces, plan_.longest, {}, plan_.multipliers};
     limits.tolerance = tolerance;
     if (plan_.follow == Follow::none) limits.branch.pieces = 0;
@@ -97,7 +97,7 @@ class StepsRun {
     return std::max(apart, steps * std::numeric_limits<double>::epsilon() * map.metric().size(x));
   }
 
-  void run_branch(SteppedMap& map, FollowedBranch& branch, const ShotOrbit& shot, int way, const StepLimits& limits) {
+  void run_branch(SteppedMap& map, FollowedBranch& branch, const ShotOrbit& shot, int way, const ArcSteps& limits) {
     StepFollower follower(map, branch.clock, shot.x, shot.parameter, way, limits);
     while (limits.branch.pieces > 0 && follower.advance(1)) {
       if (stop_) throw Interrupted{};

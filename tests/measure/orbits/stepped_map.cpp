@@ -55,7 +55,7 @@ TEST_CASE("steps of arclength follow the branch that pieces follow") {
   BranchRun exact(pieces, clock, PieceFollower(pieces, clock, branch_start(orbit.x, 0.08, orbit.sets, 1), 1e-13),
                   {0.07, 0.082});
   exact.advance(100000);
-  StepLimits limits{{0.07, 0.082}};
+  ArcSteps limits{{0.07, 0.082}};
   limits.first = 2e-5;
   StepFollower steps_of(map, clock, orbit.x, 0.08, 1, limits);
   steps_of.advance(200);
