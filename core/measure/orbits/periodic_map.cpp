@@ -356,7 +356,10 @@ void PeriodicMap::sweep(const SetSequence& sets, const MapClock& clock, std::vec
       if (support)
         next[c] += amplitude[c] * (sine_[static_cast<std::size_t>(at)] * step.drive.col(0) +
                                    cosine_[static_cast<std::size_t>(at)] * step.drive.col(1));
-      if (layout.loads > 0 && !columns[c].direction) next[c] += step.drive.rightCols(layout.loads) * loads_.col(at);
+      if (layout.loads == 0) continue;
+      VectorXd load = (columns[c].parameter - (columns[c].direction ? 0 : lanes_.at)) * load_slopes_.col(at);
+      if (!columns[c].direction) load += loads_.col(at);
+      next[c] += step.drive.rightCols(layout.loads) * load;
     }
     if (measures) {
       const auto from = static_cast<std::ptrdiff_t>(k) * rows;
