@@ -15,7 +15,8 @@ namespace {
 
 constexpr double parameter_difference = 1e-6, smallest_step = 1e-9, first_step = 1e-3;  // of the range
 constexpr int easy = 4, hard = 7, most = 12;                                            // iterations
-constexpr double growth = 1.5, sharpest = 0.70710678118654752;                          // cos 45°
+constexpr double located = 1e-4, largest_step = 0.05;  // of the range: where the count outside changes, and elsewhere
+constexpr double growth = 1.5, sharpest = 0.70710678118654752;  // cos 45°
 
 }  // namespace
 
@@ -147,7 +148,13 @@ bool StepFollower::advance(long long steps) {
       const double cosine = ((metric.rows() * by).dot(metric.rows() * along_.x) +
                              metres * metres * (next.parameter - now_.parameter) * along_.parameter) /
                             far;
-      if (cosine >= sharpest) break;
+      const Outside outside_now = outside(multipliers_of(last_.derivative));
+      const bool crosses = outside_now.total != trace_.corners.back().raw.outside.total;
+      // Nearer than impacts are placed neither directions nor multipliers say anything.
+      const double told = 5 * last_.rebounds;
+      const bool straight = cosine >= sharpest || (far < told && cosine > 0);
+      if (straight && crosses && step_ > std::max(located * range, told)) continue;
+      if (straight) break;
       failure_ = "the branch turns by more than 45 degrees within a step";
     }
     const VectorXd by = next.x - now_.x;
@@ -168,7 +175,7 @@ bool StepFollower::advance(long long steps) {
     trace_.corners.back().way = along_.parameter < 0 ? -1 : 1;
     keep(next, last_);
     now_ = std::move(next);
-    if (iterations <= easy) step_ *= growth;
+    if (iterations <= easy) step_ = std::min(growth * step_, largest_step * range);
     if (iterations > hard) step_ /= growth;
     if (static_cast<long long>(trace_.corners.size()) > limits.pieces)
       trace_.end = fmt::format("{} steps, the most that the study allows", limits.pieces);

@@ -106,7 +106,7 @@ std::vector<Crossing> crossings_of(const Corners& corners, const Circle& circle,
   return all;
 }
 
-void add_group(const Corners& corners, const Circle& circle, const std::vector<Crossing>& group,
+void add_group(const Corners& corners, const Circle& circle, const std::vector<Crossing>& group, bool rebounds,
                std::vector<SpecialPoint>& points) {
   const std::size_t first = group.front().corner, last = group.back().corner;
   std::vector<const Crossing*> smooth, raw;
@@ -149,25 +149,26 @@ void add_group(const Corners& corners, const Circle& circle, const std::vector<C
   for (std::size_t i = first - 1; i <= last; ++i)
     if (corners[i].shortest > 0) shortest = std::min(shortest, corners[i].shortest);
   const auto say = [&](const std::string& text) { point.note += (point.note.empty() ? "" : "; ") + text; };
-  if (shortest > 0 && shortest < shortest_told)
+  if (shortest > 0 && shortest < shortest_told && !rebounds)
     say(fmt::format("unresolved: a run of contact has {} step{}", shortest, shortest == 1 ? "" : "s"));
   if (point.parameter < point.low || point.parameter > point.high)
     say("its root lies outside the crossings of the frozen multipliers");
   points.push_back(std::move(point));
 }
 
-void add_crossings(const Corners& corners, const Circle& circle, bool by_steps, std::vector<SpecialPoint>& points) {
+void add_crossings(const Corners& corners, const Circle& circle, const PointSearch& search,
+                   std::vector<SpecialPoint>& points) {
   std::vector<Crossing> group;
   const auto flush = [&] {
-    if (!group.empty()) add_group(corners, circle, group, points);
+    if (!group.empty()) add_group(corners, circle, group, search.placed > 0, points);
     group.clear();
   };
-  for (const Crossing& one : crossings_of(corners, circle, by_steps)) {
+  for (const Crossing& one : crossings_of(corners, circle, search.by_steps)) {
     if (!group.empty()) {
       const std::size_t last = group.back().corner;
       const bool near = static_cast<long long>(one.corner - last) < group_pieces ||
                         corners[one.corner].arc - corners[last].arc < group_arc;
-      if (!near || by_steps) flush();
+      if (!near || search.by_steps) flush();
     }
     group.push_back(one);
   }
@@ -230,8 +231,9 @@ void add_contacts(const Corners& corners, bool by_steps, std::vector<SpecialPoin
     const bool appears = now.change.closes && now.runs > was.runs, vanishes = !now.change.closes && now.runs < was.runs;
     if (!appears && !vanishes) continue;  // a run is cut in two, or two become one
     SpecialPoint point = at_corner(corners, i, "contact", "GR");
-    const double piece = std::max(std::abs(now.parameter - was.parameter),
-                                  i + 1 < corners.size() ? std::abs(corners[i + 1].parameter - now.parameter) : 0.0);
+    // The shorter one of the two: a motion without contact is one piece, however long.
+    double piece = std::abs(now.parameter - was.parameter);
+    if (i + 1 < corners.size()) piece = std::min(piece, std::abs(corners[i + 1].parameter - now.parameter));
     point.low = point.parameter - piece;
     point.high = point.parameter + piece;
     point.side = now.change.upper ? "upper" : "lower";
@@ -250,8 +252,8 @@ std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSe
   add_folds(trace, search.prominence, search.by_steps, points);
   const Circle minus =
       search.half ? Circle{"symmetry", "BP", &Outside::below, false} : Circle{"flip", "PD", &Outside::below, false};
-  add_crossings(corners, minus, search.by_steps, points);
-  add_crossings(corners, {"torus", "TR", &Outside::pairs, true}, search.by_steps, points);
+  add_crossings(corners, minus, search, points);
+  add_crossings(corners, {"torus", "TR", &Outside::pairs, true}, search, points);
   add_contacts(corners, search.by_steps, points);
   if (search.placed > 0)
     for (SpecialPoint& point : points) place(corners, search.placed, point);

@@ -69,7 +69,8 @@ struct ArcSteps {
 
 /// Follows a branch of P(x, λ) = x by steps of arclength: secant predictor, Newton's method bordered by the secant,
 /// ∂P/∂λ by a difference over 1e-6 of the range. A step grows by half after at most four iterations, shrinks by as much
-/// after more than seven, is halved where none is found or the branch turns by more than 45 degrees. Below 1e-9 of
+/// after more than seven, is halved where none is found, the branch turns by more than 45 degrees, or the count of
+/// multipliers outside changes within more than 1e-4 of the range. Below 1e-9 of
 /// the range's length the branch ends.
 class StepFollower {
  public:
