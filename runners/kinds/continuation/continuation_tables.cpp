@@ -10,7 +10,7 @@ namespace {
 
 const Column branch_column{"branch", "", "The orbit that the branch began with, and the way: + up or − down."};
 
-using Part = double (*)(const std::complex<double>&);
+using RootPart = double (*)(const std::complex<double>&);
 double real_part(const std::complex<double>& value) {
   return value.real();
 }
@@ -18,7 +18,7 @@ double imaginary_part(const std::complex<double>& value) {
   return value.imag();
 }
 
-void add_multiplier(RowType<BranchRow>& type, std::size_t k, const char* suffix, const char* text, Part part,
+void add_multiplier(RowType<BranchRow>& type, std::size_t k, const char* suffix, const char* text, RootPart part,
                     void (*put)(std::complex<double>&, double)) {
   type.add(
       {fmt::format("multiplier_{}_{}", k + 1, suffix), "1", text},

@@ -14,6 +14,7 @@
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continued_map.hpp"
 #include "runners/kinds/continuation/run_steps.hpp"
+#include "runners/kinds/continuation/stored_orbit.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"
 
@@ -80,6 +81,12 @@ class ContinuationRun {
       const auto found = free_orbit(*map_, orbit.at, clock);
       if (!found) return missing(orbit, "the motion without contact is in resonance");
       x = *found;
+    } else if (orbit.from == OrbitSource::stored) {
+      try {
+        x = map_->vector().read(stored_orbit(orbit, continued_.program(scene), case_.steps_per_period));
+      } catch (const PointRefused& refused) {
+        return missing(orbit, refused.what());
+      }
     } else {
       LaneEnd end;
       const auto state = settle(continued_.program(scene), case_.steps_per_period, std::max(1, orbit.periods), end);
@@ -347,7 +354,9 @@ CasePlan plan_continuation(const StudyCase& study_case, const Registry& registry
   // period and takes two spectra.
   const auto unknowns =
       static_cast<double>(continued.scenes().plan(0).slots.size()) * continued.scenes().problem(0).dofs();
-  const double pieces = branches * steps * (plan.both_ways ? 2 : 1);
+  // Branches at points of branches took five times as much.
+  const double leaves = plan.branch_at.empty() || plan.depth == 0 ? 1 : 6;
+  const double pieces = branches * leaves * steps * (plan.both_ways ? 2 : 1);
   out.predicted_seconds += pieces * (1.5e-10 * steps * unknowns * unknowns + 1.2e-8 * unknowns * unknowns * unknowns);
   out.steps += static_cast<long long>(pieces * steps);
   out.bytes = branches * 2 * 2000 * 200;

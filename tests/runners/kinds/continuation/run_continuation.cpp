@@ -159,3 +159,9 @@ TEST_CASE("an oscillator that rebounds flips near to where Shaw and Holmes found
   CHECK(*flip->high >= 2.653347728);
   CHECK(flip->note.find("not exact") != std::string::npos);
 }
+
+TEST_CASE("an orbit of a bifurcation study that is not there is a row that says so") {
+  Json study = tube_continuation();
+  study["orbits"][0]["from"] = {{"study", "/nowhere"}, {"case", "ab"}, {"parameter", 0.085}, {"start", "rest"}};
+  CHECK_THROWS(continued(study));
+}
