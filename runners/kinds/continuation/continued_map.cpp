@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <ricochet/measure/orbits/impact_jump.hpp>
+#include <ricochet/measure/orbits/multipliers.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
 
 #include "runners/kinds/sweep/with_parameter.hpp"
@@ -114,6 +115,15 @@ void ContinuedMap::look_at_class(int scene) {
         fmt::format("the stops give back {:.3g} of the speed: the map jumps where the step of an impact changes", e);
   else if (const auto reason = SetSteps::refusal(program))
     no_pieces_ = "a step is not affine between changes of contact: " + *reason;
+  if (SetSteps::refusal(program) || program.problem->inertia.kernel_dimension == 0) return;
+  // A root ±1 of the step is a multiplier 1 of a period: P(x) = x has no orbit that stands alone.
+  const SetSteps sets(program);
+  constexpr double near = 1e-7;
+  for (const std::complex<double>& root : multipliers_of(sets[0].state.topRows(sets.state_size())))
+    if (std::abs(std::abs(root) - 1) < near && std::abs(root.imag()) < near)
+      refusal_ =
+          "the step has a root of modulus 1 on displacements without mass, so that no orbit stands alone; use β > 1/4 "
+          "with damping, or a regular mass";
 }
 
 // Whether the parameter enters by amplitude and stops alone, and affinely.

@@ -94,3 +94,9 @@ TEST_CASE("an end of the range at which the scene is impossible refuses the case
   study["parameter"]["to"] = 0.12;
   check_says(refusal_of(study), {"at 0.12: ", "expected a range in which the scene is possible"});
 }
+
+TEST_CASE("a root of the step on displacements without mass refuses the case") {
+  Json study = tube_continuation();
+  study["methods"]["time"]["beta"] = 0.25;
+  check_says(refusal_of(study), {"a root of modulus 1 on displacements without mass", "no orbit stands alone"});
+}
