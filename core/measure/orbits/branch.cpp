@@ -143,8 +143,10 @@ bool BranchRun::advance(long long pieces) {
     for (const double mark : limits_.marks) {
       const double s = (mark - before.parameter) / before.parameter_along;
       if (!(s >= 0) || s >= piece.length) continue;
-      const BranchState there = follower_.at(s);
-      trace_.marks.push_back({mark, there.arc, static_cast<long long>(trace_.corners.size()) - 1, std::move(there.x)});
+      BranchState there = follower_.at(s);
+      const double tip = map_->tip(there.x, mark);
+      trace_.marks.push_back(
+          {mark, there.arc, tip, static_cast<long long>(trace_.corners.size()) - 1, std::move(there.x)});
     }
     follower_.go(piece);
     if (piece.end != BranchEnd::none) {

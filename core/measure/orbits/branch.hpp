@@ -37,7 +37,7 @@ ContactRuns contact_runs(const SetSteps& sets, const SetSequence& sequence, bool
 
 /// An orbit that was solved exactly where it was asked for.
 struct MarkedOrbit {
-  double parameter = 0, arc = 0;
+  double parameter = 0, arc = 0, tip = 0;
   long long corner = 0;  ///< of the piece that it is on
   Eigen::VectorXd x;
 };

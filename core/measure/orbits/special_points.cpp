@@ -261,6 +261,7 @@ std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSe
     SpecialPoint point = at_corner(corners, static_cast<std::size_t>(mark.corner), "mark", "UZ");
     point.parameter = point.low = point.high = mark.parameter;
     point.arc = mark.arc;
+    point.tip = mark.tip;
     points.push_back(std::move(point));
   }
   std::stable_sort(points.begin(), points.end(),

@@ -54,7 +54,7 @@ void serialize(Archive& archive, BranchCorner& corner) {
 
 template <class Archive>
 void serialize(Archive& archive, MarkedOrbit& mark) {
-  archive(mark.parameter, mark.arc, mark.corner, mark.x);
+  archive(mark.parameter, mark.arc, mark.tip, mark.corner, mark.x);
 }
 
 template <class Archive>
@@ -75,7 +75,7 @@ void serialize(Archive& archive, KeptBranch& kept) {
 
 namespace {
 
-constexpr int branches_version = 1;
+constexpr int branches_version = 2;
 constexpr double keep_interval = 2;  // s
 
 struct Kept {

@@ -38,7 +38,7 @@ SpecialRow missing_orbit(const std::string& name, double at, std::string why) {
 std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipliers) {
   std::map<long long, int> numbers;  // of special points, by corner
   for (std::size_t i = 0; i < branch.points.size(); ++i)
-    numbers.emplace(branch.points[i].corner, static_cast<int>(i) + 1);
+    if (branch.points[i].kind != "mark") numbers.emplace(branch.points[i].corner, static_cast<int>(i) + 1);
   std::vector<BranchRow> rows;
   long long last = 0;
   for (const auto& [number, x] : branch.trace.states) {
@@ -68,6 +68,32 @@ std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipli
   return rows;
 }
 
+namespace {
+
+// The row of an orbit between two corners, where it belongs.
+void add_mark(PeriodicMap& map, const FollowedBranch& branch, const MarkedOrbit& mark, int multipliers,
+              std::vector<BranchRow>& rows) {
+  const BranchCorner& corner = branch.trace.corners[static_cast<std::size_t>(mark.corner)];
+  BranchRow row = orbit_row(map, branch.clock, mark.x, mark.parameter);
+  row.branch = branch.name;
+  row.arc = mark.arc;
+  row.stable = corner.raw.outside.total == 0;
+  row.unstable = corner.raw.outside.total;
+  row.multipliers.assign(corner.leading.begin(), corner.leading.end());
+  row.multipliers.resize(static_cast<std::size_t>(multipliers));
+  row.iterations = 0;
+  row.pieces = 0;
+  row.direction = corner.way;
+  for (std::size_t i = 0; i < branch.points.size(); ++i)
+    if (branch.points[i].kind == "mark" && branch.points[i].arc == mark.arc) row.point = static_cast<int>(i) + 1;
+  const auto place = std::upper_bound(rows.begin(), rows.end(), mark.arc,
+                                      [](double arc, const BranchRow& one) { return arc < *one.arc; });
+  rows.insert(place, std::move(row));
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].row = static_cast<long long>(i);
+}
+
+}  // namespace
+
 std::vector<BranchRow> rows_of(PeriodicMap& map, const FollowedBranch& branch, int multipliers) {
   std::vector<BranchRow> rows = corner_rows_of(branch, multipliers);
   auto row = rows.begin();
@@ -79,6 +105,7 @@ std::vector<BranchRow> rows_of(PeriodicMap& map, const FollowedBranch& branch, i
     row->residual = marched.residual;
     ++row;
   }
+  for (const MarkedOrbit& mark : branch.trace.marks) add_mark(map, branch, mark, multipliers, rows);
   return rows;
 }
 

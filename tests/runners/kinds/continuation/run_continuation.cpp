@@ -54,15 +54,24 @@ TEST_CASE("every row of a branch is an orbit, and rows go on from each other") {
 
 TEST_CASE("marks are solved where they are asked for, and a branch stops where the study says") {
   Json study = tube_continuation();
-  study["mark"] = {{"parameter", {0.0865}}};
+  study["mark"] = {{"parameter", {0.0852}}};
   study["stop_at"] = "contact";
   study["both_ways"] = false;
-  const auto points = points_of(continued(study));
+  const CaseRecord record = continued(study);
+  const auto points = points_of(record);
   REQUIRE_FALSE(points.empty());
   CHECK(points.back().kind == "end");
   const auto mark =
       std::find_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "mark"; });
-  if (mark != points.end()) CHECK(*mark->parameter == 0.0865);
+  REQUIRE(mark != points.end());
+  CHECK(*mark->parameter == 0.0852);
+  const auto rows = rows_of(record);
+  const auto row =
+      std::find_if(rows.begin(), rows.end(), [](const BranchRow& one) { return *one.parameter == 0.0852; });
+  REQUIRE(row != rows.end());
+  CHECK(*row->residual < 1e-11);
+  CHECK(*row->point == mark->point);
+  CHECK(*row->tip_displacement == Approx(*mark->tip_displacement).margin(1e-14));
   const auto contacts =
       std::count_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "contact"; });
   CHECK(contacts <= 1);
