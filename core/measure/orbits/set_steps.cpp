@@ -12,9 +12,18 @@ bool has_load(const Program& program) {
   return program.load;
 }
 
+// The slopes of the law, which knows its parameters once it is prepared, as Marcher does it; none: rigid, or not
+// linear.
+std::optional<ContactSlopes> slopes_of(const Program& program) {
+  if (!program.law->reads()) return std::nullopt;
+  program.law->prepare(program.problem->points(),
+                       std::vector<Parameters>(static_cast<std::size_t>(program.width), program.lanes.front().law));
+  return program.law->linear_slopes(0);
+}
+
 // κ of the law as this program evaluates it; 0: rigid.
 double spring_of(const Program& program) {
-  const auto slopes = program.law->reads() ? program.law->linear_slopes(0) : std::nullopt;
+  const auto slopes = slopes_of(program);
   return slopes ? slopes->stiffness : 0;
 }
 
@@ -40,10 +49,7 @@ std::optional<std::string> SetSteps::refusal(const Program& program) {
   if (!program.contact) return std::nullopt;
   if (program.law->memory_per_point() > 0) return "its law keeps a memory";
   if (program.law->reads()) {
-    // As Marcher prepares it: a law knows its parameters then.
-    program.law->prepare(program.problem->points(),
-                         std::vector<Parameters>(static_cast<std::size_t>(program.width), program.lanes.front().law));
-    const auto slopes = program.law->linear_slopes(0);
+    const auto slopes = slopes_of(program);
     if (!slopes) return "its law is not linear";
     if (slopes->viscosity != 0 || slopes->before != 0) return "its law has a damper, or a mean over the step";
   }

@@ -170,8 +170,8 @@ void check_followed(const Json& resolved, const Json& settings, const Registry& 
     if (resolved.contains(place) && !pointer.starts_with("/scene/stops/")) {
       const Json& named = resolved.at(place);
       std::string what;
-      if (pointer.starts_with("/mesh")) what = "part of the mesh";
       if (pointer.starts_with("/steps_per_period") || named.is_number_integer()) what = "a count";
+      if (pointer.starts_with("/mesh")) what = "part of the mesh";
       if (named.is_boolean()) what = "true or false";
       if (pointer.starts_with("/scene/") && named.is_number()) what = "";
       if (named.is_string() && pointer.ends_with("/type")) what = "the word " + named.dump();
