@@ -13,16 +13,14 @@
 #include "runners/kinds/continuation/branch_tables.hpp"
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continued_map.hpp"
+#include "runners/kinds/continuation/first_orbit.hpp"
 #include "runners/kinds/continuation/run_steps.hpp"
-#include "runners/kinds/continuation/stored_orbit.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
 namespace {
 
-// Of the gap: an orbit this near to its own image is solved as one.
-constexpr double image_tolerance = 1e-6;
 // Pieces between two looks at the clock.
 constexpr long long breath = 64;
 
@@ -71,32 +69,10 @@ class ContinuationRun {
   }
 
   void follow(const WantedOrbit& orbit) {
-    std::string reason;
-    const int scene = continued_.scene_at(orbit.at, orbit.from == OrbitSource::state, reason);
-    if (scene < 0) return missing(orbit, reason);
-    if (orbit.symmetric == HalfMap::yes && !continued_.no_image().empty()) return missing(orbit, continued_.no_image());
-    MapClock clock{case_.steps_per_period, orbit.period, orbit.symmetric == HalfMap::yes};
-    Eigen::VectorXd x;
-    if (orbit.from == OrbitSource::free) {
-      const auto found = free_orbit(*map_, orbit.at, clock);
-      if (!found) return missing(orbit, "the motion without contact is in resonance");
-      x = *found;
-    } else if (orbit.from == OrbitSource::stored) {
-      try {
-        x = map_->vector().read(stored_orbit(orbit, continued_.program(scene), case_.steps_per_period));
-      } catch (const PointRefused& refused) {
-        return missing(orbit, refused.what());
-      }
-    } else {
-      LaneEnd end;
-      const auto state = settle(continued_.program(scene), case_.steps_per_period, std::max(1, orbit.periods), end);
-      if (!state) return missing(orbit, fmt::format("the transient stopped: {}", text(end)));
-      x = map_->vector().read(*state);
-    }
-    ShotOrbit shot = solve(x, orbit.at, clock);
-    if (orbit.symmetric == HalfMap::automatic && shot.found) use_image(shot, clock);
-    if (!shot.found) return missing(orbit, not_found(orbit, shot));
-    FollowedBranch first{orbit.name, clock, {}, {}, shot.iterations, {}};
+    const FirstOrbit found = first_orbit(continued_, *map_, case_.steps_per_period, orbit, round_off_);
+    if (!found.why.empty()) return missing(orbit, found.why);
+    const ShotOrbit& shot = found.shot;
+    FollowedBranch first{orbit.name, found.clock, {}, {}, shot.iterations, {}};
     if (plan_.follow == Follow::none) {
       add_orbit(first, shot);
       return;
@@ -107,38 +83,6 @@ class ContinuationRun {
       branch.name += way > 0 ? "+" : "-";
       run_branch(branch, shot, way, 0);
     }
-  }
-
-  ShotOrbit solve(const Eigen::VectorXd& x, double parameter, const MapClock& clock) {
-    round_off_ = std::max(round_off_, round_off_of_map(*map_, x, parameter, clock));
-    return shoot(*map_, x, parameter, clock, round_offs * round_off_);
-  }
-
-  // Solves an orbit that is its own image by half its period.
-  void use_image(ShotOrbit& shot, MapClock& clock) {
-    if (!continued_.no_image().empty() || clock.period % 2 == 0) return;
-    MapClock half = clock;
-    half.half = true;
-    const MapMarch made = map_->march(shot.x, shot.parameter, half);
-    if (made.end || map_->metric().size(made.image - shot.x) > image_tolerance * continued_.gap()) return;
-    ShotOrbit image = solve(shot.x, shot.parameter, half);
-    if (!image.found) return;
-    image.iterations += shot.iterations;
-    shot = std::move(image);
-    clock = half;
-  }
-
-  std::string not_found(const WantedOrbit& orbit, const ShotOrbit& shot) const {
-    const char* from = orbit.from == OrbitSource::state ? "the scene's state" : "rest";
-    std::string why = fmt::format(
-        "no orbit of period {} within {} iterations from {} at {:g}; nearest return {:.3g} m "
-        "after {} periods",
-        orbit.period, shot.iterations, from, orbit.at, shot.nearest, orbit.periods);
-    if (shot.end) why += "; " + text(shot.end);
-    if (shot.step >= 0)
-      why += fmt::format("; residuals alternate between two contact sets (step {} of {}, point {})", shot.step + 1,
-                         case_.steps_per_period, map_->sets().place(shot.row).point + 1);
-    return why;
   }
 
   void add_orbit(FollowedBranch& branch, const ShotOrbit& shot) {
