@@ -203,8 +203,11 @@ void add_folds(const BranchTrace& trace, double prominence, bool by_steps, std::
     if (turn.prominence < prominence) continue;
     const auto i = static_cast<std::size_t>(turn.corner);
     SpecialPoint point = at_corner(corners, i, "fold", "LP");
-    const double half = 0.5 * std::max(std::abs(corners[i].parameter - corners[i - 1].parameter),
-                                       std::abs(corners[i + 1].parameter - corners[i].parameter));
+    // A motion without contact is one piece, however long: where it touches its stop the other piece tells.
+    const double before = std::abs(corners[i].parameter - corners[i - 1].parameter),
+                 after = std::abs(corners[i + 1].parameter - corners[i].parameter);
+    const bool free = corners[i].runs == 0 || corners[i - 1].runs == 0;
+    const double half = 0.5 * (free ? std::min(before, after) : std::max(before, after));
     if (by_steps) point.parameter = vertex(corners, i);
     point.low = point.parameter - half;
     point.high = point.parameter + half;
