@@ -75,67 +75,60 @@ void serialize(Archive& archive, KeptBranch& kept) {
 
 namespace {
 
-constexpr int branches_version = 2;
+constexpr int branches_version = 3;
 constexpr double keep_interval = 2;  // s
 
-struct Kept {
+struct KeptWithSets {
   std::vector<ContactSet> sets;
-  std::map<std::string, KeptBranch> branches;
+  KeptBranch branch;
 };
 
-Kept kept_branches(const std::string& bytes) {
+KeptWithSets kept_branch(const std::string& bytes) {
   std::istringstream in(bytes);
   cereal::BinaryInputArchive archive(in);
   int written = 0;
   archive(written);
-  if (written != branches_version) throw std::runtime_error("branches of another version");
-  Kept kept;
-  archive(kept.sets, kept.branches);
+  if (written != branches_version) throw std::runtime_error("a branch of another version");
+  KeptWithSets kept;
+  archive(kept.sets, kept.branch);
   return kept;
 }
 
 }  // namespace
 
-void BranchCheckpoints::find(SetSteps& sets) {
-  auto kept = recall(store_, key_, kept_branches);
-  if (!kept) return;
+std::optional<KeptBranch> BranchCheckpoints::find(const std::string& name, SetSteps& sets) {
+  auto kept = recall(store_, key_of(name), kept_branch);
+  if (!kept) return std::nullopt;
+  names_.insert(name);
   std::vector<int> numbers;
   for (const ContactSet& set : kept->sets) numbers.push_back(sets.number(set));
-  for (auto& [name, branch] : kept->branches)
-    for (SetSequence* sequence : {&branch.entry.sets, &branch.first})
-      for (int& number : *sequence) number = numbers.at(static_cast<std::size_t>(number));
-  branches_ = std::move(kept->branches);
-}
-
-const KeptBranch* BranchCheckpoints::branch(const std::string& name) const {
-  const auto found = branches_.find(name);
-  return found == branches_.end() ? nullptr : &found->second;
+  for (SetSequence* sequence : {&kept->branch.entry.sets, &kept->branch.first})
+    for (int& number : *sequence) number = numbers.at(static_cast<std::size_t>(number));
+  return std::move(kept->branch);
 }
 
 void BranchCheckpoints::keep_sometimes(const std::string& name, const BranchRun& run, const SetSteps& sets) {
-  if (store_.keep && seconds_since(saved_) >= keep_interval) keep(name, run, sets);
+  if (seconds_since(saved_) >= keep_interval) keep(name, run, sets);
 }
 
 void BranchCheckpoints::keep(const std::string& name, const BranchRun& run, const SetSteps& sets) {
-  branches_[name] = {run.trace(), run.entry(), run.first_sets()};
-  save(sets);
-}
-
-void BranchCheckpoints::save(const SetSteps& sets) {
   if (!store_.keep) return;
-  Kept kept;
-  for (int number = 0; number < sets.count(); ++number) kept.sets.push_back(sets[number].closed);
+  std::vector<ContactSet> known;
+  for (int number = 0; number < sets.count(); ++number) known.push_back(sets[number].closed);
+  const KeptBranch kept{run.trace(), run.entry(), run.first_sets()};
   std::ostringstream out;
   {
     cereal::BinaryOutputArchive archive(out);
-    archive(branches_version, kept.sets, branches_);
+    archive(branches_version, known, kept);
   }
-  store_.keep(key_, out.str());
+  store_.keep(key_of(name), out.str());
+  names_.insert(name);
   saved_ = std::chrono::steady_clock::now();
 }
 
 void BranchCheckpoints::forget() {
-  if (store_.keep) store_.keep(key_, "");
+  for (const std::string& name : names_) store_.keep(key_of(name), "");
+  names_.clear();
 }
 
 }  // namespace ricochet

@@ -47,7 +47,6 @@ class ContinuationRun {
       return std::move(record_);
     }
     map_ = continued_.map();
-    checkpoints_.find(map_->sets());
     record_.setup_seconds = thread_seconds() - begun;
     for (const WantedOrbit& orbit : plan_.orbits) follow(orbit);
     finish();
@@ -104,7 +103,7 @@ class ContinuationRun {
     BranchLimits limits{plan_.from, plan_.to, plan_.most_pieces, plan_.longest, plan_.marks, plan_.multipliers};
     // A residual that several steps of Newton's method leave.
     const double drift = std::max(100 * round_off_, 1e-15);
-    if (const KeptBranch* kept = checkpoints_.branch(branch.name))
+    if (const auto kept = checkpoints_.find(branch.name, map_->sets()))
       return {*map_,  branch.clock, PieceFollower(*map_, branch.clock, kept->entry, drift),
               limits, kept->trace,  kept->first};
     return {*map_, branch.clock,

@@ -81,11 +81,19 @@ TEST_CASE("a branch that was stopped and goes on has the rows of one that was no
   const Json study = tube_continuation();
   const CaseRecord whole = continued(study);
   const OpenedContinuation opened = opened_continuation(study);
-  std::string kept;
+  std::map<std::string, std::string> kept;
   CaseContext context;
   context.key = "tube";
-  context.checkpoints.find = [&](const std::string&) { return kept; };
-  context.checkpoints.keep = [&](const std::string&, const std::string& content) { kept = content; };
+  context.checkpoints.find = [&](const std::string& key) {
+    const auto found = kept.find(key);
+    return found == kept.end() ? std::string() : found->second;
+  };
+  context.checkpoints.keep = [&](const std::string& key, const std::string& content) {
+    if (content.empty())
+      kept.erase(key);
+    else
+      kept[key] = content;
+  };
   // Stopped at once: one batch of pieces is made, and kept; one of each branch.
   const std::atomic<bool> stop{true};
   for (int times = 0; times < 2; ++times) {
