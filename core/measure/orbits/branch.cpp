@@ -65,6 +65,14 @@ ContactRuns contact_runs(const SetSteps& sets, const SetSequence& sequence, bool
   return runs;
 }
 
+bool is_image(const SetSteps& sets, const SetSequence& sequence) {
+  const std::size_t half = sequence.size() / 2;
+  if (sequence.size() % 2 != 0) return false;
+  for (std::size_t k = 0; k < half; ++k)
+    if (!sets.mirrors(sequence[k], sequence[k + half])) return false;
+  return true;
+}
+
 BranchRun::BranchRun(PeriodicMap& map, const MapClock& clock, PieceFollower follower, BranchLimits limits)
     : map_(&map), clock_(clock), follower_(std::move(follower)), limits_(std::move(limits)) {
   first_ = follower_.state().sets;
@@ -166,7 +174,9 @@ bool BranchRun::advance(long long pieces) {
     const BranchCorner &now = trace_.corners[size - 1], &was = trace_.corners[size - 2];
     const bool closed = follower_.state().sets == first_;
     keep(now.way != was.way || now.runs != was.runs || !(now.raw.outside == was.raw.outside) || closed);
-    if (closed)
+    if (limits_.ends_at_image && is_image(map_->sets(), follower_.state().sets))
+      trace_.end = fmt::format("its orbits become their own images at {:.10g}", now.parameter);
+    else if (closed)
       trace_.end = "closed: the branch came back to its first piece";
     else if (follower_.state().pieces >= limits_.pieces)
       trace_.end = fmt::format("{} pieces, the most that the study allows", limits_.pieces);

@@ -35,6 +35,10 @@ struct ContactRuns {
 };
 ContactRuns contact_runs(const SetSteps& sets, const SetSequence& sequence, bool half);
 
+/// Whether the second half of the steps has the sets of the first one with the sides exchanged: an orbit that stands
+/// alone with such sets is its own image under x → −x, t → t + T/2.
+bool is_image(const SetSteps& sets, const SetSequence& sequence);
+
 /// An orbit that was solved exactly where it was asked for.
 struct MarkedOrbit {
   double parameter = 0, arc = 0, tip = 0;
@@ -59,6 +63,7 @@ struct BranchLimits {
   double arc = 1;  ///< m
   std::vector<double> marks = {};
   int multipliers = 4;
+  bool ends_at_image = false;      ///< of orbits that are not their own images: whether it ends where they become so
   std::size_t most_states = 2000;  ///< evenly spaced ones
 };
 

@@ -211,6 +211,11 @@ int SetSteps::toggled(int number, int row, bool upper) {
   return this->number(set);
 }
 
+bool SetSteps::mirrors(int one, int other) const {
+  const std::vector<int>&a = (*this)[one].side, &b = (*this)[other].side;
+  return std::equal(a.begin(), a.end(), b.begin(), [](int x, int y) { return x == -y; });
+}
+
 const MatrixXd& SetSteps::power(int number, std::size_t k) {
   SetStep& step = steps_[static_cast<std::size_t>(number)];
   if (step.powers.empty()) step.powers.push_back(step.state.topRows(size_));

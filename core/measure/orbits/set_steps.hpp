@@ -77,6 +77,8 @@ class SetSteps {
   int count() const { return static_cast<int>(steps_.size()); }
   /// The set with a row opened, or closed by one of its stops.
   int toggled(int number, int row, bool upper);
+  /// Whether a set is another one with lower and upper stops exchanged.
+  bool mirrors(int one, int other) const;
   /// A^{2^k} of a set.
   const Eigen::MatrixXd& power(int number, std::size_t k);
   /// M ← A^count M.

@@ -101,6 +101,8 @@ class ContinuationRun {
 
   BranchRun begin(const FollowedBranch& branch, const ShotOrbit& shot, int way) {
     BranchLimits limits{plan_.from, plan_.to, plan_.most_pieces, plan_.longest, plan_.marks, plan_.multipliers};
+    limits.ends_at_image = !branch.clock.half && branch.clock.period % 2 != 0 && continued_.no_image().empty() &&
+                           !is_image(map_->sets(), shot.sets);
     // A residual that several steps of Newton's method leave.
     const double drift = std::max(100 * round_off_, 1e-15);
     if (const auto kept = checkpoints_.find(branch.name, map_->sets()))

@@ -177,6 +177,36 @@ TEST_CASE("an oscillator that rebounds flips near to where Shaw and Holmes found
   CHECK(flip->note.find("not exact") != std::string::npos);
 }
 
+TEST_CASE("where symmetry is lost a branch of other orbits begins, and it ends where they are symmetric again") {
+  Json study = tube_continuation();
+  study["mesh"]["elements"] = 10;
+  study["steps_per_period"] = 2000;
+  study["parameter"] = Json::parse(R"({"pointer": "/scene/support/amplitude", "from": 0.0799, "to": 0.0912})");
+  study["orbits"] = Json::parse(R"([{"at": 0.08, "periods": 300}])");
+  study["both_ways"] = false;
+  study["switch"] = "symmetry";
+  study["at_most"] = {{"pieces", 400}};
+  const CaseRecord record = continued(study);
+  REQUIRE(record.status == "done");
+  std::string other;
+  for (const SpecialRow& point : points_of(record))
+    if (point.kind == "symmetry" && !point.to_branch.empty())
+      other = point.to_branch.substr(0, point.to_branch.find(' '));
+  REQUIRE_FALSE(other.empty());
+  int asymmetric = 0;
+  for (const BranchRow& row : rows_of(record)) {
+    if (row.branch != other) continue;
+    ++asymmetric;
+    CHECK_FALSE(*row.symmetric);
+    CHECK(*row.residual < 1e-10);
+  }
+  CHECK(asymmetric > 10);
+  bool met = false;
+  for (const SpecialRow& point : points_of(record))
+    met = met || point.note.starts_with("its orbits become their own images");
+  CHECK(met);
+}
+
 TEST_CASE("an orbit of a bifurcation study that is not there is a row that says so") {
   Json study = tube_continuation();
   study["orbits"][0]["from"] = {{"study", "/nowhere"}, {"case", "ab"}, {"parameter", 0.085}, {"start", "rest"}};
