@@ -28,9 +28,8 @@ Registered& registered() {
   static Registered all = [] {
     Registered built_in;
     // A new kind is one more line here.
-    for (KindPointer (*make)() :
-         {trajectory_kind, convergence_kind, work_precision_kind, stability_kind, bifurcation_kind, basins_kind,
-          continuation_kind})
+    for (KindPointer (*make)() : {trajectory_kind, convergence_kind, work_precision_kind, stability_kind,
+                                  bifurcation_kind, basins_kind, continuation_kind})
       built_in.add(make());
     return built_in;
   }();

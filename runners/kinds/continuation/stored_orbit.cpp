@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "runners/kinds/kind.hpp"
 #include "runners/kinds/stored_study.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/store/record_values.hpp"
