@@ -53,7 +53,7 @@ TEST_CASE("a branch without contact meets its stop where the linear response doe
   branch.advance(1);
   REQUIRE(branch.trace().corners.size() == 2);
   const double met = branch.trace().corners[1].parameter;
-  // A prototype of another program: 0.0791790584 m.
+  // Another program: 0.0791790584 m.
   CHECK(met == Approx(0.0791790584).margin(1e-10));
   const Program& program = map.program();
   const auto response = linear_response(*program.problem, program.plan, program.h);
@@ -61,7 +61,7 @@ TEST_CASE("a branch without contact meets its stop where the linear response doe
   CHECK(std::abs(overlap(*response, map.lanes().lane(met))) < 1e-6);  // peaks between two steps
 }
 
-TEST_CASE("the branch of the shaken tube folds and touches where a prototype does") {
+TEST_CASE("the branch of the shaken tube folds and touches where another program says") {
   Started from(2000, true, 0.08);
   SECTION("upwards") {
     const BranchRun branch = run(from, 1, 0.06, 0.1005);
@@ -71,12 +71,16 @@ TEST_CASE("the branch of the shaken tube folds and touches where a prototype doe
     CHECK(fold.low < fold.parameter);
     CHECK(fold.high > fold.parameter);
   }
-  SECTION("downwards") {
-    BranchRun branch = run(from, -1, 0.079, 0.12);
-    const auto points = special_points(branch.trace(), {true, 5e-5});
+  SECTION("down to the first contact") {
+    const BranchRun branch = run(from, -1, 0.06, 0.12);
+    const auto points = special_points(branch.trace(), {true, 5e-3});
     const auto contact =
         std::find_if(points.begin(), points.end(), [](const SpecialPoint& one) { return one.note == "first contact"; });
-    CHECK((contact == points.end() || contact->kind == "contact"));
+    REQUIRE(contact != points.end());
+    CHECK(contact->parameter == Approx(0.0791792331).margin(1e-10));
+    CHECK(contact->low < contact->parameter);
+    // The turn before it, the only one so prominent but the contact itself.
+    CHECK(first_of(points, "fold").parameter == Approx(0.0674790).margin(1e-7));
   }
 }
 
