@@ -1,7 +1,9 @@
 #include "runners/kinds/continuation/continuation.hpp"
 
+#include "runners/kinds/continuation/continuation_answers.hpp"
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continuation_tables.hpp"
+#include "runners/kinds/continuation/point_tables.hpp"
 #include "runners/kinds/continuation/run_continuation.hpp"
 #include "runners/kinds/stored_study.hpp"
 #include "runners/kinds/sweep/sweep_study.hpp"
@@ -52,8 +54,12 @@ class ContinuationKind final : public Kind {
     const SweptColumns swept = swept_columns(results);
     for (CaseRecord& record : results.cases) describe_continuation(record, swept);
     collect_tables(results);
+    derive_points(results);
   }
   bool answers_itself() const override { return true; }
+  answers::Answer answers(const StudyResults& results) const override {
+    return continuation_answer(answers::Compared(results));
+  }
   nlohmann::ordered_json alone(const StudyResults& results, const CaseRecord& record) const override {
     return single_study(results, record);
   }
