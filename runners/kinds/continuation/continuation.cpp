@@ -3,6 +3,7 @@
 #include "runners/kinds/continuation/continuation_answers.hpp"
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continuation_tables.hpp"
+#include "runners/kinds/continuation/page/page.hpp"
 #include "runners/kinds/continuation/point_tables.hpp"
 #include "runners/kinds/continuation/run_continuation.hpp"
 #include "runners/kinds/stored_study.hpp"
@@ -60,6 +61,7 @@ class ContinuationKind final : public Kind {
   answers::Answer answers(const StudyResults& results) const override {
     return continuation_answer(answers::Compared(results));
   }
+  report::KindPage page() const override { return report::continuation_page(); }
   nlohmann::ordered_json alone(const StudyResults& results, const CaseRecord& record) const override {
     return single_study(results, record);
   }
