@@ -84,6 +84,7 @@ StudyPoints::StudyPoints(const answers::Compared& study) : study_(study) {
   for (std::size_t k = 0; k < place.size(); ++k) {
     points_[place[k]].name = matched.name[k];
     points_[place[k]].sharing = matched.sharing[k];
+    if (matched.name[k] >= 0) place_.emplace(std::pair(points_[place[k]].owner, matched.name[k]), place[k]);
   }
   give_names();
 }
@@ -227,9 +228,8 @@ std::vector<CaseLink> StudyPoints::links() const {
 }
 
 const StudyPoint* StudyPoints::find(std::size_t owner, int name) const {
-  const auto found = std::find_if(points_.begin(), points_.end(),
-                                  [&](const StudyPoint& one) { return one.owner == owner && one.name == name; });
-  return found == points_.end() ? nullptr : &*found;
+  const auto found = place_.find({owner, name});
+  return found == place_.end() ? nullptr : &points_[found->second];
 }
 
 PointPresence StudyPoints::presence(std::size_t owner, int name, std::optional<BranchReach>* passed) const {

@@ -1,9 +1,11 @@
 #pragma once
 #include <functional>
+#include <map>
 #include <optional>
 #include <ricochet/measure/attractors/match_points.hpp>
 #include <ricochet/measure/attractors/point_orders.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runners/answers/compared.hpp"
@@ -117,6 +119,7 @@ class StudyPoints {
   std::vector<std::vector<Branch>> branches_;  // of each case
   std::vector<StudyPoint> points_;
   std::vector<PointName> names_;
+  std::map<std::pair<std::size_t, int>, std::size_t> place_;  // in points_: the first of a case with a name
   std::size_t root_ = 0;
   double range_ = 1, tips_ = 0, arcs_ = 0;
 };
