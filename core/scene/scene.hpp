@@ -230,7 +230,6 @@ struct InitialSpec {
   Projection projection = Projection::none;
   std::vector<DofState> dofs = {};               ///< of matrices that are given: those that do not begin at rest at 0
   bool equilibrium = false;                      ///< the displacement is that at rest under F(0) and the stops
-  std::vector<DofState> dofs = {};               ///< of matrices that are given: those that do not begin at rest at 0
   Formula displacement_z = {}, velocity_z = {};  ///< of u_z of a beam in two planes
 };
 

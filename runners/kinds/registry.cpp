@@ -2,6 +2,7 @@
 
 #include "runners/kinds/basins/basins.hpp"
 #include "runners/kinds/bifurcation/bifurcation.hpp"
+#include "runners/kinds/continuation/continuation.hpp"
 #include "runners/kinds/convergence/convergence.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/stability/stability.hpp"
@@ -27,8 +28,8 @@ Registered& registered() {
   static Registered all = [] {
     Registered built_in;
     // A new kind is one more line here.
-    for (KindPointer (*make)() :
-         {trajectory_kind, convergence_kind, work_precision_kind, stability_kind, bifurcation_kind, basins_kind})
+    for (KindPointer (*make)() : {trajectory_kind, convergence_kind, work_precision_kind, stability_kind,
+                                  bifurcation_kind, basins_kind, continuation_kind})
       built_in.add(make());
     return built_in;
   }();

@@ -181,6 +181,11 @@ Json sweep_settings(const Json& resolved) {
   return settings;
 }
 
+void check_swept_pointer(const Json& resolved, const std::string& pointer, const std::string& where,
+                         const Registry& registry) {
+  check_pointer(resolved, pointer, where, registry);
+}
+
 void check_sweep(const Json& resolved, const Json& settings, const Registry& registry, double cases, int dofs) {
   const auto pointers = pointers_of(settings);
   for (std::size_t i = 0; i < pointers.size(); ++i) {

@@ -25,6 +25,10 @@ inline constexpr double largest_results = 16e9;
 /// results beyond largest_results. `cases`: number of combinations of the axes; `dofs`: of the coarsest mesh.
 void check_sweep(const Json& resolved, const Json& settings, const Registry& registry, double cases, int dofs);
 
+/// Refuses, with the pointer `where`, what names no scalar of the scene or of the methods, or a list.
+void check_swept_pointer(const Json& resolved, const std::string& pointer, const std::string& where,
+                         const Registry& registry);
+
 /// Marks the cases whose method does not have the parameter as excluded, writes "swept" where the parameter is an axis
 /// of the methods, and notes its declaration in the others. To be called when the cases are there.
 void mark_sweep(const Json& settings, const Registry& registry, StudyCase& study_case);

@@ -1,0 +1,190 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <ricochet/measure/orbits/branch.hpp>
+#include <utility>
+
+namespace ricochet {
+
+CornerRoots roots_at(const std::vector<std::complex<double>>& multipliers) {
+  constexpr double least_angle = 0.01;
+  CornerRoots roots;
+  roots.outside = outside(multipliers);
+  for (const std::complex<double>& one : multipliers) {
+    if (one.imag() == 0) {
+      if (one.real() < 0 && (roots.real == 0 || std::abs(one.real() + 1) < std::abs(roots.real + 1)))
+        roots.real = one.real();
+      continue;
+    }
+    const double angle = std::arg(one), modulus = std::abs(one);
+    if (angle < least_angle || angle > std::numbers::pi - least_angle) continue;
+    if (roots.modulus != 0 && std::abs(modulus - 1) >= std::abs(roots.modulus - 1)) continue;
+    roots.modulus = modulus;
+    roots.angle = angle;
+  }
+  return roots;
+}
+
+ContactRuns contact_runs(const SetSteps& sets, const SetSequence& sequence, bool half) {
+  ContactRuns runs;
+  const auto n = static_cast<long long>(sequence.size());
+  const auto side = [&](long long k, std::size_t row) {
+    const bool before = k < 0;
+    const int closed = sets[sequence[static_cast<std::size_t>(before ? k + n : k)]].side[row];
+    return before && half ? -closed : closed;
+  };
+  const int rows = sets.measure_rows();
+  for (int row = 0; row < rows; ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    long long begun = -1, first = -1;
+    int count = 0;
+    const auto end = [&](long long length) {
+      runs.shortest = runs.shortest == 0 ? static_cast<int>(length) : std::min(runs.shortest, static_cast<int>(length));
+    };
+    bool closed_at_end = false;
+    for (long long k = 0; k < n; ++k) {
+      if (k > 0 && sequence[static_cast<std::size_t>(k)] == sequence[static_cast<std::size_t>(k - 1)]) continue;
+      const int now = side(k, r), was = side(k - 1, r);
+      if (now == was) continue;
+      if (was != 0 && begun >= 0) end(k - begun);
+      if (was != 0 && begun < 0) first = k;  // a run that goes round the end
+      begun = now != 0 ? k : -1;
+      count += now != 0;
+      closed_at_end = now != 0;
+    }
+    if (closed_at_end && begun >= 0) end(n - begun + std::max(0LL, first));
+    // Closed all the time, or over the end with a change of neither.
+    if (count == 0 && n > 0 && side(0, r) != 0) {
+      count = 1;
+      end(n);
+    }
+    runs.count += count;
+  }
+  return runs;
+}
+
+bool is_image(const SetSteps& sets, const SetSequence& sequence) {
+  const std::size_t half = sequence.size() / 2;
+  if (sequence.size() % 2 != 0) return false;
+  for (std::size_t k = 0; k < half; ++k)
+    if (!sets.mirrors(sequence[k], sequence[k + half])) return false;
+  return true;
+}
+
+BranchRun::BranchRun(PeriodicMap& map, const MapClock& clock, PieceFollower follower, BranchLimits limits)
+    : map_(&map), clock_(clock), follower_(std::move(follower)), limits_(std::move(limits)) {
+  first_ = follower_.state().sets;
+  read();
+  keep(true);
+}
+
+BranchRun::BranchRun(PeriodicMap& map, const MapClock& clock, PieceFollower follower, BranchLimits limits,
+                     BranchTrace trace, SetSequence first_sets)
+    : map_(&map),
+      clock_(clock),
+      follower_(std::move(follower)),
+      limits_(std::move(limits)),
+      trace_(std::move(trace)),
+      first_(std::move(first_sets)) {}
+
+void BranchRun::read() {
+  const BranchState& state = follower_.state();
+  BranchCorner corner;
+  corner.parameter = state.parameter;
+  corner.arc = state.arc;
+  corner.tip = map_->tip(state.x, state.parameter);
+  corner.way = state.parameter_along < 0 ? -1 : 1;
+  const ContactRuns runs = contact_runs(map_->sets(), state.sets, clock_.half);
+  corner.runs = runs.count;
+  corner.shortest = runs.shortest;
+  corner.change = state.change;
+  std::vector<std::complex<double>> raw = multipliers_of(follower_.derivative());
+  corner.raw = roots_at(raw);
+  corner.smooth = runs.count == 0 ? corner.raw
+                                  : roots_at(multipliers_of(half_step_derivative(
+                                        *map_, state.sets, clock_, state.parameter, follower_.measures())));
+  raw.resize(std::min(raw.size(), static_cast<std::size_t>(limits_.multipliers)));
+  corner.leading = std::move(raw);
+  trace_.corners.push_back(std::move(corner));
+}
+
+// Every so many corners, and those at which something changes.
+void BranchRun::keep(bool special) {
+  const auto number = static_cast<long long>(trace_.corners.size()) - 1;
+  if (!special && number % trace_.stride != 0) return;
+  trace_.states.emplace(number, follower_.state().x);
+  if (special || static_cast<std::size_t>(number / trace_.stride) < limits_.most_states) return;
+  const auto regular = [&](long long at) {
+    if (at == 0) return false;
+    const BranchCorner &now = trace_.corners[static_cast<std::size_t>(at)],
+                       &was = trace_.corners[static_cast<std::size_t>(at - 1)];
+    return now.way == was.way && now.runs == was.runs && now.raw.outside == was.raw.outside;
+  };
+  trace_.stride *= 2;
+  std::erase_if(trace_.states, [&](const auto& one) { return one.first % trace_.stride != 0 && regular(one.first); });
+}
+
+void BranchRun::finish(const Piece& piece) {
+  const BranchState& state = follower_.state();
+  if (piece.end == BranchEnd::range)
+    trace_.end = fmt::format("the range ends at {:.10g}", state.parameter);
+  else if (piece.end == BranchEnd::unresolved)
+    trace_.end = fmt::format("the branch was left at {:.10g}: {}", state.parameter, piece.why);
+}
+
+bool BranchRun::advance(long long pieces) {
+  // Of the affine steps against the map that is marched: beyond it the sets are not those of an orbit any more.
+  constexpr double largest_residual = 1e-8;  // m
+  for (; pieces > 0 && !trace_.ended(); --pieces) {
+    const Piece piece = follower_.look(limits_.least, limits_.largest);
+    trace_.corners.back().residual = piece.residual;
+    const BranchState before = follower_.state();
+    if (piece.end == BranchEnd::unresolved || piece.residual > largest_residual) {
+      Piece last = piece;
+      last.end = BranchEnd::unresolved;
+      if (last.why.empty()) last.why = fmt::format("the residual is {:.3g} m", piece.residual);
+      finish(last);
+      break;
+    }
+    for (const double mark : limits_.marks) {
+      const double s = (mark - before.parameter) / before.parameter_along;
+      if (!(s >= 0) || s >= piece.length) continue;
+      BranchState there = follower_.at(s);
+      const double tip = map_->tip(there.x, mark);
+      trace_.marks.push_back(
+          {mark, there.arc, tip, static_cast<long long>(trace_.corners.size()) - 1, std::move(there.x)});
+    }
+    follower_.go(piece);
+    if (piece.end != BranchEnd::none) {
+      finish(piece);
+      const BranchState& last = follower_.state();
+      BranchCorner corner = trace_.corners.back();
+      corner.parameter = last.parameter;
+      corner.arc = last.arc;
+      corner.tip = map_->tip(last.x, last.parameter);
+      corner.change = {};
+      trace_.corners.push_back(std::move(corner));
+      trace_.states.emplace(static_cast<long long>(trace_.corners.size()) - 1, last.x);
+      break;
+    }
+    read();
+    const auto size = trace_.corners.size();
+    const BranchCorner &now = trace_.corners[size - 1], &was = trace_.corners[size - 2];
+    const bool closed = follower_.state().sets == first_;
+    keep(now.way != was.way || now.runs != was.runs || !(now.raw.outside == was.raw.outside) || closed);
+    if (limits_.ends_at_image && is_image(map_->sets(), follower_.state().sets))
+      trace_.end = fmt::format("its orbits become their own images at {:.10g}", now.parameter);
+    else if (closed)
+      trace_.end = "closed: the branch came back to its first piece";
+    else if (follower_.state().pieces >= limits_.pieces)
+      trace_.end = fmt::format("{} pieces, the most that the study allows", limits_.pieces);
+    else if (follower_.state().arc >= limits_.arc)
+      trace_.end = fmt::format("an arc of {:g} m, the longest that the study allows", limits_.arc);
+    if (trace_.ended()) trace_.states.emplace(static_cast<long long>(size) - 1, follower_.state().x);
+  }
+  return !trace_.ended();
+}
+
+}  // namespace ricochet

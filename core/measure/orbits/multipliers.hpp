@@ -1,0 +1,37 @@
+#pragma once
+#include <Eigen/Core>
+#include <complex>
+#include <optional>
+#include <ricochet/measure/orbits/periodic_map.hpp>
+#include <vector>
+
+namespace ricochet {
+
+/// Eigenvalues of the derivative of a map, largest modulus first; empty where the iteration failed. `without_kernel`:
+/// those at −1 (to 1e-6) that a scheme has on the kernel of a singular mass are left out, that many at most.
+std::vector<std::complex<double>> multipliers_of(Eigen::MatrixXd derivative, int without_kernel = 0);
+
+/// How many multipliers are where.
+struct Outside {
+  int total = 0;  ///< |μ| > 1
+  int above = 0;  ///< real, > 1
+  int below = 0;  ///< real, < −1
+  int pairs = 0;  ///< complex, |μ| > 1, counted once
+  bool operator==(const Outside&) const = default;
+};
+Outside outside(const std::vector<std::complex<double>>& multipliers);
+
+/// The derivative of sign · P with the half-step rule. Where a contact set changes from one step to the next, θ =
+/// m₀/(m₀
+/// + m₁) is where in the step the motion would change it: m₀ and m₁ are the margins of the free measure to the bound
+/// before and after. The derivative of
+///
+///     θ < ½: the step before the change   (½ + θ) old + (½ − θ) new
+///     θ ≥ ½: the first step after it      (θ − ½) old + (3/2 − θ) new
+///
+/// is that of the frozen sets at θ = ½ and continuous where a change moves from step to step. Of a step that both ends
+/// of a run would blend the later one counts. `measures`: of the sweep that the sets belong to.
+Eigen::MatrixXd half_step_derivative(PeriodicMap& map, const SetSequence& sets, const MapClock& clock, double parameter,
+                                     const PeriodicMap::Measures& measures);
+
+}  // namespace ricochet

@@ -1,0 +1,387 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ricochet/engine/march_loads.hpp>
+#include <ricochet/engine/stage_state.hpp>
+#include <ricochet/measure/orbits/periodic_map.hpp>
+
+namespace ricochet {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+LaneSpec AffineLane::lane(double parameter) const {
+  LaneSpec spec = origin;
+  const double by = parameter - at;
+  spec.amplitude += by * amplitude;
+  spec.lower += by * lower;
+  spec.upper += by * upper;
+  return spec;
+}
+
+std::optional<AffineLane> affine_lane(const LaneSpec& first, double at_first, const LaneSpec& second,
+                                      double at_second) {
+  if (first.phase != second.phase || first.law.values() != second.law.values()) return std::nullopt;
+  if (first.lower.size() != second.lower.size()) return std::nullopt;
+  const double by = at_second - at_first;
+  const auto slope = [&](double a, double b) { return a == b ? 0.0 : (b - a) / by; };
+  AffineLane affine{first, at_first, slope(first.amplitude, second.amplitude), first.lower, first.upper};
+  for (Index i = 0; i < first.lower.size(); ++i) {
+    affine.lower[i] = slope(first.lower[i], second.lower[i]);
+    affine.upper[i] = slope(first.upper[i], second.upper[i]);
+  }
+  if (!affine.lower.allFinite() || !affine.upper.allFinite()) return std::nullopt;
+  return affine;
+}
+
+bool passes_through(const AffineLane& affine, const LaneSpec& lane, double at) {
+  constexpr double round_off = 1e-12;
+  const LaneSpec found = affine.lane(at);
+  const auto same = [&](double a, double b) { return a == b || std::abs(a - b) <= round_off * std::abs(b); };
+  if (lane.phase != found.phase || lane.law.values() != found.law.values() || !same(found.amplitude, lane.amplitude))
+    return false;
+  for (Index i = 0; i < lane.lower.size(); ++i)
+    if (!same(found.lower[i], lane.lower[i]) || !same(found.upper[i], lane.upper[i])) return false;
+  return true;
+}
+
+// Which block of LaneState::efforts holds p₋ₖ at the beginning of a step: as Marcher lays them out.
+StateVector::StateVector(const Program& program, int past_efforts)
+    : slots_(program.plan.slots.size() * static_cast<std::size_t>(program.model->rows())),
+      points_(program.contact ? program.problem->points() : 0) {
+  const auto stages = static_cast<std::ptrdiff_t>(program.stages.size());
+  const auto reads = [&](std::ptrdiff_t i) { return program.stages[static_cast<std::size_t>(i)].reads_contact; };
+  std::vector<std::size_t> blocks(program.stages.size(), 0);
+  for (std::ptrdiff_t i = 0; i < stages; ++i)
+    if (points_ > 0 && reads(i)) blocks[static_cast<std::size_t>(i)] = 1;
+  for (std::ptrdiff_t i = 0; i < stages; ++i) {
+    if (points_ == 0 || !reads(i)) continue;
+    const StageProgram& stage = program.stages[static_cast<std::size_t>(i)];
+    const auto weights = static_cast<std::ptrdiff_t>(std::max(stage.effort.size(), stage.work_effort.size()));
+    for (std::ptrdiff_t k = 1; k < weights; ++k) {
+      const auto [j, steps] = place_in_steps(i - k, stages);
+      if (!reads(j)) continue;
+      std::size_t& count = blocks[static_cast<std::size_t>(j)];
+      count = std::max(count, (j > i ? steps - 1 : steps) + 1);
+    }
+  }
+  for (int k = 1; k <= past_efforts; ++k) {
+    const auto [j, steps] = place_in_steps(-k, stages);
+    std::ptrdiff_t begin = 0;
+    for (std::ptrdiff_t i = 0; i < j; ++i) begin += static_cast<std::ptrdiff_t>(blocks[static_cast<std::size_t>(i)]);
+    const bool there = points_ > 0 && reads(j) && steps - 1 < blocks[static_cast<std::size_t>(j)];
+    efforts_.push_back(there ? (begin + static_cast<std::ptrdiff_t>(steps) - 1) * points_ : -1);
+  }
+}
+
+VectorXd StateVector::read(const LaneState& state) const {
+  VectorXd x = VectorXd::Zero(static_cast<Index>(slots_) + static_cast<Index>(efforts_.size()) * points_);
+  std::copy_n(state.slots.begin(), slots_, x.data());
+  double* to = x.data() + slots_;
+  for (const std::ptrdiff_t from : efforts_) {
+    if (from >= 0) std::copy_n(state.efforts.begin() + from, points_, to);
+    to += points_;
+  }
+  return x;
+}
+
+void StateVector::write(const VectorXd& x, LaneState& state) const {
+  std::copy_n(x.data(), slots_, state.slots.begin());
+  const double* from = x.data() + slots_;
+  for (const std::ptrdiff_t to : efforts_) {
+    if (to >= 0) std::copy_n(from, points_, state.efforts.begin() + to);
+    from += points_;
+  }
+}
+
+namespace {
+
+// The nodal displacements of a structure: of an element with slopes the first and the third dof of four.
+std::vector<int> displacements_of(const SemiDiscrete& problem) {
+  std::vector<int> dofs;
+  const auto add = [&](int dof) {
+    if (dof >= 0 && std::find(dofs.begin(), dofs.end(), dof) == dofs.end()) dofs.push_back(dof);
+  };
+  const bool hermite = problem.space.basis == FiniteElementSpace::Basis::hermite;
+  for (const FiniteElementSpace::Element& element : problem.space.elements)
+    for (const int local : {0, hermite ? 2 : 1}) add(element.dof[static_cast<std::size_t>(local)]);
+  if (dofs.empty())
+    for (int i = 0; i < problem.dofs(); ++i) add(i);
+  return dofs;
+}
+
+}  // namespace
+
+StateMetric::StateMetric(const Program& program, int state_size, double parameter_metres) : metres_(parameter_metres) {
+  const SemiDiscrete& problem = *program.problem;
+  const MarchModel& model = *program.model;
+  const int rows = model.rows();
+  MatrixXd readings;  // of a slot
+  if (problem.in_modes()) {
+    readings = MatrixXd::Zero(1, rows);
+    for (int i = 0; i < rows; ++i) readings(0, i) = model.tip().times(0, VectorXd(VectorXd::Unit(rows, i)).data());
+  } else {
+    const std::vector<int> dofs = displacements_of(problem);
+    readings.resize(static_cast<Index>(dofs.size()), rows);
+    for (int i = 0; i < rows; ++i) {
+      const VectorXd nodal = model.to_nodal(VectorXd::Unit(rows, i));
+      for (std::size_t d = 0; d < dofs.size(); ++d) readings(static_cast<Index>(d), i) = nodal[dofs[d]];
+    }
+  }
+  readings /= std::sqrt(static_cast<double>(readings.rows()));
+  const double omega = problem.support.pulsation != 0 ? problem.support.pulsation : 1 / program.h;
+  const auto& initial = program.plan.initial;
+  rows_ = MatrixXd::Zero(readings.rows() * static_cast<Index>(initial.size()), state_size);
+  for (std::size_t j = 0; j < initial.size(); ++j) {
+    const auto& [position, velocity] = initial[j];
+    const double weight =
+        position != 0 ? 1.0 : (velocity != 0 ? 1 / (std::abs(velocity) * omega) : 1 / (omega * omega));
+    rows_.block(static_cast<Index>(j) * readings.rows(), static_cast<Index>(j) * rows, readings.rows(), rows) =
+        weight * readings;
+  }
+}
+
+double StateMetric::size(const VectorXd& x, double parameter) const {
+  return std::hypot((rows_ * x).norm(), metres_ * parameter);
+}
+
+class PeriodicMap::Recorder final : public StepObserver {
+ public:
+  Recorder(SetSteps& sets, bool depth) : sets_(sets), depth_(depth) {}
+  void stage_solved(const Marcher& marcher, const StageView& view) override {
+    if (view.contact_lanes == 0) return;
+    for (const int point : view.pushed)
+      set_.push_back({view.stage, point, view.effort[0][static_cast<std::ptrdiff_t>(point) * marcher.width()] < 0});
+  }
+  void step_done(Marcher& marcher) override {
+    found.push_back(set_.empty() ? 0 : sets_.number(set_));
+    if (depth_ && !set_.empty()) deepest = std::max(deepest, marcher.penetration(0));
+    set_.clear();
+  }
+  SetSequence found;
+  double deepest = 0;
+
+ private:
+  SetSteps& sets_;
+  bool depth_;
+  ContactSet set_;
+};
+
+namespace {
+
+Program checked(Program program) {
+  if (const auto reason = SetSteps::refusal(program)) throw Refusal{*reason};
+  return program;
+}
+
+}  // namespace
+
+PeriodicMap::PeriodicMap(Program program, AffineLane lanes, double parameter_metres, AffineLoad load)
+    : marcher_(checked(std::move(program))),
+      lanes_(std::move(lanes)),
+      sets_(marcher_.program()),
+      vector_(marcher_.program(), sets_.past_efforts()),
+      metric_(marcher_.program(), sets_.state_size(), parameter_metres),
+      template_(marcher_.lane_state(0)),
+      affine_load_(std::move(load)) {
+  const MarchModel& model = *this->program().model;
+  tip_ = Eigen::RowVectorXd::Zero(model.rows());
+  for (int i = 0; i < model.rows(); ++i)
+    tip_[i] = model.times(model.tip(), 0, VectorXd(VectorXd::Unit(model.rows(), i)).data());
+}
+
+double PeriodicMap::tip(const VectorXd& x, double parameter) const {
+  const double A = lanes_.origin.amplitude + (parameter - lanes_.at) * lanes_.amplitude;
+  return tip_.dot(x.head(tip_.size())) + A * std::sin(lanes_.origin.phase);
+}
+
+Marcher& PeriodicMap::marcher_at(double parameter) {
+  if (!affine_load_.program || parameter == lanes_.at) return marcher_;
+  if (!other_ || other_at_ != parameter) {
+    other_.reset();
+    other_.emplace(affine_load_.program(parameter));
+    other_at_ = parameter;
+  }
+  return *other_;
+}
+
+MapMarch PeriodicMap::march(const VectorXd& x, double parameter, const MapClock& clock, bool read) {
+  MapMarch made;
+  Marcher& marcher = marcher_at(parameter);
+  LaneState state = template_;
+  vector_.write(x, state);
+  marcher.set_clock(0);
+  marcher.set_lane(0, lanes_.lane(parameter), state);
+  Recorder recorder(sets_, read);
+  const long long steps = clock.steps();
+  recorder.found.reserve(static_cast<std::size_t>(steps));
+  double first = 0, last = 0;
+  if (read) {
+    made.tip = marcher.tip(0);
+    marcher.march(1, &recorder);
+    first = marcher.tip(0);
+    marcher.march(steps - 2, &recorder);
+    last = marcher.tip(0);
+    marcher.march(1, &recorder);
+    made.tip_velocity = (first - clock.sign() * last) / (2 * program().h);
+  } else {
+    marcher.march(steps, &recorder);
+  }
+  made.end = marcher.status(0).end;
+  made.image = clock.sign() * vector_.read(marcher.lane_state(0));
+  made.sets = std::move(recorder.found);
+  made.penetration = recorder.deepest;
+  return made;
+}
+
+MatrixXd PeriodicMap::derivative(const SetSequence& sets, const MapClock& clock) {
+  MatrixXd product = MatrixXd::Identity(size(), size());
+  for (std::size_t begin = 0; begin < sets.size();) {
+    std::size_t end = begin;
+    while (end < sets.size() && sets[end] == sets[begin]) ++end;
+    sets_.apply(sets[begin], static_cast<long long>(end - begin), product);
+    begin = end;
+  }
+  return clock.sign() * product;
+}
+
+void PeriodicMap::set_period(int steps_per_period) {
+  if (clocked_ == steps_per_period) return;
+  clocked_ = steps_per_period;
+  const Program& own = program();
+  const double omega = own.problem->support.pulsation, phase = lanes_.origin.phase;
+  sine_.clear();
+  cosine_.clear();
+  for (int k = 0; k < steps_per_period; ++k) {
+    const double angle = omega * (k * own.h);
+    sine_.push_back(std::sin(angle) * std::cos(phase) + std::cos(angle) * std::sin(phase));
+    cosine_.push_back(std::cos(angle) * std::cos(phase) - std::sin(angle) * std::sin(phase));
+  }
+  if (!own.load) return;
+  const auto table = [&](const Program& of) {
+    const int rows = of.model->rows();
+    MatrixXd loads(sets_.layout().loads, steps_per_period);
+    LoadWindow window(of);
+    for (int k = 0; k < steps_per_period; ++k)
+      for (std::size_t stage = 0; stage < of.stages.size(); ++stage)
+        std::copy_n(window.sum(of.plan.stages[stage].load, k * of.h), rows,
+                    loads.col(k).data() + static_cast<Index>(stage) * rows);
+    return loads;
+  };
+  loads_ = table(own);
+  load_slopes_ = MatrixXd::Zero(loads_.rows(), loads_.cols());
+  if (affine_load_.program)
+    load_slopes_ = (table(affine_load_.program(affine_load_.other)) - loads_) / (affine_load_.other - lanes_.at);
+}
+
+double PeriodicMap::bound(int row, bool upper, double parameter, bool direction) const {
+  const Index point = sets_.place(row).point;
+  const Eigen::VectorXd &origin = upper ? lanes_.origin.upper : lanes_.origin.lower,
+                        &slope = upper ? lanes_.upper : lanes_.lower;
+  const double layer = program().law->layer(0);
+  if (direction) return parameter * slope[point];
+  return origin[point] + (parameter - lanes_.at) * slope[point] + (upper ? -layer : layer);
+}
+
+// What the bounds bring into a step with this set.
+VectorXd PeriodicMap::constant_drive(int set, const Column& column) const {
+  const DriveLayout& layout = sets_.layout();
+  const SetStep& step = sets_[set];
+  VectorXd sum = VectorXd::Zero(step.drive.rows());
+  for (const SetPoint& one : step.closed)
+    sum += bound(sets_.row_of(one), one.upper, column.parameter, column.direction) *
+           step.drive.col(one.upper ? layout.upper(one.point) : layout.lower(one.point));
+  return sum;
+}
+
+namespace {
+
+// y = E x for one or two columns, E rows × D by columns.
+template <int Columns>
+void multiply(const MatrixXd& E, const double* const* x, double* const* y) {
+  const Index rows = E.rows(), D = E.cols();
+  for (int c = 0; c < Columns; ++c) std::fill_n(y[c], rows, 0.0);
+  Index j = 0;
+  for (; j + 4 <= D; j += 4) {
+    const double *e0 = E.col(j).data(), *e1 = e0 + rows, *e2 = e1 + rows, *e3 = e2 + rows;
+    for (int c = 0; c < Columns; ++c) {
+      const double a = x[c][j], b = x[c][j + 1], d = x[c][j + 2], f = x[c][j + 3];
+      double* out = y[c];
+      for (Index i = 0; i < rows; ++i) out[i] += (a * e0[i] + b * e1[i]) + (d * e2[i] + f * e3[i]);
+    }
+  }
+  for (; j < D; ++j)
+    for (int c = 0; c < Columns; ++c) {
+      const double* e = E.col(j).data();
+      const double a = x[c][j];
+      for (Index i = 0; i < rows; ++i) y[c][i] += a * e[i];
+    }
+}
+
+}  // namespace
+
+void PeriodicMap::sweep(const SetSequence& sets, const MapClock& clock, std::vector<Column>& columns,
+                        Measures* measures) {
+  set_period(clock.steps_per_period);
+  const Index D = size(), rows = sets_.measure_rows(), all = D + rows;
+  const std::size_t count = columns.size();
+  std::vector<std::vector<VectorXd>> constants(static_cast<std::size_t>(sets_.count()));
+  std::vector<VectorXd> now(count), next(count, VectorXd::Zero(all));
+  std::vector<double> amplitude(count);
+  for (std::size_t c = 0; c < count; ++c) {
+    now[c] = VectorXd::Zero(all);
+    now[c].head(D) = columns[c].x;
+    amplitude[c] = columns[c].direction
+                       ? columns[c].parameter * lanes_.amplitude
+                       : lanes_.origin.amplitude + (columns[c].parameter - lanes_.at) * lanes_.amplitude;
+  }
+  if (measures) {
+    measures->value.resize(sets.size() * static_cast<std::size_t>(rows));
+    measures->slope.resize(measures->value.size());
+  }
+  const bool support = program().support;
+  const DriveLayout& layout = sets_.layout();
+  for (std::size_t k = 0; k < sets.size(); ++k) {
+    const SetStep& step = sets_[sets[k]];
+    std::vector<VectorXd>& constant = constants[static_cast<std::size_t>(sets[k])];
+    if (constant.empty())
+      for (const Column& column : columns) constant.push_back(constant_drive(sets[k], column));
+    const auto at = static_cast<Index>(k % static_cast<std::size_t>(clock.steps_per_period));
+    const double* x[2] = {now[0].data(), count > 1 ? now[1].data() : nullptr};
+    double* y[2] = {next[0].data(), count > 1 ? next[1].data() : nullptr};
+    count > 1 ? multiply<2>(step.state, x, y) : multiply<1>(step.state, x, y);
+    for (std::size_t c = 0; c < count; ++c) {
+      next[c] += constant[c];
+      if (support)
+        next[c] += amplitude[c] * (sine_[static_cast<std::size_t>(at)] * step.drive.col(0) +
+                                   cosine_[static_cast<std::size_t>(at)] * step.drive.col(1));
+      if (layout.loads == 0) continue;
+      VectorXd load = (columns[c].parameter - (columns[c].direction ? 0 : lanes_.at)) * load_slopes_.col(at);
+      if (!columns[c].direction) load += loads_.col(at);
+      next[c] += step.drive.rightCols(layout.loads) * load;
+    }
+    if (measures) {
+      const auto from = static_cast<std::ptrdiff_t>(k) * rows;
+      std::copy_n(next[0].data() + D, rows, measures->value.begin() + from);
+      if (count > 1) std::copy_n(next[1].data() + D, rows, measures->slope.begin() + from);
+    }
+    std::swap(now, next);
+  }
+  for (std::size_t c = 0; c < count; ++c) columns[c].x = clock.sign() * now[c].head(D);
+}
+
+std::optional<LaneState> settle(Program program, int steps_per_period, int periods, LaneEnd& end) {
+  Marcher marcher(std::move(program));
+  marcher.start();
+  marcher.march(steps_per_period - marcher.step());
+  for (int n = 1; n < periods && marcher.any_running(); ++n) {
+    marcher.set_clock(0);
+    marcher.march(steps_per_period);
+  }
+  end = marcher.status(0).end;
+  if (end) return std::nullopt;
+  return marcher.lane_state(0);
+}
+
+}  // namespace ricochet

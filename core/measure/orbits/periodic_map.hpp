@@ -1,0 +1,153 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/orbits/set_steps.hpp>
+#include <vector>
+
+/// \file
+/// P(x, λ): what a program makes of a state in one forcing period, or in half of one with the sign changed. An orbit of
+/// period p solves P^p(x, λ) = x; one that is its own image under x → −x, t → t + T/2 solves −P½(x, λ) = x.
+namespace ricochet {
+
+/// Lanes whose amplitude and stops are affine in λ.
+struct AffineLane {
+  LaneSpec origin;  ///< at λ = at
+  double at = 0;
+  double amplitude = 0;          ///< dA/dλ
+  Eigen::VectorXd lower, upper;  ///< of the bounds
+  LaneSpec lane(double parameter) const;
+};
+/// The affine lane through two, or nothing where phases or laws differ.
+std::optional<AffineLane> affine_lane(const LaneSpec& first, double at_first, const LaneSpec& second, double at_second);
+/// Whether it gives this one, to round-off.
+bool passes_through(const AffineLane& affine, const LaneSpec& lane, double at);
+
+/// Over which steps a map goes, on a clock that begins at t = 0.
+struct MapClock {
+  int steps_per_period = 0;
+  int period = 1;     ///< p
+  bool half = false;  ///< over p/2 periods, with the sign changed; p odd
+  long long steps() const { return static_cast<long long>(period) * steps_per_period / (half ? 2 : 1); }
+  double sign() const { return half ? -1.0 : 1.0; }
+  bool operator==(const MapClock&) const = default;
+};
+
+/// The contact set of each step, by its number in SetSteps.
+using SetSequence = std::vector<int>;
+
+/// What one march of the map shows.
+struct MapMarch {
+  Eigen::VectorXd image;             ///< sign · P
+  SetSequence sets;                  ///< empty where the program has no steps by sets
+  LaneEnd end;                       ///< none: the march went to its end
+  double tip = 0, tip_velocity = 0;  ///< at the strobe, absolute; the velocity central over two steps
+  double penetration = 0;            ///< m
+};
+
+/// The state of one lane as numbers, and back.
+class StateVector {
+ public:
+  explicit StateVector(const Program& program, int past_efforts);
+  Eigen::VectorXd read(const LaneState& state) const;
+  /// What is not part of x stays as `state` has it.
+  void write(const Eigen::VectorXd& x, LaneState& state) const;
+
+ private:
+  std::size_t slots_ = 0;
+  std::vector<std::ptrdiff_t> efforts_;  // where p₋₁, p₋₂, … stand in LaneState::efforts; −1: no such effort
+  int points_ = 0;
+};
+
+/// How long states are: over the nodal displacements of the position, and those of velocities over ω, their root mean
+/// square; the parameter over its scale. m.
+class StateMetric {
+ public:
+  StateMetric(const Program& program, int state_size, double parameter_metres);
+  double size(const Eigen::VectorXd& x, double parameter = 0) const;
+  /// Weighted readings over x: size² = |rows x|² + (metres λ)².
+  const Eigen::MatrixXd& rows() const { return rows_; }
+  double parameter_metres() const { return metres_; }
+
+ private:
+  Eigen::MatrixXd rows_;  // of all weighted readings over x
+  double metres_;
+};
+
+/// Loads that are affine in λ: what makes a program at a value, and another value than that of the lanes' origin.
+/// Without a program loads are the same at every value.
+struct AffineLoad {
+  std::function<Program(double parameter)> program;
+  double other = 0;
+};
+
+/// The map by marching, and what its contact sets make of it: image and derivatives are affine in (x, λ) as long as the
+/// sets stay. One lane; not to be shared between threads.
+class PeriodicMap {
+ public:
+  /// `program` has one lane and no tangents. Throws Refusal where SetSteps refuses it.
+  PeriodicMap(Program program, AffineLane lanes, double parameter_metres, AffineLoad load = {});
+
+  PeriodicMap(const PeriodicMap&) = delete;
+
+  int size() const { return sets_.state_size(); }
+  const StateMetric& metric() const { return metric_; }
+  SetSteps& sets() { return sets_; }
+  const SetSteps& sets() const { return sets_; }
+  const Program& program() const { return marcher_.program(); }
+  const AffineLane& lanes() const { return lanes_; }
+  const StateVector& vector() const { return vector_; }
+
+  /// Marches from x. `read`: tip and penetration are wanted too.
+  MapMarch march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool read = false);
+  /// ∂(sign·P)/∂x with these sets.
+  Eigen::MatrixXd derivative(const SetSequence& sets, const MapClock& clock);
+
+  /// One column that goes over the steps: of states (drives at λ) or of directions (drives per λ, times `parameter`).
+  struct Column {
+    Eigen::VectorXd x;
+    double parameter = 0;  ///< λ, or dλ
+    bool direction = false;
+  };
+  /// Rows of v over the steps, rows × steps.
+  struct Measures {
+    std::vector<double> value, slope;
+  };
+  /// Marches columns over given sets: their images, sign included. `measures`: v of the first column, and of the second
+  /// as slope.
+  void sweep(const SetSequence& sets, const MapClock& clock, std::vector<Column>& columns,
+             Measures* measures = nullptr);
+  /// The bounds that a row of v is held against, at λ or per λ; infinite where there is none.
+  double bound(int row, bool upper, double parameter, bool direction) const;
+  /// Displacement of the tip of a state at t = 0, absolute.
+  double tip(const Eigen::VectorXd& x, double parameter) const;
+
+ private:
+  class Recorder;
+  Eigen::VectorXd constant_drive(int set, const Column& column) const;
+  Marcher& marcher_at(double parameter);
+
+  Marcher marcher_;
+  AffineLane lanes_;
+  SetSteps sets_;
+  StateVector vector_;
+  StateMetric metric_;
+  LaneState template_;
+  Eigen::RowVectorXd tip_;
+  std::vector<double> sine_, cosine_;    // of ωt + ψ at the steps of a period
+  Eigen::MatrixXd loads_, load_slopes_;  // stages n × steps of a period, at the origin and per λ; empty without load
+  AffineLoad affine_load_;
+  std::optional<Marcher> other_;  // with the loads of another value
+  double other_at_ = 0;
+  int clocked_ = 0;
+  void set_period(int steps_per_period);
+};
+
+/// The state of a lane after so many periods from its own initial state, under the start rule, at a strobe; nothing
+/// where it stopped, with the cause in `end`.
+std::optional<LaneState> settle(Program program, int steps_per_period, int periods, LaneEnd& end);
+
+}  // namespace ricochet

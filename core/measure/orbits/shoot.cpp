@@ -1,0 +1,63 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ricochet/measure/orbits/shoot.hpp>
+#include <utility>
+
+namespace ricochet {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+ShotOrbit shoot(PeriodicMap& map, VectorXd x, double parameter, const MapClock& clock, double tolerance, int most) {
+  ShotOrbit orbit;
+  orbit.parameter = parameter;
+  orbit.nearest = std::numeric_limits<double>::infinity();
+  constexpr double largest_round_off = 1e-9;  // m
+  SetSequence before;
+  const MatrixXd one = MatrixXd::Identity(map.size(), map.size());
+  for (;; ++orbit.iterations) {
+    MapMarch made = map.march(x, parameter, clock);
+    orbit.end = made.end;
+    if (made.end) break;
+    const VectorXd left = made.image - x;
+    const double last = std::exchange(orbit.residual, map.metric().size(left));
+    orbit.nearest = std::min(orbit.nearest, orbit.residual);
+    before = std::exchange(orbit.sets, std::move(made.sets));
+    // With the sets of an orbit one iteration is exact: what a second one leaves is round-off.
+    const bool settled = orbit.iterations > 1 && before == orbit.sets && orbit.residual < largest_round_off;
+    orbit.found = orbit.residual <= tolerance || (settled && orbit.residual > 0.1 * last);
+    if (orbit.found || orbit.iterations == most || !std::isfinite(orbit.residual)) break;
+    const VectorXd correction = DenseLu(one - map.derivative(orbit.sets, clock)).solve(left);
+    if (!correction.allFinite()) break;
+    x += correction;
+  }
+  orbit.x = std::move(x);
+  for (std::size_t k = 0; !orbit.found && k < before.size() && orbit.step < 0; ++k) {
+    if (before[k] == orbit.sets[k]) continue;
+    orbit.step = static_cast<long long>(k);
+    const std::vector<int>&was = map.sets()[before[k]].side, &is = map.sets()[orbit.sets[k]].side;
+    orbit.row = static_cast<int>(std::mismatch(was.begin(), was.end(), is.begin()).first - was.begin());
+  }
+  return orbit;
+}
+
+std::optional<VectorXd> free_orbit(PeriodicMap& map, double parameter, const MapClock& clock) {
+  const SetSequence open(static_cast<std::size_t>(clock.steps()), 0);
+  std::vector<PeriodicMap::Column> column = {{VectorXd::Zero(map.size()), parameter, false}};
+  map.sweep(open, clock, column);
+  const MatrixXd one = MatrixXd::Identity(map.size(), map.size());
+  const VectorXd x = DenseLu(one - map.derivative(open, clock)).solve(column.front().x);
+  if (!x.allFinite()) return std::nullopt;
+  return x;
+}
+
+double round_off_of_map(PeriodicMap& map, const VectorXd& x, double parameter, const MapClock& clock) {
+  VectorXd near = x;
+  for (double& number : near)
+    if (number != 0) number = std::nextafter(number, std::numeric_limits<double>::infinity());
+  const VectorXd first = map.march(x, parameter, clock).image, second = map.march(near, parameter, clock).image;
+  return std::max(map.metric().size(second - first), std::numeric_limits<double>::epsilon() * map.metric().size(x));
+}
+
+}  // namespace ricochet

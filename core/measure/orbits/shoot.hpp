@@ -1,0 +1,38 @@
+#pragma once
+#include <ricochet/measure/orbits/periodic_map.hpp>
+#include <string>
+
+namespace ricochet {
+
+/// A periodic orbit as far as Newton's method came.
+struct ShotOrbit {
+  bool found = false;
+  Eigen::VectorXd x;
+  double parameter = 0;
+  SetSequence sets;  ///< of the last march
+  int iterations = 0;
+  double residual = 0;  ///< |P(x) − x|, m
+  double nearest = 0;   ///< the least residual met, m
+  LaneEnd end;          ///< of a march that stopped
+  /// Of residuals that alternate: a step and a row of v in which the last two contact sets differ; −1: none.
+  long long step = -1;
+  int row = -1;
+};
+
+/// P(x, λ) = x by Newton's method with the derivative at the contact sets of each march: exact once the sets are those
+/// of the orbit. Converged where the residual is at most `tolerance`, or the sets stay and it falls no more; at most
+/// `most` iterations.
+ShotOrbit shoot(PeriodicMap& map, Eigen::VectorXd x, double parameter, const MapClock& clock, double tolerance,
+                int most = 30);
+
+/// The fixed point with all points open, whatever the stops. Nothing where 1 is a multiplier of it.
+std::optional<Eigen::VectorXd> free_orbit(PeriodicMap& map, double parameter, const MapClock& clock);
+
+/// What round-off makes of a period: the distance between the images of x and of a state one unit in the last place
+/// away in every number, m.
+double round_off_of_map(PeriodicMap& map, const Eigen::VectorXd& x, double parameter, const MapClock& clock);
+
+/// How many units of round-off count as none.
+inline constexpr double round_offs = 30;
+
+}  // namespace ricochet

@@ -1,0 +1,56 @@
+#pragma once
+#include <optional>
+#include <ricochet/measure/orbits/branch.hpp>
+#include <string>
+#include <vector>
+
+namespace ricochet {
+
+/// A special point of a branch.
+struct SpecialPoint {
+  std::string kind;   ///< fold, symmetry, flip, torus, contact, mark, end
+  std::string label;  ///< LP, BP, PD, TR, GR, UZ, EP
+  long long corner = 0;
+  double parameter = 0, low = 0, high = 0, arc = 0, tip = 0;
+  std::optional<std::complex<double>> multiplier;
+  int crossings = 0;  ///< raw ones of the group; 0: does not apply
+  std::optional<double> prominence;
+  std::string side;
+  std::optional<SetChange> change;  ///< of a contact
+  int runs_before = 0, runs_after = 0;
+  std::string note;
+};
+
+/// What is asked of special points.
+struct PointSearch {
+  bool half = false;
+  double prominence = 0;  ///< least one of a fold, in units of λ
+  bool by_steps = false;  ///< corners are orbits along a curve: what is between two of them is interpolated
+  double placed = 0;      ///< m: arclength to which orbits are known, where stops give back speed
+};
+
+/// Raw crossings this near along a branch are one group, by pieces or by arc (m).
+inline constexpr long long group_pieces = 40;
+inline constexpr double group_arc = 0.003;
+/// Steps of the shortest run of contact below which no multiplier is told.
+inline constexpr int shortest_told = 4;
+
+/// A turn of λ along a branch: the corner, and the smaller way that λ goes back by, before and after. Ways are those of
+/// the polyline of turns from which smaller ones were taken out, pair by pair, the smallest first.
+struct Turn {
+  long long corner = 0;
+  double parameter = 0;
+  double prominence = 0;
+};
+std::vector<Turn> turns_of(const BranchTrace& trace);
+
+/// Special points of a branch, in its order, the end last.
+///   fold      turns of λ; the interval is half a piece in λ
+///   symmetry  (half map), flip (period map): a real multiplier through −1
+///   torus     a pair through the circle
+///   contact   a run of contact that appears or vanishes
+/// Raw crossings near to each other are one group. It is a point where the count of multipliers outside differs before
+/// and after it; its value is where the multiplier by the half-step rule crosses, its interval all of the group.
+std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSearch& search);
+
+}  // namespace ricochet

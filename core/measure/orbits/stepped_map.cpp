@@ -1,0 +1,177 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ricochet/measure/orbits/impact_jump.hpp>
+#include <ricochet/measure/orbits/section_march.hpp>
+#include <ricochet/measure/orbits/shoot.hpp>
+#include <ricochet/measure/orbits/stepped_map.hpp>
+#include <utility>
+
+namespace ricochet {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr int most_tangents = 31;  // beside one lane
+
+// Runs of contact of one lane, and the speeds that they change.
+class ContactWatch final : public StepObserver {
+ public:
+  explicit ContactWatch(const Marcher& marcher)
+      : points_(marcher.program().contact ? marcher.program().problem->points() : 0),
+        closed_(static_cast<std::size_t>(points_)),
+        now_(static_cast<std::size_t>(points_)) {}
+  void stage_solved(const Marcher& marcher, const StageView& view) override {
+    if (view.contact_lanes == 0) return;
+    for (const int point : view.pushed)
+      if (const double p = view.effort[0][static_cast<std::ptrdiff_t>(point) * marcher.width()]; p != 0)
+        now_[static_cast<std::size_t>(point)] = p > 0 ? -1 : 1;
+  }
+  void step_done(Marcher& marcher) override {
+    if (points_ == 0) return;
+    const VectorXd y = marcher.program().problem->contact * marcher.position(0);
+    places_.push_back(y.array() + marcher.support(0, marcher.time()));
+    sides_.push_back(now_);
+    std::fill(now_.begin(), now_.end(), 0);
+    if (std::any_of(sides_.back().begin(), sides_.back().end(), [](int side) { return side != 0; }))
+      deepest = std::max(deepest, marcher.penetration(0));
+  }
+  /// Of the whole march.
+  void sum(double h, bool half, SteppedMap::Image& out) const {
+    const auto n = static_cast<std::ptrdiff_t>(sides_.size());
+    for (std::size_t point = 0; point < closed_.size(); ++point)
+      for (std::ptrdiff_t k = 0; k < n; ++k) {
+        const auto side = [&](std::ptrdiff_t at) {
+          const int found = sides_[static_cast<std::size_t>((at + n) % n)][point];
+          return at < 0 && half ? -found : found;
+        };
+        if (side(k) == 0 || side(k) == side(k - 1)) continue;
+        std::ptrdiff_t end = k;
+        while (end < n && side(end) == side(k)) ++end;
+        ++out.runs;
+        const int length = static_cast<int>(end - k);
+        out.shortest = out.shortest == 0 ? length : std::min(out.shortest, length);
+        if (k < 2 || end + 1 >= n || length > briefest_contact) continue;
+        const auto place = [&](std::ptrdiff_t at) {
+          return places_[static_cast<std::size_t>(at)][static_cast<Index>(point)];
+        };
+        const double before = place(k - 1) - place(k - 2), after = place(end + 1) - place(end);
+        if (!(before * after < 0)) continue;
+        out.rebounds += std::abs(after - before);  // h |v⁺ − v⁻|
+        const double speed = std::abs(before) / h;
+        out.slowest = out.slowest == 0 ? speed : std::min(out.slowest, speed);
+      }
+    out.penetration = deepest;
+  }
+  double deepest = 0;
+
+ private:
+  int points_;
+  std::vector<int> closed_, now_;
+  std::vector<VectorXd> places_;
+  std::vector<std::vector<int>> sides_;
+};
+
+}  // namespace
+
+SteppedMap::SteppedMap(Make make, Carry carry, double at, double parameter_metres)
+    : make_(std::move(make)), carry_(std::move(carry)) {
+  Scene scene = make_(at, 0);
+  if (scene.program.contact && scene.program.law->memory_per_point() > 0)
+    throw Refusal{"a law that keeps a memory has no derivative of it"};
+  group_ = scene.group;
+  int past = 0;
+  for (const StageProgram& stage : scene.program.stages)
+    if (stage.reads_contact && scene.program.contact) past = std::max(past, static_cast<int>(stage.effort.size()) - 1);
+  vector_ = std::make_unique<StateVector>(scene.program, past);
+  size_ = static_cast<int>(scene.program.plan.slots.size()) * scene.program.model->rows() +
+          past * (scene.program.contact ? scene.program.problem->points() : 0);
+  metric_ = std::make_unique<StateMetric>(scene.program, size_, parameter_metres);
+  reference_ = std::make_unique<Program>(make_(at, 0).program);
+  template_ = Marcher(std::move(scene.program)).lane_state(0);
+}
+
+VectorXd SteppedMap::read(const LaneState& state, int group) const {
+  return vector_->read(carry_(state, group, group_));
+}
+
+LaneState SteppedMap::unit(int k) const {
+  LaneState state = template_;
+  std::fill(state.slots.begin(), state.slots.end(), 0.0);
+  std::fill(state.efforts.begin(), state.efforts.end(), 0.0);
+  std::fill(state.memory.begin(), state.memory.end(), 0.0);
+  vector_->write(VectorXd::Unit(size_, k), state);
+  return state;
+}
+
+SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const MapClock& clock, bool derivative) {
+  Image out;
+  if (derivative) out.derivative.resize(size_, size_);
+  for (int first = 0; first == 0 || (derivative && first < size_); first += most_tangents) {
+    const int columns = derivative ? std::min(most_tangents, size_ - first) : 0;
+    Scene scene = make_(parameter, columns);
+    const int group = scene.group;
+    Marcher marcher(std::move(scene.program));
+    LaneState state = template_;
+    vector_->write(x, state);
+    marcher.set_clock(0);
+    marcher.set_lane(0, LaneSpec(marcher.program().lanes[0]), carry_(state, group_, group));
+    for (int k = 0; k < columns; ++k) marcher.set_tangent(0, k, carry_(unit(first + k), group_, group));
+    ImpactJump jump(marcher);
+    ContactWatch watch(marcher);
+    Observers observers;
+    if (first == 0) observers.add(&watch);
+    if (columns > 0 && jump.needed()) observers.add(&jump);
+    const long long steps = clock.steps();
+    out.tip = marcher.tip(0);
+    marcher.march(1, observers);
+    const double after = marcher.tip(0);
+    marcher.march(steps - 2, observers);
+    const double before = marcher.tip(0);
+    marcher.march(1, observers);
+    out.tip_velocity = (after - clock.sign() * before) / (2 * marcher.program().h);
+    out.end = marcher.status(0).end;
+    if (out.end) return out;
+    if (first == 0) {
+      out.image = clock.sign() * read(marcher.lane_state(0), group);
+      watch.sum(marcher.program().h, clock.half, out);
+    }
+    for (int k = 0; k < columns; ++k) out.derivative.col(first + k) = clock.sign() * read(marcher.tangent(0, k), group);
+    out.untold = out.untold || (columns > 0 && jump.untold(0) > 0);
+  }
+  return out;
+}
+
+ShotOrbit shoot(SteppedMap& map, VectorXd x, double parameter, const MapClock& clock, double tolerance, int most) {
+  ShotOrbit orbit;
+  orbit.parameter = parameter;
+  orbit.nearest = std::numeric_limits<double>::infinity();
+  const MatrixXd one = MatrixXd::Identity(map.size(), map.size());
+  VectorXd best = x;
+  for (;; ++orbit.iterations) {
+    const SteppedMap::Image made = map.march(x, parameter, clock, true);
+    orbit.end = made.end;
+    if (made.end) break;
+    const VectorXd left = made.image - x;
+    orbit.residual = map.metric().size(left);
+    if (orbit.residual < orbit.nearest) {
+      orbit.nearest = orbit.residual;
+      best = x;
+    }
+    orbit.found = orbit.residual <= std::max(tolerance, made.rebounds);
+    if (orbit.residual <= tolerance || orbit.iterations == most || !std::isfinite(orbit.residual)) break;
+    // What gives back speed is not solved more nearly than its impacts are placed: two more iterations are tried.
+    if (orbit.found && orbit.iterations > 2 && orbit.residual > 0.5 * orbit.nearest) break;
+    const VectorXd correction = DenseLu(one - made.derivative).solve(left);
+    if (!correction.allFinite()) break;
+    x += correction;
+  }
+  orbit.x = orbit.found ? best : x;
+  orbit.residual = orbit.nearest;
+  return orbit;
+}
+
+}  // namespace ricochet

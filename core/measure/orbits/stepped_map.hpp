@@ -1,0 +1,105 @@
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <ricochet/measure/orbits/branch.hpp>
+#include <ricochet/measure/orbits/shoot.hpp>
+
+namespace ricochet {
+
+/// P(x, λ) of programs that differ from value to value: steps, matrices, laws. x is a state in the coordinates of one
+/// of them; displacements and velocities of the others are carried there. Derivatives are those of tangent columns,
+/// with the jumps of impacts with inertia (impact_jump.hpp). One lane; not to be shared between threads.
+class SteppedMap {
+ public:
+  /// A program of one lane with so many tangents, and the group of its scene.
+  struct Scene {
+    Program program;
+    int group = 0;
+  };
+  using Make = std::function<Scene(double parameter, int tangents)>;
+  using Carry = std::function<LaneState(const LaneState& state, int from, int to)>;
+
+  /// `at`: the value whose coordinates x has. Throws Refusal of a law that keeps a memory.
+  SteppedMap(Make make, Carry carry, double at, double parameter_metres);
+
+  int size() const { return size_; }
+  const StateMetric& metric() const { return *metric_; }
+  const Program& reference() const { return *reference_; }
+
+  /// What one march shows. `derivative` where it was asked for.
+  struct Image {
+    Eigen::VectorXd image;
+    Eigen::MatrixXd derivative;
+    LaneEnd end;
+    int runs = 0, shortest = 0;
+    double rebounds = 0;  ///< u = h Σ|v⁺ − v⁻| over contacts that rebound, m
+    double slowest = 0;   ///< least approach among these, m/s; 0: none rebounds
+    double tip = 0, tip_velocity = 0, penetration = 0;
+    bool untold = false;  ///< an impact had no jump
+  };
+  Image march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool derivative = false);
+  /// A state of a program at this value, as x.
+  Eigen::VectorXd read(const LaneState& state, int group) const;
+
+ private:
+  LaneState unit(int k) const;
+
+  Make make_;
+  Carry carry_;
+  std::unique_ptr<Program> reference_;
+  int group_ = 0, size_ = 0;
+  std::unique_ptr<StateVector> vector_;
+  std::unique_ptr<StateMetric> metric_;
+  LaneState template_;
+};
+
+/// P(x, λ) = x at a given λ by Newton's method. Converged where the residual is at most `tolerance`, or at most the
+/// rebounds of the orbit where stops give back speed.
+ShotOrbit shoot(SteppedMap& map, Eigen::VectorXd x, double parameter, const MapClock& clock, double tolerance,
+                int most = 30);
+
+/// How a branch is followed by steps.
+struct ArcSteps {
+  BranchLimits branch;
+  double tolerance = 1e-12;  ///< of residuals, m
+  double first = 0;          ///< step, m
+};
+
+/// Follows a branch of P(x, λ) = x by steps of arclength: secant predictor, Newton's method bordered by the secant,
+/// ∂P/∂λ by a difference over 1e-6 of the range. A step grows by half after at most four iterations, shrinks by as much
+/// after more than seven, is halved where none is found, the branch turns by more than 45 degrees, or the count of
+/// multipliers outside changes within more than 1e-4 of the range. Below 1e-9 of
+/// the range's length the branch ends.
+class StepFollower {
+ public:
+  StepFollower(SteppedMap& map, const MapClock& clock, Eigen::VectorXd x, double parameter, int way,
+               const ArcSteps& limits);
+
+  /// Makes up to so many steps; false where the branch has ended.
+  bool advance(long long steps);
+  const BranchTrace& trace() const { return trace_; }
+  /// The largest u of its orbits, m; 0 where no stop gives back speed.
+  double rebounds() const { return rebounds_; }
+
+ private:
+  struct Point {
+    Eigen::VectorXd x;
+    double parameter = 0;
+  };
+  bool correct(Point& point, const Point& along, int& iterations);
+  void keep(const Point& point, const SteppedMap::Image& image);
+  Eigen::VectorXd by_parameter(const Point& point);
+
+  SteppedMap* map_;
+  MapClock clock_;
+  ArcSteps limits_;
+  Point now_, along_;  // the last orbit, the unit secant
+  double step_ = 0, rebounds_ = 0;
+  SteppedMap::Image last_;
+  std::string failure_;
+  BranchTrace trace_;
+};
+
+}  // namespace ricochet

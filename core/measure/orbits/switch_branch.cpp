@@ -1,0 +1,61 @@
+#include <algorithm>
+#include <cmath>
+#include <ricochet/kernels/eigenvalues.hpp>
+#include <ricochet/measure/orbits/switch_branch.hpp>
+
+namespace ricochet {
+
+using Eigen::VectorXd;
+
+namespace {
+
+// The vector of the real multiplier nearest to −1; nothing where all are complex.
+std::optional<VectorXd> critical_vector(const Eigen::MatrixXd& derivative) {
+  const GeneralModes modes = general_modes(derivative);
+  if (!modes.found) return std::nullopt;
+  Eigen::Index nearest = -1;
+  for (Eigen::Index i = 0; i < modes.values.size(); ++i)
+    if (modes.values[i].imag() == 0 &&
+        (nearest < 0 || std::abs(modes.values[i].real() + 1) < std::abs(modes.values[nearest].real() + 1)))
+      nearest = i;
+  if (nearest < 0) return std::nullopt;
+  return VectorXd(modes.vectors.col(nearest).real());
+}
+
+}  // namespace
+
+VectorXd mirrored(PeriodicMap& map, const VectorXd& x, double parameter, int steps_per_period) {
+  return map.march(x, parameter, {steps_per_period, 1, true}).image;
+}
+
+std::optional<SwitchedOrbit> switch_branch(PeriodicMap& map, const MapClock& clock, const SpecialPoint& point,
+                                           double scale, double tolerance,
+                                           const std::function<ShotOrbit(double parameter)>& x_at) {
+  constexpr double least_width = 1e-5, same_orbit = 1e-6;  // of the scale
+  MapClock doubled = clock;
+  if (clock.half)
+    doubled.half = false;
+  else
+    doubled.period *= 2;
+  const double width = std::max({point.high - point.low, least_width * scale / map.metric().parameter_metres()});
+  for (const double widths : {1.0, 2.0, 4.0})
+    for (const double side : {1.0, -1.0}) {
+      const double parameter = point.parameter + side * widths * width;
+      const ShotOrbit own = x_at(parameter);
+      if (!own.found) continue;
+      auto v = critical_vector(map.derivative(own.sets, clock));
+      if (!v) continue;
+      *v /= map.metric().size(*v);
+      for (const double amplitude : {1e-3, 3e-3, 1e-2})
+        for (const double way : {1.0, -1.0}) {
+          ShotOrbit other = shoot(map, own.x + way * amplitude * scale * *v, parameter, doubled, tolerance);
+          if (!other.found) continue;
+          const MapMarch once = map.march(other.x, parameter, clock);
+          if (once.end || map.metric().size(once.image - other.x) < same_orbit * scale) continue;
+          return SwitchedOrbit{std::move(other), doubled};
+        }
+    }
+  return std::nullopt;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,134 @@
+#include "runners/kinds/continuation/branch_checkpoints.hpp"
+
+#include <cereal/archives/binary.hpp>
+#include <cereal/types/complex.hpp>
+#include <cereal/types/map.hpp>
+#include <cereal/types/string.hpp>
+#include <cereal/types/vector.hpp>
+#include <sstream>
+
+#include "runners/march/seconds.hpp"
+
+// Vectors as their numbers.
+namespace cereal {
+
+template <class Archive>
+void save(Archive& archive, const Eigen::VectorXd& x) {
+  archive(std::vector<double>(x.begin(), x.end()));
+}
+
+template <class Archive>
+void load(Archive& archive, Eigen::VectorXd& x) {
+  std::vector<double> numbers;
+  archive(numbers);
+  x = Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+}  // namespace cereal
+
+namespace ricochet {
+
+// Of what a branch consists, for those who write it as bytes.
+
+template <class Archive>
+void serialize(Archive& archive, SetPoint& point) {
+  archive(point.stage, point.point, point.upper);
+}
+
+template <class Archive>
+void serialize(Archive& archive, SetChange& change) {
+  archive(change.step, change.row, change.closes, change.upper);
+}
+
+template <class Archive>
+void serialize(Archive& archive, CornerRoots& roots) {
+  archive(roots.outside.total, roots.outside.above, roots.outside.below, roots.outside.pairs, roots.real, roots.modulus,
+          roots.angle);
+}
+
+template <class Archive>
+void serialize(Archive& archive, BranchCorner& corner) {
+  archive(corner.parameter, corner.arc, corner.tip, corner.way, corner.runs, corner.shortest, corner.raw, corner.smooth,
+          corner.leading, corner.change, corner.residual);
+}
+
+template <class Archive>
+void serialize(Archive& archive, MarkedOrbit& mark) {
+  archive(mark.parameter, mark.arc, mark.tip, mark.corner, mark.x);
+}
+
+template <class Archive>
+void serialize(Archive& archive, BranchTrace& trace) {
+  archive(trace.corners, trace.states, trace.stride, trace.marks, trace.end);
+}
+
+template <class Archive>
+void serialize(Archive& archive, BranchState& state) {
+  archive(state.x, state.parameter, state.sets, state.along, state.parameter_along, state.change, state.arc,
+          state.pieces);
+}
+
+template <class Archive>
+void serialize(Archive& archive, KeptBranch& kept) {
+  archive(kept.trace, kept.entry, kept.first);
+}
+
+namespace {
+
+constexpr int branches_version = 3;
+constexpr double keep_interval = 2;  // s
+
+struct KeptWithSets {
+  std::vector<ContactSet> sets;
+  KeptBranch branch;
+};
+
+KeptWithSets kept_branch(const std::string& bytes) {
+  std::istringstream in(bytes);
+  cereal::BinaryInputArchive archive(in);
+  int written = 0;
+  archive(written);
+  if (written != branches_version) throw std::runtime_error("a branch of another version");
+  KeptWithSets kept;
+  archive(kept.sets, kept.branch);
+  return kept;
+}
+
+}  // namespace
+
+std::optional<KeptBranch> BranchCheckpoints::find(const std::string& name, SetSteps& sets) {
+  auto kept = recall(store_, key_of(name), kept_branch);
+  if (!kept) return std::nullopt;
+  names_.insert(name);
+  std::vector<int> numbers;
+  for (const ContactSet& set : kept->sets) numbers.push_back(sets.number(set));
+  for (SetSequence* sequence : {&kept->branch.entry.sets, &kept->branch.first})
+    for (int& number : *sequence) number = numbers.at(static_cast<std::size_t>(number));
+  return std::move(kept->branch);
+}
+
+void BranchCheckpoints::keep_sometimes(const std::string& name, const BranchRun& run, const SetSteps& sets) {
+  if (seconds_since(saved_) >= keep_interval) keep(name, run, sets);
+}
+
+void BranchCheckpoints::keep(const std::string& name, const BranchRun& run, const SetSteps& sets) {
+  if (!store_.keep) return;
+  std::vector<ContactSet> known;
+  for (int number = 0; number < sets.count(); ++number) known.push_back(sets[number].closed);
+  const KeptBranch kept{run.trace(), run.entry(), run.first_sets()};
+  std::ostringstream out;
+  {
+    cereal::BinaryOutputArchive archive(out);
+    archive(branches_version, known, kept);
+  }
+  store_.keep(key_of(name), out.str());
+  names_.insert(name);
+  saved_ = std::chrono::steady_clock::now();
+}
+
+void BranchCheckpoints::forget() {
+  for (const std::string& name : names_) store_.keep(key_of(name), "");
+  names_.clear();
+}
+
+}  // namespace ricochet

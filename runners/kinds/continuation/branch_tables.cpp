@@ -1,0 +1,176 @@
+#include "runners/kinds/continuation/branch_tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace ricochet {
+
+BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter) {
+  BranchRow row;
+  const MapMarch made = map.march(x, parameter, clock, true);
+  row.parameter = parameter;
+  row.tip_displacement = made.tip;
+  row.period = clock.period;
+  row.symmetric = clock.half;
+  if (made.end) return row;
+  row.tip_velocity = made.tip_velocity;
+  row.penetration = made.penetration;
+  row.residual = map.metric().size(made.image - x);
+  const int runs = contact_runs(map.sets(), made.sets, clock.half).count;
+  row.contact_runs = runs * (clock.half ? 2 : 1);
+  row.impacts_per_period = static_cast<double>(*row.contact_runs) / clock.period;
+  return row;
+}
+
+SpecialRow missing_orbit(const std::string& name, double at, std::string why) {
+  SpecialRow row;
+  row.branch = name;
+  row.point = 1;
+  row.kind = "end";
+  row.label = "EP";
+  row.parameter = at;
+  row.note = std::move(why);
+  return row;
+}
+
+std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipliers) {
+  std::map<long long, int> numbers;  // of special points, by corner
+  for (std::size_t i = 0; i < branch.points.size(); ++i)
+    if (branch.points[i].kind != "mark") numbers.emplace(branch.points[i].corner, static_cast<int>(i) + 1);
+  std::vector<BranchRow> rows;
+  long long last = 0;
+  for (const auto& [number, x] : branch.trace.states) {
+    const BranchCorner& corner = branch.trace.corners[static_cast<std::size_t>(number)];
+    BranchRow row;
+    row.branch = branch.name;
+    row.row = static_cast<long long>(rows.size());
+    row.arc = corner.arc;
+    row.parameter = corner.parameter;
+    row.tip_displacement = corner.tip;
+    row.period = branch.clock.period;
+    row.symmetric = branch.clock.half;
+    row.stable = corner.raw.outside.total == 0;
+    row.unstable = corner.raw.outside.total;
+    row.multipliers.assign(corner.leading.begin(), corner.leading.end());
+    row.multipliers.resize(static_cast<std::size_t>(multipliers));
+    row.contact_runs = corner.runs * (branch.clock.half ? 2 : 1);
+    row.impacts_per_period = static_cast<double>(*row.contact_runs) / branch.clock.period;
+    row.iterations = number == 0 ? branch.iterations : 0;
+    row.residual = corner.residual;
+    row.pieces = number - last;
+    row.direction = corner.way;
+    if (const auto found = numbers.find(number); found != numbers.end()) row.point = found->second;
+    last = number;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+namespace {
+
+// The row of an orbit between two corners, where it belongs.
+void add_mark(PeriodicMap& map, const FollowedBranch& branch, const MarkedOrbit& mark, int multipliers,
+              std::vector<BranchRow>& rows) {
+  const BranchCorner& corner = branch.trace.corners[static_cast<std::size_t>(mark.corner)];
+  BranchRow row = orbit_row(map, branch.clock, mark.x, mark.parameter);
+  row.branch = branch.name;
+  row.arc = mark.arc;
+  row.stable = corner.raw.outside.total == 0;
+  row.unstable = corner.raw.outside.total;
+  row.multipliers.assign(corner.leading.begin(), corner.leading.end());
+  row.multipliers.resize(static_cast<std::size_t>(multipliers));
+  row.iterations = 0;
+  row.pieces = 0;
+  row.direction = corner.way;
+  for (std::size_t i = 0; i < branch.points.size(); ++i)
+    if (branch.points[i].kind == "mark" && branch.points[i].arc == mark.arc) row.point = static_cast<int>(i) + 1;
+  const auto place = std::upper_bound(rows.begin(), rows.end(), mark.arc,
+                                      [](double arc, const BranchRow& one) { return arc < *one.arc; });
+  rows.insert(place, std::move(row));
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].row = static_cast<long long>(i);
+}
+
+}  // namespace
+
+std::vector<BranchRow> rows_of(PeriodicMap& map, const FollowedBranch& branch, int multipliers) {
+  std::vector<BranchRow> rows = corner_rows_of(branch, multipliers);
+  auto row = rows.begin();
+  for (const auto& [number, x] : branch.trace.states) {
+    const BranchRow marched = orbit_row(map, branch.clock, x, *row->parameter);
+    row->tip_displacement = marched.tip_displacement;
+    row->tip_velocity = marched.tip_velocity;
+    row->penetration = marched.penetration;
+    row->residual = marched.residual;
+    ++row;
+  }
+  for (const MarkedOrbit& mark : branch.trace.marks) add_mark(map, branch, mark, multipliers, rows);
+  return rows;
+}
+
+std::vector<double> x_of_rows(const PeriodicMap& map) {
+  const auto& x = map.program().problem->contact_x;
+  std::vector<double> all;
+  for (int row = 0; row < map.sets().measure_rows(); ++row)
+    if (const auto point = static_cast<std::size_t>(map.sets().place(row).point); point < x.size())
+      all.push_back(x[point]);
+  return all;
+}
+
+std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std::vector<double>& x_of_rows) {
+  std::vector<SpecialRow> rows;
+  for (const SpecialPoint& point : branch.points) {
+    SpecialRow row;
+    row.branch = branch.name;
+    row.point = static_cast<int>(rows.size()) + 1;
+    row.kind = point.kind;
+    row.label = point.label;
+    row.parameter = point.parameter;
+    row.low = point.low;
+    row.high = point.high;
+    row.arc = point.arc;
+    row.tip_displacement = point.tip;
+    if (point.multiplier) {
+      row.multiplier_re = point.multiplier->real();
+      row.multiplier_im = point.multiplier->imag();
+      if (point.kind == "torus") row.angle = std::abs(std::arg(*point.multiplier));
+    }
+    if (point.kind == "symmetry" || point.kind == "flip" || point.kind == "torus") row.crossings = point.crossings;
+    row.prominence = point.prominence;
+    row.side = point.side;
+    if (point.change) {
+      const int period = branch.clock.steps_per_period;
+      row.contact_phase = 2 * std::numbers::pi * static_cast<double>((point.change->step + 1) % period) / period;
+      const auto place = static_cast<std::size_t>(point.change->row);
+      if (place < x_of_rows.size()) row.contact_x = x_of_rows[place];
+    }
+    const int times = branch.clock.half ? 2 : 1;
+    if (point.kind != "end" && point.kind != "mark") {
+      row.runs_before = times * point.runs_before;
+      row.runs_after = times * point.runs_after;
+    }
+    for (const auto& [corner, name] : branch.leaves)
+      if (corner == point.corner && (point.kind == "symmetry" || point.kind == "flip"))
+        row.to_branch += (row.to_branch.empty() ? "" : " ") + name;
+    row.note = point.note;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::vector<TurnRow> turn_rows_of(const FollowedBranch& branch, double scale) {
+  std::vector<TurnRow> rows;
+  const std::vector<Turn> turns = turns_of(branch.trace);
+  for (int k = -18; k <= -6; ++k) {
+    TurnRow row;
+    row.branch = branch.name;
+    row.prominence = scale * std::pow(10.0, k / 3.0);
+    row.folds = static_cast<int>(
+        std::count_if(turns.begin(), turns.end(), [&](const Turn& turn) { return turn.prominence >= row.prominence; }));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,76 @@
+#include "runners/kinds/continuation/continuation.hpp"
+
+#include "runners/kinds/continuation/continuation_answers.hpp"
+#include "runners/kinds/continuation/continuation_study.hpp"
+#include "runners/kinds/continuation/continuation_tables.hpp"
+#include "runners/kinds/continuation/page/page.hpp"
+#include "runners/kinds/continuation/point_tables.hpp"
+#include "runners/kinds/continuation/run_continuation.hpp"
+#include "runners/kinds/stored_study.hpp"
+#include "runners/kinds/sweep/sweep_study.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
+#include "runners/kinds/tables_of_cases.hpp"
+
+namespace ricochet {
+namespace {
+
+StudyKind continuation_format() {
+  StudyKind format;
+  format.name = "continuation";
+  format.text = "Each case follows periodic orbits, stable or not, along a parameter: folds, flips, first contacts.";
+  format.keys = continuation_keys();
+  format.settings = continuation_settings;
+  format.check = check_continuation;
+  format.check_methods = check_followed;
+  format.marches_another = some_orbit_possible;
+  format.complete = mark_sweep;
+  format.check_cases = check_continued_cases;
+  return format;
+}
+
+std::vector<MeasureInfo> continuation_measures() {
+  using Of = MeasureInfo::Of;
+  return {{"branches", "1", "Branches that were followed.", Of::computation},
+          {"pieces", "1", "Pieces or steps of all branches.", Of::computation},
+          {"special_points", "1", "Special points on them, ends not counted."}};
+}
+
+class ContinuationKind final : public Kind {
+ public:
+  ContinuationKind() : Kind(continuation_format(), continuation_measures()) {}
+  CasePlan plan(const StudyCase& study_case, const Registry& registry) const override {
+    return plan_continuation(study_case, registry);
+  }
+  CaseRunner start(const RunContext& context) const override {
+    const auto checkpoints = std::make_shared<CheckpointStore>();
+    CaseRunner runner;
+    runner.open = [checkpoints](CheckpointStore opened, const std::atomic<bool>&) { *checkpoints = std::move(opened); };
+    runner.run = [checkpoints, key = context.key, &registry = context.registry](const StudyCase& study_case,
+                                                                                const std::atomic<bool>& stop) {
+      return run_continuation(study_case, registry, CaseContext{*checkpoints, key(study_case), nullptr}, stop);
+    };
+    return runner;
+  }
+  void tables(StudyResults& results) const override {
+    const SweptColumns swept = swept_columns(results);
+    for (CaseRecord& record : results.cases) describe_continuation(record, swept);
+    collect_tables(results);
+    derive_points(results);
+  }
+  bool answers_itself() const override { return true; }
+  answers::Answer answers(const StudyResults& results) const override {
+    return continuation_answer(answers::Compared(results));
+  }
+  report::KindPage page() const override { return report::continuation_page(); }
+  nlohmann::ordered_json alone(const StudyResults& results, const CaseRecord& record) const override {
+    return single_study(results, record);
+  }
+};
+
+}  // namespace
+
+KindPointer continuation_kind() {
+  return std::make_unique<ContinuationKind>();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,269 @@
+#include "runners/kinds/continuation/continuation_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <ricochet/scene/semi_discrete.hpp>
+#include <utility>
+
+#include "runners/json/json_text.hpp"
+#include "runners/kinds/sweep/sweep.hpp"
+#include "runners/kinds/sweep/sweep_study.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
+#include "runners/study/check_object.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr std::array<std::pair<const char*, OrbitSource>, 3> sources = {
+    {{"rest", OrbitSource::rest}, {"state", OrbitSource::state}, {"free", OrbitSource::free}}};
+constexpr std::array<std::pair<const char*, HalfMap>, 3> halves = {
+    {{"auto", HalfMap::automatic}, {"yes", HalfMap::yes}, {"no", HalfMap::no}}};
+constexpr std::array<std::pair<const char*, Follow>, 4> follows = {
+    {{"auto", Follow::automatic}, {"pieces", Follow::pieces}, {"steps", Follow::steps}, {"none", Follow::none}}};
+
+template <class Words>
+std::vector<std::string> words_of(const Words& words) {
+  std::vector<std::string> names;
+  for (const auto& [word, value] : words) names.emplace_back(word);
+  return names;
+}
+
+template <class Words>
+auto value_of(const Words& words, const std::string& word) {
+  for (const auto& [known, value] : words)
+    if (word == known) return value;
+  return words.front().second;
+}
+
+Field flag(const char* key, bool fallback, const char* text) {
+  Field field;
+  field.spec.type = ParameterSpec::Type::boolean;
+  field.spec.key = key;
+  field.spec.text = text;
+  field.fallback = fallback;
+  return field;
+}
+
+Field kinds_of_points(const char* key, std::vector<std::string> words, std::optional<Json> fallback, const char* text) {
+  Field field = keys::of_form(Field::Form::words, key, std::nullopt, text);
+  field.spec = word_parameter(key, std::move(words), std::nullopt, text);
+  field = keys::optional(std::move(field));
+  if (fallback) field.fallback = std::move(*fallback);
+  return field;
+}
+
+}  // namespace
+
+const std::vector<std::string>& special_kinds() {
+  static const std::vector<std::string> kinds = {"fold", "symmetry", "flip", "torus", "contact", "mark", "end"};
+  return kinds;
+}
+
+std::vector<Field> continuation_keys() {
+  using namespace keys;
+  ObjectForm parameter;
+  parameter.fields = {swept_pointer(), single(real("from", "as the parameter", any, std::nullopt, "Least value.")),
+                      single(real("to", "as the parameter", any, std::nullopt, "Largest value."))};
+
+  ObjectForm stored;
+  stored.fields = {of_form(Field::Form::text, "study", std::nullopt, "Folder of results of a bifurcation study."),
+                   of_form(Field::Form::text, "case", std::nullopt, "Case of it, or the beginning of its id."),
+                   single(real("parameter", "as the parameter", any, std::nullopt, "Value at which it was marched.")),
+                   of_form(Field::Form::text, "start", std::nullopt, "Start of the orbit there.")};
+  Field from =
+      of_form(Field::Form::starts, "from", Json::array({"rest"}),
+              "Where the orbit is looked for: rest, state (the scene's own), free (the orbit without contact), "
+              "or an orbit of a bifurcation study.");
+  from.spec = word_parameter("from", words_of(sources), std::nullopt, from.spec.text);
+  from.nested.push_back(std::move(stored));
+  ObjectForm orbit;
+  orbit.fields = {
+      single(real("at", "as the parameter", any, std::nullopt, "Value at which the orbit is solved.")), std::move(from),
+      integer("periods", {0, 100000000, false, false}, 300, "Forcing periods marched before the first solve."),
+      integer("period", {1, 1000, false, false}, 1, "Forcing periods after which the orbit repeats."),
+      word("symmetric", words_of(halves), "auto",
+           "Half a period and the change of sign: auto where the scene and the orbit allow it, yes or no.")};
+  Field orbits = of_form(Field::Form::objects, "orbits", std::nullopt, "The orbits that branches begin with.");
+  orbits.nested.push_back(std::move(orbit));
+
+  Field marked =
+      of_form(Field::Form::numbers, "parameter", std::nullopt, "Values at which the orbit is solved exactly.");
+  marked.spec = real_parameter("parameter", "as the parameter", std::nullopt, any, marked.spec.text);
+  ObjectForm mark;
+  mark.fields = {std::move(marked)};
+  Field marks = object("mark", Json(nullptr), "Points of the user's own; null: none.", std::move(mark));
+  marks.nullable = true;
+
+  ObjectForm at_most;
+  at_most.fields = {integer("pieces", {1, 1000000000, false, false}, 200000, "Pieces or steps of a branch."),
+                    single(real("arc", "m", positive, 1.0, "Length of a branch."))};
+  return {
+      object("parameter", std::nullopt, "What branches are followed along.", std::move(parameter)),
+      steps_per_period(),
+      std::move(orbits),
+      word("follow", words_of(follows), "auto",
+           "By pieces of a piecewise affine map, by steps of arclength, or not at all."),
+      flag("both_ways", true, "Whether branches are followed both ways from their first orbit."),
+      kinds_of_points("switch", {"symmetry", "flip"}, Json::array({"symmetry", "flip"}),
+                      "Kinds of points at which other branches begin that are followed too; null: none."),
+      integer("switch_depth", {0, 8, false, false}, 1, "Branches on branches, at most so deep."),
+      optional(real("prominence", "as the parameter", positive, std::nullopt,
+                    "Least way that the parameter goes back by at a fold; null: 1e-4 of the gap, or of the value.")),
+      integer("multipliers", {1, 64, false, false}, 4, "Number of multipliers told, largest first."),
+      kinds_of_points("stop_at", special_kinds(), std::nullopt, "Kinds of points at which a branch ends; null: none."),
+      std::move(marks),
+      object("at_most", Json::object(), "Where a branch ends at the latest.", std::move(at_most)),
+      budget()};
+}
+
+Json continuation_settings(const Json& resolved) {
+  Json settings = given_settings(resolved, {"parameter", "orbits", "follow", "both_ways", "switch", "switch_depth",
+                                            "prominence", "multipliers", "stop_at", "mark", "at_most", "budget"});
+  return settings;
+}
+
+void check_continuation(const Json& resolved) {
+  const Json& parameter = resolved.at("parameter");
+  const auto from = parameter.at("from").get<double>(), to = parameter.at("to").get<double>();
+  if (!(from < to))
+    throw InputError("/parameter/from", fmt::format("the range from {} to {} is empty; expected from < to", from, to));
+  const Json& orbits = resolved.at("orbits");
+  if (orbits.empty()) throw InputError("/orbits", "an empty list of orbits; expected at least one to begin with");
+  for (std::size_t i = 0; i < orbits.size(); ++i) {
+    const std::string here = pointer_to("/orbits", i);
+    const auto at = orbits[i].at("at").get<double>();
+    if (at < from || at > to)
+      throw InputError(pointer_to(here, "at"),
+                       fmt::format("the orbit at {} is outside the range from {} to {}", at, from, to));
+    if (orbits[i].at("symmetric") == "yes" && orbits[i].at("period").get<int>() % 2 == 0)
+      throw InputError(pointer_to(here, "symmetric"),
+                       fmt::format("an orbit of {} periods is not its own image after half of them; expected an odd "
+                                   "period",
+                                   orbits[i].at("period").get<int>()));
+  }
+  if (const Json& mark = resolved.at("mark"); mark.is_object())
+    for (std::size_t i = 0; i < mark.at("parameter").size(); ++i)
+      if (const auto at = mark["parameter"][i].get<double>(); at < from || at > to)
+        throw InputError(pointer_to("/mark/parameter", i),
+                         fmt::format("the mark at {} is outside the range from {} to {}", at, from, to));
+  const Json& scene = resolved.at("scene");
+  const auto pulsation = [](const Json& of) {
+    const auto found = of.find("pulsation");
+    return found == of.end() || found->is_array() || (found->is_number() && found->get<double>() != 0);
+  };
+  const auto support = scene.find("support");
+  const auto force = scene.at("structure").find("force");
+  const bool shaken = support != scene.end() && support->is_object() && pulsation(*support);
+  if (!shaken && !(force != scene.at("structure").end() && force->is_object() && pulsation(*force)))
+    throw InputError("/scene/support",
+                     "nothing is periodic: give support.pulsation or structure.force.pulsation, and loads with that "
+                     "period");
+}
+
+void check_followed(const Json& resolved, const Json& settings, const Registry& registry, double, int) {
+  const auto pointer = settings.at("parameter").at("pointer").get<std::string>();
+  const std::string where = "/parameter/pointer";
+  try {
+    const Json::json_pointer place(pointer);
+    if (resolved.contains(place) && !pointer.starts_with("/scene/stops/")) {
+      const Json& named = resolved.at(place);
+      std::string what;
+      if (pointer.starts_with("/steps_per_period") || named.is_number_integer()) what = "a count";
+      if (pointer.starts_with("/mesh")) what = "part of the mesh";
+      if (named.is_boolean()) what = "true or false";
+      if (pointer.starts_with("/scene/") && named.is_number()) what = "";
+      if (named.is_string() && pointer.ends_with("/type")) what = "the word " + named.dump();
+      if (!what.empty())
+        throw InputError(where, fmt::format("continuation follows a real number; {} is {}", pointer, what));
+    }
+  } catch (const Json::exception&) {  // no pointer at all: told below
+  }
+  check_swept_pointer(resolved, pointer, where, registry);
+}
+
+namespace {
+
+std::vector<double> looked_at(const Json& settings) {
+  std::vector<double> values;
+  for (const Json& orbit : settings.at("orbits")) values.push_back(orbit.at("at").get<double>());
+  for (const char* end : {"from", "to"}) values.push_back(settings.at("parameter").at(end).get<double>());
+  return values;
+}
+
+}  // namespace
+
+bool some_orbit_possible(const StudyCase& study_case) {
+  const auto pointer = study_case.settings.at("parameter").at("pointer").get<std::string>();
+  for (const double value : looked_at(study_case.settings)) {
+    if (!pointer.starts_with("/scene/")) return true;
+    try {
+      with_parameter(at_rest(study_case), pointer, value);
+      return true;
+    } catch (const InputError&) {
+    }
+  }
+  return false;
+}
+
+void check_continued_cases(const Study& study) {
+  std::optional<InputError> first;
+  for (const StudyCase& one : study.cases) {
+    if (one.excluded) continue;
+    const auto pointer = one.settings.at("parameter").at("pointer").get<std::string>();
+    for (const double value : looked_at(one.settings)) {
+      try {
+        const StudyCase at = with_parameter(at_rest(one), pointer, value);
+        if (is_forced(at.scene) || forcing_pulsation(at.scene) > 0) return;
+      } catch (const InputError& error) {
+        if (!first) first = error;
+      }
+    }
+  }
+  if (first) throw InputError(*first);
+  throw InputError("/exclude", "every case is excluded; nothing would run");
+}
+
+ContinuationPlan continuation_plan(const Json& settings) {
+  ContinuationPlan plan;
+  const Json& parameter = settings.at("parameter");
+  plan.pointer = parameter.at("pointer").get<std::string>();
+  plan.from = parameter.at("from").get<double>();
+  plan.to = parameter.at("to").get<double>();
+  for (const Json& orbit : settings.at("orbits"))
+    for (const Json& from : orbit.at("from")) {
+      WantedOrbit one;
+      one.name = fmt::format("orbit-{}", plan.orbits.size() + 1);
+      one.at = orbit.at("at").get<double>();
+      one.periods = orbit.at("periods").get<int>();
+      one.period = orbit.at("period").get<int>();
+      one.symmetric = value_of(halves, orbit.at("symmetric").get<std::string>());
+      if (from.is_object()) {
+        one.from = OrbitSource::stored;
+        one.study = from.at("study").get<std::string>();
+        one.case_id = from.at("case").get<std::string>();
+        one.start = from.at("start").get<std::string>();
+        one.parameter = from.at("parameter").get<double>();
+      } else {
+        one.from = value_of(sources, from.get<std::string>());
+      }
+      plan.orbits.push_back(std::move(one));
+    }
+  plan.follow = value_of(follows, settings.at("follow").get<std::string>());
+  plan.both_ways = settings.at("both_ways").get<bool>();
+  if (const auto given = settings.find("switch"); given != settings.end())
+    plan.branch_at = given->get<std::vector<std::string>>();
+  if (const auto given = settings.find("stop_at"); given != settings.end())
+    plan.stop_at = given->get<std::vector<std::string>>();
+  plan.depth = settings.at("switch_depth").get<int>();
+  if (const auto given = settings.find("prominence"); given != settings.end()) plan.prominence = given->get<double>();
+  plan.multipliers = settings.at("multipliers").get<int>();
+  if (const auto given = settings.find("mark"); given != settings.end())
+    plan.marks = given->at("parameter").get<std::vector<double>>();
+  plan.most_pieces = settings.at("at_most").at("pieces").get<long long>();
+  plan.longest = settings.at("at_most").at("arc").get<double>();
+  return plan;
+}
+
+}  // namespace ricochet

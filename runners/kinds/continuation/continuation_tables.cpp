@@ -1,0 +1,153 @@
+#include "runners/kinds/continuation/continuation_tables.hpp"
+
+#include <fmt/format.h>
+
+#include "runners/store/record_values.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet {
+namespace {
+
+const Column branch_column{"branch", "", "The orbit that the branch began with, and the way: + up or − down."};
+
+using RootPart = double (*)(const std::complex<double>&);
+double real_part(const std::complex<double>& value) {
+  return value.real();
+}
+double imaginary_part(const std::complex<double>& value) {
+  return value.imag();
+}
+
+void add_multiplier(RowType<BranchRow>& type, std::size_t k, const char* suffix, const char* text, RootPart part,
+                    void (*put)(std::complex<double>&, double)) {
+  type.add(
+      {fmt::format("multiplier_{}_{}", k + 1, suffix), "1", text},
+      [k, part](const BranchRow& row) {
+        return k < row.multipliers.size() && row.multipliers[k] ? Cell(part(*row.multipliers[k])) : Cell();
+      },
+      [k, put](BranchRow& row, const Cell& cell) {
+        if (row.multipliers.size() <= k) row.multipliers.resize(k + 1);
+        const auto number = cell.number();
+        if (!number) return;
+        if (!row.multipliers[k]) row.multipliers[k] = 0;
+        put(*row.multipliers[k], *number);
+      });
+}
+
+}  // namespace
+
+RowType<BranchRow> branch_row_type(int multipliers, const SweptColumns& swept) {
+  RowType<BranchRow> type;
+  type.of_case(&BranchRow::id)
+      .add(branch_column, &BranchRow::branch)
+      .add({"row", "1", "Number of the row on its branch, from 0."}, &BranchRow::row)
+      .add({"arc", "m",
+            "Length of the branch from its first orbit: root mean square of displacements, of velocities over ω, and "
+            "of the parameter over its scale."},
+           &BranchRow::arc)
+      .add(swept.parameter, &BranchRow::parameter)
+      .add({"tip_displacement", "m", "Displacement of the tip at the strobe, t = 0 of the forcing, absolute."},
+           &BranchRow::tip_displacement)
+      .add({"tip_velocity", "m/s", "Its velocity there, central over two steps."}, &BranchRow::tip_velocity)
+      .add({"period", "1", "Forcing periods after which the orbit repeats."}, &BranchRow::period)
+      .add({"symmetric", "", "Whether the orbit is its own image after half its period, and was solved so."},
+           &BranchRow::symmetric)
+      .add({"stable", "", "Whether all multipliers are inside the unit circle."}, &BranchRow::stable)
+      .add({"unstable", "1", "Number of multipliers outside the unit circle."}, &BranchRow::unstable);
+  for (int k = 0; k < multipliers; ++k) {
+    const auto number = static_cast<std::size_t>(k);
+    add_multiplier(type, number, "re",
+                   "Real part of a multiplier of the frozen step, largest modulus first; of half the period where the "
+                   "orbit is symmetric.",
+                   real_part, [](std::complex<double>& of, double value) { of.real(value); });
+    add_multiplier(type, number, "im", "Its imaginary part.", imaginary_part,
+                   [](std::complex<double>& of, double value) { of.imag(value); });
+  }
+  type.add({"impacts_per_period", "1", "Runs of contact that begin in one forcing period, both sides."},
+           &BranchRow::impacts_per_period)
+      .add({"contact_runs", "1", "Runs of steps with an effort, over the period of the orbit, summed over the points."},
+           &BranchRow::contact_runs)
+      .add({"penetration", "m", "Largest distance by which a point is beyond its stop."}, &BranchRow::penetration)
+      .add({"iterations", "1", "Iterations of Newton's method for this orbit; 0: its piece ended there."},
+           &BranchRow::iterations)
+      .add({"residual", "m", "Root mean square of what a marched period changes, velocities over ω."},
+           &BranchRow::residual)
+      .add({"pieces", "1", "Pieces, or steps, since the row before."}, &BranchRow::pieces)
+      .add({"direction", "1", "1 where the parameter grows along the branch, −1 where it falls."},
+           &BranchRow::direction)
+      .add({"point", "1", "Number of the special point that the row is; empty: none."}, &BranchRow::point);
+  return type;
+}
+
+std::vector<BranchRow> branch_rows_in(const Table& branches) {
+  int count = 0;
+  while (find_column(branches.columns, fmt::format("multiplier_{}_re", count + 1))) ++count;
+  return branch_row_type(count).read(branches);
+}
+
+Table branches_table(int multipliers, const std::vector<BranchRow>& rows) {
+  return TableType<BranchRow>{branches_name,
+                              "One orbit on a branch; of a branch with more than 2000 the special ones, and others "
+                              "evenly spaced.",
+                              branch_row_type(multipliers)}
+      .with(rows);
+}
+
+TableType<SpecialRow> special_points_type(const SweptColumns& swept) {
+  RowType<SpecialRow> rows;
+  rows.of_case(&SpecialRow::id)
+      .add(branch_column, &SpecialRow::branch)
+      .add({"point", "1", "Number of the point on its branch, from 1."}, &SpecialRow::point)
+      .add({"kind", "", "fold, symmetry, flip, torus, contact, mark or end."}, &SpecialRow::kind)
+      .add({"label", "", "What programs of continuation call it: LP, BP, PD, TR, GR, UZ, EP."}, &SpecialRow::label)
+      .add({"name", "", "What it is called over all cases; empty where it has no counterpart."}, &SpecialRow::name)
+      .add(swept.parameter, &SpecialRow::parameter)
+      .add({"low", swept.parameter.unit, "Lower end of where the point may be."}, &SpecialRow::low)
+      .add({"high", swept.parameter.unit, "Upper end of where the point may be."}, &SpecialRow::high)
+      .add({"arc", "m", "Length of the branch from its first orbit."}, &SpecialRow::arc)
+      .add({"tip_displacement", "m", "Displacement of the tip at the strobe, absolute."}, &SpecialRow::tip_displacement)
+      .add({"multiplier_re", "1", "Real part of the multiplier that crosses."}, &SpecialRow::multiplier_re)
+      .add({"multiplier_im", "1", "Its imaginary part."}, &SpecialRow::multiplier_im)
+      .add({"angle", "rad", "Its angle on the circle, 0 to π."}, &SpecialRow::angle)
+      .add({"crossings", "1", "Crossings of the frozen multipliers that are this one point."}, &SpecialRow::crossings)
+      .add({"prominence", swept.parameter.unit,
+            "Of a fold: the smaller way that the parameter goes back by, before "
+            "and after."},
+           &SpecialRow::prominence)
+      .add({"side", "", "Where the branch lies of a fold, below or above; the stop of a contact, lower or upper."},
+           &SpecialRow::side)
+      .add({"contact_phase", "rad", "Phase ωt of the step at which contact comes or goes."}, &SpecialRow::contact_phase)
+      .add({"contact_x", "m", "Where the point stands that touches."}, &SpecialRow::contact_x)
+      .add({"runs_before", "1", "Runs of contact before the point."}, &SpecialRow::runs_before)
+      .add({"runs_after", "1", "Runs of contact after it."}, &SpecialRow::runs_after)
+      .add({"to_branch", "", "The branch that begins here."}, &SpecialRow::to_branch)
+      .add({"note", "", "What is not certain, or why the branch ends."}, &SpecialRow::note);
+  return {"special_points", "One special point of a branch.", rows};
+}
+
+TableType<TurnRow> turns_type() {
+  RowType<TurnRow> rows;
+  rows.of_case(&TurnRow::id)
+      .add(branch_column, &TurnRow::branch)
+      .add({"prominence", "as the parameter", "Way that the parameter goes back by, at least."}, &TurnRow::prominence)
+      .add({"folds", "1", "Turns of the parameter along the branch with at least that prominence."}, &TurnRow::folds);
+  return {"turns", "How many folds a branch has at one prominence: a scheme invents those that a finer step loses.",
+          rows};
+}
+
+void describe_continuation(CaseRecord& record, const SweptColumns& swept) {
+  const auto describe = [&](const std::string& name, const std::vector<Column>& columns) {
+    for (Table& table : record.tables)
+      if (table.name == name)
+        for (Column& own : table.columns)
+          if (const auto place = find_column(columns, own.name)) own = columns[*place];
+  };
+  describe(branches_name, branch_row_type(64, swept).columns());
+  describe("special_points", special_points_type(swept).rows.columns());
+  std::vector<Column> turns = turns_type().rows.columns();
+  for (Column& one : turns)
+    if (one.name == "prominence") one.unit = swept.parameter.unit;
+  describe("turns", turns);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,226 @@
+#include "runners/kinds/continuation/continued_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <ricochet/measure/orbits/impact_jump.hpp>
+#include <ricochet/measure/orbits/multipliers.hpp>
+#include <ricochet/measure/stability/plan_restitution.hpp>
+
+#include "runners/kinds/sweep/with_parameter.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr double round_off = 1e-12;
+
+double gap_of(const LaneSpec& lane) {
+  double gap = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < lane.lower.size(); ++i) {
+    const double lower = lane.lower[i], upper = lane.upper[i];
+    if (std::isfinite(lower) && std::isfinite(upper))
+      gap = std::min(gap, std::abs(upper - lower) / 2);
+    else if (std::isfinite(lower) || std::isfinite(upper))
+      gap = std::min(gap, std::abs(std::isfinite(lower) ? lower : upper));
+  }
+  if (std::isfinite(gap) && gap > 0) return gap;
+  return lane.amplitude != 0 ? std::abs(lane.amplitude) : 1;
+}
+
+// Whether a number of the scene is a length.
+bool is_length(const std::string& pointer) {
+  return pointer.ends_with("/support/amplitude") || pointer.ends_with("/stops/lower") ||
+         pointer.ends_with("/stops/upper");
+}
+
+// A load that is not its own image half a period later, with the sign changed: where it is seen, in words.
+std::string not_odd(const SemiDiscrete& problem, double period) {
+  if (!problem.load || problem.load->absent()) return "";
+  constexpr int phases = 16;
+  constexpr double tolerance = 1e-9;
+  Eigen::VectorXd now = Eigen::VectorXd::Zero(problem.dofs()), later = now;
+  double largest = 0, worst = 0, when = 0;
+  for (int k = 0; k < phases; ++k) {
+    const double t = period * (k + 0.37) / (2 * phases);
+    problem.load->assemble(t, now.data());
+    problem.load->assemble(t + period / 2, later.data());
+    largest = std::max(largest, now.cwiseAbs().maxCoeff());
+    if (const double sum = (now + later).cwiseAbs().maxCoeff(); sum > worst) worst = sum, when = t;
+  }
+  if (worst <= tolerance * largest) return "";
+  return fmt::format("the load at t = {:.4g} s is not minus the one half a period later", when);
+}
+
+}  // namespace
+
+ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry, const ContinuationPlan& plan)
+    : case_(study_case), plan_(plan), scenes_(study_case, registry) {
+  for (const WantedOrbit& orbit : plan.orbits) {
+    std::string reason;
+    const int scene = scene_at(orbit.at, orbit.from == OrbitSource::state, reason);
+    if (scene >= 0) {
+      reference_ = scene;
+      break;
+    }
+    if (refusal_.empty()) refusal_ = fmt::format("at {:g}: {}", orbit.at, reason);
+  }
+  if (reference_ < 0) return;
+  refusal_.clear();
+  gap_ = gap_of(scenes_[reference_].lane);
+  if (!is_length(plan.pointer)) {
+    const double value = std::max(std::abs(plan.from), std::abs(plan.to));
+    metres_ = value > 0 ? gap_ / value : gap_;
+  }
+  look_at_class(reference_);
+  if (refusal_.empty()) look_at_ends();
+  look_at_image(reference_);
+  if (refusal_.empty() && plan.follow == Follow::pieces && !no_pieces_.empty())
+    refusal_ = no_pieces_ + ": follow with steps";
+}
+
+int ContinuedMap::scene_at(double value, bool own_state, std::string& reason) {
+  const int scene = scenes_.add(plan_.pointer, value, own_state);
+  reason = scenes_[scene].refusal;
+  return reason.empty() ? scene : -1;
+}
+
+Program ContinuedMap::program(int scene) const {
+  return scenes_.program(scenes_[scene].group, {scenes_[scene].lane});
+}
+
+// Whether the frozen derivative is that of the motion.
+void ContinuedMap::look_at_class(int scene) {
+  const Program program = this->program(scene);
+  const double e = std::abs(plan_restitution(program.plan, program.h).value_or(0));
+  const bool rigid = program.contact && !program.law->reads();
+  constexpr double rebounds_above = 1e-6;
+  bool unresolved = tangents_miss_impacts(program);
+  if (rigid && !unresolved && e > rebounds_above && !stops_met_at_steps(program)) {
+    const std::vector<bool> massive = points_with_mass(*program.problem),
+                            resolved = resolved_points(*program.problem, program.h);
+    for (std::size_t i = 0; i < massive.size(); ++i) unresolved = unresolved || (massive[i] && !resolved[i]);
+  }
+  if (unresolved) {
+    refusal_ = fmt::format(
+        "stops are met at whole steps by a mass that a step of {:.4g} s does not resolve: the map jumps where the step "
+        "of an impact changes, and its derivative is not the motion's; use a position-level scheme, a singular mass, "
+        "or bifurcation",
+        program.h);
+    return;
+  }
+  if (rigid && e > rebounds_above)
+    no_pieces_ =
+        fmt::format("the stops give back {:.3g} of the speed: the map jumps where the step of an impact changes", e);
+  else if (const auto reason = SetSteps::refusal(program))
+    no_pieces_ = "a step is not affine between changes of contact: " + *reason;
+  if (SetSteps::refusal(program) || program.problem->inertia.kernel_dimension == 0) return;
+  // A root ±1 of the step is a multiplier 1 of a period: P(x) = x has no orbit that stands alone.
+  const SetSteps sets(program);
+  constexpr double near = 1e-7;
+  for (const std::complex<double>& root : multipliers_of(sets[0].state.topRows(sets.state_size())))
+    if (std::abs(std::abs(root) - 1) < near && std::abs(root.imag()) < near)
+      refusal_ =
+          "the step has a root of modulus 1 on displacements without mass, so that no orbit stands alone; use β > 1/4 "
+          "with damping, or a regular mass";
+}
+
+// Whether the parameter enters by amplitude and stops alone, and affinely.
+void ContinuedMap::look_at_ends() {
+  std::vector<int> known = {reference_};
+  std::vector<double> values = {plan_.orbits.front().at};
+  for (const double value : {plan_.from, plan_.to, 0.5 * (plan_.from + plan_.to)}) {
+    std::string reason;
+    const int scene = scene_at(value, false, reason);
+    if (scene < 0) {
+      refusal_ = fmt::format("at {:g}: {}; expected a range in which the scene is possible", value, reason);
+      return;
+    }
+    known.push_back(scene);
+    values.push_back(value);
+  }
+  const ForcedScene &first = scenes_[known[1]], &last = scenes_[known[2]];
+  const bool one_group = first.group == last.group && scenes_[known[3]].group == first.group;
+  bool affine = one_group || affine_loads(known[1], known[3], known[2]);
+  if (affine) lanes_ = affine_lane(first.lane, values[1], last.lane, values[2]);
+  affine = affine && lanes_ && passes_through(*lanes_, scenes_[known[3]].lane, values[3]);
+  if (!affine && no_pieces_.empty()) no_pieces_ = plan_.pointer + " does not enter linearly";
+  if (!affine) lanes_.reset();
+  origin_ = known[1];
+  moves_loads_ = !one_group;
+}
+
+// Whether three scenes have the same steps, and loads on a line: at the ends of the range, and half way between.
+bool ContinuedMap::affine_loads(int low, int middle, int high) {
+  if (!no_pieces_.empty()) return false;
+  const Program first = program(low), second = program(high), between = program(middle);
+  if (!first.load || !second.load || !between.load || first.h != second.h) return false;
+  const SetSteps one(first), other(second);
+  if (one.state_size() != other.state_size() || one[0].state != other[0].state || one[0].drive != other[0].drive)
+    return false;
+  const auto dofs = static_cast<Eigen::Index>(first.problem->dofs());
+  Eigen::VectorXd a = Eigen::VectorXd::Zero(dofs), b = a, c = a;
+  constexpr int looks = 16;
+  for (int k = 0; k < looks; ++k) {
+    const double t = (k + 0.37) * first.h * case_.steps_per_period / looks;
+    first.problem->load->assemble(t, a.data());
+    between.problem->load->assemble(t, b.data());
+    second.problem->load->assemble(t, c.data());
+    if ((0.5 * (a + c) - b).cwiseAbs().maxCoeff() > round_off * (a.cwiseAbs() + c.cwiseAbs()).maxCoeff()) return false;
+  }
+  return true;
+}
+
+void ContinuedMap::look_at_image(int scene) {
+  const ForcedScene& one = scenes_[scene];
+  if (case_.steps_per_period % 2 != 0) {
+    no_image_ = fmt::format("{} steps per period are an odd number", case_.steps_per_period);
+    return;
+  }
+  for (const double at : {plan_.from, plan_.to, plan_.orbits.front().at}) {
+    const LaneSpec lane = lanes_ ? lanes_->lane(at) : one.lane;
+    for (Eigen::Index i = 0; i < lane.lower.size(); ++i) {
+      const double differ = std::abs(lane.lower[i] + lane.upper[i]);
+      if (!(differ <= round_off * gap_) && no_image_.empty())
+        no_image_ =
+            std::isfinite(differ)
+                ? fmt::format("the scene is not its own image: lower and upper stops differ by {:.3g} m", differ)
+                : std::string("the scene is not its own image: it has a stop on one side alone");
+    }
+  }
+  if (const std::string load = not_odd(scenes_.problem(one.group), 2 * std::numbers::pi / one.pulsation);
+      no_image_.empty() && !load.empty())
+    no_image_ = "the scene is not its own image: " + load;
+}
+
+std::unique_ptr<PeriodicMap> ContinuedMap::map() {
+  AffineLoad load;
+  if (moves_loads_) {
+    load.other = plan_.to;
+    load.program = [this](double value) {
+      std::string reason;
+      const int scene = scene_at(value, false, reason);
+      if (scene < 0) throw Refusal{reason};
+      return program(scene);
+    };
+  }
+  return std::make_unique<PeriodicMap>(program(origin_), *lanes_, metres_, std::move(load));
+}
+
+SteppedMap ContinuedMap::stepped_map(double at) {
+  const auto make = [this](double value, int tangents) {
+    const auto [place, added] = marched_.try_emplace(value, -1);
+    if (added) {
+      std::string reason;
+      place->second = scene_at(value, false, reason);
+    }
+    if (place->second < 0) throw Refusal{scenes_[scenes_.count() - 1].refusal};
+    const ForcedScene& scene = scenes_[place->second];
+    return SteppedMap::Scene{scenes_.program(scene.group, {scene.lane}, tangents), scene.group};
+  };
+  const auto carry = [this](const LaneState& state, int from, int to) { return scenes_.carry(state, from, to); };
+  return {make, carry, at, metres_};
+}
+
+}  // namespace ricochet

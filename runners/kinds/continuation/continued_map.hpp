@@ -1,0 +1,58 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <optional>
+#include <ricochet/measure/orbits/stepped_map.hpp>
+#include <string>
+
+#include "runners/kinds/continuation/continuation_study.hpp"
+#include "runners/kinds/sweep/forced_scenes.hpp"
+
+namespace ricochet {
+
+/// What a case of kind `continuation` maps: its scenes along the parameter, and what can be done with them.
+class ContinuedMap {
+ public:
+  ContinuedMap(const StudyCase& study_case, const Registry& registry, const ContinuationPlan& plan);
+
+  /// Why the case is refused; "" where it is not.
+  const std::string& refusal() const { return refusal_; }
+  /// Why the map is not followed by pieces; "" where it is.
+  const std::string& no_pieces() const { return no_pieces_; }
+  /// Why orbits are not their own images; "" where they may be.
+  const std::string& no_image() const { return no_image_; }
+
+  const ForcedScenes& scenes() const { return scenes_; }
+  /// A scene at this value; −1 where it is refused, with the reason.
+  int scene_at(double value, bool own_state, std::string& reason);
+  /// A program of one lane.
+  Program program(int scene) const;
+  /// Half the distance between stops, or the distance to the only one, m; else the amplitude.
+  double gap() const { return gap_; }
+  /// Metres per unit of the parameter, in the length of a branch: 1 of a length, else the gap over the value.
+  double parameter_metres() const { return metres_; }
+  /// Unit of prominences: the gap for a length, else the value.
+  double parameter_scale() const { return gap_ / metres_; }
+  /// The map, which this outlives; only where no_pieces() is "".
+  std::unique_ptr<PeriodicMap> map();
+  /// The map at any value, in the coordinates of one; this outlives it.
+  SteppedMap stepped_map(double at);
+
+ private:
+  void look_at_class(int scene);
+  void look_at_ends();
+  bool affine_loads(int low, int middle, int high);
+  void look_at_image(int scene);
+
+  const StudyCase& case_;
+  const ContinuationPlan& plan_;
+  ForcedScenes scenes_;
+  std::string refusal_, no_pieces_, no_image_;
+  int reference_ = -1, origin_ = -1;  // scenes: that of an orbit, and the one that lanes begin with
+  bool moves_loads_ = false;
+  std::map<double, int> marched_;  // scenes by value
+  std::optional<AffineLane> lanes_;
+  double gap_ = 1, metres_ = 1;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,63 @@
+// The branches of each case as figures read them: columns of equal length, and which rows belong together.
+{
+  const refinements = ["elements", "modes", "steps_per_period", "step"];
+  const kinds = {
+    fold: ["fold", "diamond", 11], symmetry: ["loss of symmetry", "triangle", 11], flip: ["flip", "rect", 9], torus: ["torus", "roundRect", 10], "first contact": ["first contact", "circle", 10],
+    contact: ["change of contact", "circle", 6], mark: ["mark", "arrow", 9], end: ["end", "rect", 5],
+  };
+
+  class Branches {
+    constructor(data) {
+      const { page, view } = data;
+      Object.assign(this, { data, view, parameter: page.branches.parameter, said: page.branches.said });
+      this.cases = view.all.filter((one) => page.branches.cases[one.id]);
+      this.methodColumns = view.varyingWithout(refinements);
+      this.refined = view.varying.filter((column) => refinements.includes(column));
+      this.special = data.rowsBy("special_points", ["case"]);
+    }
+    of(id) { return this.data.page.branches.cases[id]; }
+    column(id, name) { return this.data.block(id + "/branch/" + name) || []; }
+    size(id) { return this.column(id, "of").length; }
+    branch(id, row) { return this.of(id).branches[this.column(id, "of")[row]]; }
+    // Cases of one method, the finest last.
+    methods() {
+      const finer = (a, b) => this.refined.map((column) => (ricochet.numberOf(a, column) || 0) - (ricochet.numberOf(b, column) || 0)).find(Boolean) || 0;
+      return this.view.group(this.cases, this.methodColumns).map((group) => ({ label: group.label, cases: group.cases.slice().sort(finer) }));
+    }
+    label(one) { return this.view.label(one) || "the one case"; }
+    methodLabel(one) { return this.view.label(one, this.methodColumns) || "the one method"; }
+    refinedLabel(one) { return this.view.label(one, this.refined) || "the one case"; }
+    kind(row) { return row.kind === "contact" && (row.runs_before === 0 || row.runs_after === 0) ? "first contact" : row.kind; }
+    kindWords(kind) { return kinds[kind] || [kind, "circle", 7]; }
+    points(one) { return this.special(one.id).filter((row) => row.parameter !== null && row.tip_displacement !== null); }
+    // Columns of the stable or of the unstable rows: where that changes both have the row, and where they end is a gap.
+    curve(id, unstable) {
+      const of = this.column(id, "of"), counts = this.column(id, "unstable"), parameter = this.column(id, "parameter"), tip = this.column(id, "tip"), out = { parameter: [], tip: [] };
+      const is = (i) => Number.isFinite(counts[i]) && (counts[i] > 0) === unstable, put = (x, y) => { out.parameter.push(x); out.tip.push(y); };
+      for (let i = 0; i + 1 < of.length; ++i) {
+        // Between two rows the curve looks as the second does, so that it changes at a point.
+        if (of[i] !== of[i + 1] || !is(i + 1)) continue;
+        const goes = i > 0 && of[i - 1] === of[i] && is(i);
+        if (!goes) { if (out.tip.length) put(NaN, NaN); put(parameter[i], tip[i]); }
+        put(parameter[i + 1], tip[i + 1]);
+      }
+      return out;
+    }
+    // What the rows of cases reach.
+    range(cases, name) {
+      const out = new ricochet.Interval();
+      for (const one of cases) for (const value of this.column(one.id, name)) out.include(value);
+      return out;
+    }
+    multipliers(id, row) {
+      return Array.from({ length: this.of(id).multipliers }, (_, m) => ({ re: this.column(id, "re" + (m + 1))[row], im: this.column(id, "im" + (m + 1))[row] })).filter(({ re, im }) => Number.isFinite(re) && Number.isFinite(im));
+    }
+    // The row that a special point is; −1 where it is not drawn.
+    rowOf(id, { branch, point }) {
+      const of = this.column(id, "of"), own = this.of(id).branches.findIndex((one) => one.name === branch), points = this.column(id, "point");
+      return of.findIndex((k, i) => k === own && points[i] === point);
+    }
+  }
+
+  ricochet.Branches = Branches;
+}

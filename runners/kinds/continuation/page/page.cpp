@@ -1,0 +1,221 @@
+#include "runners/kinds/continuation/page/page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "runners/kinds/continuation/page/branch_data.hpp"
+#include "runners/kinds/continuation/point_speaker.hpp"
+#include "runners/kinds/continuation/point_tables.hpp"
+#include "runners/kinds/sweep/page/orbits.hpp"
+#include "runners/report/html.hpp"
+
+namespace ricochet::report {
+
+KindPage continuation_page() {
+  KindPage page;
+  page.scripts = scripts({"branches", "branch_panel", "branch_figure", "special_points", "multipliers", "turns"});
+  page.tables = {"special_points", "turns", "point_presence", "point_levels", "point_lines"};
+  page.derived = {point_levels, point_lines};
+  page.answer = points_html;
+  page.methods = point_methods_html;
+  page.data_key = "branches";
+  page.data = branch_data;
+  page.masses = false;
+  return page;
+}
+
+namespace {
+
+/// "0.100565 ± 2e-6".
+std::string limit_text(const PointLimitRow& row) {
+  const auto half = row.low && row.high ? std::optional(0.5 * (*row.high - *row.low)) : std::nullopt;
+  return point_value(row.limit.value_or(NAN), half);
+}
+
+std::string order_text(const PointOrderRow& row) {
+  if (!row.order || row.verdict != order_told) return row.verdict;
+  return fmt::format("{} ± {}", number_text(*row.order, 2), number_text(0.5 * (*row.high - *row.low), 1));
+}
+
+}  // namespace
+
+namespace {
+
+/// What the tables of points hold of a study.
+struct PointRows {
+  explicit PointRows(const CaseView& view)
+      : limits(point_limits_type().read(view.results().derived)),
+        orders(point_orders_type().read(view.results().derived)),
+        presence(point_presence_type().read(view.results().derived)) {
+    for (const PointOrderRow& row : orders)
+      if (std::find(refined.begin(), refined.end(), row.refined) == refined.end()) refined.push_back(row.refined);
+  }
+  void order_cells(HtmlTable& table, const PointLimitRow& row) const {
+    for (const std::string& one : refined) {
+      const auto found = std::find_if(orders.begin(), orders.end(), [&](const PointOrderRow& order) {
+        return order.name == row.name && order.method == row.id && order.refined == one;
+      });
+      table.number(found == orders.end() ? "–" : order_text(*found), found == orders.end() ? "" : found->reason);
+    }
+  }
+  /// How many cases have the point and no other at its place.
+  int found(const std::string& name) const {
+    return static_cast<int>(std::count_if(presence.begin(), presence.end(), [&](const PointPresenceRow& one) {
+      return one.name == name && one.presence == word(PointPresence::found);
+    }));
+  }
+  /// "33 of 36, 3 without".
+  std::string cases_text(const std::string& name) const {
+    std::map<std::string, int> counts;
+    for (const PointPresenceRow& one : presence)
+      if (one.name == name) ++counts[one.presence];
+    const int found = counts["found"] + counts["many"], absent = counts["absent"], away = counts["not reached"];
+    std::string out = fmt::format("{} of {}", found, found + absent + away);
+    if (absent > 0) out += fmt::format(", {} without", absent);
+    if (away > 0) out += fmt::format(", {} elsewhere", away);
+    return out;
+  }
+  std::vector<PointLimitRow> limits;
+  std::vector<PointOrderRow> orders;
+  std::vector<PointPresenceRow> presence;
+  std::vector<std::string> refined;
+};
+
+/// The heads of the columns of orders: "order in h".
+const char* order_head(const std::string& refined) {
+  return refined == "steps_per_period" ? "order in h" : refined == "contact.stiffness" ? "order in 1/κ" : "order in ℓ";
+}
+
+}  // namespace
+
+std::string points_html(const CaseView& view) {
+  const PointRows rows(view);
+  std::vector<HtmlTable::Head> columns = {{"point"}, {with_unit(swept_parameter(view.results())), true}};
+  for (const std::string& one : rows.refined) columns.push_back({order_head(one), true});
+  columns.push_back({"cases that have it", true, "Without: a branch passed the place. Elsewhere: none came there."});
+  // What most is known of: orders, then cases that have it; changes of contact last.
+  std::vector<PointLimitRow> shown;
+  for (const PointLimitRow& row : rows.limits)
+    if (row.limit &&
+        std::none_of(shown.begin(), shown.end(), [&](const PointLimitRow& before) { return before.name == row.name; }))
+      shown.push_back(row);
+  const auto rank = [&](const PointLimitRow& row) {
+    const bool told = std::any_of(rows.orders.begin(), rows.orders.end(), [&](const PointOrderRow& order) {
+      return order.name == row.name && order.method == row.id && order.verdict == order_told;
+    });
+    const bool change = row.name.find("contact at") != std::string::npos && row.name.find("first") == std::string::npos;
+    return std::make_tuple(change, !told, -rows.found(row.name));
+  };
+  std::stable_sort(shown.begin(), shown.end(),
+                   [&](const PointLimitRow& a, const PointLimitRow& b) { return rank(a) < rank(b); });
+  constexpr std::size_t most_shown = 12;
+  const std::size_t all = shown.size();
+  if (shown.size() > most_shown) shown.resize(most_shown);
+  HtmlTable table(
+      fmt::format("Special points that the two finest cases of a refinement share, with the first method that has "
+                  "them{}.",
+                  all > most_shown ? fmt::format("; the {} of {} that most is known of", most_shown, all) : ""),
+      columns);
+  for (const PointLimitRow& row : shown) {
+    table.row(row.name).number(limit_text(row), exact_text(*row.limit));
+    rows.order_cells(table, row);
+    table.number(rows.cases_text(row.name));
+  }
+  return table.size() > 0 ? table.html() : "";
+}
+
+std::string point_methods_html(const CaseView& view) {
+  const PointRows rows(view);
+  std::vector<HtmlTable::Head> columns = {{"point"}, {"method"}, {with_unit(swept_parameter(view.results())), true}};
+  for (const std::string& one : rows.refined) columns.push_back({order_head(one), true});
+  for (const char* one : {"step leaves open", "mesh leaves open", "stiffness leaves open", "reference", "from it"})
+    columns.push_back({one, true});
+  HtmlTable table(
+      "Special points by method, at the limit of all refinements; ±: what these leave open and the interval of the "
+      "finest point. Order: by differences of successive sizes.",
+      columns);
+  for (const PointLimitRow& row : rows.limits) {
+    const CaseRecord* record = view.find(row.id);
+    if (!record || !row.limit) continue;
+    table.row(row.name).text(view.label(*record, view.varying_without({"elements", "modes", "steps_per_period"})));
+    table.number(limit_text(row), exact_text(*row.limit));
+    rows.order_cells(table, row);
+    for (const auto& open : {row.step_open, row.mesh_open, row.law_open}) table.number(open, 2);
+    table.number(row.reference, 8).number(row.reference_gap, 2);
+  }
+  return table.size() > 0 ? "<h3>Special points by method</h3>\n" + table.html() : "";
+}
+
+Table point_levels(const CaseView& view) {
+  Table out{"point_levels",
+            "One row per point that has a name, refinement and case along it: how far the point is from its limit.",
+            {{"name", "", "Name of the special point."},
+             {"refined", "", "What is refined."},
+             {"method", "", "The finest case of the method."},
+             {"case", "", "Identity of the case: its row in cases.csv."},
+             {"size", "1", "The step as a share of the period, one over the elements, or the compliance."},
+             {"value", "that of the parameter", "Parameter at the point; nothing where the case lacks it."},
+             {"distance", "that of the parameter", "Its distance from the limit along the refinement."},
+             {"half", "that of the parameter", "Half the width of the interval of the point."},
+             {"presence", "", "found, many, absent or not reached."}},
+            {}};
+  const answers::Compared compared(view.results());
+  const StudyPoints study(compared);
+  for (std::size_t name = 0; name < study.names().size(); ++name)
+    for (const std::size_t head : study.heads()) {
+      const PointConvergence found = study.convergence(head, static_cast<int>(name));
+      for (const PointConvergence::Along& one : found.along) {
+        const PointLimit limit = study.limit(one, static_cast<int>(name));
+        for (const std::size_t c : study.along(one.finest, one.axis)) {
+          const StudyPoint* point = study.find(c, static_cast<int>(name));
+          Row row = {study.names()[name].text, study.axes()[one.axis].column, study.cases()[head]->id,
+                     study.cases()[c]->id, Cell(study.axes()[one.axis].size(*study.cases()[c]))};
+          row.push_back(point ? Cell(point->value) : Cell());
+          row.push_back(point ? Cell(std::abs(point->value - limit.value)) : Cell());
+          row.push_back(point ? Cell(point->half) : Cell());
+          row.push_back(word(study.presence(c, static_cast<int>(name), nullptr)));
+          out.rows.push_back(std::move(row));
+        }
+      }
+    }
+  return out;
+}
+
+Table point_lines(const CaseView& view) {
+  Table out{"point_lines",
+            "One row per point that has a name, refinement and method whose order is told: the fitted distance from "
+            "the limit.",
+            {{"name", "", "Name of the special point."},
+             {"refined", "", "What is refined."},
+             {"method", "", "The finest case of the method."},
+             {"from", "1", "Smallest size."},
+             {"to", "1", "Largest size."},
+             {"distance_from", "that of the parameter", "Fitted distance at the smallest size."},
+             {"distance_to", "that of the parameter", "Fitted distance at the largest size."},
+             {"order", "1", "The order."}},
+            {}};
+  const answers::Compared compared(view.results());
+  const StudyPoints study(compared);
+  for (std::size_t name = 0; name < study.names().size(); ++name)
+    for (const std::size_t head : study.heads())
+      for (const PointConvergence::Along& one : study.convergence(head, static_cast<int>(name)).along) {
+        const PointLimit limit = study.limit(one, static_cast<int>(name));
+        if (!one.order.told || limit.correction == 0) continue;
+        double from = INFINITY, to = 0;
+        for (const std::size_t c : study.along(one.finest, one.axis))
+          if (const auto size = study.axes()[one.axis].size(*study.cases()[c])) {
+            from = std::min(from, *size);
+            to = std::max(to, *size);
+          }
+        const double distance = std::abs(limit.correction);
+        out.rows.push_back({study.names()[name].text, study.axes()[one.axis].column, study.cases()[head]->id, from, to,
+                            distance, distance * std::pow(to / from, *one.order.order), *one.order.order});
+      }
+  return out;
+}
+
+}  // namespace ricochet::report

@@ -1,0 +1,45 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "runners/answers/answer.hpp"
+#include "runners/kinds/continuation/point_tables.hpp"
+#include "runners/kinds/continuation/study_points.hpp"
+
+namespace ricochet {
+
+/// "0.1005650 ± 1.2e-6": to the first digit of u, to the second where that is a 1; four digits without u.
+std::string point_value(double value, std::optional<double> half);
+
+/// Sentences of a continuation study, made of the rows of its tables.
+class PointSpeaker {
+ public:
+  explicit PointSpeaker(const answers::Compared& study);
+
+  /// Whether a case left branches.
+  bool known() const { return points_.reference() != nullptr; }
+  void say_points(answers::Answer& answer) const;
+  /// What the points of the finest case are where no other case confirms them.
+  void say_unconfirmed(answers::Answer& answer) const;
+  void say_shifts(answers::Answer& answer) const;
+  void say_absent(answers::Answer& answer) const;
+  void say_turns(answers::Answer& answer) const;
+  /// Why no branch began.
+  void say_nothing(answers::Answer& answer) const;
+
+ private:
+  const PointLimitRow* limit_of(const std::string& name) const;
+  std::string subject(const PointName& name) const;
+  std::string case_words(const CaseRecord& record) const;
+  std::string unit() const { return unit_.empty() ? "" : " " + unit_; }
+  const CaseRecord* record(const std::string& id) const;
+
+  const answers::Compared& study_;
+  StudyPoints points_;
+  std::string unit_;
+  std::vector<PointLimitRow> limits_;
+  std::vector<PointOrderRow> orders_;
+  std::vector<const PointName*> told_;  ///< names of the reference, those that are said first in front
+};
+
+}  // namespace ricochet

@@ -1,0 +1,237 @@
+#include "runners/kinds/continuation/point_tables.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "runners/store/record_values.hpp"
+
+namespace ricochet {
+namespace {
+
+const Column name_column{"name", "", "Name of the special point, as in special_points."};
+
+/// A case of this id holds what a reference without a mesh and steps gives.
+constexpr const char* reference_id = "reference";
+
+/// The column of a value of the parameter.
+Column of_parameter(const SweptColumns& swept, const char* name, const char* text) {
+  return {name, swept.parameter.unit, text};
+}
+
+}  // namespace
+
+TableType<PointPresenceRow> point_presence_type(const SweptColumns& swept) {
+  RowType<PointPresenceRow> rows;
+  rows.of_case(&PointPresenceRow::id)
+      .add(name_column, &PointPresenceRow::name)
+      .add({"presence", "",
+            "found; many: other turns share its place; absent: a branch passed the place without it; not reached."},
+           &PointPresenceRow::presence)
+      .add({"points", "1", "Points of its kind at its place, where there is one."}, &PointPresenceRow::points)
+      .add(of_parameter(swept, "passed_from", "Least parameter of the branch that passed the place without the point."),
+           &PointPresenceRow::passed_from)
+      .add(of_parameter(swept, "passed_to", "Largest parameter of that branch."), &PointPresenceRow::passed_to)
+      .add({"robust", "", "Whether every case that reached the place has the point."}, &PointPresenceRow::robust);
+  return {"point_presence", "A special point that has a name, and one case: whether the case has it.", rows};
+}
+
+TableType<PointShiftRow> point_shifts_type(const SweptColumns& swept) {
+  RowType<PointShiftRow> rows;
+  rows.of_case(&PointShiftRow::id)
+      .add(name_column, &PointShiftRow::name)
+      .add({"choice", "", "The one choice or refinement in which the case differs from the reference case."},
+           &PointShiftRow::choice)
+      .add({"value", "", "What the case has of it."}, &PointShiftRow::value)
+      .add({"reference_value", "", "What the reference case has of it."}, &PointShiftRow::reference_value)
+      .add(of_parameter(swept, "shift", "Parameter at the point less that of the reference case."),
+           &PointShiftRow::shift)
+      .add(of_parameter(swept, "low", "Lower end of where the shift may be, by the intervals of both points."),
+           &PointShiftRow::low)
+      .add(of_parameter(swept, "high", "Upper end of where the shift may be."), &PointShiftRow::high);
+  return {"point_shifts",
+          "A special point that has a name, in a case that differs from the reference case in one choice: how far it "
+          "moves.",
+          rows};
+}
+
+TableType<PointOrderRow> point_orders_type() {
+  RowType<PointOrderRow> rows;
+  rows.of_case(&PointOrderRow::id)
+      .add(name_column, &PointOrderRow::name)
+      .add({"method", "", "The finest case of the method, which may lie at another mesh, step or stiffness."},
+           &PointOrderRow::method)
+      .add({"refined", "", "What is refined: steps_per_period, elements, modes or contact.stiffness."},
+           &PointOrderRow::refined)
+      .add({"order", "1", "Order p of λ(h) = λ + c hᵖ in the step, the length of an element or the compliance 1/κ."},
+           &PointOrderRow::order)
+      .add({"low", "1", "Lower end of its interval."}, &PointOrderRow::low)
+      .add({"high", "1", "Upper end of its interval."}, &PointOrderRow::high)
+      .add({"sizes", "1", "Cases of the method along the refinement that have the point."}, &PointOrderRow::sizes)
+      .add({"used", "1", "Those whose differences stand above twice their intervals and were used."},
+           &PointOrderRow::used)
+      .add({"verdict", "", "told: an interval no wider than ±0.5, above 0.3; not told."}, &PointOrderRow::verdict)
+      .add({"reason", "", "Which sizes were used, or why the order is not told."}, &PointOrderRow::reason);
+  return {
+      "point_orders",
+      "A special point that has a name, with one method and one refinement, at the finest of the others at which most "
+      "sizes have it: the order by differences of successive sizes.",
+      rows};
+}
+
+TableType<PointLimitRow> point_limits_type(const SweptColumns& swept) {
+  RowType<PointLimitRow> rows;
+  rows.of_case(&PointLimitRow::id)
+      .add(name_column, &PointLimitRow::name)
+      .add(of_parameter(swept, "finest", "Parameter at the point in the finest case of the method."),
+           &PointLimitRow::finest)
+      .add(of_parameter(swept, "limit", "Where it goes as everything is refined: Richardson where an order is told."),
+           &PointLimitRow::limit)
+      .add(of_parameter(swept, "low", "Lower end of where the limit may be; empty where nothing was refined."),
+           &PointLimitRow::low)
+      .add(of_parameter(swept, "high", "Upper end of where the limit may be."), &PointLimitRow::high)
+      .add(of_parameter(swept, "step_open", "What the step leaves open; empty of one step."), &PointLimitRow::step_open)
+      .add(of_parameter(swept, "mesh_open", "What the mesh leaves open; empty of one mesh."), &PointLimitRow::mesh_open)
+      .add(of_parameter(swept, "law_open", "What the stiffness of the contact law leaves open; empty of one."),
+           &PointLimitRow::law_open)
+      .add(of_parameter(swept, "reference", "Parameter at the point of the reference solution, where there is one."),
+           &PointLimitRow::reference)
+      .add(of_parameter(swept, "reference_gap", "limit less reference."), &PointLimitRow::reference_gap);
+  return {"point_limits", "A special point that has a name, with one method (its finest case): where it goes.", rows};
+}
+
+namespace {
+
+template <class Record>
+Table rows_of_cases(const StudyResults& results, const TableType<Record>& type, const std::vector<Record>& records) {
+  std::map<std::string, const CaseRecord*> by_id;
+  for (const CaseRecord& record : results.cases) by_id.emplace(record.id, &record);
+  Table table = table_of_cases(results, type.head());
+  for (const Record& one : records) add_row(table, place_of(results, *by_id.at(one.id)), type.rows.row(one));
+  return table;
+}
+
+/// Writes the names into the rows of all cases.
+void put_names(StudyResults& results, const StudyPoints& study) {
+  const TableType<SpecialRow> type = special_points_type();
+  Table* table = find_table(results.derived, type.name);
+  if (!table) return;
+  const auto case_place = find_column(table->columns, case_name), place = find_column(table->columns, "name"),
+             branch = find_column(table->columns, "branch"), number = find_column(table->columns, "point");
+  if (!case_place || !place || !branch || !number) return;
+  const auto key = [](const std::string& id, const std::string& of, const std::string& point) {
+    return id + '\x1f' + of + '\x1f' + point;
+  };
+  std::map<std::string, std::string> names;
+  for (const StudyPoint& one : study.points())
+    if (one.name >= 0)
+      names[key(study.cases()[one.owner]->id, one.row.branch, Cell(one.row.point).text())] =
+          study.names()[static_cast<std::size_t>(one.name)].text;
+  for (Row& row : table->rows)
+    if (const auto found = names.find(key(row[*case_place].text(), row[*branch].text(), row[*number].text()));
+        found != names.end())
+      row[*place] = found->second;
+}
+
+std::vector<PointPresenceRow> presence_rows(const StudyPoints& study) {
+  std::vector<PointPresenceRow> rows;
+  for (std::size_t name = 0; name < study.names().size(); ++name) {
+    const std::size_t first = rows.size();
+    bool robust = true;
+    for (std::size_t c = 0; c < study.cases().size(); ++c) {
+      std::optional<BranchReach> passed;
+      const PointPresence presence = study.presence(c, static_cast<int>(name), &passed);
+      PointPresenceRow row{study.cases()[c]->id, study.names()[name].text, word(presence)};
+      if (const StudyPoint* point = study.find(c, static_cast<int>(name))) row.points = point->sharing;
+      if (presence == PointPresence::absent && passed) {
+        row.passed_from = passed->from;
+        row.passed_to = passed->to;
+      }
+      robust &= presence != PointPresence::absent;
+      rows.push_back(std::move(row));
+    }
+    for (std::size_t k = first; k < rows.size(); ++k) rows[k].robust = robust;
+  }
+  return rows;
+}
+
+std::vector<PointShiftRow> shift_rows(const StudyPoints& study) {
+  std::vector<PointShiftRow> rows;
+  for (std::size_t name = 0; name < study.names().size(); ++name) {
+    const StudyPoint* standard = study.find(study.root(), static_cast<int>(name));
+    if (!standard) continue;
+    for (std::size_t c = 0; c < study.cases().size(); ++c) {
+      const StudyPoint* point = c == study.root() ? nullptr : study.find(c, static_cast<int>(name));
+      const std::vector<std::string> differs = study.differences(c, study.root());
+      if (!point || differs.size() != 1) continue;
+      PointShiftRow row{study.cases()[c]->id, study.names()[name].text, differs.front(),
+                        study.level(c, differs.front()), study.level(study.root(), differs.front())};
+      row.shift = point->value - standard->value;
+      row.low = *row.shift - point->half - standard->half;
+      row.high = *row.shift + point->half + standard->half;
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+/// The parameter at the point of the reference solution.
+std::optional<double> value_of_reference(const StudyPoints& study, int name) {
+  for (std::size_t c = 0; c < study.cases().size(); ++c)
+    if (study.cases()[c]->id == reference_id)
+      if (const StudyPoint* point = study.find(c, name)) return point->value;
+  return std::nullopt;
+}
+
+void convergence_rows(const StudyPoints& study, std::vector<PointOrderRow>& orders,
+                      std::vector<PointLimitRow>& limits) {
+  for (std::size_t name = 0; name < study.names().size(); ++name)
+    for (const std::size_t head : study.heads()) {
+      const std::string &id = study.cases()[head]->id, &text = study.names()[name].text;
+      if (id == reference_id) continue;
+      const PointConvergence found = study.convergence(head, static_cast<int>(name));
+      for (const PointConvergence::Along& one : found.along) {
+        PointOrderRow row{study.cases()[one.finest]->id, text, id, study.axes()[one.axis].column};
+        row.order = one.order.order;
+        row.low = one.order.low;
+        row.high = one.order.high;
+        row.sizes = static_cast<int>(one.sizes);
+        row.used = static_cast<int>(one.order.used);
+        row.verdict = one.order.told ? order_told : order_not_told;
+        row.reason = one.order.reason;
+        orders.push_back(std::move(row));
+      }
+      if (!found.point) continue;
+      PointLimitRow row{id, text, found.point->value, found.value};
+      if (found.half) {
+        row.low = found.value - *found.half;
+        row.high = found.value + *found.half;
+      }
+      for (const PointConvergence::Along& one : found.along) {
+        const std::string words = study.axes()[one.axis].words;
+        (words == "step" ? row.step_open : words == "mesh" ? row.mesh_open : row.law_open) = one.limit.open;
+      }
+      row.reference = value_of_reference(study, static_cast<int>(name));
+      if (row.reference) row.reference_gap = *row.limit - *row.reference;
+      limits.push_back(std::move(row));
+    }
+}
+
+}  // namespace
+
+void derive_points(StudyResults& results) {
+  const answers::Compared compared(results);
+  const StudyPoints study(compared);
+  if (study.cases().empty()) return;
+  const SweptColumns swept = swept_columns(results);
+  put_names(results, study);
+  std::vector<PointOrderRow> orders;
+  std::vector<PointLimitRow> limits;
+  convergence_rows(study, orders, limits);
+  std::vector<Table> tables = {rows_of_cases(results, point_presence_type(swept), presence_rows(study)),
+                               rows_of_cases(results, point_shifts_type(swept), shift_rows(study)),
+                               rows_of_cases(results, point_orders_type(), orders),
+                               rows_of_cases(results, point_limits_type(swept), limits)};
+  for (Table& table : tables) results.derived.push_back(std::move(table));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,17 @@
+#pragma once
+#include <ricochet/contract/registry.hpp>
+
+#include "runners/march/case_context.hpp"
+#include "runners/march/prepare_case.hpp"
+
+namespace ricochet {
+
+/// What would run for a case of kind `continuation`.
+CasePlan plan_continuation(const StudyCase& study_case, const Registry& registry);
+
+/// Solves the orbits of one case and follows their branches. Tables `branches`, `special_points`, `turns`. A case none
+/// of whose orbits is found is done, and its rows say so.
+CaseRecord run_continuation(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
+                            const std::atomic<bool>& stop);
+
+}  // namespace ricochet

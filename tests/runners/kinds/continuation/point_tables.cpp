@@ -1,0 +1,206 @@
+// Tables and sentences on special points, of a study whose points move with known powers.
+#include "runners/kinds/continuation/point_tables.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "runners/kinds/continuation/point_speaker.hpp"
+#include "runners/kinds/kind.hpp"
+#include "runners/run/finish_run.hpp"
+#include "runners/table/table_reader.hpp"
+#include "tests/runners/report/synthetic_points.hpp"
+
+using namespace ricochet;
+using Catch::Matchers::Contains;
+
+namespace {
+
+template <class Row>
+std::vector<Row> of_name(const std::vector<Row>& rows, const std::string& name) {
+  std::vector<Row> out;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(out), [&](const Row& row) { return row.name == name; });
+  return out;
+}
+
+std::string name_of(const StudyResults& all, const std::string& kind) {
+  for (const PointLimitRow& row : point_limits_type().read(all.derived))
+    if (row.name.starts_with(kind)) return row.name;
+  return "";
+}
+
+std::vector<std::string> sentences_of(const StudyResults& all) {
+  std::vector<std::string> out;
+  for (const answers::Sentence& one : find_kind("continuation")->answers(all).sentences) out.push_back(one.text);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("limits and orders are those of the law that moves the points") {
+  const synthetic::PointLaw law;
+  const StudyResults all = with_tables(synthetic::points());
+  const std::string fold = name_of(all, "fold"), contact = name_of(all, "first contact");
+  CHECK(fold == "fold at 0.1006");
+  CHECK(contact == "first contact at 0.07918");
+  const auto limits = of_name(point_limits_type().read(all.derived), fold);
+  REQUIRE_FALSE(limits.empty());
+  // The reference: rigid stops, 20 elements, 8000 steps.
+  const PointLimitRow& row = limits.front();
+  CHECK(row.id == "smooth0-20-8000");
+  REQUIRE(row.low);
+  CHECK(*row.low <= law.fold);
+  CHECK(law.fold <= *row.high);
+  // Two meshes tell no order: the mesh leaves open by how much they differ, 0.1 (10^-3.8 − 20^-3.8).
+  CHECK(*row.mesh_open == Approx(0.1 * (std::pow(10, -3.8) - std::pow(20, -3.8))).epsilon(1e-6));
+  CHECK(*row.step_open == Approx(279.2 / 8000 / 8000).epsilon(1e-3));
+  CHECK_FALSE(row.law_open);
+  CHECK_FALSE(row.reference);
+  int steps = 0, springs = 0;
+  for (const PointOrderRow& order : of_name(point_orders_type().read(all.derived), fold)) {
+    if (order.refined == "steps_per_period") {
+      CHECK(order.verdict == order_told);
+      CHECK(*order.low <= 2);
+      CHECK(2 <= *order.high);
+      CHECK(order.used == 3);
+      ++steps;
+    } else if (order.refined == "contact.stiffness") {
+      // 1e4 N/m has another fold: two levels are left.
+      CHECK(order.sizes == 2);
+      CHECK(order.verdict == order_not_told);
+      ++springs;
+    } else {
+      CHECK(order.refined == "elements");
+      CHECK(order.verdict == order_not_told);
+    }
+  }
+  CHECK(steps >= 3);
+  CHECK(springs == 2);
+}
+
+TEST_CASE("a case that went past a point says how far, and points then are not robust") {
+  const StudyResults all = with_tables(synthetic::points());
+  const std::string fold = name_of(all, "fold"), contact = name_of(all, "first contact");
+  int absent = 0;
+  for (const PointPresenceRow& row : of_name(point_presence_type().read(all.derived), fold)) {
+    INFO(row.id);
+    CHECK_FALSE(row.robust);
+    if (row.id.starts_with("rough") && row.id.find("-10-") != std::string::npos) {
+      CHECK(row.presence == "absent");
+      // The branch went on to 1.9·0.526 of the way from 0.08 to 0.125 m.
+      CHECK(*row.passed_to == Approx(0.08 + 0.526 * 1.9 * 0.045));
+      ++absent;
+    } else if (row.id.find("10000-") != std::string::npos) {
+      CHECK(row.presence == "not reached");
+      CHECK_FALSE(row.points);
+    } else {
+      CHECK(row.presence == "found");
+      CHECK(row.points == 1);
+    }
+  }
+  CHECK(absent == 12);
+  for (const PointPresenceRow& row : of_name(point_presence_type().read(all.derived), contact)) CHECK(row.robust);
+}
+
+TEST_CASE("shifts are those of one choice at a time") {
+  const StudyResults all = with_tables(synthetic::points());
+  std::set<std::string> choices;
+  for (const PointShiftRow& row : of_name(point_shifts_type().read(all.derived), name_of(all, "fold"))) {
+    choices.insert(row.choice);
+    CHECK(*row.low <= *row.shift);
+    CHECK(*row.shift <= *row.high);
+    if (row.id == "smooth100000-20-8000") {
+      CHECK(row.choice == "contact");
+      CHECK(*row.shift == Approx(-1.1e-4).epsilon(1e-6));
+    }
+    if (row.id == "rough0-20-8000") CHECK(*row.shift == Approx(-3e-5).epsilon(1e-6));
+  }
+  CHECK(choices == std::set<std::string>{"mass", "contact", "elements", "steps_per_period"});
+}
+
+TEST_CASE("names stand in special_points, of ends nowhere") {
+  const StudyResults all = with_tables(synthetic::points());
+  int named = 0;
+  for (const SpecialRow& row : special_points_type().read(all.derived)) {
+    if (row.kind == "end") CHECK(row.name.empty());
+    named += !row.name.empty();
+    // The fold of the softest stop has no counterpart in the finest two cases of the reference.
+    if (row.kind == "fold" && row.id.find("10000-") == std::string::npos) CHECK(row.name == "fold at 0.1006");
+  }
+  CHECK(named > 0);
+}
+
+TEST_CASE("the answer gives value, interval and order, and every number of it stands in answers") {
+  const StudyResults all = with_tables(synthetic::points());
+  const auto said = sentences_of(all);
+  REQUIRE(said.size() >= 4);
+  CHECK_THAT(said[0], Contains("The symmetric period-1 orbit folds at 0.1005") && Contains("±") && Contains("in h"));
+  std::string whole;
+  for (const std::string& one : said) {
+    whole += one + "\n";
+    // Words of a sentence, as many as can be read aloud in 15 seconds.
+    CHECK(std::count(one.begin(), one.end(), ' ') < 45);
+  }
+  INFO(whole);
+  CHECK_THAT(whole, Contains("becomes a torus at") && Contains("first touches a stop at 0.0791792"));
+  CHECK_THAT(whole, Contains("moves by") && Contains("No such fold"));
+  for (const answers::Sentence& one : find_kind("continuation")->answers(all).sentences)
+    CHECK_FALSE(one.clauses.empty());
+}
+
+TEST_CASE("the order of cases changes no number and no sentence") {
+  const StudyResults all = with_tables(synthetic::points());
+  StudyResults shuffled = synthetic::points();
+  // The first method stays the first: it is the reference.
+  std::mt19937 random(3);
+  std::shuffle(shuffled.cases.begin() + 1, shuffled.cases.end(), random);
+  shuffled = with_tables(std::move(shuffled));
+  const auto sorted = [](const StudyResults& results) {
+    std::vector<std::string> out;
+    for (const PointLimitRow& row : point_limits_type().read(results.derived))
+      out.push_back(row.name + row.id + Cell(row.limit).text() + Cell(row.low).text());
+    for (const PointPresenceRow& row : point_presence_type().read(results.derived))
+      out.push_back(row.name + row.id + row.presence);
+    std::sort(out.begin(), out.end());
+    return out;
+  };
+  CHECK(sorted(all) == sorted(shuffled));
+}
+
+TEST_CASE("one case names nothing, and says so") {
+  StudyResults one = synthetic::points();
+  one.cases = {one.cases[5]};
+  one = with_tables(std::move(one));
+  CHECK(point_limits_type().read(one.derived).empty());
+  const auto said = sentences_of(one);
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Contains("One case") && Contains("fold at 0.10056"));
+}
+
+TEST_CASE("a study without orbits says why") {
+  StudyResults none = synthetic::points();
+  none.cases = {none.cases.front()};
+  SpecialRow row;
+  row.branch = "orbit-1";
+  row.point = 1;
+  row.kind = "end";
+  row.parameter = 0.08;
+  row.note = "no orbit of period 1 within 30 iterations";
+  none.cases[0].tables = {branches_table(4, {}), special_points_type().with({row}), turns_type().with({})};
+  none = with_tables(std::move(none));
+  CHECK(sentences_of(none) ==
+        std::vector<std::string>{"No periodic orbit was found: no orbit of period 1 within 30 iterations."});
+  StudyResults nothing;
+  nothing.kind = "continuation";
+  CHECK_NOTHROW(with_tables(nothing));
+}
+
+TEST_CASE("values are said to the digits that their intervals bear") {
+  CHECK(point_value(0.1005653, 1.2e-6) == "0.1005653 ± 1.2e-6");
+  CHECK(point_value(0.1005653, 3e-5) == "0.10057 ± 3e-5");
+  CHECK(point_value(0.07917924475, 2e-9) == "0.079179245 ± 2e-9");
+  CHECK(point_value(-2.64, 0.3) == "−2.6 ± 0.3");
+  CHECK(point_value(0.1005653, std::nullopt) == "0.1005653");
+}

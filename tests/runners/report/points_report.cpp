@@ -1,0 +1,19 @@
+// What the report of kind `continuation` tells is what the tables of points hold.
+#include <catch2/catch.hpp>
+
+#include "runners/kinds/continuation/page/page.hpp"
+#include "runners/run/finish_run.hpp"
+#include "tests/runners/report/rendered.hpp"
+#include "tests/runners/report/synthetic_points.hpp"
+
+using namespace ricochet;
+using Catch::Matchers::Contains;
+
+TEST_CASE("the page has branches, points, multipliers and turns", "[report]") {
+  const StudyResults all = with_tables(synthetic::points());
+  const std::string html = report::points_html(report::CaseView(all));
+  CHECK_THAT(html, Contains("fold at 0.1006") && Contains("order in h") && Contains("12 without"));
+  CHECK_THAT(report::point_methods_html(report::CaseView(all)), Contains("mesh leaves open"));
+  const std::string page = synthetic::rendered(all, "0;", "5");
+  CHECK_THAT(page, Contains("point_levels") && Contains("smooth0-20-8000/branch/parameter:f64"));
+}

@@ -1,0 +1,153 @@
+#pragma once
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "runners/kinds/continuation/continuation_tables.hpp"
+#include "runners/store/record.hpp"
+
+/// \file
+/// A study of kind `continuation` made from formulas: points that move with known powers of step, mesh and compliance.
+namespace ricochet::synthetic {
+
+/// What the points of the synthetic study go to.
+struct PointLaw {
+  double fold = 0.1005653, contact = 0.07917924475, torus = 0.08495;
+  double of_step = 279.2, of_mesh = 0.1, mesh_order = 3.8, of_compliance = 11;  ///< of the fold
+  double noise = 1e-7;  ///< half intervals of fold and first contact
+};
+
+/// A case with one branch both ways from λ = 0.08: up to the fold and back, down through the first contact.
+inline CaseRecord points_case(const std::string& mass, double stiffness, int elements, int steps,
+                              const PointLaw& law = {}) {
+  CaseRecord record;
+  record.axes = {{"mass", mass}, {"contact", stiffness > 0 ? "spring" : "rigid"}};
+  record.axes.emplace_back("contact.stiffness",
+                           stiffness > 0 ? nlohmann::ordered_json(stiffness) : nlohmann::ordered_json(nullptr));
+  record.axes.emplace_back("time", "three-level");
+  record.axes.emplace_back("elements", elements);
+  record.axes.emplace_back("steps_per_period", steps);
+  record.id = mass + std::to_string(static_cast<long long>(stiffness)) + "-" + std::to_string(elements) + "-" +
+              std::to_string(steps);
+  record.status = "done";
+  const double h2 = 1.0 / steps / steps, compliance = stiffness > 0 ? 1 / stiffness : 0;
+  const bool folds = !(mass == "rough" && elements == 10);
+  double fold = law.fold - law.of_step * h2 - law.of_mesh * std::pow(elements, -law.mesh_order) -
+                law.of_compliance * compliance - (mass == "rough" ? 3e-5 : 0);
+  // The softest stop has another fold.
+  if (stiffness > 0 && stiffness < 2e4) fold = 0.0931;
+  const double contact = law.contact - 0.0466 * h2, torus = law.torus + 40 * h2, start = 0.08;
+  std::vector<BranchRow> rows;
+  std::vector<SpecialRow> points;
+  const auto add_row_at = [&](const std::string& branch, double arc, double parameter, double tip, int unstable) {
+    BranchRow row;
+    row.branch = branch;
+    row.row = rows.empty() || rows.back().branch != branch ? 0 : rows.back().row + 1;
+    row.arc = arc;
+    row.parameter = parameter;
+    row.tip_displacement = tip;
+    row.tip_velocity = 10 * parameter;
+    row.symmetric = true;
+    row.stable = unstable == 0;
+    row.unstable = unstable;
+    const double size = unstable > 0 ? 1.05 + 8 * std::abs(parameter - torus) : 1 - 12 * std::abs(parameter - torus);
+    row.multipliers = {std::complex<double>(-0.6 * size, 0.8 * size), std::complex<double>(-0.6 * size, -0.8 * size),
+                       std::complex<double>(0.3, 0), std::complex<double>(-0.1, 0.05)};
+    row.impacts_per_period = parameter > contact ? 2 : 0;
+    row.contact_runs = parameter > contact ? 2 : 0;
+    row.iterations = 2;
+    row.residual = 1e-14;
+    row.pieces = 10;
+    row.direction = 1;
+    rows.push_back(row);
+  };
+  const auto add_point = [&](const std::string& branch, const char* kind, double arc, double parameter, double tip,
+                             double half) {
+    SpecialRow row;
+    row.branch = branch;
+    row.point = 1 + static_cast<int>(std::count_if(points.begin(), points.end(),
+                                                   [&](const SpecialRow& one) { return one.branch == branch; }));
+    row.kind = kind;
+    row.parameter = parameter;
+    row.low = parameter - half;
+    row.high = parameter + half;
+    row.arc = arc;
+    row.tip_displacement = tip;
+    rows.back().point = row.point;
+    points.push_back(row);
+  };
+  constexpr int count = 120;
+  const double top = folds ? fold : 0.125, length = top - start;
+  bool turned = false, round = false;
+  for (int k = 0; k <= count; ++k) {
+    // Along the branch the parameter rises to its turn and falls back to 0.082.
+    const double s = 1.9 * length * k / count, back = std::max(0.0, s - length);
+    const double parameter = folds ? top - std::pow((length - s) / length, 2) * length : start + 0.526 * s;
+    const double tip = 0.004 - 0.12 * s;
+    if (!round && parameter >= torus) {
+      round = true;
+      add_row_at("orbit-1+", s, torus, 0.004 - 0.12 * s, 0);
+      add_point("orbit-1+", "torus", s, torus, -0.001, 3e-5);
+      points.back().angle = std::atan2(0.8, -0.6);
+      points.back().crossings = 9;
+    }
+    if (folds && !turned && back > 0) {
+      turned = true;
+      add_row_at("orbit-1+", length, top, 0.004 - 0.12 * length, 2);
+      add_point("orbit-1+", "fold", length, top, 0.004 - 0.12 * length, law.noise);
+      points.back().prominence = 0.018;
+      points.back().side = "below";
+    }
+    add_row_at("orbit-1+", s, parameter, tip, parameter > torus || back > 0 ? 2 : 0);
+  }
+  add_point("orbit-1+", "end", *rows.back().arc, *rows.back().parameter, *rows.back().tip_displacement, 0);
+  points.back().note = "range";
+  for (int k = 0; k <= count; ++k) {
+    const double s = 0.02 * k / count, parameter = start - s;
+    if (k > 0 && parameter < contact && parameter + 0.02 / count >= contact) {
+      add_row_at("orbit-1−", start - contact, contact, 0.004 + 0.1 * (start - contact), 0);
+      add_point("orbit-1−", "contact", start - contact, contact, 0.004 + 0.1 * (start - contact), law.noise / 100);
+      points.back().runs_before = 2;
+      points.back().runs_after = 0;
+      points.back().contact_phase = 1.2;
+      points.back().contact_x = 1.501;
+    }
+    add_row_at("orbit-1−", s, parameter, 0.004 + 0.1 * s, 0);
+  }
+  add_point("orbit-1−", "end", 0.02, 0.06, 0.006, 0);
+  points.back().note = "range";
+  std::vector<TurnRow> turns;
+  for (int k = 0; k <= 12; ++k) {
+    const double prominence = 1e-6 * std::pow(10, k / 3.0);
+    const double invented = 2e-2 * std::pow(steps / 2000.0, -3) / prominence;
+    turns.push_back({record.id, "orbit-1+", prominence,
+                     (folds ? 1 : 0) + static_cast<int>(prominence < 2e-4 ? invented * 1e-2 : 0)});
+  }
+  record.tables = {branches_table(4, rows), special_points_type().with(points), turns_type().with(turns)};
+  return record;
+}
+
+/// Two mass matrices, rigid stops and three springs, two meshes, three steps; and a case that was refused.
+inline StudyResults points(const std::vector<int>& steps = {2000, 4000, 8000}, const PointLaw& law = {}) {
+  StudyResults out;
+  out.name = "points";
+  out.question = "Where do orbits fold, whatever the method?";
+  out.kind = "continuation";
+  out.columns = {"mass", "contact", "contact.stiffness", "time", "elements", "steps_per_period"};
+  out.study = {{"parameter", {{"pointer", "/scene/support/amplitude"}, {"from", 0.06}, {"to", 0.12}}}};
+  for (const std::string mass : {"smooth", "rough"})
+    for (const double stiffness : {0.0, 1e4, 1e5, 1e6})
+      for (const int elements : {10, 20})
+        for (const int count : steps) out.cases.push_back(points_case(mass, stiffness, elements, count, law));
+  CaseRecord refused = out.cases.front();
+  refused.id = "refused";
+  refused.axes[0].second = "none at all";
+  refused.status = "refused";
+  refused.reason = "nothing to follow";
+  refused.tables.clear();
+  out.cases.push_back(std::move(refused));
+  out.expected_cases = static_cast<int>(out.cases.size());
+  return out;
+}
+
+}  // namespace ricochet::synthetic
