@@ -54,7 +54,8 @@ void add(const SparseMatrix& matrix, const std::vector<int>& rows, const std::ve
                            it.value());
 }
 
-SparseMatrix sparse_matrix(Eigen::Index rows, Eigen::Index columns, const std::vector<Eigen::Triplet<double>>& entries) {
+SparseMatrix sparse_matrix(Eigen::Index rows, Eigen::Index columns,
+                           const std::vector<Eigen::Triplet<double>>& entries) {
   SparseMatrix matrix(rows, columns);
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;

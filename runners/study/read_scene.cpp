@@ -192,8 +192,12 @@ StopsSpec read_stops(const Json& json, StudyFiles* files) {
     for (std::size_t i = 0; i < json.size(); ++i) {
       const Json& one = json[i];
       const Json with = one.value("moves_with", Json(""));
-      NamedStop stop{one.at("name").get<std::string>(), read_place(one.at("at")), optional_place(one.at("to")),
-                     bound(one.at("lower")), bound(one.at("upper")), with.is_string() ? with.get<std::string>() : "",
+      NamedStop stop{one.at("name").get<std::string>(),
+                     read_place(one.at("at")),
+                     optional_place(one.at("to")),
+                     bound(one.at("lower")),
+                     bound(one.at("upper")),
+                     with.is_string() ? with.get<std::string>() : "",
                      read_tangent(one)};
       if (!with.is_string())
         stop.motion =

@@ -71,8 +71,9 @@ struct AssembledStructure {
     std::array<double, 3> place{};
   };
   std::map<std::string, Node> nodes;
-  std::vector<std::pair<int, int>> links = {};  ///< pairs of nodes, by their order in `nodes`, that K joins; to be drawn
-  std::optional<ModalPart> modes = {};              ///< of a structure in modes
+  std::vector<std::pair<int, int>> links =
+      {};                               ///< pairs of nodes, by their order in `nodes`, that K joins; to be drawn
+  std::optional<ModalPart> modes = {};  ///< of a structure in modes
   std::shared_ptr<const JoinedBodies> joined = {};  ///< of several bodies (bodies.hpp); their places are the bodies'
 
   int dofs() const { return static_cast<int>(names.size()); }

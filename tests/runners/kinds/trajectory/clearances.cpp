@@ -31,7 +31,7 @@ Json whirling(const char* contact) {
   return study;
 }
 
-double measured(const CaseRecord& record, const std::string& name) {
+double reading(const CaseRecord& record, const std::string& name) {
   return measure(record, name).value_or(std::nan(""));
 }
 
@@ -56,24 +56,24 @@ TEST_CASE("a clearance has one row, one name, and the resultant of its sides as 
                         [&](const Row& row) { return row[name].text() == "plate"; }) == 1);
     const NumberTable& impacts = *find_table(record.numbers, "impacts");
     CHECK(*impacts.words_of("stop") == std::vector<std::string>{"plate", "end"});
-    CHECK(static_cast<double>(impacts.rows()) == measured(record, "impacts"));
-    CHECK(measured(record, "impacts[plate]") >= 1);
+    CHECK(static_cast<double>(impacts.rows()) == reading(record, "impacts"));
+    CHECK(reading(record, "impacts[plate]") >= 1);
     // Impulse = mean force times the time in contact, of the same instants.
-    CHECK(measured(record, "mean_force[plate]") * measured(record, "contact_time[plate]") ==
-          Approx(measured(record, "impulse[plate]")).epsilon(1e-12));
+    CHECK(reading(record, "mean_force[plate]") * reading(record, "contact_time[plate]") ==
+          Approx(reading(record, "impulse[plate]")).epsilon(1e-12));
     // It whirls along the circle, in contact for most of the time: few impacts, a mean distance of about the radius.
-    CHECK(measured(record, "window_contact_share[plate]") > 0.5);
-    CHECK(measured(record, "window_displacement_mean[plate]") == Approx(2e-3).epsilon(0.05));
+    CHECK(reading(record, "window_contact_share[plate]") > 0.5);
+    CHECK(reading(record, "window_displacement_mean[plate]") == Approx(2e-3).epsilon(0.05));
     // Along the circle it moves by R·ω.
-    CHECK(measured(record, "wear_power[plate]") ==
-          Approx(measured(record, "window_force[plate]") * 2e-3 * 25).epsilon(0.3));
-    CHECK(std::isfinite(measured(record, "confidence.wear_power[plate]")));
+    CHECK(reading(record, "wear_power[plate]") ==
+          Approx(reading(record, "window_force[plate]") * 2e-3 * 25).epsilon(0.3));
+    CHECK(std::isfinite(reading(record, "confidence.wear_power[plate]")));
     const NumberTable& orbits = *find_table(record.numbers, "orbits");
     CHECK(*orbits.words_of("stop") == std::vector<std::string>{"plate"});
     CHECK(orbits.rows() == 2001);
     const std::vector<double>&y = *orbits.numbers("first"), &z = *orbits.numbers("second");
     // As far as a corner, and what the largest force presses a spring in.
-    const double far = 2e-3 * 1.0049 + 1.01 * measured(record, "peak_force[plate]") / 1e5;
+    const double far = 2e-3 * 1.0049 + 1.01 * reading(record, "peak_force[plate]") / 1e5;
     double largest = 0;
     for (std::size_t i = 0; i < orbits.rows(); ++i) largest = std::max(largest, std::hypot(y[i], z[i]));
     CHECK(largest <= far);
@@ -97,7 +97,7 @@ TEST_CASE("a motion that stays on one side of a clearance is that of a stop ther
   const CaseRecord a = runs.first_of(round), b = runs.first_of(flat);
   for (const char* name :
        {"impulse[plate]", "impacts[plate]", "rms_force[plate]", "window_rms_force[plate]", "impacts", "energy_end"})
-    CHECK(measured(a, name) == Approx(measured(b, name)).epsilon(1e-9));
+    CHECK(reading(a, name) == Approx(reading(b, name)).epsilon(1e-9));
 }
 
 TEST_CASE("points of modes and nodes of matrices move within clearances as the beam does") {
