@@ -55,7 +55,7 @@ bool BoxSolver::slide(int entering) {
 
   int leaving = -1;
   double step = infinity;
-  const auto look = [&](int i, double rate) {
+  const auto consider = [&](int i, double rate) {
     if (i == entering || (side_[i] == Side::lower ? rate >= 0 : rate <= 0)) return;
     const double until = -feasible_[i] / rate;
     if (until < step) {
@@ -63,8 +63,8 @@ bool BoxSolver::slide(int entering) {
       leaving = i;
     }
   };
-  for (int j = 0; j < rank_; ++j) look(set_[j], sign * null_[j]);
-  look(dropped_, sign);
+  for (int j = 0; j < rank_; ++j) consider(set_[j], sign * null_[j]);
+  consider(dropped_, sign);
   if (leaving < 0) return false;
   for (int j = 0; j < rank_; ++j) feasible_[set_[j]] += step * sign * null_[j];
   feasible_[dropped_] += step * sign;

@@ -295,7 +295,7 @@ std::string inconsistent_motion(const StepPlan& plan) {
       return fmt::format("velocity: the plan's velocity is {:g} m/s on a motion at 1 m/s", speed);
     motion.begin();
     for (std::size_t k = 0; k < plan.stages.size(); ++k) {
-      motion.look(plan.stages[k]);
+      motion.measure(plan.stages[k]);
       if (std::string wrong = wrong_stage(plan.stages[k], motion, fmt::format("stage {}", k + 1)); !wrong.empty())
         return wrong;
       motion.pass(plan.stages[k]);

@@ -158,7 +158,7 @@ std::vector<StageFacts> derive_stages(std::vector<Stage>& stages, Uniform& motio
   for (std::size_t k = 0; k < stages.size(); ++k) {
     StageFacts facts;
     facts.increment = position_increment(stages[k]);
-    motion.look(stages[k]);
+    motion.measure(stages[k]);
     facts.from = simple(motion.place());
     Uniform after = motion;
     after.pass(stages[k]);

@@ -73,7 +73,7 @@ class Uniform {
 
   /// Before the first stage of a set that begins now.
   void begin() { origin_ = moving_.slots[0]; }
-  void look(const Stage& stage) {
+  void measure(const Stage& stage) {
     rest_z_ = rest_.unknown(stage, 0, 0);
     moving_z_ = moving_.unknown(stage, 0, 0);
   }

@@ -205,7 +205,7 @@ std::vector<double> work_efforts(const WorkForm& work, std::size_t stage, const 
   return weights;
 }
 
-// What an effort of each stage is worth, and which stages look at contact together.
+// What an effort of each stage is worth, and which stages share a contact instant.
 void add_contact_facts(Program& program) {
   const StageEfforts efforts = efforts_read(program.stages), start = efforts_read(program.start);
   const std::vector<double> momentum = momentum_weights(program.plan, efforts);

@@ -84,7 +84,7 @@ struct StageProgram {
   PhaseWeights load_phase, measure_phase, rate_phase, before_phase, predictor_phase, approach_phase, motion_phase;
   StageFacts facts;
   double momentum = 0;  ///< s: what an effort of 1 N of this stage finally gives to a free mass
-  /// Contact stages that ask at the same instant (a velocity, then a projection) are one look at contact: whether this
+  /// Contact stages that ask at the same instant (a velocity, then a projection) are one contact instant: whether this
   /// one is its first, and its last.
   bool opens_instant = false, closes_instant = false;
 };

@@ -50,8 +50,8 @@ struct Rates {
   double product, substitution, sparse, elementwise, diagonal, measure;
 };
 
-// What a stage costs besides, whatever its size: calls, the motion of the support, and, per step and per lane, the look
-// at the contact, closed now and then. What `bench_march` and `bench_decay` measure over their products and sums.
+// What a stage costs besides, whatever its size: calls, the motion of the support, and, per step and per lane, the
+// check of contact, closed now and then. What `bench_march` and `bench_decay` measure over their products and sums.
 constexpr double per_stage = 130, per_contact = 170, per_contact_lane = 25;
 
 Rates rates(int width) {
@@ -63,7 +63,7 @@ Rates rates(int width) {
   return {0.064, 0.118, 0.22, 0.10, 0.125, 0.087};
 }
 
-// A step in modes, and a look at what may come, as bench_flight measures them.
+// A step in modes, and a search of a flight, as bench_flight measures them.
 double visit_seconds(const SemiDiscrete& problem, const StepWork& work) {
   return predict_cost(OperatorKind::modal, problem, work, 1).step_seconds + 5e-7 +
          2.5e-10 * problem.dofs() * problem.points();

@@ -25,7 +25,7 @@ struct StepWork {
 Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork& work, int width);
 
 /// An integration of so many steps by flights: of them up to four times their root are visited, as bench_flight counts
-/// on beams, each with a step in modes and a look at what may come. Seconds, set-up included.
+/// on beams, each with a step in modes and a search of a flight. Seconds, set-up included.
 double predict_flights(const SemiDiscrete& problem, const StepWork& work, long long steps);
 
 /// Seconds of one forcing period of so many steps by flights: some 60 steps^0.17 of them are visited, as bench_flight

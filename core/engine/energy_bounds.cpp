@@ -40,10 +40,10 @@ double EnergyScale::of_load(double t) const {
   if (!problem_->load) return 0;
   Eigen::VectorXd load = Eigen::VectorXd::Ones(problem_->dofs());
   if (static_energy(load) == 0) return std::numeric_limits<double>::infinity();
-  constexpr int looks = 64;
+  constexpr int samples = 64;
   double scale = 0;
-  for (int k = 0; k <= (t == 0 ? 0 : looks); ++k) {
-    problem_->load->assemble(t * k / looks, load.data());
+  for (int k = 0; k <= (t == 0 ? 0 : samples); ++k) {
+    problem_->load->assemble(t * k / samples, load.data());
     if (load.allFinite()) scale = std::max(scale, static_energy(load));
   }
   return scale;

@@ -41,7 +41,7 @@ class EnergyBounds {
   void place(int lane, const LaneSpec& spec, double stored);
   /// A lane's own, whoever marches beside it; infinite where the scene mentions no energy.
   double of(int lane) const;
-  /// Whether an energy at time t is beyond it; looks again at a load that depends on time before it says so.
+  /// Whether an energy at time t is beyond it; samples a load that depends on time before it says so.
   bool passed(int lane, double energy, double t);
 
  private:

@@ -54,7 +54,7 @@ std::string let_fly(Program& program, const CompileOptions& options) {
       {"steps in which no contact changes",
        closed.empty() ? "open or closed, they are composed"
        : steps.empty()
-           ? "those without contact are composed; with it (" + closed + ") they are made without a search or a look"
+           ? "those without contact are composed; with it (" + closed + ") they are made without a search or a reading"
            : "those without contact are composed; with it (" + (program.law->reads() ? steps : closed) +
                  ") every step is marched"});
   return "";

@@ -18,7 +18,7 @@ enum class EndCause {
   position_not_finite,    ///< the displacement at a contact point
   effort_not_finite,      ///< that a contact law found
   law_not_converged,      ///< value: residual, in units of the measure, ∞: no finite force; count: iterations made
-  state_not_finite,       ///< count: steps between two looks at the state
+  state_not_finite,       ///< count: steps between two checks of the state
   elastic_energy_beyond,  ///< value: ½wᵀKw, J; bound, J: factor times the scene's own scale
   energy_not_finite,      ///< of an audit
   energy_beyond,          ///< value: energy of an audit, J; bound, J

@@ -20,7 +20,7 @@ struct StageState;
 /// The one time loop. Allocates in its constructor only.
 class Marcher {
  public:
-  /// Steps between two looks at lanes, where nobody observes them.
+  /// Steps between two checks of lanes that nobody observes.
   static constexpr long long check_interval = 16;
 
   explicit Marcher(Program program);
@@ -112,7 +112,7 @@ class Marcher {
   void freeze(int lane, const LaneEnd& end);
   /// Energy (J) above which a lane counts as diverged; its own, whoever marches beside it; stated with the cause.
   double energy_bound(int lane) const;
-  /// Whether an energy is beyond it; looks again at a load that depends on time before it says so.
+  /// Whether an energy is beyond it; samples a load that depends on time before it says so.
   bool beyond_bound(int lane, double energy);
 
  private:

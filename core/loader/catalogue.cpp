@@ -123,9 +123,9 @@ Catalogue::Catalogue(fs::path installed, const std::vector<fs::path>& folders, c
     for (const auto& item : fs::directory_iterator(folder, ignored))
       if (item.path().extension() == ".so") found.push_back(item.path());
     std::sort(found.begin(), found.end());
-    for (const fs::path& file : found) look_at(file, false);
+    for (const fs::path& file : found) read_library(file, false);
   }
-  for (const fs::path& file : files) look_at(file, true);
+  for (const fs::path& file : files) read_library(file, true);
 }
 
 Catalogue Catalogue::standard(const std::vector<fs::path>& files) {
@@ -145,7 +145,7 @@ Catalogue Catalogue::standard(const std::vector<fs::path>& files) {
   return Catalogue(installed, folders, files);
 }
 
-void Catalogue::look_at(const fs::path& file, bool insist) {
+void Catalogue::read_library(const fs::path& file, bool insist) {
   Methods methods;
   const auto refuse = [&](const std::string& reason) {
     if (insist) throw PluginError(file.string() + ": " + reason);

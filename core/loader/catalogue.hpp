@@ -68,7 +68,7 @@ class Catalogue {
   const std::vector<std::filesystem::path>& opened() const { return opened_; }
 
  private:
-  void look_at(const std::filesystem::path& file, bool insist);
+  void read_library(const std::filesystem::path& file, bool insist);
   void open(const std::filesystem::path& file, Registry& registry);
   void adopt(const std::filesystem::path& file, const Registry& from, Registry& registry) const;
   const Provided* first_provider(Role role, const std::string& name) const;

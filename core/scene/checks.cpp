@@ -397,10 +397,4 @@ void check_scene(const SceneSpec& shared, int elements, const ForceBeyond& beyon
   check_fields(scene, space, elements);
 }
 
-void require_positive(double value, const char* key, const char* what, const char* unit) {
-  if (std::isfinite(value) && value > 0) return;
-  throw InputError(fmt::format("/scene/structure/{}", key),
-                   fmt::format("{} is {:.6g} {}; expected a finite number above 0", what, value, unit));
-}
-
 }  // namespace ricochet

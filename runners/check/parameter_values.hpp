@@ -13,7 +13,7 @@ struct ParameterSet {
   std::string text;  ///< "beta 0.25, gamma 0.5"
 };
 
-/// The values a method is looked at with: its defaults (a parameter without one: the middle of its range, else 1e5);
+/// The values a method is tried with: its defaults (a parameter without one: the middle of its range, else 1e5);
 /// then, one parameter at a time, the ends and the middle of bounded ranges (just inside where an end is open), a
 /// hundredth and a hundredfold of the default where it is not bounded, each word, both truths.
 std::vector<ParameterSet> parameter_sets(const std::vector<ParameterSpec>& specs);
@@ -51,11 +51,11 @@ std::vector<CheckResult> run_checks(const std::vector<Check<Interface>>& checks,
   const std::vector<Subject<Interface>> subjects = subjects_of(entry);
   std::vector<CheckResult> results;
   for (const Check<Interface>& check : checks) {
-    std::vector<Look> looks;
+    std::vector<Trial> trials;
     for (const Subject<Interface>& subject : subjects)
-      looks.push_back({subject.set.text, [&check, &subject] { return check.of(subject); }});
+      trials.push_back({subject.set.text, [&check, &subject] { return check.of(subject); }});
     bool hangs = false;
-    results.push_back(run_check(check.name, looks, isolation, &hangs));
+    results.push_back(run_check(check.name, trials, isolation, &hangs));
     if (hangs) break;
   }
   return results;

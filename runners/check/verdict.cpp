@@ -34,9 +34,9 @@ void decode(const std::string& text, CheckResult& result) {
   }
 }
 
-Verdict taken(const Look& look) {
+Verdict taken(const Trial& trial) {
   try {
-    return look.take();
+    return trial.take();
   } catch (const Refused& refused) {
     return not_applicable("refused: " + refused.sentence);
   } catch (const std::exception& error) {
@@ -47,7 +47,7 @@ Verdict taken(const Look& look) {
 }
 
 // Failures of all values; else the first of what was found most: measured before declared before applicable.
-CheckResult over_all(const std::string& name, const std::vector<Look>& looks) {
+CheckResult over_all(const std::string& name, const std::vector<Trial>& trials) {
   CheckResult result{name, Finding::not_applicable, {}};
   const auto weight = [](Finding finding) {
     switch (finding) {
@@ -64,8 +64,8 @@ CheckResult over_all(const std::string& name, const std::vector<Look>& looks) {
   };
   constexpr std::size_t most_sentences = 4;
   bool first = true;
-  for (const Look& look : looks) {
-    const Verdict verdict = taken(look);
+  for (const Trial& trial : trials) {
+    const Verdict verdict = taken(trial);
     if (first || weight(verdict.finding) > weight(result.finding)) {
       result.finding = verdict.finding;
       result.sentences.clear();
@@ -73,7 +73,7 @@ CheckResult over_all(const std::string& name, const std::vector<Look>& looks) {
     }
     first = false;
     if (verdict.finding == Finding::fails && result.sentences.size() < most_sentences)
-      result.sentences.push_back((look.values.empty() ? "" : "with " + look.values + ": ") + verdict.sentence);
+      result.sentences.push_back((trial.values.empty() ? "" : "with " + trial.values + ": ") + verdict.sentence);
   }
   return result;
 }
@@ -99,11 +99,11 @@ bool all_hold(const std::vector<CheckResult>& results) {
                       [](const CheckResult& result) { return result.finding == Finding::fails; });
 }
 
-CheckResult run_check(const std::string& name, const std::vector<Look>& looks, const Isolation& isolation,
+CheckResult run_check(const std::string& name, const std::vector<Trial>& trials, const Isolation& isolation,
                       bool* hangs) {
   if (hangs) *hangs = false;
-  if (!isolation.child) return over_all(name, looks);
-  const ChildOutcome outcome = run_in_child([&] { return encoded(over_all(name, looks)); }, isolation.seconds);
+  if (!isolation.child) return over_all(name, trials);
+  const ChildOutcome outcome = run_in_child([&] { return encoded(over_all(name, trials)); }, isolation.seconds);
   CheckResult result{name, Finding::fails, {}};
   if (outcome.ok())
     decode(outcome.text, result);

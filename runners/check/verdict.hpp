@@ -12,7 +12,7 @@ enum class Finding { ok, fails, not_applicable, not_declared };
 /// "ok", "FAILS", "not applicable", "not declared".
 const char* finding_word(Finding finding);
 
-/// What one look at a method found: a sentence with what was measured and, where it fails, what was declared.
+/// What one trial of a method found: a sentence with what was measured and, where it fails, what was declared.
 struct Verdict {
   Finding finding = Finding::ok;
   std::string sentence;  ///< may be empty where it is ok
@@ -50,14 +50,14 @@ struct Isolation {
   double seconds = 60;
 };
 
-/// A look at the method with one set of parameter values.
-struct Look {
+/// A trial of the method with one set of parameter values.
+struct Trial {
   std::string values;  ///< "beta 0.25, gamma 0.5", "" where it has no parameters
   std::function<Verdict()> take;
 };
-/// Takes every look; what is thrown, and what ends the child process, is a failure with its own sentence. `hangs` tells
-/// whether the limit ended it.
-CheckResult run_check(const std::string& name, const std::vector<Look>& looks, const Isolation& isolation,
+/// Makes every trial; what is thrown, and what ends the child process, is a failure with its own sentence. `hangs`
+/// tells whether the limit ended it.
+CheckResult run_check(const std::string& name, const std::vector<Trial>& trials, const Isolation& isolation,
                       bool* hangs = nullptr);
 
 }  // namespace ricochet::checking

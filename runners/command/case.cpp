@@ -103,8 +103,7 @@ int print_again(const OpenCase& open, const StoredStudy& stored, const StudyCase
       << parameters_text(open.record) << "\n"
       << again.status << (again.reason.empty() ? "" : ": " + again.reason)
       << (again.steps > 0 ? fmt::format(", {} steps", again.steps) : "");
-  if (const std::string outcome = again.status == "done" ? open.kind->outcome(again) : "";
-      !outcome.empty())
+  if (const std::string outcome = again.status == "done" ? open.kind->outcome(again) : ""; !outcome.empty())
     out << ": " << outcome;
   out << "\n";
   if (!again.measures.empty()) out << "\n" << measures_text(again);
@@ -160,7 +159,7 @@ int print_study(const OpenCase& open, std::ostream& out) {
   return exit_done;
 }
 
-int look_at(const Arguments& arguments, std::ostream& out) {
+int show_case(const Arguments& arguments, std::ostream& out) {
   if ((arguments.samples > 0) + (arguments.snapshots > 0) + (arguments.study ? 1 : 0) > 1)
     throw UsageError(
         "case prints a curve, keeps snapshots or prints a study: expected one of --samples, --snapshots and --study");
@@ -193,7 +192,7 @@ int look_at(const Arguments& arguments, std::ostream& out) {
 
 int command_case(const Arguments& arguments, std::ostream& out) {
   try {
-    return look_at(arguments, out);
+    return show_case(arguments, out);
   } catch (const PointRefused& refused) {
     throw UsageError(refused.what());
   }

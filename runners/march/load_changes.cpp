@@ -30,11 +30,11 @@ int points_of(const Marcher& marcher) {
 
 }  // namespace
 
-GapWatch::GapWatch(const Marcher& marcher) : looked_at_(no_gap) {
-  for (int j = 0; j < points_of(marcher); ++j) looked_at_ = std::min(looked_at_, gap_of(marcher, j));
+GapWatch::GapWatch(const Marcher& marcher) : known_(no_gap) {
+  for (int j = 0; j < points_of(marcher); ++j) known_ = std::min(known_, gap_of(marcher, j));
 }
 
-void GapWatch::look(const Marcher& marcher, double penetration) {
+void GapWatch::update(const Marcher& marcher, double penetration) {
   const MarchModel& model = *marcher.program().model;
   const double support = marcher.support(0, marcher.time());
   double most = 0;
@@ -44,7 +44,7 @@ void GapWatch::look(const Marcher& marcher, double penetration) {
         model.times(model.contact(), j, marcher.slot(0)) + support + marcher.motions().point(j, marcher.time());
     most = std::max(most, std::max(lane.lower[j] - place, place - lane.upper[j]) / gap_of(marcher, j));
   }
-  looked_at_ = penetration;
+  known_ = penetration;
   if (!(most > 1)) return;
   if (times_ == 0) first_ = marcher.time();
   times_ = std::max(times_, most);
@@ -129,9 +129,9 @@ std::set<double> numbers_in(const std::string& text, double end) {
   return numbers;
 }
 
-class Look {
+class SignalSampler {
  public:
-  Look(const Signal& signal, double h, long long steps) : signal_(signal), h_(h), steps_(steps) {
+  SignalSampler(const Signal& signal, double h, long long steps) : signal_(signal), h_(h), steps_(steps) {
     look_evenly();
     look_around_numbers();
     std::sort(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) { return a.step < b.step; });
@@ -179,7 +179,7 @@ class Look {
     one.high = std::max(one.begin, one.end);
     return one;
   }
-  void look_at(Seen& one, double t) {
+  void sample(Seen& one, double t) {
     const double found = value(t);
     if (found < one.low) one.low = found, one.low_at = t;
     if (found > one.high) one.high = found, one.high_at = t;
@@ -197,7 +197,7 @@ class Look {
       if (!seen_.empty() && seen_.back().step == step) continue;
       const bool next = !seen_.empty() && seen_.back().step + 1 == step;
       Seen one = begin(step, next ? seen_.back().end : value(time(step)));
-      look_at(one, (static_cast<double>(step) + phase) * h_);
+      sample(one, (static_cast<double>(step) + phase) * h_);
       phase += std::numbers::phi - 1;
       phase -= std::floor(phase);
       seen_.push_back(one);
@@ -215,7 +215,7 @@ class Look {
         Seen one = begin(step, value(time(step)));
         for (const double part : {1e-6, 1e-4, 1e-3, 0.01, 0.05, 0.2, 0.5})
           for (const double t : {centre - part * h_, centre + part * h_})
-            if (t > time(step) && t < time(step + 1)) look_at(one, t);
+            if (t > time(step) && t < time(step + 1)) sample(one, t);
         seen_.push_back(one);
       }
     }
@@ -254,14 +254,15 @@ std::vector<std::string> load_changes(const SceneSpec& shared, double step, long
   if (!shared.load.uses_t() || steps < 1) return said;
   const SceneSpec scene = shared;  // formulas keep their variables inside: evaluate our own copies
   const std::vector<Signal> signals = signals_of(scene);
-  std::vector<Look> looks;
+  std::vector<SignalSampler> samplers;
   double largest = 0;
   if (const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure))
     largest = std::abs(oscillator->force.amplitude);
-  for (const Signal& signal : signals) largest = std::max(largest, looks.emplace_back(signal, step, steps).largest());
+  for (const Signal& signal : signals)
+    largest = std::max(largest, samplers.emplace_back(signal, step, steps).largest());
   std::set<double> passing;
   std::set<long long> jumping;
-  for (Look& look : looks) look.tell(largest, passing, jumping);
+  for (SignalSampler& sampler : samplers) sampler.tell(largest, passing, jumping);
   std::vector<std::string> times;
   double last = -step;
   for (const double t : passing) {

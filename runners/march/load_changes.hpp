@@ -16,7 +16,7 @@ class GapWatch {
   /// After a step at whose end some point is `penetration` (m) beyond its stop. Costs a comparison where that is within
   /// the smallest gap; no allocation.
   void see(const Marcher& marcher, double penetration) {
-    if (penetration > looked_at_) look(marcher, penetration);
+    if (penetration > known_) update(marcher, penetration);
   }
 
   /// What the integration did in steps too long for its gaps, a sentence each: a point comes to its stop with a speed
@@ -26,8 +26,8 @@ class GapWatch {
   std::string passed() const;
 
  private:
-  void look(const Marcher& marcher, double penetration);
-  double looked_at_;  // m: no less is looked at; at first the smallest gap
+  void update(const Marcher& marcher, double penetration);
+  double known_;  // m: no less is news; at first the smallest gap
   double times_ = 0, first_ = 0;
 };
 

@@ -27,7 +27,7 @@ namespace {
 // Packets for one rank travel together, in pieces of a stream.
 constexpr std::size_t most_of_a_piece = std::size_t{16} << 20;
 constexpr int tag = 17;
-// Between two looks at MPI, which says nothing by itself: shortly after something came, and later.
+// Between two calls of MPI, which says nothing by itself: shortly after something came, and later.
 constexpr std::chrono::microseconds short_nap{100}, long_nap{1000};
 constexpr auto busy_for = std::chrono::milliseconds(5);
 

@@ -213,15 +213,15 @@ void check_tables(const SceneSpec& scene, double duration) {
 
 std::vector<Json*> histories_with_files(Json& scene) {
   std::vector<Json*> found;
-  const auto look = [&](const char* list, std::initializer_list<const char*> keys) {
+  const auto check_list = [&](const char* list, std::initializer_list<const char*> keys) {
     if (!scene.contains(list) || !scene[list].is_array()) return;
     for (Json& entry : scene[list])
       for (const char* key : keys)
         if (entry.is_object() && entry.contains(key) && entry[key].is_object() && entry[key].contains("file"))
           found.push_back(&entry[key]);
   };
-  look("load", {"force", "time"});
-  look("motions", {"acceleration", "displacement"});
+  check_list("load", {"force", "time"});
+  check_list("motions", {"acceleration", "displacement"});
   if (scene.contains("stops") && scene["stops"].is_array())
     for (Json& stop : scene["stops"])
       for (const char* key : {"acceleration", "displacement"})

@@ -306,10 +306,8 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
       resolved["scene"], axes, finest, std::find(beyond.begin(), beyond.end(), true) != beyond.end(), kind, settings,
       *files, duration, std::find(bases.begin(), bases.end(), std::nullopt) != bases.end());
   for (const SceneOption& one : scenes) check_bases(bases, resolved["mesh"], one.scene.structure, coarse.elements);
-  if (Json said = files->said(); !said.is_null()) {
-    if (Json layout = structure_layout(scenes.front().scene); !layout.is_null()) said["layout"] = std::move(layout);
-    resolved["files"] = std::move(said);
-  }
+  if (Json said = files->said(); !said.is_null())
+    resolved["files"] = with_layout(std::move(said), scenes.front().scene);
   if (kind.check_methods)
     kind.check_methods(resolved, settings, registry, everything.count(),
                        make_space(scenes.front().scene.structure, coarse.elements).dofs);

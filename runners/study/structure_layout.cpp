@@ -23,11 +23,9 @@ Json points_of(const AssembledStructure& structure) {
   return {{"points", std::move(points)}};
 }
 
-}  // namespace
-
 Json structure_layout(const SceneSpec& scene) {
   const auto* spec = std::get_if<AssembledSpec>(&scene.structure);
-  if (!spec) return nullptr;
+  if (!spec || spec->structure->joined) return nullptr;
   const AssembledStructure& structure = *spec->structure;
   std::vector<std::string> wanted;
   const auto want = [&](const std::optional<Place>& place) {
@@ -57,6 +55,13 @@ Json structure_layout(const SceneSpec& scene) {
   for (const LoadTerm& term : scene.load.terms)
     if (term.place) out["loads"].push_back(drawn(structure, *layout, *term.place, std::nullopt));
   return out;
+}
+
+}  // namespace
+
+Json with_layout(Json said, const SceneSpec& scene) {
+  if (Json layout = structure_layout(scene); !layout.is_null()) said["layout"] = std::move(layout);
+  return said;
 }
 
 }  // namespace ricochet

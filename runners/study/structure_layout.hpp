@@ -5,9 +5,9 @@
 
 namespace ricochet {
 
-/// Where a structure of files is drawn, for sketches: of matrices {"axes": ["x", "y"], "nodes", "x", "y", "held",
-/// "links", "stops": [{"at", "to", "direction"}], "loads": the same}, numbers of nodes in order; of a description in
-/// modes, or of matrices without places, {"points"}. Null for every other structure.
-Json structure_layout(const SceneSpec& scene);
+/// Puts into `said`, as "layout", where a structure of files is drawn, for sketches: of matrices {"axes": ["x", "y"],
+/// "nodes", "x", "y", "held", "links", "stops": [{"at", "to", "direction"}], "loads": the same}, numbers of nodes in
+/// order; of a description in modes, or of matrices without places, {"points"}. Nothing for every other structure.
+Json with_layout(Json said, const SceneSpec& scene);
 
 }  // namespace ricochet

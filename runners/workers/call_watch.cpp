@@ -85,7 +85,7 @@ void CallWatch::note_answer() {
   processor_then_ = processor_;
 }
 
-std::optional<LongCall> CallWatch::look() {
+std::optional<LongCall> CallWatch::overdue() {
   using std::chrono::steady_clock;
   // A thread that still owes an answer is not asked again: it may be writing it.
   if (answered()) {

@@ -18,8 +18,8 @@ struct LongCall {
   std::string text() const;
 };
 
-/// Watches the calls of plugins' functions that the thread makes which constructs it; one per process. look() is asked
-/// by another thread: the watched one answers in a signal handler (SIGURG).
+/// Watches the calls of plugins' functions that the thread makes which constructs it; one per process. overdue() is
+/// asked by another thread: the watched one answers in a signal handler (SIGURG).
 class CallWatch {
  public:
   CallWatch();
@@ -28,7 +28,7 @@ class CallWatch {
   CallWatch& operator=(const CallWatch&) = delete;
 
   /// The call under way; none between calls. What the thread said last stands until it answers again.
-  std::optional<LongCall> look();
+  std::optional<LongCall> overdue();
 
  private:
   struct Answer;

@@ -23,9 +23,9 @@ namespace {
 using Word = Message::Word;
 using Clock = std::chrono::steady_clock;
 
-constexpr double look_up = 0.25;     // s between two looks at `stop`
-constexpr double after_stop = 6;     // s for coming back; for a case that waits for its blocks, a little longer
-constexpr double longest_call = 60;  // s for one call of a plugin's function, where a case has no budget
+constexpr double poll_interval = 0.25;  // s between two readings of `stop`
+constexpr double after_stop = 6;        // s for coming back; for a case that waits for its blocks, a little longer
+constexpr double longest_call = 60;     // s for one call of a plugin's function, where a case has no budget
 constexpr int attempts = 2;
 
 /// A worker ended, or gave up.
@@ -266,7 +266,7 @@ class IsolatedCases::Coordinator {
     Reply reply;
     std::optional<GivenUp> given_up;
     std::optional<Clock::time_point> told_to_stop;
-    Clock::time_point looked = Clock::now();
+    Clock::time_point heard_at = Clock::now();
     double quiet = 0;  // s, of those in which this process was not stopped itself
     bool silent = false, waits = false;
     // Which call of a plugin's function the worker waits for, "" for none.
@@ -276,14 +276,14 @@ class IsolatedCases::Coordinator {
     };
     Channel::Heard state = worker.send(order) ? Channel::Heard::silence : Channel::Heard::gone;
     while (state != Channel::Heard::gone) {
-      state = worker.receive(reply.message, look_up);
+      state = worker.receive(reply.message, poll_interval);
       if (!told_to_stop && stopping()) {
         told_to_stop = Clock::now();
         worker.send({Word::stop});
       }
       if (told_to_stop && seconds_since(*told_to_stop) > patience) worker.kill();
-      quiet += std::min(seconds_since(looked), 2 * look_up);
-      looked = Clock::now();
+      quiet += std::min(seconds_since(heard_at), 2 * poll_interval);
+      heard_at = Clock::now();
       if (state == Channel::Heard::silence) {
         silent = quiet > lost_after;
         if (silent) worker.kill();

@@ -7,13 +7,13 @@
 
 namespace ricochet {
 
-std::string KeyClaims::find(int owner, const std::string& key, const std::function<std::string()>& look,
+std::string KeyClaims::find(int owner, const std::string& key, const std::function<std::string()>& stored,
                             const std::function<bool()>& stopping) {
-  constexpr auto look_up = std::chrono::milliseconds(100);
+  constexpr auto poll_interval = std::chrono::milliseconds(100);
   std::unique_lock lock(mutex_);
   for (;;) {
     lock.unlock();
-    if (std::string found = look(); !found.empty()) return found;
+    if (std::string found = stored(); !found.empty()) return found;
     lock.lock();
     const auto claimed = owners_.find(key);
     if (claimed == owners_.end()) {
@@ -22,7 +22,7 @@ std::string KeyClaims::find(int owner, const std::string& key, const std::functi
     }
     if (claimed->second == owner || waiting_.count(claimed->second) != 0 || stopping()) return "";
     waiting_.insert(owner);
-    changed_.wait_for(lock, look_up);
+    changed_.wait_for(lock, poll_interval);
     waiting_.erase(owner);
   }
 }

@@ -24,8 +24,8 @@ namespace ricochet {
 /// for one that waits itself: then both compute it, bitwise alike.
 class KeyClaims {
  public:
-  /// What `look` finds; "" where this owner is to compute it. Waits while another one does.
-  std::string find(int owner, const std::string& key, const std::function<std::string()>& look,
+  /// What `stored` finds; "" where this owner is to compute it. Waits while another one does.
+  std::string find(int owner, const std::string& key, const std::function<std::string()>& stored,
                    const std::function<bool()>& stopping);
   /// Something is kept under the key.
   void kept(const std::string& key);

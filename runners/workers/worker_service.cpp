@@ -33,8 +33,8 @@ namespace {
 
 using Word = Message::Word;
 
-constexpr auto kLookEvery = std::chrono::milliseconds(250);
-constexpr int kLooksPerAlive = static_cast<int>(alive_every * 1000) / static_cast<int>(kLookEvery.count());
+constexpr auto kPollEvery = std::chrono::milliseconds(250);
+constexpr int kRoundsPerAlive = static_cast<int>(alive_every * 1000) / static_cast<int>(kPollEvery.count());
 constexpr double kLeast = 2;      // s that any call of a plugin's function may take
 constexpr double kAfterStop = 3;  // s for coming back
 constexpr int kGaveUp = 1;
@@ -66,10 +66,10 @@ class WorkerService : public BlockService {
   int run() {
     std::thread reader([this] { read(); });
     std::thread heart([this] {
-      for (int looks = 1;; ++looks) {
-        std::this_thread::sleep_for(kLookEvery);
-        const std::string waiting = look();
-        if (looks % kLooksPerAlive == 0) tell({Word::alive, waiting});
+      for (int rounds = 1;; ++rounds) {
+        std::this_thread::sleep_for(kPollEvery);
+        const std::string waiting = long_call();
+        if (rounds % kRoundsPerAlive == 0) tell({Word::alive, waiting});
       }
     });
     reader.detach();
@@ -193,7 +193,7 @@ class WorkerService : public BlockService {
     std::string error, pointer;
   };
 
-  /// Works for a case; a call of a plugin's function that takes longer than `budget` ends this process (look()).
+  /// Works for a case; a call of a plugin's function that takes longer than `budget` ends this process (long_call()).
   Caught watched(double budget, std::uint32_t about, const std::function<void()>& work) {
     Caught caught;
     about_ = about;
@@ -218,8 +218,8 @@ class WorkerService : public BlockService {
 
   /// Ends the process where a call has lasted too long, or does not come back after a stop. Returns what is said of a
   /// call that takes long; "" of others. A reference's own functions have no budget.
-  std::string look() {
-    const std::optional<LongCall> call = calls_.look();
+  std::string long_call() {
+    const std::optional<LongCall> call = calls_.overdue();
     if (stop_ && !stopped_) stopped_ = std::chrono::steady_clock::now();
     if (!stop_) stopped_.reset();
     if (!call || call->seconds <= kLeast) return "";

@@ -115,7 +115,7 @@ Scene in_modes(Scene scene, int modes) {
 }
 
 // What an integration looks at.
-enum class Look { nothing, contact, all };
+enum class Observed { nothing, contact, all };
 
 Program program(const std::shared_ptr<const SemiDiscrete>& problem, const Scene& scene, OperatorKind kind,
                 Registry& registry, bool contact) {
@@ -132,12 +132,12 @@ Program program(const std::shared_ptr<const SemiDiscrete>& problem, const Scene&
 
 // µs per step; set-up apart. `pushed`: steps in contact.
 double microseconds(const std::shared_ptr<const SemiDiscrete>& problem, const Scene& scene, OperatorKind kind,
-                    Registry& registry, Look look, long long steps, double& pushed) {
-  Marcher marcher(program(problem, scene, kind, registry, look != Look::nothing));
+                    Registry& registry, Observed observed, long long steps, double& pushed) {
+  Marcher marcher(program(problem, scene, kind, registry, observed != Observed::nothing));
   EnergyAudit audit(marcher, SamplingMode::seldom);
   ImpactRecorder recorder(marcher);
   double start = 0;
-  if (look == Look::all) {
+  if (observed == Observed::all) {
     marcher.start({&audit, &recorder});
     start = thread_nanoseconds();
     marcher.march(steps, {&audit, &recorder});
@@ -198,9 +198,9 @@ void race(const Scene& scene, int rounds, long long steps, Registry& registry) {
     std::vector<double> times[3];
     double pushed = 0;
     for (int round = 0; round < rounds; ++round)
-      for (const Look look : {Look::nothing, Look::contact, Look::all})
-        times[static_cast<std::size_t>(look)].push_back(
-            microseconds(problem, scene, kind, registry, look, steps, pushed));
+      for (const Observed observed : {Observed::nothing, Observed::contact, Observed::all})
+        times[static_cast<std::size_t>(observed)].push_back(
+            microseconds(problem, scene, kind, registry, observed, steps, pushed));
     const double linear = median(times[0]), contact = median(times[1]), all = median(times[2]);
     fmt::print("  {:<8} without stops {}; with stops {}; with audit and recorder {}\n", name_of(kind), shown(times[0]),
                shown(times[1]), shown(times[2]));

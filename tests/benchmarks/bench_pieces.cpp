@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
   fmt::print("{} unknowns, {} steps per period\n", map.size(), setting.steps);
   timed("lines alone", [&] {
     PieceFollower follower(map, clock, begin, round_off);
-    for (long long piece = 0; piece < setting.pieces; ++piece) follower.go(follower.look(0.05, 0.2));
+    for (long long piece = 0; piece < setting.pieces; ++piece) follower.go(follower.end_of_piece(0.05, 0.2));
     return follower.state().pieces;
   });
   timed("with multipliers", [&] {

@@ -12,8 +12,8 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-CheckResult alone(std::function<Verdict()> look, double seconds = 20, bool* hangs = nullptr) {
-  return run_check("a check", {{"beta 0.5", std::move(look)}}, {.child = true, .seconds = seconds}, hangs);
+CheckResult alone(std::function<Verdict()> trial, double seconds = 20, bool* hangs = nullptr) {
+  return run_check("a check", {{"beta 0.5", std::move(trial)}}, {.child = true, .seconds = seconds}, hangs);
 }
 
 }  // namespace
@@ -52,13 +52,13 @@ TEST_CASE("check: a crash, an exit and a loop without end are failures with a ca
 }
 
 TEST_CASE("check: one failing value makes a check fail, refused values count only when nothing else was measured") {
-  const auto look = [](std::function<Verdict()> take) { return Look{"", std::move(take)}; };
+  const auto trial = [](std::function<Verdict()> take) { return Trial{"", std::move(take)}; };
   const auto refused = []() -> Verdict { throw Refused{"beta is too small"}; };
   const Isolation here{.child = false};
-  CHECK(run_check("", {look([] { return fine("good"); }), look(refused)}, here).finding == Finding::ok);
-  CHECK(run_check("", {look(refused), look([] { return fails("bad"); })}, here).finding == Finding::fails);
-  CHECK(run_check("", {look(refused)}, here).finding == Finding::not_applicable);
-  CHECK(run_check("", {look([] { return not_declared("none"); }), look(refused)}, here).finding ==
+  CHECK(run_check("", {trial([] { return fine("good"); }), trial(refused)}, here).finding == Finding::ok);
+  CHECK(run_check("", {trial(refused), trial([] { return fails("bad"); })}, here).finding == Finding::fails);
+  CHECK(run_check("", {trial(refused)}, here).finding == Finding::not_applicable);
+  CHECK(run_check("", {trial([] { return not_declared("none"); }), trial(refused)}, here).finding ==
         Finding::not_declared);
 }
 

@@ -111,7 +111,7 @@ long long ClearSteps::count(const std::vector<double>& x, const double* e, long 
   long long done = 0;
   while (done < most) {
     const long long left = std::min(most - done, bound_.longest());
-    bound_.look(x_.data(), e_);
+    bound_.set_state(x_.data(), e_);
     long long k = std::min(ask, left);
     while (!bound_.find_exposed(k, exposed_, k > block ? few : static_cast<std::size_t>(-1))) k /= 2;
     const bool all = exposed_.empty();
@@ -130,7 +130,7 @@ long long ClearSteps::count(const std::vector<double>& x, const double* e, long 
   return done;
 }
 
-// Goes on by up to `steps` steps, as long as the exposed points are between their bounds in each; the bound has looked
+// Goes on by up to `steps` steps, as long as the exposed points are between their bounds in each; the bound was set
 // at where they begin. Returns over how many they are; −1: not in the first.
 long long ClearSteps::follow(long long steps) {
   followed_.clear();

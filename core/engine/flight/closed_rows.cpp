@@ -236,7 +236,7 @@ void ClosedRows::add_reach(FlightSet& free) {
     for (std::size_t i = 0; i < m_; ++i) {
       const EffortResponse& response = of_steps[i];
       if (response.none()) continue;
-      bound.look(response.change().data(), still);
+      bound.set_state(response.change().data(), still);
       for (int w = 0; w < bound.watches(); ++w) {
         const FlightWatch& watch = bound.watch(w);
         const VectorXd at_once = watch.rows * response.of(watch.stage, watch.value);

@@ -239,7 +239,7 @@ long long ClosedSteps::march(const double* const* slots, const double* e, Past p
   if (!begin(slots, e, past)) return 0;
   most = std::min({most, longest, free_.bound().longest()});
   const bool others = rows_.contact_points() > static_cast<int>(rows_.closed().size());
-  if (others) free_.bound().look(start_.data(), e);
+  if (others) free_.bound().set_state(start_.data(), e);
   constexpr int attempts = 3;
   for (int attempt = 0; attempt < attempts && most >= 1; ++attempt, most /= 4) {
     const long long made = run(most);

@@ -12,7 +12,7 @@
 ///     x⁺ = (I + D) x + B e + Σ_q U_q p₋q,     W₀ p = t − F x − E e − Σ_{q>0} W_q p₋q (7)
 ///
 /// where a row of (7) is a measure at its stop, or p = k δ + c δ̇ + b δ⁻ of a linear law. Nothing is searched for, no
-/// open point is measured and nobody looks: of all that a step with 50 points asks, a tenth is left.
+/// open point is measured and nobody observes: of all that a step with 50 points asks, a tenth is left.
 namespace ricochet {
 
 /// The numbers of a step with these points closed: everything that is linear in the state, in what drives it, and in

@@ -6,10 +6,11 @@
 namespace ricochet {
 namespace {
 
-constexpr long long longest_wait = 64;  // steps between two looks that found nothing
+constexpr long long longest_wait = 64;  // steps between two searches that found nothing
 // Steps after which the tip is read sooner than searched for: at all, and where its ends do not tell.
 constexpr long long at_once = 32, soon_read = 256;
-// Steps that are marched between two looks after which points had to be followed; readings that cost what a step does.
+// Steps that are marched between two searches after which points had to be followed; readings that cost what a step
+// does.
 constexpr long long longest_march = 16384, readings_of_step = 8;
 constexpr long long modes_of_step = 30;  // n² numbers in the tables of a set that cost what a step does
 constexpr long long brief = 8;           // steps in contact that are marched before any is left out
@@ -143,7 +144,7 @@ long long Flight::step_closed(Columns columns, const double* e, ClosedSteps::Pas
   return k;
 }
 
-long long Flight::look(Columns columns, const double* e, ClosedSteps::Past past, long long most) {
+long long Flight::search(Columns columns, const double* e, ClosedSteps::Past past, long long most) {
   clear_ = 0;
   if (steps_) return step_closed(columns, e, past, most);
   FlightSet* const set = set_;
@@ -264,7 +265,7 @@ bool Flight::told_by_ends(FlightBound& tip, const Leg& leg, long long k, int str
     low = std::min(low, value);
     high = std::max(high, value);
   };
-  tip.look(leg.x.data(), leg.e);
+  tip.set_state(leg.x.data(), leg.e);
   see(tip.value(0, 0));
   if (k == 1) return true;
   const FlightBound::Range range = tip.range(0, 0, k - 1);

@@ -38,15 +38,15 @@ class Flight {
   /// The slots of the lane, and behind them those of its tangent columns, rows each.
   using Columns = std::span<double* const* const>;
 
-  /// Whether a look may find something in a lane with these closed points; to be asked once a step.
+  /// Whether a search may find something in a lane with these closed points; to be asked once a step.
   bool due(const Program& program, std::span<const ClosedPoint> closed);
   /// How many of the next `most` steps may be left out, such that nothing changes in them, nor in the one after where
-  /// slots are not told; 0: march. `columns`, `e`: the lane's state; `past`: its efforts. Where a look is due.
-  long long look(Columns columns, const double* e, ClosedSteps::Past past, long long most);
+  /// slots are not told; 0: march. `columns`, `e`: the lane's state; `past`: its efforts. Where a search is due.
+  long long search(Columns columns, const double* e, ClosedSteps::Past past, long long most);
   /// How many steps that come next, the one after a flight among them, no open point can close in, as far as the last
-  /// look has seen; no lane without contact then needs to be measured.
+  /// search has seen; no lane without contact then needs to be measured.
   long long clear() const { return clear_; }
-  /// Leaves them out: the slots k steps later, of tangents without what drives the lane. Right after look().
+  /// Leaves them out: the slots k steps later, of tangents without what drives the lane. Right after search().
   FlightSums fly(long long k, Columns columns, ClosedSteps::Past past, bool works);
   /// Largest penetration after any of them, m.
   double penetration() const { return steps_ ? steps_->penetration() : 0.0; }
@@ -88,7 +88,7 @@ class Flight {
 
   struct Schedule {
     long long next = 16;              // steps to ask for first
-    long long wait = 0, penalty = 0;  // steps between two looks
+    long long wait = 0, penalty = 0;  // steps between two searches
     long long dear = 0;               // steps to march after one that cost as much as marching
   };
   struct ContactSet {
@@ -127,7 +127,7 @@ class Flight {
   std::vector<std::unique_ptr<ContactSet>> sets_;
   const ContactSet* latest_ = nullptr;  // of the last step, and for how many it has been
   long long latest_for_ = 0;
-  // Of the look that is due and the flight after it:
+  // Of the search that is due and the flight after it:
   FlightSet* set_ = nullptr;
   ClosedSteps* steps_ = nullptr;  // null: composed
   Schedule* set_schedule_ = nullptr;

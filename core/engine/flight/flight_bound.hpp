@@ -48,8 +48,8 @@ class FlightBound {
   /// Whether some mode repeats itself after four steps, and not after one.
   bool alternates() const { return alternates_; }
 
-  /// Looks at a state; `x`: slots × modes, `e`: drives.
-  void look(const double* x, const double* e);
+  /// Sets the state; `x`: slots × modes, `e`: drives.
+  void set_state(const double* x, const double* e);
   /// Steps over which (3) and (4) are known to hold.
   long long longest() const { return longest_; }
   /// Whether every measure stays strictly between its bounds at this step and the k that follow it.
@@ -65,12 +65,12 @@ class FlightBound {
   FlightWatch& watch(int i) { return watches_[static_cast<std::size_t>(i)].watch; }
   int watches() const { return static_cast<int>(watches_.size()); }
 
-  /// Where one point of one measure, by the last look, may be within k steps; what it has for round-off.
+  /// Where one point of one measure, from the state set last, may be within k steps; what it has for round-off.
   struct Range {
     double low = 0, high = 0, margin = 0;
   };
   Range range(int watch, int point, long long k);
-  /// What a point can do from the last look on, forever: the largest of its first, second, third and fourth differences
+  /// What a point can do from that state on, forever: the largest of its first, second, third and fourth differences
   /// from step to step; and what its values have for round-off.
   struct Differences {
     double first = 0, second = 0, third = 0, fourth = 0, margin = 0;
@@ -78,7 +78,7 @@ class FlightBound {
   Differences differences(int watch, int point);
   /// Its value in the state itself.
   double value(int watch, int point);
-  /// Values of all points of one measure in a state that is not looked at otherwise.
+  /// Values of all points of one measure in another state.
   void values(int watch, const double* x, const double* e, double* out);
 
  private:
@@ -95,11 +95,11 @@ class FlightBound {
     std::vector<double> grows;                         // r N of a double root, width × modes; empty: there is none
     std::vector<double> steady_amplitude, steady_bend,
         rest;  // under a drive of amplitude 1, and under the constant one
-    // Of the last look:
+    // Of the state set last:
     std::vector<double> now, step, amplitude, bend, growth;
     std::vector<double> offset, offset_step, offset_bend;  // of the points, by e
     std::vector<double> differences;                       // of each mode, what Differences adds up, five arrays
-    bool differences_known = false;                        // whether they are of this look
+    bool differences_known = false;                        // whether they are of this state
     std::size_t tightest = 0;
   };
   void place(Watched& watched, long long k);

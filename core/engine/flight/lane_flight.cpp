@@ -84,7 +84,7 @@ long long LaneFlight::leave_out(const FlownLane& lane, const double* e, long lon
                                 StepInterval& told) {
   Flight& flight = *lane.program.flight;
   gather(lane);
-  const long long k = flight.look(column_slots_, e, past_, most);
+  const long long k = flight.search(column_slots_, e, past_, most);
   clear_ = flight.clear();
   if (k == 0) return 0;
   told.steps = k;

@@ -131,7 +131,7 @@ bool decides(const Diagram& diagram, std::size_t c, int value) {
 }  // namespace
 
 void find_attractors(Diagram& diagram, const RunSection& section,
-                     const std::function<void(int value, const ValueSections& sections)>& look) {
+                     const std::function<void(int value, const ValueSections& sections)>& visit) {
   Following following(diagram.cases.size());
   for (int value = 0; value < diagram.value_count(); ++value) {
     ValueSections sections;
@@ -139,7 +139,7 @@ void find_attractors(Diagram& diagram, const RunSection& section,
       for (int s = 0; s < diagram.start_count(); ++s)
         if (const DiagramRun* run = diagram.run(c, value, s); run && run->settled)
           sections.emplace(std::pair(c, s), section(c, *run));
-    if (look) look(value, sections);
+    if (visit) visit(value, sections);
     following.add(diagram, own_attractors(diagram, sections, value), value);
   }
   following.finish(diagram);

@@ -20,10 +20,10 @@ using RunSection = std::function<SettledSection(std::size_t case_index, const Di
 using ValueSections = std::map<std::pair<std::size_t, int>, SettledSection>;
 
 /// Fills in the attractor of every decided run; identities are numbered along the parameter. A motion without contact
-/// is the linear response: of one scene there is one, told by its class. Each section is prepared once; `look` sees
+/// is the linear response: of one scene there is one, told by its class. Each section is prepared once; `visit` sees
 /// those of each value before they go.
 void find_attractors(Diagram& diagram, const RunSection& section,
-                     const std::function<void(int value, const ValueSections& sections)>& look);
+                     const std::function<void(int value, const ValueSections& sections)>& visit);
 
 /// The runs that show one attractor.
 struct AttractorExtent {

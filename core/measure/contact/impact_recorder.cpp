@@ -274,7 +274,7 @@ void ImpactRecorder::leave(const Marcher& marcher, int lane, double lifted) {
 void ImpactRecorder::let_go(const Marcher& marcher, const StageView& view) {
   for (int lane = 0; lane < marcher.lanes(); ++lane)
     if (StartContact& start = lanes_[static_cast<std::size_t>(lane)].start; start.any())
-      start.look(marcher, view.slots, view.from);
+      start.read(marcher, view.slots, view.from);
 }
 
 // A point closes, and whether it had been open: contact of the start goes on as if it had always been there.

@@ -51,7 +51,7 @@ StartContact::Gap StartContact::gap(const LaneSpec& spec, const Held& held, doub
   return {held.side * (place - stop), round_off_of_sums * (std::abs(place) + std::abs(stop))};
 }
 
-void StartContact::look(const Marcher& marcher, const double* const* slots, double t) {
+void StartContact::read(const Marcher& marcher, const double* const* slots, double t) {
   const Program& program = marcher.program();
   const LaneSpec& spec = program.lanes[static_cast<std::size_t>(lane_)];
   const RowMatrix& rows = program.model->contact();

@@ -18,7 +18,7 @@ class StartContact {
   bool any() const { return !held_.empty(); }
   /// How far points are from their stop; lets go of those that are well away. The slots before a stage, which begins at
   /// time t.
-  void look(const Marcher& marcher, const double* const* slots, double t);
+  void read(const Marcher& marcher, const double* const* slots, double t);
   /// Whether the stop of that side (1 lower, −1 upper) holds the point.
   bool holds(int point, int side) const;
   /// A point closes on that side: whether it is held there. One that is not is from now on as any other.
@@ -27,9 +27,9 @@ class StartContact {
  private:
   struct Held {
     int point = 0, side = 0;
-    double place = 0;      // when last looked at, m
+    double place = 0;      // when last read, m
     double away = 0;       // farthest from its stop, m
-    double moved = 0;      // most between two looks, m
+    double moved = 0;      // most between two readings, m
     double round_off = 0;  // of its place, m
     bool left() const;
   };

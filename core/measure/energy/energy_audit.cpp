@@ -153,7 +153,7 @@ void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
     if (!marcher.status(lane).running) continue;
     Lane& state = lanes_[static_cast<std::size_t>(lane)];
     if (view.stage == 0) begin_step(marcher, view, state);
-    if (state.start.any()) state.start.look(marcher, view.slots, view.from);
+    if (state.start.any()) state.start.read(marcher, view.slots, view.from);
     if (!state.has_scheme && balanced) start_balance(view, lane);
     if (moves) state.duration = (facts.to - facts.from) * h_;
     if (state.sampled && !ways_.empty()) follow_position(view, lane, moves);

@@ -94,15 +94,15 @@ void ContactLog::see(const Marcher& marcher, const StageView& view) {
     force_ = 0;
     now_[0] = now_[1] = hit_[0] = hit_[1] = false;
   }
-  if (start_.any()) start_.look(marcher, view.slots, view.from);
+  if (start_.any()) start_.read(marcher, view.slots, view.from);
   if ((view.contact_lanes & 1u) != 0)
-    look(marcher, view);
+    read(marcher, view);
   else
     momentum_.stage(view.starting, static_cast<std::size_t>(view.stage), 0);
   if (view.program->closes_instant && (now_[0] || now_[1] || closed_[0] || closed_[1])) close_instant(view);
 }
 
-void ContactLog::look(const Marcher& marcher, const StageView& view) {
+void ContactLog::read(const Marcher& marcher, const StageView& view) {
   const double* efforts = view.effort[0];
   state_known_ = false;
   double force = 0;

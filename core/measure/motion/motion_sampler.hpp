@@ -32,7 +32,7 @@ class ContactLog final : public StepObserver {
   long long changes() const { return changes_; }
 
  private:
-  void look(const Marcher& marcher, const StageView& view);
+  void read(const Marcher& marcher, const StageView& view);
   void close_instant(const StageView& view);
   double onset(const Marcher& marcher, const StageView& view, int point, int side);
   void see(const Marcher& marcher, const StageView& view);
@@ -64,7 +64,7 @@ class ContactLog final : public StepObserver {
 /// that time. The integration goes up to two steps beyond the last time.
 class MotionSampler {
  public:
-  /// `beside`: looks at the same integration.
+  /// `beside`: observes the same integration.
   MotionSampler(Marcher& marcher, const SampleGrid& grid, StepObserver* beside = nullptr);
 
   /// Marches to the end of the grid. `keep_going` is asked now and then; when it says no, or the lane stops, what was

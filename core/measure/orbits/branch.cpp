@@ -138,7 +138,7 @@ bool BranchRun::advance(long long pieces) {
   // Of the affine steps against the map that is marched: beyond it the sets are not those of an orbit any more.
   constexpr double largest_residual = 1e-8;  // m
   for (; pieces > 0 && !trace_.ended(); --pieces) {
-    const Piece piece = follower_.look(limits_.least, limits_.largest);
+    const Piece piece = follower_.end_of_piece(limits_.least, limits_.largest);
     trace_.corners.back().residual = piece.residual;
     const BranchState before = follower_.state();
     if (piece.end == BranchEnd::unresolved || piece.residual > largest_residual) {

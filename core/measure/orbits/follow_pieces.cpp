@@ -87,7 +87,7 @@ void PieceFollower::sweep() {
   for (double& slope : measures_.slope) slope = -slope;
 }
 
-Piece PieceFollower::look(double least, double largest) {
+Piece PieceFollower::end_of_piece(double least, double largest) {
   Piece piece;
   piece.residual = residual_;
   piece.length = std::numeric_limits<double>::infinity();

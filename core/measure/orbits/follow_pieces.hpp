@@ -61,8 +61,8 @@ class PieceFollower {
   /// Rows of v along the piece under way: values at its beginning, slopes per arclength.
   const PeriodicMap::Measures& measures() const { return measures_; }
 
-  /// Looks where the piece under way ends, without going there.
-  Piece look(double least, double largest);
+  /// Where the piece under way ends, without going there.
+  Piece end_of_piece(double least, double largest);
   /// Goes to its end: changes the set, or stays on it where a limit ended it.
   void go(const Piece& piece);
   /// The state a way s along the piece.

@@ -56,7 +56,7 @@ class SectionMarch::Watch final : public StepObserver {
     if (view.program->opens_instant) pushed_ = 0;
     pushed_ |= view.contact_lanes;
     for (std::uint32_t mask = (pushed_ | closed_) & keeping_; mask != 0; mask &= mask - 1)
-      look(marcher, view, std::countr_zero(mask));
+      read(marcher, view, std::countr_zero(mask));
   }
 
   void interval(Marcher& marcher, const StepInterval& steps) override {
@@ -96,7 +96,7 @@ class SectionMarch::Watch final : public StepObserver {
     ++known;
   }
 
-  void look(const Marcher& marcher, const StageView& view, int lane) {
+  void read(const Marcher& marcher, const StageView& view, int lane) {
     Orbit& orbit = *orbits_[static_cast<std::size_t>(lane)];
     const int width = marcher.width(), points = model_.contact().rows();
     int first[2] = {-1, -1};

@@ -31,7 +31,7 @@ std::optional<double> contact_compliance(ContactLaw& law, const Parameters& para
 
 namespace {
 
-constexpr std::size_t looks = 16;  // from one to the next over the values
+constexpr std::size_t samples = 16;  // from one to the next over the values
 constexpr int most_halvings = 60;
 constexpr double resolution = 1e-12;  // relative
 
@@ -43,7 +43,7 @@ std::vector<Grazing> find_grazings(const std::vector<double>& values,
   if (values.empty()) return found;
   std::optional<double> before;
   double low = 0;
-  for (std::size_t i = 0; i < values.size(); i += std::max<std::size_t>(1, (values.size() - 1) / looks)) {
+  for (std::size_t i = 0; i < values.size(); i += std::max<std::size_t>(1, (values.size() - 1) / samples)) {
     const auto now = overlap(values[i]);
     if (before && now && (*before < 0) != (*now < 0)) {
       double left = low, right = values[i];

@@ -16,12 +16,12 @@ std::variant<int, Refusal> BeamRun::march(ModalPhase& phase, std::array<Guard, 2
         "more than {:g} impacts and releases per period of the first mode by t = {:g} s: the tip chatters, which "
         "modal phases cannot follow; raise `events`, add damping, or use another reference",
         settings_.events_per_period, state_.time)};
-  Look here = phase.look(state_);
-  for (Guard& guard : guards) guard.look(state_.time, here.value);
+  Reading here = phase.read(state_);
+  for (Guard& guard : guards) guard.read(state_.time, here.value);
   while (next_ < grid_.times.size()) {
     if (++looks_ > most_looks)
       return Refusal{fmt::format(
-          "the search for events needs more than {:g} looks at the gap to reach t = {:g} s: shorten the duration, "
+          "the search for events needs more than {:g} readings of the gap to reach t = {:g} s: shorten the duration, "
           "lower `modes`, or loosen `tolerance`",
           static_cast<double>(most_looks), grid_.times.back())};
     phase.forget_dead_modes(state_, 1e-30 * scale_);
@@ -32,7 +32,7 @@ std::variant<int, Refusal> BeamRun::march(ModalPhase& phase, std::array<Guard, 2
     for (;; ++level_, ++looks_) {
       ahead_ = state_;
       phase.move_by_level(ahead_, level_);
-      const Look there = phase.look(ahead_);
+      const Reading there = phase.read(ahead_);
       const double step = phase.step(level_), error = phase.interpolation_error(level_);
       const Cubic cubic{here.value, step * here.slope, there.value, step * there.slope};
       bool clear = true;
@@ -47,7 +47,7 @@ std::variant<int, Refusal> BeamRun::march(ModalPhase& phase, std::array<Guard, 2
     }
     sample_until(phase, ahead_.time);
     std::swap(state_, ahead_);
-    for (Guard& guard : guards) guard.look(state_.time, here.value);
+    for (Guard& guard : guards) guard.read(state_.time, here.value);
     if (level_ > 0) --level_;
   }
   return -1;
@@ -68,8 +68,8 @@ int BeamRun::first_passed(ModalPhase& phase, const std::array<Guard, 2>& guards,
     if (!beyond) continue;
     const double level = guard.threshold();
     const auto margin = [&](double tau) {
-      const Look look = phase.look_at(state_, state_.time + tau);
-      return std::pair{guard.margin(look.value) - level, guard.inside * look.slope};
+      const Reading reading = phase.read_at(state_, state_.time + tau);
+      return std::pair{guard.margin(reading.value) - level, guard.inside * reading.slope};
     };
     const double tau = guard.margin(cubic.start) <= level ? 0 : falling_root(margin, 0, *beyond * step);
     if (first < 0 || tau < earliest) {

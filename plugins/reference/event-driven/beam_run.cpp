@@ -78,7 +78,7 @@ BeamRun::Failure BeamRun::begin() {
   b_ = Beam::projection(rate, beam_.free, L);
   state_ = flight_.start(0, a_, b_);
   sample_start(displacement);
-  const double hair = std::abs(flight_.look(state_).value - tip);
+  const double hair = std::abs(flight_.read(state_).value - tip);
   guards_ = {Guard{lower_, 1}, Guard{upper_, -1}};
   for (Guard& guard : guards_) {
     if (guard.margin(tip) > touching) continue;
@@ -98,9 +98,9 @@ BeamRun::Failure BeamRun::begin() {
 }
 
 bool BeamRun::goes_out(const Guard& guard, double noise) {
-  const double start = flight_.look(state_).value;
+  const double start = flight_.read(state_).value;
   for (int level = ModalPhase::levels - 1; level >= 0; --level) {
-    const double moved = guard.inside * (flight_.look_at(state_, flight_.step(level)).value - start);
+    const double moved = guard.inside * (flight_.read_at(state_, flight_.step(level)).value - start);
     if (std::abs(moved) > noise) return moved < 0;
   }
   return false;
@@ -110,7 +110,7 @@ BeamRun::Failure BeamRun::fly() {
   const auto passed = march(flight_, guards_, tolerance());
   if (const auto* refusal = std::get_if<Refusal>(&passed)) return *refusal;
   const int guard = std::get<int>(passed);
-  if (guard >= 0) impact(guard == 0 ? -1 : 1, flight_.look(state_).slope);
+  if (guard >= 0) impact(guard == 0 ? -1 : 1, flight_.read(state_).slope);
   return {};
 }
 
@@ -138,7 +138,7 @@ void BeamRun::enter_contact(int side, double velocity, double on_lift, double ra
   contact_.set_offset(3 * stop() / std::pow(beam_.length, 3));
   guards_ = {Guard{0, -side}, Guard{-infinity, 1}};
   if (held()) guards_[0] = guards_[1];
-  const double force = contact_.look(state_).value;
+  const double force = contact_.read(state_).value;
   if (guards_[0].margin(force) <= 0) {
     guards_[0].on = false;
     guards_[0].slack = infinity;
@@ -156,7 +156,7 @@ void BeamRun::release() {
   guards_ = {Guard{lower_, 1}, Guard{upper_, -1}};
   Guard& left = guards_[side_ < 0 ? 0 : 1];
   left.on = false;
-  left.slack = 4 * std::abs(flight_.look(state_).value - stop()) + 10 * tolerance();
+  left.slack = 4 * std::abs(flight_.read(state_).value - stop()) + 10 * tolerance();
   side_ = 0;
 }
 

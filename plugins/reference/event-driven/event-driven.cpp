@@ -136,7 +136,7 @@ void register_event_driven(Registry& registry) {
           plus clamped–pinned modes; each mode is a damped oscillator in closed form (C = αK + ηM, below, at and
           above critical damping), forced by the support A sin(ωt + ψ) and by a load that is constant in time.
           Displacement and velocity are continuous (L²) at switches. Impacts are roots of the gap, releases are
-          changes of sign of the stop's force; both are isolated by looks between which the quantity is its cubic
+          changes of sign of the stop's force; both are isolated by readings between which the quantity is its cubic
           interpolant within a bound that the modes give, so that no touch is stepped over. Just after a switch the
           truncated sum leaves the tip a hair beyond the stop: a new touch counts once the gap has opened beyond
           that hair. The restitution of schemes has no counterpart. With α > 0 many digits are known; with α = 0

@@ -9,11 +9,11 @@
 #include <vector>
 
 /// \file
-/// Between two looks a watched quantity g is its cubic Hermite interpolant, within (δ⁴/384) max|g''''|.
+/// Between two readings a watched quantity g is its cubic Hermite interpolant, within (δ⁴/384) max|g''''|.
 namespace ricochet::event_driven {
 
-/// What a bound leaves of |e^{rτ}| between two looks δ apart, x = |r|δ: the interpolation error while it is small, the
-/// function and its interpolant where it is not.
+/// What a bound leaves of |e^{rτ}| between two readings δ apart, x = |r|δ: the interpolation error while it is small,
+/// the function and its interpolant where it is not.
 inline double interpolation_loss(double x) {
   return std::min(x * x * x * x / 384, 1 + 0.3 * x);
 }
@@ -55,7 +55,7 @@ struct Guard {
   double margin(double g) const { return inside * (g - bound); }
   double threshold() const { return on ? 0 : -slack; }
   bool waits() const { return !on && std::isfinite(until); }
-  void look(double t, double g) { on = on || margin(g) > slack || t >= until; }
+  void read(double t, double g) { on = on || margin(g) > slack || t >= until; }
 
   /// Smallest margin of a cubic.
   double least(const Cubic& cubic) const {
@@ -212,7 +212,7 @@ struct ModalState {
 };
 
 /// g and dg/dt.
-struct Look {
+struct Reading {
   double value = 0, slope = 0;
 };
 
@@ -285,7 +285,7 @@ class ModalPhase {
     state.time += step(level);
   }
 
-  Look look(const ModalState& state) const {
+  Reading read(const ModalState& state) const {
     const Complex turned = turn(state.time) * watched_.harmonic;
     const auto y = state.y.head(state.count), v = state.v.head(state.count);
     return {
@@ -293,10 +293,10 @@ class ModalPhase {
             offset_ + turned.imag(),
         (slope_position_.head(state.count) * y + slope_rate_.head(state.count) * v).sum() + pulsation_ * turned.real()};
   }
-  Look look_at(const ModalState& state, double t) {
+  Reading read_at(const ModalState& state, double t) {
     scratch_ = state;
     move(scratch_, t);
-    return look(scratch_);
+    return read(scratch_);
   }
 
   /// Prepares interpolation_error for the steps that start from this state.

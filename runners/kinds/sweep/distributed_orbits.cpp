@@ -18,8 +18,8 @@ namespace {
 using What = BlockStatus::What;
 using Clock = std::chrono::steady_clock;
 
-constexpr double block_seconds = 2;  // of predicted work
-constexpr double look_up = 0.1;      // s between two looks at `stop`
+constexpr double block_seconds = 2;    // of predicted work
+constexpr double poll_interval = 0.1;  // s between two readings of `stop`
 constexpr int most_attempts = 2;
 
 }  // namespace
@@ -151,7 +151,7 @@ void DistributedOrbits::run(const std::atomic<bool>& stop,
     }
     if (!ending) fill();
     if (service_.count() == 0) break;
-    if (auto heard = service_.next(look_up)) {
+    if (auto heard = service_.next(poll_interval)) {
       auto& [number, status] = *heard;
       Block& block = blocks_.at(number);
       if (status.what == What::so_far || status.what == What::done) hear(block, status.content);
@@ -195,7 +195,7 @@ void measure_elsewhere(const ForcedScenes& scenes, const ExponentTask& task, con
                        const std::vector<std::vector<std::size_t>>& batches, std::vector<OrbitExponents>& found,
                        double& seconds, const std::function<void(std::size_t)>& measured,
                        const std::atomic<bool>& stop) {
-  constexpr double look_up = 0.1;  // s between two looks at `stop`
+  constexpr double poll_interval = 0.1;  // s between two readings of `stop`
   BlocksUnderWay service(*task.blocks, task.case_id);
   std::deque<Part> waiting;
   std::vector<std::size_t> left(batches.size());  // orbits of a batch that are not known
@@ -232,7 +232,7 @@ void measure_elsewhere(const ForcedScenes& scenes, const ExponentTask& task, con
       const int number = service.begin(order_of(waiting.front()));
       parts[number] = std::move(waiting.front());
     }
-    auto heard = service.next(look_up);
+    auto heard = service.next(poll_interval);
     if (!heard || heard->second.what == What::so_far) continue;
     const BlockStatus& status = heard->second;
     Part part = std::move(parts.extract(heard->first).mapped());

@@ -259,7 +259,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   const double run = thread_seconds(), budget = budget_of(study_case);
   double before = run;
   bool spent = false;
-  // Steps between two looks at the clock; those that are left out cost it nothing.
+  // Steps between two readings of the clock; those that are left out cost it nothing.
   long long chunk = 16;
   const long long longest_chunk = marcher.program().flight ? 1000000 : 20000;
   marcher.start(observers);

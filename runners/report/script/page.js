@@ -99,10 +99,10 @@
   function startSummary() {
     const place = document.getElementById("summary-figure"), button = document.getElementById("print-summary");
     if (!place) return;
-    const look = () => { if (location.hash === "#summary") ricochet.paper.showFirst(place); };
-    window.addEventListener("hashchange", look);
+    const follow = () => { if (location.hash === "#summary") ricochet.paper.showFirst(place); };
+    window.addEventListener("hashchange", follow);
     button.addEventListener("click", () => window.print());
-    look();
+    follow();
   }
 
   document.addEventListener("DOMContentLoaded", () => {

@@ -62,7 +62,7 @@ double check_holds(const Matrix2d& A, std::mt19937& random) {
   std::normal_distribution<double> normal;
   Vector2d x(normal(random), normal(random) * (A(0, 1) != 0 ? 1 / std::abs(A(0, 1)) : 1));
   const double none = 0;
-  bound.look(x.data(), &none);
+  bound.set_state(x.data(), &none);
   const long long k = std::min<long long>(200, bound.longest());
   const FlightBound::Range range = bound.range(0, 0, k);
   double low = x[0], high = x[0];

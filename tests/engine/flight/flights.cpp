@@ -216,7 +216,7 @@ TEST_CASE("every value that a bound promises to hold stays within it") {
     for (double& value : x) value = 1e-3 * normal(random);
     double e[3] = {0.02 * std::sin(draw), 0.02 * std::cos(draw), 1};
     const long long k = 1LL << (draw % 8);
-    set.tip().look(x.data(), e);
+    set.tip().set_state(x.data(), e);
     const FlightBound::Range range = set.tip().range(0, 0, k);
     double low = 1e9, high = -1e9;
     for (long long i = 0; i <= k; ++i) {

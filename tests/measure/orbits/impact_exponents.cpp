@@ -53,9 +53,9 @@ class Exact {
   }
 
   void advance(double duration) {
-    const double end = time_ + duration, look = one_.period() / 2000;
+    const double end = time_ + duration, every = one_.period() / 2000;
     while (time_ < end - 1e-14 * end) {
-      const double step = std::min(look, end - time_);
+      const double step = std::min(every, end - time_);
       // Only what moves outward strikes: round-off alone leaves a rebounding mass beyond its stop.
       const auto beyond = [&](double dt) {
         const Eigen::Vector2d at = flown(dt);

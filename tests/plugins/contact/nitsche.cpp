@@ -129,7 +129,7 @@ TEST_CASE("what Nitsche's method cannot do is refused in a sentence") {
 TEST_CASE("the law measures the reaction too, the observer where the points are") {
   Marcher beam = marcher(beam_scene(), 8, {{"consistent"}, nitsche(5), {"midpoint"}}, 1e-5);
   const SemiDiscrete& problem = *beam.program().problem;
-  class Look final : public StepObserver {
+  class Watch final : public StepObserver {
    public:
     double deepest = 0, apart = 0;
     long steps = 0;
@@ -144,13 +144,13 @@ TEST_CASE("the law measures the reaction too, the observer where the points are"
       apart = std::max(apart, std::abs(u - g));
       ++steps;
     }
-  } look;
-  beam.start(&look);
-  beam.march(12000, &look);
+  } watch;
+  beam.start(&watch);
+  beam.march(12000, &watch);
   REQUIRE(beam.status(0).running);
-  CHECK(look.deepest > 0);
+  CHECK(watch.deepest > 0);
   // What the law takes for the displacement is another by a good part of the penetration.
-  CHECK(look.apart > 0.1 * look.deepest);
+  CHECK(watch.apart > 0.1 * watch.deepest);
   CHECK(beam.tip(0) == Approx((problem.tip * beam.position(0))[0]).epsilon(1e-12));
 }
 

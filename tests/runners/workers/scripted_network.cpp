@@ -37,7 +37,7 @@ void ScriptedNetwork::send(int to, std::string bytes) {
 
 std::optional<Transport::Packet> ScriptedNetwork::receive(double) {
   // Nobody moves while nobody listens: a look now and then is soon enough.
-  constexpr auto look_up = std::chrono::milliseconds(2);
+  constexpr auto poll_interval = std::chrono::milliseconds(2);
   std::unique_lock lock(mutex_);
   if (stop_after_ >= 0 && stop_after_-- == 0) std::this_thread::sleep_for(std::chrono::duration<double>(stop_seconds_));
   for (;;) {
@@ -51,7 +51,7 @@ std::optional<Transport::Packet> ScriptedNetwork::receive(double) {
       if (!agent.from_it.empty()) moves.insert(moves.end(), times, {i, false});
     }
     if (moves.empty()) {
-      if (changed_.wait_for(lock, look_up) == std::cv_status::timeout) return std::nullopt;
+      if (changed_.wait_for(lock, poll_interval) == std::cv_status::timeout) return std::nullopt;
       continue;
     }
     const auto [i, hears] = moves[luck_() % moves.size()];

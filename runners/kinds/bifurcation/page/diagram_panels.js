@@ -26,8 +26,8 @@
   // Sources of the picture of exponents: intervals, largest exponents, further ones, and those of twin trajectories.
   function exponents(diagram, panel, grid, axis) {
     const { orbits } = diagram;
-    const sources = (what, columns, look, tag) => each(diagram, panel, (own) => ({
-      what, grid, axis, id: own.id, tags: own.tags.concat(tag || []), z: 2, colour: own.colour, ...look(own), ...orbits.columns(own.id, own.group, own.kind, columns),
+    const sources = (what, columns, style, tag) => each(diagram, panel, (own) => ({
+      what, grid, axis, id: own.id, tags: own.tags.concat(tag || []), z: 2, colour: own.colour, ...style(own), ...orbits.columns(own.id, own.group, own.kind, columns),
     }));
     const out = [
       ...sources("whiskers", ["exponent_1_low", "exponent_1_high"], ({ colour }) => ({ colour: ricochet.lighten(colour, 0.35), glyph: { shape: "whisker" } })),
@@ -51,8 +51,8 @@
   }
   // Cells {from, to, row} of a band under the diagram, those of one colour.
   function drawBand(view, rows, name, tag, colour, grid, axis, only) {
-    const look = { type: "custom", name, tags: [tag], xAxisIndex: grid, yAxisIndex: axis, renderItem: drawCell, clip: true, progressive: 0, itemStyle: { color: colour } };
-    ricochet.draw(view, rows, { x: ["from", "to"], y: "row" }, look, only);
+    const style = { type: "custom", name, tags: [tag], xAxisIndex: grid, yAxisIndex: axis, renderItem: drawCell, clip: true, progressive: 0, itemStyle: { color: colour } };
+    ricochet.draw(view, rows, { x: ["from", "to"], y: "row" }, style, only);
   }
   function regimes(diagram, view, lanes, grid, axis) {
     const { orbits } = diagram, rows = lanes.flatMap(({ id, start }, row) => {
@@ -75,8 +75,8 @@
         const status = orbits.cell(one.id, "status", o), text = status + ": " + (orbits.cell(one.id, "reason", o) || "no reason given");
         return { at: orbits.cell(one.id, "parameter", o), height: 0.03, mark: mark(status), text, id: one.id, orbit: o };
       });
-      const look = ricochet.textMark({ name: "not finished", colour: dark });
-      ricochet.drawMarks(view, { name: look.name, colour: dark }, unfinished, { tags: [orbits.groups[failed][0]].concat(own), label: { ...look.label, fontSize: 11 } });
+      const style = ricochet.textMark({ name: "not finished", colour: dark });
+      ricochet.drawMarks(view, { name: style.name, colour: dark }, unfinished, { tags: [orbits.groups[failed][0]].concat(own), label: { ...style.label, fontSize: 11 } });
       const found = data.ownRows("bifurcations", one.id).filter((row) => row.value !== null && (panel.kind === undefined || orbits.kindOfStart(row.start) === panel.kind));
       const changes = found.map((row) => {
         const between = row.low !== null && row.high !== null ? ", between " + exact(row.low) + " and " + exact(row.high) : "";

@@ -1,6 +1,6 @@
 // The largest step of each method, predicted and observed.
 {
-  const mostRows = 22, none = "no limit", looks = { open: "#0072B2", closed: "#D55E00" };
+  const mostRows = 22, none = "no limit", colours = { open: "#0072B2", closed: "#D55E00" };
 
   ricochet.figure("limit-dots", (data) => {
     const { view } = data, { text } = ricochet.format, found = data.rows("step_limits").filter((row) => row.counted && data.byId.has(row.case) && (row.expected !== null || row.observed !== null));
@@ -16,7 +16,7 @@
     const names = arrows ? unlimited.concat(limited) : limited, range = new ricochet.Interval().include(...rows.flatMap((row) => [row.predicted, row.observed]).filter((value) => value > 0));
     if (range.empty) return [];
     const x = ["largest step h", "s"], out = ricochet.namedRows(names, x, ricochet.logAxis(x, range, false), names.length > 12 ? 19 : 26), legend = [];
-    for (const [contact, colour] of Object.entries(looks))
+    for (const [contact, colour] of Object.entries(colours))
       for (const [what, draw] of [["predicted", (name) => ricochet.ring(name, colour, 10)], ["observed", (name) => ricochet.dot(name, colour, "circle", 4, 4)]]) {
         const own = rows.filter((row) => row.contact === contact && row[what] > 0), name = contact + ", " + what;
         if (!own.length) continue;

@@ -54,7 +54,7 @@
       for (const { curves } of this.facets) for (const curve of curves) curve.base = curves.find((other) => other.label === base);
     }
     // Coarser steps are wider and lighter: where curves coincide, each still shows beside the finest.
-    look(one, colour) {
+    style(one, colour) {
       const { view, ranks, byMass } = this, label = view.label(one, this.columns), rank = ranks.indexOf(label), shade = ranks.length < 2 ? 0 : 0.5 * rank / (ranks.length - 1);
       return {
         label, name: label || view.massLabel(one) || "curve", rank,
@@ -66,7 +66,7 @@
       const out = [];
       for (const one of facet.cases) {
         const curve = this.data.curve(one, this.subject.column), measured = measureOf(one, "energy_brought_in"), start = curve && (measured === null ? curve.y[0] : measured);
-        if (curve) out.push({ one, t: curve.x, values: curve.y, start: start > 0 ? start : null, ...this.look(one, this.view.colour(one)) });
+        if (curve) out.push({ one, t: curve.x, values: curve.y, start: start > 0 ? start : null, ...this.style(one, this.view.colour(one)) });
       }
       // The finest last, on top of the others.
       return out.sort((a, b) => b.rank - a.rank);
@@ -82,7 +82,7 @@
         () => (facet.curves.length ? scales.map((scale, k) => this.chart(facet, scale, frames[k][f])) : []), () => view.outcomeNotes(facet.cases, this.columns)));
       const thinned = curves.some((curve) => curve.values.length > drawnWhole);
       const more = " Of curves over " + drawnWhole + " points the smallest and the largest of each pixel are drawn; zooming in shows every sample.";
-      const entries = view.all.map((one) => this.look(one, view.masses.length > 1 ? "#555555" : view.colour(one))).map(({ name, colour, dash }) => ({ name, colour, dash: ricochet.svgDash(dash) }));
+      const entries = view.all.map((one) => this.style(one, view.masses.length > 1 ? "#555555" : view.colour(one))).map(({ name, colour, dash }) => ({ name, colour, dash: ricochet.svgDash(dash) }));
       return {
         id: subject.id, title: subject.title, caption: subject.caption + (thinned ? more : ""), views: scales.map((scale) => ricochet.format.withUnit(this.quantity(scale))), charts,
         legend: ricochet.firstOfName(entries), overTime: true, linked: true, ...this.choices(several), measured: { key: subject.id, along: "step", ...subject.measured },
@@ -143,8 +143,8 @@
     }
     draw(out, curve, scale, range) {
       const { text, unit, mark } = ricochet.format, values = valuesOf(curve, scale), { name, width } = curve, { status, reason } = curve.one;
-      const look = { type: "line", name, case: curve.one.id, color: curve.colour, showSymbol: values.length < 2, emphasis: { disabled: true }, lineStyle: { width, type: ricochet.dash(curve.dash) } };
-      ricochet.draw(out, () => ({ t: curve.t, value: valuesOf(curve, scale) }), { x: "t", y: "value" }, values.length > drawnWhole ? { ...look, sampling: "minmax" } : look);
+      const style = { type: "line", name, case: curve.one.id, color: curve.colour, showSymbol: values.length < 2, emphasis: { disabled: true }, lineStyle: { width, type: ricochet.dash(curve.dash) } };
+      ricochet.draw(out, () => ({ t: curve.t, value: valuesOf(curve, scale) }), { x: "t", y: "value" }, values.length > drawnWhole ? { ...style, sampling: "minmax" } : style);
       const largest = values.reduce((most, y) => (Number.isFinite(y) && Math.abs(y) > Math.abs(most) ? y : most), 0);
       if (largest > range.high || largest < range.low) out.notes.push(name + ": leaves the frame, up to " + text(largest) + unit(out.y) + ".");
       // A mark where a curve that did not finish stops.

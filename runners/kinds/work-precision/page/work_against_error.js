@@ -71,8 +71,8 @@
       const on = names(front), near = work.spread ? names(rows.filter((row) => row.near_front)).filter((name) => !on.includes(name)) : [];
       if (first && on.length) out.notes.push("On the front: " + on.join("; ") + ".");
       if (first && near.length) out.notes.push("Not told from the front, since the spreads of their times overlap it: " + near.join("; ") + ".");
-      const look = { type: "line", name: frontName, symbol: front.length === 1 ? "circle" : "none", symbolSize: 18, z: 1, color: frontColour, lineStyle: { width: 9, cap: "round" } };
-      ricochet.draw(out, front, { x: "known", y: work.column }, look);
+      const style = { type: "line", name: frontName, symbol: front.length === 1 ? "circle" : "none", symbolSize: 18, z: 1, color: frontColour, lineStyle: { width: 9, cap: "round" } };
+      ricochet.draw(out, front, { x: "known", y: work.column }, style);
     }
     gutterMark(one, error, count) {
       const done = one.status === "done", who = this.view.label(one, this.curves.said), why = done ? this.none(one, error) : one.status + ": " + one.reason;

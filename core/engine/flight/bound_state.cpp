@@ -12,12 +12,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 constexpr double slack = 1e-12;  // of a bound: its own round-off
-// Of all modes, those that are looked at point by point first: beyond, that costs what the whole bound does.
+// Of all modes, those that are bounded point by point first: beyond, that costs what the whole bound does.
 constexpr double few_slow = 0.6;
 
 }  // namespace
 
-void FlightBound::look(const double* x, const double* e) {
+void FlightBound::set_state(const double* x, const double* e) {
   const FlightKernels& kernels = flight_kernels();
   const double drive = drive_.harmonic ? std::hypot(e[0], e[1]) : 0.0;
   const double turn = 2 * std::sin(drive_.angle / 2);
