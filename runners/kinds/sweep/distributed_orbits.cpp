@@ -195,7 +195,6 @@ void measure_elsewhere(const ForcedScenes& scenes, const ExponentTask& task, con
                        const std::vector<std::vector<std::size_t>>& batches, std::vector<OrbitExponents>& found,
                        double& seconds, const std::function<void(std::size_t)>& measured,
                        const std::atomic<bool>& stop) {
-  constexpr double poll_interval = 0.1;  // s between two readings of `stop`
   BlocksUnderWay service(*task.blocks, task.case_id);
   std::deque<Part> waiting;
   std::vector<std::size_t> left(batches.size());  // orbits of a batch that are not known
