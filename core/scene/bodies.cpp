@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/kernels/band_ldlt.hpp>
+#include <ricochet/scene/block_matrices.hpp>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/named_stops.hpp>
@@ -15,20 +16,6 @@ namespace ricochet {
 namespace {
 
 constexpr const char* one_structure = "/scene/structure";
-
-using Triplets = std::vector<Eigen::Triplet<double>>;
-
-void add_block(const SparseMatrix& block, int first, Triplets& entries) {
-  for (int j = 0; j < block.outerSize(); ++j)
-    for (SparseMatrix::InnerIterator it(block, j); it; ++it)
-      entries.emplace_back(first + static_cast<int>(it.row()), first + j, it.value());
-}
-
-SparseMatrix made(int size, const Triplets& entries) {
-  SparseMatrix out(size, size);
-  out.setFromTriplets(entries.begin(), entries.end());
-  return out;
-}
 
 bool all_alike(const std::vector<Body>& bodies) {
   const Damping first = damping_of(bodies.front().structure);
@@ -140,7 +127,7 @@ std::shared_ptr<const AssembledStructure> join_bodies(const Bodies& bodies, int 
   out->mass_name = "M of the bodies";
   out->table_name = "the structure";
   std::vector<SemiDiscrete> problems;
-  Triplets stiffness, mass;
+  MatrixEntries stiffness, mass;
   int dofs = 0;
   for (std::size_t b = 0; b < bodies.all.size(); ++b) {
     const Body& one = bodies.all[b];
@@ -156,9 +143,10 @@ std::shared_ptr<const AssembledStructure> join_bodies(const Bodies& bodies, int 
     const SemiDiscrete& problem = problems.back();
     body.first = dofs;
     dofs += body.dofs();
-    add_block(problem.stiffness, body.first, stiffness);
+    const std::vector<int> own_dofs = numbered_from(body.first, body.dofs());
+    add_block(problem.stiffness, own_dofs, own_dofs, stiffness);
     const SparseMatrix own = consistent_mass(problem.space);
-    add_block(own, body.first, mass);
+    add_block(own, own_dofs, own_dofs, mass);
     out->half_width = std::max({out->half_width, half_bandwidth(problem.stiffness), half_bandwidth(own)});
     body.held = is_held(one, problem);
     out->definite = out->definite && body.held;
@@ -171,8 +159,8 @@ std::shared_ptr<const AssembledStructure> join_bodies(const Bodies& bodies, int 
     for (const std::string& note : problem.notes) out->notes.push_back("body " + one.name + ": " + note);
     add_supports(problem, body, *out);
   }
-  out->stiffness = made(dofs, stiffness);
-  out->mass = made(dofs, mass);
+  out->stiffness = sparse_matrix(dofs, dofs, stiffness);
+  out->mass = sparse_matrix(dofs, dofs, mass);
   const auto supports = static_cast<Eigen::Index>(out->supports.size());
   out->static_modes = out->support_loads = Eigen::MatrixXd::Zero(dofs, supports);
   for (std::size_t b = 0; b < problems.size(); ++b) {
@@ -202,17 +190,6 @@ SceneSpec on_mesh(SceneSpec scene, int mesh) {
   spec->structure = join_bodies(*spec->bodies, mesh);
   spec->damping = all_alike(spec->bodies->all) ? damping_of(spec->bodies->all.front().structure) : Damping{};
   return scene;
-}
-
-SparseRows rows_of(const SparseRows& rows, const JoinedBody& body) {
-  Triplets entries;
-  for (int i = 0; i < rows.outerSize(); ++i)
-    for (SparseRows::InnerIterator it(rows, i); it; ++it)
-      if (body.has(static_cast<int>(it.col())))
-        entries.emplace_back(i, static_cast<int>(it.col()) - body.first, it.value());
-  SparseRows out(rows.rows(), body.dofs());
-  out.setFromTriplets(entries.begin(), entries.end());
-  return out;
 }
 
 }  // namespace ricochet

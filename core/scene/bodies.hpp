@@ -76,9 +76,6 @@ SceneSpec on_mesh(SceneSpec scene, int mesh);
 /// The bodies of a scene; null where it has one structure.
 const JoinedBodies* bodies_of(const StructureSpec& structure);
 
-/// Rows (m × n) on the dofs of one body.
-SparseRows rows_of(const SparseRows& rows, const JoinedBody& body);
-
 /// A basis of each body, joined: modes of all bodies first, then the coordinates of stops.
 ModalBasis join_bases(const JoinedBodies& bodies, const SemiDiscrete& problem, const SparseMatrix& mass,
                       const BasisSpec& spec);

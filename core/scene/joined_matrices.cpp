@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/basis/lowest_modes.hpp>
+#include <ricochet/scene/block_matrices.hpp>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
@@ -14,7 +15,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Triplets = std::vector<Eigen::Triplet<double>>;
 
 /// Where the unknowns of each body stand among all: dofs in their order, or coordinates of its basis.
 std::vector<std::vector<int>> unknowns_of(const JoinedBodies& bodies, const SemiDiscrete& problem) {
@@ -24,28 +24,8 @@ std::vector<std::vector<int>> unknowns_of(const JoinedBodies& bodies, const Semi
       out.push_back(problem.basis->parts[b].where);
       continue;
     }
-    std::vector<int>& where = out.emplace_back();
-    for (int i = 0; i < bodies.all[b].dofs(); ++i) where.push_back(bodies.all[b].first + i);
+    out.push_back(numbered_from(bodies.all[b].first, bodies.all[b].dofs()));
   }
-  return out;
-}
-
-void add_block(const SparseMatrix& block, const std::vector<int>& rows, const std::vector<int>& columns,
-               Triplets& entries) {
-  for (int j = 0; j < block.outerSize(); ++j)
-    for (SparseMatrix::InnerIterator it(block, j); it; ++it)
-      entries.emplace_back(rows[static_cast<std::size_t>(it.row())], columns[static_cast<std::size_t>(j)], it.value());
-}
-
-std::vector<int> counted(int first, Index count) {
-  std::vector<int> out;
-  for (int i = 0; i < count; ++i) out.push_back(first + i);
-  return out;
-}
-
-SparseMatrix made(Index rows, Index columns, const Triplets& entries) {
-  SparseMatrix out(rows, columns);
-  out.setFromTriplets(entries.begin(), entries.end());
   return out;
 }
 
@@ -79,12 +59,6 @@ SemiDiscrete alone(const JoinedBodies& bodies, std::size_t number, const SemiDis
   return one;
 }
 
-// B and C_v with M = Bᵀ C_v⁻¹ B of any form: of M itself, B = C_v = M, which is regular.
-MassFactors factors_of(const Inertia& inertia) {
-  if (!inertia.assembled()) return mass_factors(inertia);
-  return {inertia.mass, inertia.mass};
-}
-
 }  // namespace
 
 ModalBasis join_bases(const JoinedBodies& bodies, const SemiDiscrete& problem, const SparseMatrix& mass,
@@ -101,7 +75,7 @@ ModalBasis join_bases(const JoinedBodies& bodies, const SemiDiscrete& problem, c
     ModalBasis::Part& part = out.parts.emplace_back();
     part.first = body.first;
     part.mass = M;
-    part.contact = rows_of(problem.contact, body);
+    part.contact = problem.contact.middleCols(body.first, body.dofs());
     try {
       part.basis = std::make_shared<const ModalBasis>(modal_basis(K, M, part.contact, body.held, own));
     } catch (const InputError& error) {
@@ -116,7 +90,7 @@ ModalBasis join_bases(const JoinedBodies& bodies, const SemiDiscrete& problem, c
   out.squares = VectorXd::Zero(out.modes);
   out.at_points = MatrixXd::Zero(points, all);
   out.left_out = out.flexibility = VectorXd::Zero(points);
-  Triplets entries;
+  MatrixEntries entries;
   int mode = 0, beside = out.modes;
   for (ModalBasis::Part& part : out.parts) {
     const ModalBasis& own = *part.basis;
@@ -132,7 +106,7 @@ ModalBasis join_bases(const JoinedBodies& bodies, const SemiDiscrete& problem, c
     out.left_out += own.left_out;
     out.flexibility += own.flexibility;
   }
-  out.mass = made(all, all, entries);
+  out.mass = sparse_matrix(all, all, entries);
   return out;
 }
 
@@ -150,47 +124,22 @@ InertiaOrRefusal join_masses(const JoinedBodies& bodies, const SemiDiscrete& pro
       return Refusal{fmt::format("body {}: {}", bodies.all[b].name, refusal->sentence)};
     masses.push_back(std::get<Inertia>(std::move(built)));
   }
-  const std::vector<std::vector<int>> unknowns = unknowns_of(bodies, problem);
-  const Index size = problem.basis ? problem.basis->dofs() : problem.space.dofs;
-  const auto every = [&](auto&& is) { return std::all_of(masses.begin(), masses.end(), is); };
-  Inertia out;
-  for (const Inertia& one : masses) out.kernel_dimension += one.kernel_dimension;
-  const auto whole = [&](SparseMatrix Inertia::*matrix) {
-    Triplets entries;
-    for (std::size_t b = 0; b < masses.size(); ++b) add_block(masses[b].*matrix, unknowns[b], unknowns[b], entries);
-    return made(size, size, entries);
-  };
-  if (every([](const Inertia& one) { return one.assembled(); })) {
-    out.mass = whole(&Inertia::mass);
-    return out;
-  }
-  if (every([](const Inertia& one) { return one.inverted(); })) {
-    out.inverse = whole(&Inertia::inverse);
-    return out;
-  }
-  Triplets coupling, velocity;
-  int first = 0;
-  for (std::size_t b = 0; b < masses.size(); ++b) {
-    if (masses[b].assembled() && masses[b].kernel_dimension > 0)
-      return Refusal{
-          fmt::format("body {}: its mass is singular and those of other bodies are not kept as matrices: use "
-                      "the mass consistent",
-                      bodies.all[b].name)};
-    const MassFactors own = factors_of(masses[b]);
-    const std::vector<int> rows = counted(first, own.coupling.rows());
-    add_block(own.coupling, rows, unknowns[b], coupling);
-    add_block(own.velocity_mass, rows, rows, velocity);
-    first += static_cast<int>(own.coupling.rows());
-  }
-  out.coupling = made(first, size, coupling);
-  out.velocity_mass = made(first, first, velocity);
-  return out;
+  const auto assembled = [](const Inertia& one) { return one.assembled(); };
+  if (!std::all_of(masses.begin(), masses.end(), assembled))
+    for (std::size_t b = 0; b < masses.size(); ++b)
+      if (masses[b].assembled() && masses[b].kernel_dimension > 0)
+        return Refusal{
+            fmt::format("body {}: its mass is singular and those of other bodies are not kept as matrices: use "
+                        "the mass consistent",
+                        bodies.all[b].name)};
+  return join_inertias(masses, unknowns_of(bodies, problem),
+                       problem.basis ? problem.basis->dofs() : problem.space.dofs);
 }
 
 SparseMatrix join_dampings(const JoinedBodies& bodies, const SemiDiscrete& problem) {
   const std::vector<std::vector<int>> unknowns = unknowns_of(bodies, problem);
   const Index size = problem.stiffness.rows();
-  Triplets entries;
+  MatrixEntries entries;
   for (std::size_t b = 0; b < bodies.all.size(); ++b) {
     const JoinedBody& body = bodies.all[b];
     const Damping damping = damping_of(body.alone.structure);
@@ -207,7 +156,7 @@ SparseMatrix join_dampings(const JoinedBodies& bodies, const SemiDiscrete& probl
       C = damping.stiffness * K + damping.mass * M;
     add_block(C, unknowns[b], unknowns[b], entries);
   }
-  return made(size, size, entries);
+  return sparse_matrix(size, size, entries);
 }
 
 }  // namespace ricochet

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/scene/block_matrices.hpp>
 #include <ricochet/scene/planes.hpp>
-#include <stdexcept>
 
 namespace ricochet {
 namespace {
@@ -20,6 +20,10 @@ std::vector<int> dofs_of(const std::vector<Element>& elements) {
   std::sort(dofs.begin(), dofs.end());
   dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
   return dofs;
+}
+
+std::vector<int> plane_dofs(const FiniteElementSpace& joint, int plane) {
+  return dofs_of(plane == 1 ? joint.across : joint.elements);
 }
 
 void renumber(std::vector<Element>& elements, const std::vector<int>& number) {
@@ -42,45 +46,6 @@ std::array<std::vector<int>, 2> joint_numbers(const FiniteElementSpace& along_y,
       for (const std::size_t a : {first, first + 1})
         if (element.dof[a] >= 0) number[p][static_cast<std::size_t>(element.dof[a])] = next++;
     }
-  return number;
-}
-
-// Entries of a matrix at the rows and columns that stand for its own.
-void add(const SparseMatrix& matrix, const std::vector<int>& rows, const std::vector<int>& columns,
-         std::vector<Eigen::Triplet<double>>& entries) {
-  for (Eigen::Index j = 0; j < matrix.outerSize(); ++j)
-    for (SparseMatrix::InnerIterator it(matrix, j); it; ++it)
-      entries.emplace_back(rows[static_cast<std::size_t>(it.row())], columns[static_cast<std::size_t>(it.col())],
-                           it.value());
-}
-
-SparseMatrix sparse_matrix(Eigen::Index rows, Eigen::Index columns,
-                           const std::vector<Eigen::Triplet<double>>& entries) {
-  SparseMatrix matrix(rows, columns);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
-
-// Rows of B of both planes in the order of the first dof that each touches: velocities stand beside their nodes.
-std::array<std::vector<int>, 2> velocity_numbers(const std::array<MassFactors, 2>& factors,
-                                                 const std::array<PlaneSpace, 2>& planes) {
-  struct Velocity {
-    int first, plane, row;
-  };
-  std::vector<Velocity> all;
-  for (int p = 0; p < 2; ++p) {
-    const auto at = static_cast<std::size_t>(p);
-    const Eigen::SparseMatrix<double, Eigen::RowMajor> rows = factors[at].coupling;
-    for (int i = 0; i < rows.rows(); ++i) {
-      const Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator first(rows, i);
-      all.push_back({first ? planes[at].dofs[static_cast<std::size_t>(first.col())] : 0, p, i});
-    }
-  }
-  std::stable_sort(all.begin(), all.end(), [](const Velocity& a, const Velocity& b) { return a.first < b.first; });
-  std::array<std::vector<int>, 2> number;
-  for (std::size_t p = 0; p < 2; ++p) number[p].resize(static_cast<std::size_t>(factors[p].coupling.rows()));
-  for (std::size_t k = 0; k < all.size(); ++k)
-    number[static_cast<std::size_t>(all[k].plane)][static_cast<std::size_t>(all[k].row)] = static_cast<int>(k);
   return number;
 }
 
@@ -149,10 +114,10 @@ FiniteElementSpace join_planes(const FiniteElementSpace& along_y, const FiniteEl
 }
 
 SparseMatrix join_planes(const FiniteElementSpace& joint, const std::array<SparseMatrix, 2>& planes) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t p = 0; p < 2; ++p) {
-    const std::vector<int> dofs = plane_space(joint, static_cast<int>(p)).dofs;
-    add(planes[p], dofs, dofs, entries);
+  MatrixEntries entries;
+  for (int p = 0; p < 2; ++p) {
+    const std::vector<int> dofs = plane_dofs(joint, p);
+    add_block(planes[static_cast<std::size_t>(p)], dofs, dofs, entries);
   }
   return sparse_matrix(joint.dofs, joint.dofs, entries);
 }
@@ -162,7 +127,7 @@ StaticModes join_planes(const FiniteElementSpace& joint, const std::array<Static
   const Eigen::Index count = planes[0].modes.cols();
   out.modes = out.loads = Eigen::MatrixXd::Zero(joint.dofs, 2 * count);
   for (std::size_t p = 0; p < 2; ++p) {
-    const std::vector<int> dofs = plane_space(joint, static_cast<int>(p)).dofs;
+    const std::vector<int> dofs = plane_dofs(joint, static_cast<int>(p));
     const auto columns = Eigen::seqN(static_cast<Eigen::Index>(p) * count, count);
     out.modes(dofs, columns) = planes[p].modes;
     out.loads(dofs, columns) = planes[p].loads;
@@ -172,39 +137,16 @@ StaticModes join_planes(const FiniteElementSpace& joint, const std::array<Static
 }
 
 InertiaOrRefusal mass_by_plane(const MassStrategy& mass, const FiniteElementSpace& joint) {
-  const std::array<PlaneSpace, 2> planes{plane_space(joint, 0), plane_space(joint, 1)};
-  std::array<Inertia, 2> of;
-  for (std::size_t p = 0; p < 2; ++p) {
-    auto built = mass.build(planes[p].space);
+  std::vector<Inertia> masses;
+  std::vector<std::vector<int>> dofs;
+  for (const int plane : {0, 1}) {
+    const PlaneSpace one = plane_space(joint, plane);
+    auto built = mass.build(one.space);
     if (auto* refusal = std::get_if<Refusal>(&built)) return std::move(*refusal);
-    of[p] = std::get<Inertia>(std::move(built));
+    masses.push_back(std::get<Inertia>(std::move(built)));
+    dofs.push_back(one.dofs);
   }
-  Inertia out;
-  out.kernel_dimension = of[0].kernel_dimension + of[1].kernel_dimension;
-  const auto joined = [&](SparseMatrix Inertia::*form) {
-    std::vector<Eigen::Triplet<double>> entries;
-    for (std::size_t p = 0; p < 2; ++p) add(of[p].*form, planes[p].dofs, planes[p].dofs, entries);
-    return sparse_matrix(joint.dofs, joint.dofs, entries);
-  };
-  if (of[0].assembled() && of[1].assembled()) {
-    out.mass = joined(&Inertia::mass);
-  } else if (of[0].inverted() && of[1].inverted()) {
-    out.inverse = joined(&Inertia::inverse);
-  } else if (of[0].assembled() || of[1].assembled()) {
-    throw std::logic_error("one plane of a beam has a mass in factors, the other a matrix");
-  } else {
-    const std::array<MassFactors, 2> factors{mass_factors(of[0]), mass_factors(of[1])};
-    const auto number = velocity_numbers(factors, planes);
-    std::vector<Eigen::Triplet<double>> coupling, velocity_mass;
-    for (std::size_t p = 0; p < 2; ++p) {
-      add(factors[p].coupling, number[p], planes[p].dofs, coupling);
-      add(factors[p].velocity_mass, number[p], number[p], velocity_mass);
-    }
-    const Eigen::Index count = factors[0].coupling.rows() + factors[1].coupling.rows();
-    out.coupling = sparse_matrix(count, joint.dofs, coupling);
-    out.velocity_mass = sparse_matrix(count, count, velocity_mass);
-  }
-  return out;
+  return join_inertias(masses, dofs, joint.dofs);
 }
 
 std::array<double, 2> plane_shares(const Place& place, bool two_planes, const std::string& pointer) {

@@ -36,7 +36,7 @@ Matrix compressed(const Matrix& matrix) {
   return out;
 }
 
-struct Kept {
+struct SharedBasis {
   SparseMatrix stiffness, mass;
   SparseRows contact;
   bool definite = true;
@@ -49,14 +49,14 @@ struct Kept {
   }
 };
 
-struct Shelf {
+struct BasisCache {
   std::mutex mutex;
-  std::list<Kept> kept;  // used last first
+  std::list<SharedBasis> kept;  // used last first
   long long made = 0;
 };
 
-Shelf& shelf() {
-  static Shelf one;
+BasisCache& cache() {
+  static BasisCache one;
   return one;
 }
 
@@ -64,9 +64,9 @@ Shelf& shelf() {
 
 std::shared_ptr<const ModalBasis> shared_basis(const SparseMatrix& stiffness, const SparseMatrix& mass,
                                                const SparseRows& contact, bool definite, const BasisSpec& spec) {
-  Shelf& all = shelf();
+  BasisCache& all = cache();
   const std::lock_guard lock(all.mutex);
-  Kept asked{compressed(stiffness), compressed(mass), compressed(contact), definite, spec, nullptr};
+  SharedBasis asked{compressed(stiffness), compressed(mass), compressed(contact), definite, spec, nullptr};
   for (auto one = all.kept.begin(); one != all.kept.end(); ++one)
     if (one->definite == definite && one->spec == spec && identical(one->stiffness, asked.stiffness) &&
         identical(one->mass, asked.mass) && identical(one->contact, asked.contact)) {
@@ -85,7 +85,7 @@ std::shared_ptr<const ModalBasis> shared_basis(const SparseMatrix& stiffness, co
 }
 
 BasisCount basis_count() {
-  Shelf& all = shelf();
+  BasisCache& all = cache();
   const std::lock_guard lock(all.mutex);
   return {all.made, all.kept.size()};
 }
