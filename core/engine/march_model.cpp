@@ -36,6 +36,14 @@ Eigen::VectorXd damping_of_modes(const Damping& damping, const Eigen::VectorXd& 
 
 }  // namespace
 
+Eigen::MatrixXd RowMatrix::dense(int columns) const {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows(), columns);
+  for (int i = 0; i < rows(); ++i)
+    for (int k = start[static_cast<std::size_t>(i)]; k < start[static_cast<std::size_t>(i) + 1]; ++k)
+      matrix(i, index[static_cast<std::size_t>(k)]) += value[static_cast<std::size_t>(k)];
+  return matrix;
+}
+
 RowMatrix RowMatrix::from(const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix) {
   RowMatrix rows;
   for (int i = 0; i < matrix.rows(); ++i) {

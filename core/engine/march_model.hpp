@@ -21,6 +21,8 @@ struct RowMatrix {
     return sum;
   }
   LaneRows view() const { return {rows(), start.data(), index.data(), value.data()}; }
+  /// With so many columns.
+  Eigen::MatrixXd dense(int columns) const;
   static RowMatrix from(const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix);
 };
 

@@ -40,7 +40,7 @@ ClosedRows::ClosedRows(const Program& program, FlightSet& free, std::vector<Clos
       modes_(rows_->modes()),
       slots_(rows_->slots()),
       drives_(drive_.count()),
-      contact_(dense(program.model->contact(), modes_)),
+      contact_(program.model->contact().dense(modes_)),
       mass_(program.model->inertia().mass.diagonal()) {
   for (const StageProgram& stage : program.stages) {
     first_.push_back(stage.reads_contact ? static_cast<int>(m_) : -1);
@@ -68,7 +68,7 @@ ClosedRows::ClosedRows(const Program& program, FlightSet& free, std::vector<Clos
   position.slots = {1};
   const RowVectorXd here = harmonic(PhaseWeights({{0, 1}}, program.problem->support.pulsation, program.h), drive_);
   for (const ClosedPoint& point : closed_) start.push_back(row_of(0, position, contact_.row(point.point), here));
-  tip = row_of(0, position, dense(program.model->tip(), modes_).row(0), here);
+  tip = row_of(0, position, program.model->tip().dense(modes_).row(0), here);
   add_reach(free);
   responses_.clear();
   rows_ = nullptr;

@@ -116,7 +116,7 @@ void FlightSet::close(const Program& program, const FlightSet* twin) {
     lever_ = twin->lever_;
     return;
   }
-  const MatrixXd H = dense(program.model->contact(), rows_);
+  const MatrixXd H = program.model->contact().dense(rows_);
   closed_rows_.resize(static_cast<Index>(closed_.size()), rows_);
   for (std::size_t i = 0; i < closed_.size(); ++i) closed_rows_.row(static_cast<Index>(i)) = H.row(closed_[i].point);
   // K = 1 in these coordinates.
@@ -181,7 +181,7 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<ClosedPoi
   const StepRows& rows = *step_rows_;
 
   const LaneSpec& lane = program.lanes.front();
-  const MatrixXd measured = dense(program.model->measured(), rows_), contact = dense(program.model->contact(), rows_);
+  const MatrixXd measured = program.model->measured().dense(rows_), contact = program.model->contact().dense(rows_);
   std::vector<FlightWatch> watches;
   const auto watch = [&](int stage, const Combination& value, const MatrixXd& points, const MatrixXd& drive,
                          FlightWatch::Bounds bounds) {
@@ -251,7 +251,7 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<ClosedPoi
   tip_watch_.stage = after;
   tip_watch_.value.slots.assign(static_cast<std::size_t>(slots_), 0.0);
   tip_watch_.value.slots[0] = 1;
-  const MatrixXd tip_row = dense(program.model->tip(), rows_);
+  const MatrixXd tip_row = program.model->tip().dense(rows_);
   tip_watch_.rows = onto(tip_row);
   tip_watch_.drive = (tip_row * (lift_[0] + lift_[0] * drive_.change(1))).rowwise() +
                      harmonic(PhaseWeights({{1, 1}}, program.problem->support.pulsation, program.h), drive_);

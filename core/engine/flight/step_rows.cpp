@@ -60,14 +60,6 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-MatrixXd dense(const RowMatrix& rows, int columns) {
-  MatrixXd matrix = MatrixXd::Zero(rows.rows(), columns);
-  for (int i = 0; i < rows.rows(); ++i)
-    for (int k = rows.start[static_cast<std::size_t>(i)]; k < rows.start[static_cast<std::size_t>(i) + 1]; ++k)
-      matrix(i, rows.index[static_cast<std::size_t>(k)]) += rows.value[static_cast<std::size_t>(k)];
-  return matrix;
-}
-
 RowVectorXd harmonic(const PhaseWeights& phase, const FlightDrive& drive, double factor) {
   RowVectorXd row = RowVectorXd::Zero(drive.count());
   if (!drive.harmonic) return row;

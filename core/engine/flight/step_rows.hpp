@@ -64,9 +64,6 @@ class StepRows {
 
 // What stands on the right of a step, over what drives it.
 
-/// Rows of H and the like as a dense matrix, rows × columns.
-Eigen::MatrixXd dense(const RowMatrix& rows, int columns);
-
 /// `factor` times a combination of levels of the clamp's motion, over e.
 Eigen::RowVectorXd harmonic(const PhaseWeights& phase, const FlightDrive& drive, double factor = 1);
 

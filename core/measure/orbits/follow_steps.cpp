@@ -42,7 +42,7 @@ StepFollower::StepFollower(SteppedMap& map, const MapClock& clock, VectorXd x, d
   }
   along_.x *= way / size;
   along_.parameter *= way / size;
-  keep(now_, last_);
+  keep(now_, last_, multipliers_of(last_.derivative));
 }
 
 VectorXd StepFollower::by_parameter(const Point& point) {
@@ -93,7 +93,8 @@ bool StepFollower::correct(Point& point, const Point& along, int& iterations) {
   return false;
 }
 
-void StepFollower::keep(const Point& point, const SteppedMap::Image& image) {
+void StepFollower::keep(const Point& point, const SteppedMap::Image& image,
+                        std::vector<std::complex<double>> multipliers) {
   BranchCorner corner;
   corner.parameter = point.parameter;
   corner.arc = trace_.corners.empty() ? 0 : trace_.corners.back().arc;
@@ -105,10 +106,9 @@ void StepFollower::keep(const Point& point, const SteppedMap::Image& image) {
   corner.way = along_.parameter < 0 ? -1 : 1;
   corner.runs = image.runs;
   corner.shortest = image.shortest;
-  std::vector<std::complex<double>> all = multipliers_of(image.derivative);
-  corner.raw = corner.smooth = roots_at(all);
-  all.resize(std::min(all.size(), static_cast<std::size_t>(limits_.branch.multipliers)));
-  corner.leading = std::move(all);
+  corner.raw = corner.smooth = roots_at(multipliers);
+  multipliers.resize(std::min(multipliers.size(), static_cast<std::size_t>(limits_.branch.multipliers)));
+  corner.leading = std::move(multipliers);
   corner.residual = map_->metric().size(image.image - point.x);
   rebounds_ = std::max(rebounds_, image.rebounds);
   trace_.corners.push_back(std::move(corner));
@@ -121,6 +121,7 @@ bool StepFollower::advance(long long steps) {
   const double range = metric.parameter_metres() * (limits.largest - limits.least);
   for (; steps > 0 && !trace_.ended(); --steps) {
     Point next;
+    std::vector<std::complex<double>> multipliers;
     int iterations = 0;
     for (;; step_ *= 0.5) {
       if (step_ < smallest_step * range) {
@@ -148,8 +149,8 @@ bool StepFollower::advance(long long steps) {
       const double cosine = ((metric.rows() * by).dot(metric.rows() * along_.x) +
                              metres * metres * (next.parameter - now_.parameter) * along_.parameter) /
                             far;
-      const Outside outside_now = outside(multipliers_of(last_.derivative));
-      const bool crosses = outside_now.total != trace_.corners.back().raw.outside.total;
+      multipliers = multipliers_of(last_.derivative);
+      const bool crosses = outside(multipliers).total != trace_.corners.back().raw.outside.total;
       // Nearer than impacts are placed neither directions nor multipliers say anything.
       const double told = 5 * last_.rebounds;
       const bool straight = cosine >= sharpest || (far < told && cosine > 0);
@@ -166,14 +167,15 @@ bool StepFollower::advance(long long steps) {
       const ShotOrbit at = shoot(*map_, now_.x + share * by, limit, clock_, limits_.tolerance);
       if (at.found) {
         const Point end{at.x, limit};
-        keep(end, map_->march(at.x, limit, clock_, true));
+        const SteppedMap::Image image = map_->march(at.x, limit, clock_, true);
+        keep(end, image, multipliers_of(image.derivative));
       }
       trace_.end = fmt::format("the range ends at {:.10g}", limit);
       return false;
     }
     // The secant that ends here is that of the corner before.
     trace_.corners.back().way = along_.parameter < 0 ? -1 : 1;
-    keep(next, last_);
+    keep(next, last_, std::move(multipliers));
     now_ = std::move(next);
     if (iterations <= easy) step_ = std::min(growth * step_, largest_step * range);
     if (iterations > hard) step_ /= growth;

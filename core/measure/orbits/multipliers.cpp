@@ -50,13 +50,7 @@ double margin(const PeriodicMap& map, const SetStep& step, int row, double value
 MatrixXd half_step_derivative(PeriodicMap& map, const SetSequence& sets, const MapClock& clock, double parameter,
                               const PeriodicMap::Measures& measures) {
   const int rows = map.sets().measure_rows();
-  // Of each step that is blended: the other set, and its weight.
-  struct Blend {
-    std::size_t step;
-    int other;
-    double weight;
-  };
-  std::vector<Blend> blends;
+  std::vector<SetBlend> blends;
   for (std::size_t k = 1; k < sets.size(); ++k) {
     if (sets[k] == sets[k - 1]) continue;
     const SetStep &before = map.sets()[sets[k - 1]], &after = map.sets()[sets[k]];
@@ -68,31 +62,13 @@ MatrixXd half_step_derivative(PeriodicMap& map, const SetSequence& sets, const M
     const double m1 = margin(map, after, static_cast<int>(row), measures.value[k * n + r], upper, parameter);
     if (!(m0 + m1 > 0)) continue;
     const double theta = m0 / (m0 + m1);
-    const Blend blend = theta < 0.5 ? Blend{k - 1, sets[k], 0.5 - theta} : Blend{k, sets[k - 1], theta - 0.5};
+    const SetBlend blend = theta < 0.5 ? SetBlend{k - 1, sets[k], 0.5 - theta} : SetBlend{k, sets[k - 1], theta - 0.5};
     if (!blends.empty() && blends.back().step == blend.step)
       blends.back() = blend;
     else
       blends.push_back(blend);
   }
-  const int D = map.size();
-  MatrixXd product = MatrixXd::Identity(D, D);
-  auto next = blends.begin();
-  for (std::size_t begin = 0; begin < sets.size();) {
-    if (next != blends.end() && next->step == begin) {
-      product = ((1 - next->weight) * map.sets()[sets[begin]].state.topRows(D) +
-                 next->weight * map.sets()[next->other].state.topRows(D)) *
-                product;
-      ++next;
-      ++begin;
-      continue;
-    }
-    const std::size_t stop = next != blends.end() ? next->step : sets.size();
-    std::size_t end = begin;
-    while (end < stop && sets[end] == sets[begin]) ++end;
-    map.sets().apply(sets[begin], static_cast<long long>(end - begin), product);
-    begin = end;
-  }
-  return clock.sign() * product;
+  return map.derivative(sets, clock, blends);
 }
 
 }  // namespace ricochet

@@ -47,7 +47,7 @@ bool passes_through(const AffineLane& affine, const LaneSpec& lane, double at) {
 }
 
 // Which block of LaneState::efforts holds p₋ₖ at the beginning of a step: as Marcher lays them out.
-StateVector::StateVector(const Program& program, int past_efforts)
+StateVector::StateVector(const Program& program)
     : slots_(program.plan.slots.size() * static_cast<std::size_t>(program.model->rows())),
       points_(program.contact ? program.problem->points() : 0) {
   const auto stages = static_cast<std::ptrdiff_t>(program.stages.size());
@@ -66,7 +66,7 @@ StateVector::StateVector(const Program& program, int past_efforts)
       count = std::max(count, (j > i ? steps - 1 : steps) + 1);
     }
   }
-  for (int k = 1; k <= past_efforts; ++k) {
+  for (int k = 1; k <= past_efforts(program); ++k) {
     const auto [j, steps] = place_in_steps(-k, stages);
     std::ptrdiff_t begin = 0;
     for (std::ptrdiff_t i = 0; i < j; ++i) begin += static_cast<std::ptrdiff_t>(blocks[static_cast<std::size_t>(i)]);
@@ -76,7 +76,7 @@ StateVector::StateVector(const Program& program, int past_efforts)
 }
 
 VectorXd StateVector::read(const LaneState& state) const {
-  VectorXd x = VectorXd::Zero(static_cast<Index>(slots_) + static_cast<Index>(efforts_.size()) * points_);
+  VectorXd x = VectorXd::Zero(size());
   std::copy_n(state.slots.begin(), slots_, x.data());
   double* to = x.data() + slots_;
   for (const std::ptrdiff_t from : efforts_) {
@@ -119,8 +119,7 @@ StateMetric::StateMetric(const Program& program, int state_size, double paramete
   const int rows = model.rows();
   MatrixXd readings;  // of a slot
   if (problem.in_modes()) {
-    readings = MatrixXd::Zero(1, rows);
-    for (int i = 0; i < rows; ++i) readings(0, i) = model.tip().times(0, VectorXd(VectorXd::Unit(rows, i)).data());
+    readings = model.tip().dense(rows);
   } else {
     const std::vector<int> dofs = displacements_of(problem);
     readings.resize(static_cast<Index>(dofs.size()), rows);
@@ -181,15 +180,11 @@ PeriodicMap::PeriodicMap(Program program, AffineLane lanes, double parameter_met
     : marcher_(checked(std::move(program))),
       lanes_(std::move(lanes)),
       sets_(marcher_.program()),
-      vector_(marcher_.program(), sets_.past_efforts()),
+      vector_(marcher_.program()),
       metric_(marcher_.program(), sets_.state_size(), parameter_metres),
       template_(marcher_.lane_state(0)),
-      affine_load_(std::move(load)) {
-  const MarchModel& model = *this->program().model;
-  tip_ = Eigen::RowVectorXd::Zero(model.rows());
-  for (int i = 0; i < model.rows(); ++i)
-    tip_[i] = model.times(model.tip(), 0, VectorXd(VectorXd::Unit(model.rows(), i)).data());
-}
+      tip_(marcher_.program().model->tip().dense(marcher_.program().model->rows()).row(0)),
+      affine_load_(std::move(load)) {}
 
 double PeriodicMap::tip(const VectorXd& x, double parameter) const {
   const double A = lanes_.origin.amplitude + (parameter - lanes_.at) * lanes_.amplitude;
@@ -216,15 +211,10 @@ MapMarch PeriodicMap::march(const VectorXd& x, double parameter, const MapClock&
   Recorder recorder(sets_, read);
   const long long steps = clock.steps();
   recorder.found.reserve(static_cast<std::size_t>(steps));
-  double first = 0, last = 0;
   if (read) {
-    made.tip = marcher.tip(0);
-    marcher.march(1, &recorder);
-    first = marcher.tip(0);
-    marcher.march(steps - 2, &recorder);
-    last = marcher.tip(0);
-    marcher.march(1, &recorder);
-    made.tip_velocity = (first - clock.sign() * last) / (2 * program().h);
+    const StrobeTip tip = march_over(marcher, clock, &recorder);
+    made.tip = tip.displacement;
+    made.tip_velocity = tip.velocity;
   } else {
     marcher.march(steps, &recorder);
   }
@@ -235,11 +225,21 @@ MapMarch PeriodicMap::march(const VectorXd& x, double parameter, const MapClock&
   return made;
 }
 
-MatrixXd PeriodicMap::derivative(const SetSequence& sets, const MapClock& clock) {
+MatrixXd PeriodicMap::derivative(const SetSequence& sets, const MapClock& clock, const std::vector<SetBlend>& blends) {
   MatrixXd product = MatrixXd::Identity(size(), size());
+  auto blend = blends.begin();
   for (std::size_t begin = 0; begin < sets.size();) {
+    if (blend != blends.end() && blend->step == begin) {
+      product = ((1 - blend->weight) * sets_[sets[begin]].state.topRows(size()) +
+                 blend->weight * sets_[blend->other].state.topRows(size())) *
+                product;
+      ++blend;
+      ++begin;
+      continue;
+    }
+    const std::size_t stop = blend != blends.end() ? blend->step : sets.size();
     std::size_t end = begin;
-    while (end < sets.size() && sets[end] == sets[begin]) ++end;
+    while (end < stop && sets[end] == sets[begin]) ++end;
     sets_.apply(sets[begin], static_cast<long long>(end - begin), product);
     begin = end;
   }
@@ -369,6 +369,17 @@ void PeriodicMap::sweep(const SetSequence& sets, const MapClock& clock, std::vec
     std::swap(now, next);
   }
   for (std::size_t c = 0; c < count; ++c) columns[c].x = clock.sign() * now[c].head(D);
+}
+
+StrobeTip march_over(Marcher& marcher, const MapClock& clock, const Observers& observers) {
+  StrobeTip tip{marcher.tip(0), 0};
+  marcher.march(1, observers);
+  const double after = marcher.tip(0);
+  marcher.march(clock.steps() - 2, observers);
+  const double before = marcher.tip(0);
+  marcher.march(1, observers);
+  tip.velocity = (after - clock.sign() * before) / (2 * marcher.program().h);
+  return tip;
 }
 
 std::optional<LaneState> settle(Program program, int steps_per_period, int periods, LaneEnd& end) {

@@ -39,6 +39,13 @@ struct MapClock {
 /// The contact set of each step, by its number in SetSteps.
 using SetSequence = std::vector<int>;
 
+/// A step whose derivative is (1 − weight) times that of its set, and weight times that of another one.
+struct SetBlend {
+  std::size_t step;
+  int other;
+  double weight;
+};
+
 /// What one march of the map shows.
 struct MapMarch {
   Eigen::VectorXd image;             ///< sign · P
@@ -51,7 +58,8 @@ struct MapMarch {
 /// The state of one lane as numbers, and back.
 class StateVector {
  public:
-  explicit StateVector(const Program& program, int past_efforts);
+  explicit StateVector(const Program& program);
+  int size() const { return static_cast<int>(slots_) + static_cast<int>(efforts_.size()) * points_; }
   Eigen::VectorXd read(const LaneState& state) const;
   /// What is not part of x stays as `state` has it.
   void write(const Eigen::VectorXd& x, LaneState& state) const;
@@ -103,8 +111,8 @@ class PeriodicMap {
 
   /// Marches from x. `read`: tip and penetration are wanted too.
   MapMarch march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool read = false);
-  /// ∂(sign·P)/∂x with these sets.
-  Eigen::MatrixXd derivative(const SetSequence& sets, const MapClock& clock);
+  /// ∂(sign·P)/∂x with these sets, of which `blends` changes some, in the order of steps.
+  Eigen::MatrixXd derivative(const SetSequence& sets, const MapClock& clock, const std::vector<SetBlend>& blends = {});
 
   /// One column that goes over the steps: of states (drives at λ) or of directions (drives per λ, times `parameter`).
   struct Column {
@@ -145,6 +153,13 @@ class PeriodicMap {
   int clocked_ = 0;
   void set_period(int steps_per_period);
 };
+
+/// The tip where a march over a map begins, and its central velocity over two steps there, as the map's sign has it.
+struct StrobeTip {
+  double displacement = 0, velocity = 0;  ///< m, absolute; m/s
+};
+/// Marches lane 0 over the steps of a map, from a set clock.
+StrobeTip march_over(Marcher& marcher, const MapClock& clock, const Observers& observers);
 
 /// The state of a lane after so many periods from its own initial state, under the start rule, at a strobe; nothing
 /// where it stopped, with the cause in `end`.

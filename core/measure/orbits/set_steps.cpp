@@ -8,10 +8,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-bool has_load(const Program& program) {
-  return program.load;
-}
-
 // The slopes of the law, which knows its parameters once it is prepared, as Marcher does it; none: rigid, or not
 // linear.
 std::optional<ContactSlopes> slopes_of(const Program& program) {
@@ -27,15 +23,15 @@ double spring_of(const Program& program) {
   return slopes ? slopes->stiffness : 0;
 }
 
-MatrixXd dense_rows_of(const RowMatrix& rows, int columns) {
-  MatrixXd dense = MatrixXd::Zero(rows.rows(), columns);
-  for (int i = 0; i < rows.rows(); ++i)
-    for (int e = rows.start[static_cast<std::size_t>(i)]; e < rows.start[static_cast<std::size_t>(i) + 1]; ++e)
-      dense(i, rows.index[static_cast<std::size_t>(e)]) += rows.value[static_cast<std::size_t>(e)];
-  return dense;
-}
-
 }  // namespace
+
+int past_efforts(const Program& program) {
+  int past = 0;
+  if (!program.contact || program.problem->points() == 0) return past;
+  for (const StageProgram& stage : program.stages)
+    if (stage.reads_contact) past = std::max(past, static_cast<int>(stage.effort.size()) - 1);
+  return past;
+}
 
 std::optional<std::string> SetSteps::refusal(const Program& program) {
   for (const StageProgram& stage : program.stages) {
@@ -62,7 +58,7 @@ SetSteps::SetSteps(const Program& program)
   const MarchModel& model = *program.model;
   const SemiDiscrete& problem = *program.problem;
   layout_.points = program.contact ? problem.points() : 0;
-  layout_.loads = has_load(program) ? rows_ * static_cast<int>(program.stages.size()) : 0;
+  layout_.loads = program.load ? rows_ * static_cast<int>(program.stages.size()) : 0;
   const MatrixXd K(model.stiffness()), M = dense_mass(model.inertia());
   MatrixXd C = problem.damping.stiffness * K + problem.damping.mass * M;
   if (model.modal_damping().size() > 0)
@@ -70,7 +66,7 @@ SetSteps::SetSteps(const Program& program)
   else if (problem.damping.matrix)
     C = MatrixXd(*problem.damping.matrix);
   const auto weighted = [&](const OperatorWeights& w) -> MatrixXd { return w.M * M + w.C * C + w.K * K; };
-  if (layout_.points > 0) contact_ = dense_rows_of(model.measured(), rows_);
+  if (layout_.points > 0) contact_ = model.measured().dense(rows_);
   const double omega = problem.support.pulsation;
   for (std::size_t k = 0; k < program.stages.size(); ++k) {
     const StageProgram& folded = program.stages[k];
@@ -79,7 +75,6 @@ SetSteps::SetSteps(const Program& program)
     stage.solves = folded.op != nullptr;
     stage.reads = layout_.points > 0 && folded.reads_contact;
     if (stage.reads) reading_.push_back(static_cast<int>(k));
-    if (stage.reads) past_ = std::max(past_, static_cast<int>(folded.effort.size()) - 1);
     stage.history = MatrixXd::Zero(rows_, rows_ * slots_);
     stage.free_drive = MatrixXd::Zero(rows_, layout_.size());
     if (!stage.solves) continue;
@@ -99,6 +94,7 @@ SetSteps::SetSteps(const Program& program)
     stage.delassus = contact_ * stage.response;
     stage.stiffness = spring_of(program);
   }
+  past_ = ricochet::past_efforts(program);
   size_ = rows_ * slots_ + past_ * layout_.points;
   number({});
 }

@@ -19,6 +19,9 @@
 /// stage that reads contact: the effort (N) of a closed point, the measure (m) of an open one.
 namespace ricochet {
 
+/// How many efforts of steps before a step of this program weights: p₋₁, p₋₂, …
+int past_efforts(const Program& program);
+
 /// A point that is closed in a stage of a step, and by which of its stops.
 struct SetPoint {
   int stage = 0, point = 0;

@@ -52,11 +52,15 @@ std::optional<VectorXd> free_orbit(PeriodicMap& map, double parameter, const Map
   return x;
 }
 
-double round_off_of_map(PeriodicMap& map, const VectorXd& x, double parameter, const MapClock& clock) {
-  VectorXd near = x;
-  for (double& number : near)
+VectorXd one_unit_on(VectorXd x) {
+  for (double& number : x)
     if (number != 0) number = std::nextafter(number, std::numeric_limits<double>::infinity());
-  const VectorXd first = map.march(x, parameter, clock).image, second = map.march(near, parameter, clock).image;
+  return x;
+}
+
+double round_off_of_map(PeriodicMap& map, const VectorXd& x, double parameter, const MapClock& clock) {
+  const VectorXd first = map.march(x, parameter, clock).image,
+                 second = map.march(one_unit_on(x), parameter, clock).image;
   return std::max(map.metric().size(second - first), std::numeric_limits<double>::epsilon() * map.metric().size(x));
 }
 

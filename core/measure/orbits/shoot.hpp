@@ -28,6 +28,9 @@ ShotOrbit shoot(PeriodicMap& map, Eigen::VectorXd x, double parameter, const Map
 /// The fixed point with all points open, whatever the stops. Nothing where 1 is a multiplier of it.
 std::optional<Eigen::VectorXd> free_orbit(PeriodicMap& map, double parameter, const MapClock& clock);
 
+/// x with every number that is not 0 one unit in the last place larger.
+Eigen::VectorXd one_unit_on(Eigen::VectorXd x);
+
 /// What round-off makes of a period: the distance between the images of x and of a state one unit in the last place
 /// away in every number, m.
 double round_off_of_map(PeriodicMap& map, const Eigen::VectorXd& x, double parameter, const MapClock& clock);

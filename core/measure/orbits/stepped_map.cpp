@@ -83,13 +83,8 @@ SteppedMap::SteppedMap(Make make, Carry carry, double at, double parameter_metre
   if (scene.program.contact && scene.program.law->memory_per_point() > 0)
     throw Refusal{"a law that keeps a memory has no derivative of it"};
   group_ = scene.group;
-  int past = 0;
-  for (const StageProgram& stage : scene.program.stages)
-    if (stage.reads_contact && scene.program.contact) past = std::max(past, static_cast<int>(stage.effort.size()) - 1);
-  vector_ = std::make_unique<StateVector>(scene.program, past);
-  size_ = static_cast<int>(scene.program.plan.slots.size()) * scene.program.model->rows() +
-          past * (scene.program.contact ? scene.program.problem->points() : 0);
-  metric_ = std::make_unique<StateMetric>(scene.program, size_, parameter_metres);
+  vector_ = std::make_unique<StateVector>(scene.program);
+  metric_ = std::make_unique<StateMetric>(scene.program, size(), parameter_metres);
   reference_ = std::make_unique<Program>(make_(at, 0).program);
   template_ = Marcher(std::move(scene.program)).lane_state(0);
 }
@@ -103,15 +98,15 @@ LaneState SteppedMap::unit(int k) const {
   std::fill(state.slots.begin(), state.slots.end(), 0.0);
   std::fill(state.efforts.begin(), state.efforts.end(), 0.0);
   std::fill(state.memory.begin(), state.memory.end(), 0.0);
-  vector_->write(VectorXd::Unit(size_, k), state);
+  vector_->write(VectorXd::Unit(size(), k), state);
   return state;
 }
 
 SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const MapClock& clock, bool derivative) {
   Image out;
-  if (derivative) out.derivative.resize(size_, size_);
-  for (int first = 0; first == 0 || (derivative && first < size_); first += most_tangents) {
-    const int columns = derivative ? std::min(most_tangents, size_ - first) : 0;
+  if (derivative) out.derivative.resize(size(), size());
+  for (int first = 0; first == 0 || (derivative && first < size()); first += most_tangents) {
+    const int columns = derivative ? std::min(most_tangents, size() - first) : 0;
     Scene scene = make_(parameter, columns);
     const int group = scene.group;
     Marcher marcher(std::move(scene.program));
@@ -125,14 +120,9 @@ SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const M
     Observers observers;
     if (first == 0) observers.add(&watch);
     if (columns > 0 && jump.needed()) observers.add(&jump);
-    const long long steps = clock.steps();
-    out.tip = marcher.tip(0);
-    marcher.march(1, observers);
-    const double after = marcher.tip(0);
-    marcher.march(steps - 2, observers);
-    const double before = marcher.tip(0);
-    marcher.march(1, observers);
-    out.tip_velocity = (after - clock.sign() * before) / (2 * marcher.program().h);
+    const StrobeTip tip = march_over(marcher, clock, observers);
+    out.tip = tip.displacement;
+    out.tip_velocity = tip.velocity;
     out.end = marcher.status(0).end;
     if (out.end) return out;
     if (first == 0) {

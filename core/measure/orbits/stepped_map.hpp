@@ -24,7 +24,7 @@ class SteppedMap {
   /// `at`: the value whose coordinates x has. Throws Refusal of a law that keeps a memory.
   SteppedMap(Make make, Carry carry, double at, double parameter_metres);
 
-  int size() const { return size_; }
+  int size() const { return vector_->size(); }
   const StateMetric& metric() const { return *metric_; }
   const Program& reference() const { return *reference_; }
 
@@ -49,7 +49,7 @@ class SteppedMap {
   Make make_;
   Carry carry_;
   std::unique_ptr<Program> reference_;
-  int group_ = 0, size_ = 0;
+  int group_ = 0;
   std::unique_ptr<StateVector> vector_;
   std::unique_ptr<StateMetric> metric_;
   LaneState template_;
@@ -89,7 +89,7 @@ class StepFollower {
     double parameter = 0;
   };
   bool correct(Point& point, const Point& along, int& iterations);
-  void keep(const Point& point, const SteppedMap::Image& image);
+  void keep(const Point& point, const SteppedMap::Image& image, std::vector<std::complex<double>> multipliers);
   Eigen::VectorXd by_parameter(const Point& point);
 
   SteppedMap* map_;
