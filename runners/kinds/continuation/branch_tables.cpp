@@ -1,9 +1,14 @@
 #include "runners/kinds/continuation/branch_tables.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
+
+#include "runners/store/record_values.hpp"
 
 namespace ricochet {
 
@@ -24,15 +29,12 @@ BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::Vector
   return row;
 }
 
-SpecialRow missing_orbit(const std::string& name, double at, std::string why) {
-  SpecialRow row;
-  row.branch = name;
-  row.point = 1;
-  row.kind = "end";
-  row.label = "EP";
-  row.parameter = at;
-  row.note = std::move(why);
-  return row;
+void put_multipliers(const std::vector<std::complex<double>>& multipliers, const Outside& outside, int most,
+                     BranchRow& row) {
+  row.stable = outside.total == 0;
+  row.unstable = outside.total;
+  row.multipliers.assign(multipliers.begin(), multipliers.end());
+  row.multipliers.resize(static_cast<std::size_t>(most));
 }
 
 std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipliers) {
@@ -51,10 +53,7 @@ std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipli
     row.tip_displacement = corner.tip;
     row.period = branch.clock.period;
     row.symmetric = branch.clock.half;
-    row.stable = corner.raw.outside.total == 0;
-    row.unstable = corner.raw.outside.total;
-    row.multipliers.assign(corner.leading.begin(), corner.leading.end());
-    row.multipliers.resize(static_cast<std::size_t>(multipliers));
+    put_multipliers(corner.leading, corner.raw.outside, multipliers, row);
     row.contact_runs = corner.runs * (branch.clock.half ? 2 : 1);
     row.impacts_per_period = static_cast<double>(*row.contact_runs) / branch.clock.period;
     row.iterations = number == 0 ? branch.iterations : 0;
@@ -77,10 +76,7 @@ void add_mark(PeriodicMap& map, const FollowedBranch& branch, const MarkedOrbit&
   BranchRow row = orbit_row(map, branch.clock, mark.x, mark.parameter);
   row.branch = branch.name;
   row.arc = mark.arc;
-  row.stable = corner.raw.outside.total == 0;
-  row.unstable = corner.raw.outside.total;
-  row.multipliers.assign(corner.leading.begin(), corner.leading.end());
-  row.multipliers.resize(static_cast<std::size_t>(multipliers));
+  put_multipliers(corner.leading, corner.raw.outside, multipliers, row);
   row.iterations = 0;
   row.pieces = 0;
   row.direction = corner.way;
@@ -159,6 +155,9 @@ std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std:
   return rows;
 }
 
+namespace {
+
+// Three prominences a decade, 1e-6 … 1e-2 of the scale.
 std::vector<TurnRow> turn_rows_of(const FollowedBranch& branch, double scale) {
   std::vector<TurnRow> rows;
   const std::vector<Turn> turns = turns_of(branch.trace);
@@ -171,6 +170,41 @@ std::vector<TurnRow> turn_rows_of(const FollowedBranch& branch, double scale) {
     rows.push_back(row);
   }
   return rows;
+}
+
+}  // namespace
+
+void BranchResults::add(const FollowedBranch& branch, std::vector<BranchRow> rows, const std::vector<double>& x_of_rows,
+                        double scale) {
+  std::move(rows.begin(), rows.end(), std::back_inserter(rows_));
+  for (SpecialRow& row : special_rows_of(branch, x_of_rows)) {
+    found_ += row.kind != "end";
+    special_.push_back(std::move(row));
+  }
+  for (TurnRow& row : turn_rows_of(branch, scale)) turns_.push_back(std::move(row));
+  ++branches_;
+}
+
+void BranchResults::add_missing(const std::string& name, double at, std::string why) {
+  SpecialRow& row = special_.emplace_back();
+  row.branch = name;
+  row.point = 1;
+  row.kind = "end";
+  row.label = "EP";
+  row.parameter = at;
+  row.note = std::move(why);
+}
+
+void BranchResults::put(CaseRecord& record, const ContinuationPlan& plan, long long pieces,
+                        std::optional<double> spent) const {
+  record.tables.push_back(branches_table(plan.multipliers, rows_));
+  record.tables.push_back(special_points_type().with(special_));
+  record.tables.push_back(turns_type().with(turns_));
+  put_measure(record, "branches", branches_);
+  put_measure(record, "pieces", static_cast<double>(pieces));
+  put_measure(record, "special_points", found_);
+  record.status = spent ? "failed" : "done";
+  if (spent) record.reason = fmt::format("the budget of {:g} s was spent", *spent);
 }
 
 }  // namespace ricochet

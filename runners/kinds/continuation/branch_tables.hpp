@@ -1,8 +1,10 @@
 #pragma once
+#include <optional>
 #include <ricochet/measure/orbits/special_points.hpp>
 #include <string>
 #include <vector>
 
+#include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continuation_tables.hpp"
 
 namespace ricochet {
@@ -23,17 +25,35 @@ BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::Vector
 /// Folds below this share of the parameter's scale are not listed where the study names no prominence.
 inline constexpr double least_fold = 1e-4;
 
-/// The row of an orbit that was not found, and why.
-SpecialRow missing_orbit(const std::string& name, double at, std::string why);
-
 /// Rows at the corners whose states were kept, as the trace has them.
 std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipliers);
+/// The multipliers of an orbit, largest first, the first `most` of them, and how many are outside the circle.
+void put_multipliers(const std::vector<std::complex<double>>& multipliers, const Outside& outside, int most,
+                     BranchRow& row);
 /// The rows of a branch at corners whose states were kept, special points among them.
 std::vector<BranchRow> rows_of(PeriodicMap& map, const FollowedBranch& branch, int multipliers);
 /// `x_of_rows`: where the point of each row of v stands, m.
 std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std::vector<double>& x_of_rows);
 std::vector<double> x_of_rows(const PeriodicMap& map);
-/// Three prominences a decade, 1e-6 … 1e-2 of the scale.
-std::vector<TurnRow> turn_rows_of(const FollowedBranch& branch, double scale);
+
+/// What the branches of a case come to, whichever way they are followed.
+class BranchResults {
+ public:
+  /// A row of branches.csv alone.
+  void add(BranchRow row) { rows_.push_back(std::move(row)); }
+  /// A branch with its rows. `scale`: that of the parameter.
+  void add(const FollowedBranch& branch, std::vector<BranchRow> rows, const std::vector<double>& x_of_rows,
+           double scale);
+  /// An orbit that was not found is a row that says so.
+  void add_missing(const std::string& name, double at, std::string why);
+  /// Tables, measures and status. `spent`: the budget, s, that was not enough.
+  void put(CaseRecord& record, const ContinuationPlan& plan, long long pieces, std::optional<double> spent) const;
+
+ private:
+  std::vector<BranchRow> rows_;
+  std::vector<SpecialRow> special_;
+  std::vector<TurnRow> turns_;
+  int branches_ = 0, found_ = 0;
+};
 
 }  // namespace ricochet

@@ -138,9 +138,7 @@ TableType<TurnRow> turns_type() {
 void describe_continuation(CaseRecord& record, const SweptColumns& swept) {
   const auto describe = [&](const std::string& name, const std::vector<Column>& columns) {
     for (Table& table : record.tables)
-      if (table.name == name)
-        for (Column& own : table.columns)
-          if (const auto place = find_column(columns, own.name)) own = columns[*place];
+      if (table.name == name) ricochet::describe(table.columns, columns);
   };
   describe(branches_name, branch_row_type(64, swept).columns());
   describe("special_points", special_points_type(swept).rows.columns());

@@ -73,9 +73,9 @@ ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry
     const double value = std::max(std::abs(plan.from), std::abs(plan.to));
     metres_ = value > 0 ? gap_ / value : gap_;
   }
-  look_at_class(reference_);
-  if (refusal_.empty()) look_at_ends();
-  look_at_image(reference_);
+  check_class(reference_);
+  if (refusal_.empty()) check_ends();
+  check_image(reference_);
   if (refusal_.empty() && plan.follow == Follow::pieces && !no_pieces_.empty())
     refusal_ = no_pieces_ + ": follow with steps";
 }
@@ -91,7 +91,7 @@ Program ContinuedMap::program(int scene) const {
 }
 
 // Whether the frozen derivative is that of the motion.
-void ContinuedMap::look_at_class(int scene) {
+void ContinuedMap::check_class(int scene) {
   const Program program = this->program(scene);
   const double e = std::abs(plan_restitution(program.plan, program.h).value_or(0));
   const bool rigid = program.contact && !program.law->reads();
@@ -127,7 +127,7 @@ void ContinuedMap::look_at_class(int scene) {
 }
 
 // Whether the parameter enters by amplitude and stops alone, and affinely.
-void ContinuedMap::look_at_ends() {
+void ContinuedMap::check_ends() {
   std::vector<int> known = {reference_};
   std::vector<double> values = {plan_.orbits.front().at};
   for (const double value : {plan_.from, plan_.to, 0.5 * (plan_.from + plan_.to)}) {
@@ -161,9 +161,9 @@ bool ContinuedMap::affine_loads(int low, int middle, int high) {
     return false;
   const auto dofs = static_cast<Eigen::Index>(first.problem->dofs());
   Eigen::VectorXd a = Eigen::VectorXd::Zero(dofs), b = a, c = a;
-  constexpr int looks = 16;
-  for (int k = 0; k < looks; ++k) {
-    const double t = (k + 0.37) * first.h * case_.steps_per_period / looks;
+  constexpr int samples = 16;
+  for (int k = 0; k < samples; ++k) {
+    const double t = (k + 0.37) * first.h * case_.steps_per_period / samples;
     first.problem->load->assemble(t, a.data());
     between.problem->load->assemble(t, b.data());
     second.problem->load->assemble(t, c.data());
@@ -172,7 +172,7 @@ bool ContinuedMap::affine_loads(int low, int middle, int high) {
   return true;
 }
 
-void ContinuedMap::look_at_image(int scene) {
+void ContinuedMap::check_image(int scene) {
   const ForcedScene& one = scenes_[scene];
   if (case_.steps_per_period % 2 != 0) {
     no_image_ = fmt::format("{} steps per period are an odd number", case_.steps_per_period);

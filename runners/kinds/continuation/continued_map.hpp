@@ -39,10 +39,10 @@ class ContinuedMap {
   SteppedMap stepped_map(double at);
 
  private:
-  void look_at_class(int scene);
-  void look_at_ends();
+  void check_class(int scene);
+  void check_ends();
   bool affine_loads(int low, int middle, int high);
-  void look_at_image(int scene);
+  void check_image(int scene);
 
   const StudyCase& case_;
   const ContinuationPlan& plan_;

@@ -21,7 +21,7 @@
 namespace ricochet {
 namespace {
 
-// Pieces between two looks at the clock.
+// Pieces between two readings of the clock.
 constexpr long long breath = 64;
 
 class ContinuationRun {
@@ -62,14 +62,9 @@ class ContinuationRun {
     return std::move(record_);
   }
 
-  // An orbit that was not found is a row that says so.
-  void missing(const WantedOrbit& orbit, std::string why) {
-    special_.push_back(missing_orbit(orbit.name, orbit.at, std::move(why)));
-  }
-
   void follow(const WantedOrbit& orbit) {
     const FirstOrbit found = first_orbit(continued_, *map_, case_.steps_per_period, orbit, round_off_);
-    if (!found.why.empty()) return missing(orbit, found.why);
+    if (!found.why.empty()) return results_.add_missing(orbit.name, orbit.at, found.why);
     const ShotOrbit& shot = found.shot;
     FollowedBranch first{orbit.name, found.clock, {}, {}, shot.iterations, {}};
     if (plan_.follow == Follow::none) {
@@ -87,16 +82,12 @@ class ContinuationRun {
   void add_orbit(FollowedBranch& branch, const ShotOrbit& shot) {
     BranchRow row = orbit_row(*map_, branch.clock, shot.x, shot.parameter);
     const auto all = multipliers_of(map_->derivative(shot.sets, branch.clock));
-    const Outside count = outside(all);
     row.branch = branch.name;
     row.arc = 0;
-    row.stable = count.total == 0;
-    row.unstable = count.total;
-    row.multipliers.assign(all.begin(), all.end());
-    row.multipliers.resize(static_cast<std::size_t>(plan_.multipliers));
+    put_multipliers(all, outside(all), plan_.multipliers, row);
     row.iterations = shot.iterations;
     row.pieces = 0;
-    rows_.push_back(std::move(row));
+    results_.add(std::move(row));
   }
 
   BranchRun begin(const FollowedBranch& branch, const ShotOrbit& shot, int way) {
@@ -233,30 +224,11 @@ class ContinuationRun {
     return "";
   }
 
-  void add_branch(const FollowedBranch& branch) {
-    for (BranchRow& row : rows_of(*map_, branch, plan_.multipliers)) rows_.push_back(std::move(row));
-    for (SpecialRow& row : special_rows_of(branch, x_of_rows(*map_))) {
-      found_ += row.kind != "end";
-      special_.push_back(std::move(row));
-    }
-    for (TurnRow& row : turn_rows_of(branch, continued_.parameter_scale())) turns_.push_back(std::move(row));
-    ++branches_;
-  }
-
   void finish() {
-    for (const FollowedBranch& branch : followed_) add_branch(branch);
-    record_.tables.push_back(branches_table(plan_.multipliers, rows_));
-    record_.tables.push_back(special_points_type().with(special_));
-    record_.tables.push_back(turns_type().with(turns_));
-    put_measure(record_, "branches", branches_);
-    put_measure(record_, "pieces", static_cast<double>(pieces_));
-    put_measure(record_, "special_points", found_);
+    for (const FollowedBranch& branch : followed_)
+      results_.add(branch, rows_of(*map_, branch, plan_.multipliers), x_of_rows(*map_), continued_.parameter_scale());
+    results_.put(record_, plan_, pieces_, over_budget_ ? std::optional(budget_of(case_)) : std::nullopt);
     record_.steps = pieces_ * case_.steps_per_period;
-    record_.status = "done";
-    if (over_budget_) {
-      record_.status = "failed";
-      record_.reason = fmt::format("the budget of {:g} s was spent", budget_of(case_));
-    }
   }
 
   const StudyCase& case_;
@@ -268,10 +240,7 @@ class ContinuationRun {
   CaseRecord record_;
   double round_off_ = 0, begun_ = thread_seconds();
   std::deque<FollowedBranch> followed_;
-  std::vector<BranchRow> rows_;
-  std::vector<SpecialRow> special_;
-  std::vector<TurnRow> turns_;
-  int branches_ = 0, found_ = 0;
+  BranchResults results_;
   long long pieces_ = 0;
   bool over_budget_ = false;
 };

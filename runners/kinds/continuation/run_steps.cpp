@@ -22,24 +22,17 @@ class StepsRun {
 
   void run() {
     for (const WantedOrbit& orbit : plan_.orbits) follow(orbit);
-    record_.tables.push_back(branches_table(plan_.multipliers, rows_));
-    record_.tables.push_back(special_points_type().with(special_));
-    record_.tables.push_back(turns_type().with(turns_));
-    put_measure(record_, "branches", branches_);
-    put_measure(record_, "pieces", static_cast<double>(steps_));
-    put_measure(record_, "special_points", found_);
     if (rebounds_ > 0)
       record_.notes.push_back(
           fmt::format("stops give back speed: orbits are known to {:.3g} m, what a step places "
                       "their impacts to",
                       rebounds_));
-    record_.status = over_budget_ ? "failed" : "done";
-    if (over_budget_) record_.reason = fmt::format("the budget of {:g} s was spent", budget_of(case_));
+    results_.put(record_, plan_, steps_, over_budget_ ? std::optional(budget_of(case_)) : std::nullopt);
   }
 
  private:
   void missing(const WantedOrbit& orbit, std::string why) {
-    special_.push_back(missing_orbit(orbit.name, orbit.at, std::move(why)));
+    results_.add_missing(orbit.name, orbit.at, std::move(why));
   }
 
   void follow(const WantedOrbit& orbit) {
@@ -87,11 +80,8 @@ class StepsRun {
   }
 
   static double round_off(SteppedMap& map, const Eigen::VectorXd& x, double parameter, const MapClock& clock) {
-    Eigen::VectorXd near = x;
-    for (double& number : near)
-      if (number != 0) number = std::nextafter(number, std::numeric_limits<double>::infinity());
     const double apart =
-        map.metric().size(map.march(x, parameter, clock).image - map.march(near, parameter, clock).image);
+        map.metric().size(map.march(x, parameter, clock).image - map.march(one_unit_on(x), parameter, clock).image);
     // Tangent columns are exact to round-off of as many steps.
     const double steps = std::sqrt(static_cast<double>(clock.steps()));
     return std::max(apart, steps * std::numeric_limits<double>::epsilon() * map.metric().size(x));
@@ -115,21 +105,16 @@ class StepsRun {
     branch.points = special_points(branch.trace, search);
     steps_ += static_cast<long long>(branch.trace.corners.size());
     record_.steps += static_cast<long long>(branch.trace.corners.size()) * case_.steps_per_period;
-    ++branches_;
-    for (BranchRow& row : corner_rows_of(branch, plan_.multipliers)) {
+    std::vector<BranchRow> rows = corner_rows_of(branch, plan_.multipliers);
+    for (BranchRow& row : rows) {
       const Eigen::VectorXd& x = branch.trace.states.at(row.row);
       const auto made = map.march(x, *row.parameter, branch.clock);
       if (!made.end) {
         row.tip_velocity = made.tip_velocity;
         row.penetration = made.penetration;
       }
-      rows_.push_back(std::move(row));
     }
-    for (SpecialRow& row : special_rows_of(branch, {})) {
-      found_ += row.kind != "end";
-      special_.push_back(std::move(row));
-    }
-    for (TurnRow& row : turn_rows_of(branch, continued_.parameter_scale())) turns_.push_back(std::move(row));
+    results_.add(branch, std::move(rows), {}, continued_.parameter_scale());
   }
 
   ContinuedMap& continued_;
@@ -137,11 +122,8 @@ class StepsRun {
   const ContinuationPlan& plan_;
   const std::atomic<bool>& stop_;
   CaseRecord& record_;
-  std::vector<BranchRow> rows_;
-  std::vector<SpecialRow> special_;
-  std::vector<TurnRow> turns_;
+  BranchResults results_;
   double begun_ = thread_seconds(), rebounds_ = 0;
-  int branches_ = 0, found_ = 0;
   long long steps_ = 0;
   bool over_budget_ = false;
 };

@@ -41,10 +41,6 @@ std::string order_text(const PointOrderRow& row) {
   return fmt::format("{} ± {}", number_text(*row.order, 2), number_text(0.5 * (*row.high - *row.low), 1));
 }
 
-}  // namespace
-
-namespace {
-
 /// What the tables of points hold of a study.
 struct PointRows {
   explicit PointRows(const CaseView& view)
