@@ -207,7 +207,8 @@ void BoxSolver::try_held(const Operator& A, HeldBand& band) {
     band.solve(right_.data(), step_.data());
     for (int j = 0; j < count_; ++j) effort_[set_[j]] += step_[set_[j]] / A.reach;
     band.multiply(effort_.data(), measure_.data());
-    for (int i = 0; i < points_; ++i) measure_[i] = free_[i] + A.reach * measure_[i] + A.compliance[i] * effort_[i];
+    for (int i = 0; i < points_; ++i) measure_[i] = free_[i] + A.reach * measure_[i];
+    for (int j = 0; j < count_; ++j) measure_[set_[j]] += A.compliance[set_[j]] * effort_[set_[j]];
   }
   judge();
 }
