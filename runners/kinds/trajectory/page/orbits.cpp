@@ -24,12 +24,14 @@ Table orbit_points(const CaseView& view) {
     rows += table->rows();
   }
   const std::size_t every = std::max<std::size_t>(1, (rows + most_dots - 1) / most_dots);
-  for (const auto& [record, table] : tables)
-    for (std::size_t i = 0; i < table->rows(); i += every) {
-      const auto number = [&](const char* column) { return (*table->numbers(column))[i]; };
-      out.rows.push_back({record->id, table->words_of("stop")->at(static_cast<std::size_t>(number("stop"))),
-                          number("t"), number("first"), number("second"), number("radius")});
+  for (const auto& [record, orbits] : tables) {
+    const NumberTable& table = *orbits;
+    for (std::size_t i = 0; i < table.rows(); i += every) {
+      const auto number = [&](const char* column) { return (*table.numbers(column))[i]; };
+      out.rows.push_back({record->id, table.words_of("stop")->at(static_cast<std::size_t>(number("stop"))), number("t"),
+                          number("first"), number("second"), number("radius")});
     }
+  }
   return out;
 }
 
