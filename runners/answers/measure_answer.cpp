@@ -232,10 +232,16 @@ Answer measure_answer(const Compared& study, const std::vector<std::string>& mea
       MeasureSaid said = say_measure(study, measures[k], kept);
       if (said.sentences.empty()) continue;
       // What methods and refinement leave of a stop's measure; a choice that is asked for speaks by itself.
-      if (study.asked().empty() && (said.kind == "differ" || said.kind == "choices"))
+      if (study.asked().empty() && (said.kind == "differ" || said.kind == "choices" || said.kind == "open"))
         if (std::optional<Sentence> interval = uncertainty_sentence(study, said.limits)) {
           said.kind = "interval";
           said.sentences = {std::move(*interval)};
+        }
+      // Choices are told by what they move, never by what the measure is.
+      if (study.asked().empty() && said.kind == "choices")
+        if (std::optional<Sentence> values = values_sentence(study, said.limits)) {
+          said.kind = "interval";
+          said.sentences.insert(said.sentences.begin(), std::move(*values));
         }
       if (chaotic_means(results) && !measures[k].starts_with("window") && !has_interval(results, measures[k])) {
         const std::size_t stop = measures[k].find('[');

@@ -132,6 +132,33 @@ TEST_CASE("of a single step no interval is told") {
   CHECK(told(table, "sentence").text() == "Rms force at bar: 10.0 to 11.0 N; what the step leaves open is not known.");
 }
 
+TEST_CASE("seeds at a single step say the values first, then what moves them") {
+  StudyResults results;
+  results.kind = "trajectory";
+  results.columns = {"seed", "step"};
+  for (const double seed : {1, 2, 3, 4}) {
+    CaseRecord& record = results.cases.emplace_back();
+    record.id = std::to_string(seed);
+    record.status = "done";
+    record.axes = {{"seed", seed}, {"step", 1e-3}};
+    record.measures = {{"impulse", 3.0}, {"rms_force[bar]", 10 + seed}};
+  }
+  const answers::Answer answer = answers::measure_answer(answers::Compared(results), {"rms_force[bar]"}, false);
+  REQUIRE_FALSE(answer.sentences.empty());
+  CHECK(answer.sentences.front().text == "Rms force at bar: 11 to 14 N; what the step leaves open is not known.");
+}
+
+TEST_CASE("what only the sampling leaves open is said of the sampling") {
+  StudyResults results = two_forces();
+  for (std::size_t i : {2, 3}) {
+    results.cases[i].measures.back().second = 10.1;
+    results.cases[i].measures.emplace_back("confidence.rms_force[bar]", 5.0);
+  }
+  const answers::Answer answer = answers::measure_answer(answers::Compared(results), {"rms_force[bar]"}, false);
+  REQUIRE_FALSE(answer.sentences.empty());
+  CHECK_THAT(answer.sentences.front().text, Catch::Contains("sampling 5"));
+}
+
 TEST_CASE("measures of a whole case, and studies without stops with names, have no row") {
   StudyResults results = two_forces();
   for (CaseRecord& record : results.cases) record.measures.pop_back();
