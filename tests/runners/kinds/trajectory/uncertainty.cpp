@@ -159,6 +159,24 @@ TEST_CASE("what only the sampling leaves open is said of the sampling") {
   CHECK_THAT(answer.sentences.front().text, Catch::Contains("sampling 5"));
 }
 
+TEST_CASE("where a window has parts, a stop's total is told by its mean over them, and an extreme by its values") {
+  StudyResults results = two_forces();
+  results.study["window"] = {{"from", 1}, {"to", 3}, {"parts", 10}};
+  for (CaseRecord& record : results.cases) {
+    const double value = record.measures.back().second;
+    record.measures.emplace_back("window_contact_rms_force[bar]", value - 0.5);
+    record.measures.emplace_back("confidence.window_contact_rms_force[bar]", 0.3);
+    record.measures.emplace_back("peak_force[bar]", 3 * value);
+  }
+  const auto said = [&](const char* measure) {
+    const answers::Answer answer = answers::measure_answer(answers::Compared(results), {measure}, false);
+    return answer.sentences.empty() ? "" : answer.sentences.front().text;
+  };
+  CHECK_THAT(said("rms_force[bar]"), Catch::StartsWith("Rms force in contact at bar: 9.2 to 10.8 N; "));
+  CHECK_THAT(said("peak_force[bar]"), Catch::StartsWith("Peak force at bar: "));
+  CHECK_THAT(said("impulse"), Catch::Contains("is not compared: the motion is chaotic"));
+}
+
 TEST_CASE("measures of a whole case, and studies without stops with names, have no row") {
   StudyResults results = two_forces();
   for (CaseRecord& record : results.cases) record.measures.pop_back();
