@@ -215,15 +215,15 @@ bool of_stop(const std::string& name) {
   return name.ends_with("]");
 }
 
-// Of a stop the mean over the window that knows its interval, in the place of what the whole run adds up to.
+// The mean over the window that knows its interval, in the place of what the whole run adds up to.
 std::string told_for(const StudyResults& results, const std::string& name) {
-  const std::size_t stop = name.find('[');
-  if (stop == std::string::npos || has_interval(results, name)) return name;
+  if (has_interval(results, name)) return name;
+  const std::size_t stop = std::min(name.find('['), name.size());
   const std::string_view given = std::string_view(name).substr(0, stop);
   for (const auto& [total, mean] :
        {std::pair("rms_force", "window_contact_rms_force"), std::pair("mean_force", "window_contact_force"),
         std::pair("impulse", "window_force"), std::pair("contact_time", "window_contact_share"),
-        std::pair("impacts", "window_impact_rate")})
+        std::pair("impacts", "window_impact_rate"), std::pair("dissipated_at_contact", "window_power")})
     if (const std::string in_window = mean + name.substr(stop); given == total && has_interval(results, in_window))
       return in_window;
   return name;
