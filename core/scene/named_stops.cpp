@@ -233,7 +233,9 @@ void check_named_stops(const SceneSpec& scene, const FiniteElementSpace& space) 
     rows.push_back(stop_row(scene, space, stop, i));
     if (rows.back().free.empty())
       throw InputError(stop_pointer(i, "/at"),
-                       stop.to
+                       stop.to == stop.at
+                           ? fmt::format("stop {} joins a place to itself; expected two places, or no `to`", stop.name)
+                       : stop.to
                            ? fmt::format("stop {} joins two held dofs: nothing there can move", stop.name)
                            : fmt::format("stop {} is where the structure is held: nothing there can move", stop.name));
     for (std::size_t j = 0; j < i; ++j)

@@ -211,6 +211,24 @@ bool has_interval(const StudyResults& results, const std::string& name) {
   });
 }
 
+bool of_stop(const std::string& name) {
+  return name.ends_with("]");
+}
+
+// The mean over the window that knows its interval, in the place of what the whole run adds up to.
+std::string told_for(const StudyResults& results, const std::string& name) {
+  if (has_interval(results, name)) return name;
+  const std::size_t stop = std::min(name.find('['), name.size());
+  const std::string_view given = std::string_view(name).substr(0, stop);
+  for (const auto& [total, mean] :
+       {std::pair("rms_force", "window_contact_rms_force"), std::pair("mean_force", "window_contact_force"),
+        std::pair("impulse", "window_force"), std::pair("contact_time", "window_contact_share"),
+        std::pair("impacts", "window_impact_rate"), std::pair("dissipated_at_contact", "window_power")})
+    if (const std::string in_window = mean + name.substr(stop); given == total && has_interval(results, in_window))
+      return in_window;
+  return name;
+}
+
 }  // namespace
 
 Answer measure_answer(const Compared& study, const std::vector<std::string>& measures, bool status_first) {
@@ -229,21 +247,25 @@ Answer measure_answer(const Compared& study, const std::vector<std::string>& mea
   MeasureSaid first;
   if (any_done && results.cases.size() <= too_many_cases)
     for (std::size_t k = 0; k < std::min(measures.size(), measures_at_most); ++k) {
-      MeasureSaid said = say_measure(study, measures[k], kept);
+      const std::string name = told_for(results, measures[k]);
+      MeasureSaid said = say_measure(study, name, kept);
       if (said.sentences.empty()) continue;
       // What methods and refinement leave of a stop's measure; a choice that is asked for speaks by itself.
-      if (study.asked().empty() && (said.kind == "differ" || said.kind == "choices"))
+      if (study.asked().empty() && (said.kind == "differ" || said.kind == "choices" || said.kind == "open"))
         if (std::optional<Sentence> interval = uncertainty_sentence(study, said.limits)) {
           said.kind = "interval";
           said.sentences = {std::move(*interval)};
         }
-      if (chaotic_means(results) && !measures[k].starts_with("window") && !has_interval(results, measures[k])) {
-        const std::size_t stop = measures[k].find('[');
-        const std::string mean = stop == std::string::npos ? "" : "window_contact_" + measures[k];
-        body.push_back(
-            {fmt::format("{} is not compared: the motion is chaotic, its means are{}.",
-                         capitalised(said.limits.words.words), has_interval(results, mean) ? ", as " + mean : ""),
-             {Clause{.form = "open", .measure = measures[k], .status = "chaotic"}}});
+      // Choices are told by what they move, never by what the measure is.
+      if (study.asked().empty() && said.kind == "choices")
+        if (std::optional<Sentence> values = values_sentence(study, said.limits)) {
+          said.kind = "interval";
+          said.sentences.insert(said.sentences.begin(), std::move(*values));
+        }
+      if (chaotic_means(results) && !of_stop(name) && !name.starts_with("window") && !has_interval(results, name)) {
+        body.push_back({fmt::format("{} is not compared: the motion is chaotic, its means are.",
+                                    capitalised(said.limits.words.words)),
+                        {Clause{.form = "open", .measure = name, .status = "chaotic"}}});
         continue;
       }
       if (first.kind.empty()) {

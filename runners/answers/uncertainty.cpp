@@ -215,11 +215,23 @@ Table uncertainty_table(const Compared& study) {
   return table;
 }
 
-std::optional<Sentence> uncertainty_sentence(const Compared& study, const MeasureLimits& limits) {
+namespace {
+
+std::optional<Sentence> sentence_of_stop(const Compared& study, const MeasureLimits& limits, bool with_margin) {
   const auto named = measure_of_stop(limits.words.measure);
   const std::optional<Spread> spread = named ? spread_of(limits) : std::nullopt;
-  if (!spread || spread->methods < 2 || !spread->margin()) return std::nullopt;
+  if (!spread || spread->methods < 2 || spread->margin().has_value() != with_margin) return std::nullopt;
   return interval_sentence(study, limits, signed_spread(*spread, named->first));
+}
+
+}  // namespace
+
+std::optional<Sentence> uncertainty_sentence(const Compared& study, const MeasureLimits& limits) {
+  return sentence_of_stop(study, limits, true);
+}
+
+std::optional<Sentence> values_sentence(const Compared& study, const MeasureLimits& limits) {
+  return sentence_of_stop(study, limits, false);
 }
 
 }  // namespace ricochet::answers

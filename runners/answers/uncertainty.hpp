@@ -23,4 +23,7 @@ MeasureWords prefixed(MeasureWords words, double scale);
 /// and sampling leave open. Nothing for measures of whole cases, a single method, or a single step.
 std::optional<Sentence> uncertainty_sentence(const Compared& study, const MeasureLimits& limits);
 
+/// The sentence of that row where the interval is blank: the values, and that what the step leaves open is not known.
+std::optional<Sentence> values_sentence(const Compared& study, const MeasureLimits& limits);
+
 }  // namespace ricochet::answers

@@ -205,7 +205,7 @@ bool describe_word(const std::string& name, std::ostream& out) {
       print(measure, out);
     }
   // Those of a stop, "impulse[bar-a]", are as many as there are names.
-  if (const MeasureInfo* of_stop = name.ends_with("]") ? measure_info(name) : nullptr) {
+  if (const MeasureInfo* of_stop = measure_info(name.ends_with("]") ? name : name + "[NAME]")) {
     next();
     print(*of_stop, out);
   }

@@ -146,9 +146,7 @@ StructureSpec read_bodies(const Json& scene, const std::function<StructureSpec(c
     total += meshes.value(name, 0);
   }
   bodies->elements = std::max(1, total);
-  SceneSpec joined;
-  joined.structure = AssembledSpec{.structure = nullptr, .bodies = bodies};
-  return on_mesh(std::move(joined), bodies->elements).structure;
+  return AssembledSpec{.structure = nullptr, .bodies = bodies};
 }
 
 Json without_body(Json scene) {

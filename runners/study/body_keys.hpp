@@ -41,8 +41,8 @@ const Json& structures_of(const Json& scene);
 /// Whether some structure of a scene has a type out of these.
 bool has_structure(const Json& scene, const std::vector<std::string>& types);
 
-/// The structures of a checked scene that has bodies, joined on the mesh that scene["elements"] says, else on one
-/// element each. One body is a structure like any other.
+/// The structures of a checked scene that has bodies, which on_mesh() joins; scene["elements"] says the elements of
+/// each. One body is a structure like any other.
 StructureSpec read_bodies(const Json& scene, const std::function<StructureSpec(const Json&)>& read);
 
 /// The scene of one body without the name of that body at its places; else as it is.

@@ -8,6 +8,7 @@
 #include "runners/json/json_text.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/study/check_place.hpp"
+#include "runners/study/observed_keys.hpp"
 
 namespace ricochet {
 namespace {
@@ -99,14 +100,6 @@ Json check_places(const Json& value, const std::string& pointer) {
   return result;
 }
 
-// "impulse[bar-a]": a word of these, and a name in brackets.
-bool names_one_of(const Field& field, const Json& value) {
-  const std::string text = value.is_string() ? value.get<std::string>() : "";
-  return text.ends_with("]") && std::any_of(field.of_each.begin(), field.of_each.end(), [&](const std::string& word) {
-           return text.starts_with(word + "[") && text.size() > word.size() + 2;
-         });
-}
-
 Json check_words(const Field& field, const Json& value, const std::string& pointer) {
   if (field.nullable && value.is_null()) return value;
   Json result = Json::array();
@@ -119,7 +112,7 @@ Json check_words(const Field& field, const Json& value, const std::string& point
     const std::string here = list ? pointer_to(pointer, i) : pointer;
     const Json& one = list ? value[i] : value;
     if (names && !one.is_string()) throw InputError(here, "expected a name, found " + quote(one));
-    result.push_back(names || names_one_of(field, one) ? one : check_scalar(field, one, here));
+    result.push_back(names || is_of_each(field, one, here) ? one : check_scalar(field, one, here));
     for (std::size_t j = 0; j < i; ++j)
       if (result[j] == result[i]) throw InputError(here, "repeats " + quote(result[i]));
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "runners/json/json_text.hpp"
+
 namespace ricochet {
 
 using namespace keys;
@@ -95,6 +97,21 @@ std::optional<TangentSpec> read_tangent(const Json& stop) {
   if (given.is_null()) return std::nullopt;
   return TangentSpec{given.value("slope_radius", 0.0), given.value("direction", std::vector<double>()),
                      given.value("component", "")};
+}
+
+bool is_of_each(const Field& field, const Json& value, const std::string& pointer) {
+  if (field.of_each.empty() || !value.is_string()) return false;
+  const std::string text = value.get<std::string>(), word = text.substr(0, text.find('['));
+  const auto in = [&](const std::vector<std::string>& words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  const bool named = text.ends_with("]") && text.size() > word.size() + 2;
+  if (named && in(field.of_each)) return true;
+  if (word != text && !in(field.of_each))
+    throw InputError(pointer, "no measure \"" + shortened(word) + "\" of a stop" + did_you_mean(word, field.of_each));
+  if (in(field.of_each) && (word != text || !in(field.spec.words)))
+    throw InputError(pointer, quote(value) + " says no name; expected " + word + "[NAME]");
+  return false;
 }
 
 }  // namespace ricochet

@@ -17,6 +17,9 @@ std::vector<Field> observed_of_stops();
 std::vector<Field> parameters_of_stops();
 
 Place read_place(const Json& json);
+/// Whether a value is a word of `of_each` and a name in brackets: "impulse[bar-a]". Throws InputError for one that is
+/// nearly so: another word in its place, or no name.
+bool is_of_each(const Field& field, const Json& value, const std::string& pointer);
 std::vector<PointSpec> read_points(const Json& scene);
 std::optional<TangentSpec> read_tangent(const Json& stop);
 StopParameters read_own(const Json& stop);

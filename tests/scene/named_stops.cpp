@@ -97,6 +97,8 @@ TEST_CASE("a scene of given matrices has places, no x") {
         "/scene/structure/tip: missing; without stops and loads expected the place whose displacement is shown");
   CHECK(fault(with_stops(scene, {{"c", at_node("N0"), at_node("N0", "rz"), {}, 0.1}}), 1) ==
         "/scene/stops/0/at: stop c joins two held dofs: nothing there can move");
+  CHECK(fault(with_stops(scene, {{"c", at_node("N4"), at_node("N4"), {}, 0.1}}), 1) ==
+        "/scene/stops/0/at: stop c joins a place to itself; expected two places, or no `to`");
   SceneSpec other = with_stops(scene, {end});
   other.stops.upper = Formula(0.1);
   CHECK(fault(other, 1) ==

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <ricochet/measure/contact/shocks.hpp>
 
 namespace ricochet {
@@ -19,7 +20,14 @@ void ShockTotals::add(const ShockTotals& other) {
 }
 
 ShockRecorder::ShockRecorder(int points, const ShockRule& rule, const WindowParts& window, std::size_t most)
-    : rule_(rule), window_(window), most_(most), sides_(2 * static_cast<std::size_t>(points)) {}
+    : rule_(rule),
+      window_(window),
+      most_(most),
+      sides_(2 * static_cast<std::size_t>(points)),
+      peaks_(static_cast<std::size_t>(points),
+             CountedValues(most / static_cast<std::size_t>(std::max(points, 1)) + 1)) {
+  for (Side& side : sides_) side.parts.resize(static_cast<std::size_t>(window.count));
+}
 
 void ShockRecorder::instant(const ContactInstant& one) {
   Side& side = sides_[place(one.point, one.side)];
@@ -53,7 +61,12 @@ void ShockRecorder::close(Side& side, bool open_end) {
   side.now.open_end = open_end;
   side.going = false;
   ++count_;
-  if (side.now.begin >= window_.from && side.now.begin <= window_.to) side.totals.add(side.now);
+  if (side.now.begin >= window_.from && side.now.begin <= window_.to) {
+    side.totals.add(side.now);
+    const int part = static_cast<int>((side.now.begin - window_.from) / window_.length());
+    side.parts[static_cast<std::size_t>(std::min(part, window_.count - 1))].add(side.now);
+    peaks_[static_cast<std::size_t>(side.now.point)].add(side.now.peak);
+  }
   if (shocks_.size() < most_) shocks_.push_back(side.now);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <ricochet/measure/contact/contact_instants.hpp>
+#include <ricochet/measure/statistics/counted_values.hpp>
 #include <ricochet/measure/statistics/running_moments.hpp>
 #include <vector>
 
@@ -35,7 +36,8 @@ struct ShockTotals {
   void add(const ShockTotals& other);
 };
 
-/// Finds shocks in the instants that an ImpactRecorder tells of. Beyond `most` of them the list ends, totals go on.
+/// Finds shocks in the instants that an ImpactRecorder tells of. Beyond `most` of them the list ends, totals and peaks
+/// go on.
 class ShockRecorder final : public ContactListener {
  public:
   static constexpr std::size_t most_shocks = 100000;
@@ -51,6 +53,12 @@ class ShockRecorder final : public ContactListener {
   const std::vector<Shock>& shocks() const { return shocks_; }
   long long count() const { return count_; }
   const ShockTotals& totals(int point, StopSide side) const { return sides_[place(point, side)].totals; }
+  /// The same of those that begin in one part of the window.
+  const ShockTotals& totals(int point, StopSide side, int part) const {
+    return sides_[place(point, side)].parts[static_cast<std::size_t>(part)];
+  }
+  /// Largest forces of the shocks that totals are of, both sides, N.
+  const CountedValues& peaks(int point) const { return peaks_[static_cast<std::size_t>(point)]; }
 
  private:
   struct Side {
@@ -60,6 +68,7 @@ class ShockRecorder final : public ContactListener {
     double last = 0;     // end of the last instant above the force
     double below = 0;    // Σ I of instants below it since
     ShockTotals totals;
+    std::vector<ShockTotals> parts;
   };
   static std::size_t place(int point, StopSide side) {
     return 2 * static_cast<std::size_t>(point) + static_cast<std::size_t>(side);
@@ -70,6 +79,7 @@ class ShockRecorder final : public ContactListener {
   WindowParts window_;
   std::size_t most_;
   std::vector<Side> sides_;
+  std::vector<CountedValues> peaks_;  // of each point
   std::vector<Shock> shocks_;
   long long count_ = 0;
 };

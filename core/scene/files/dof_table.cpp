@@ -6,6 +6,7 @@
 #include <ricochet/scene/files/csv_file.hpp>
 #include <ricochet/scene/files/dof_table.hpp>
 #include <ricochet/scene/files/text_file.hpp>
+#include <set>
 
 namespace ricochet {
 namespace {
@@ -16,6 +17,16 @@ bool is_name(std::string_view text) {
   return !text.empty() && text.size() <= longest && std::all_of(text.begin(), text.end(), [](unsigned char c) {
     return c > ' ' && c != ',' && c != '"' && c != '/';
   });
+}
+
+// The least number from 1 that no row has.
+long long first_missing(const CsvFile& file, std::size_t dof) {
+  std::set<long long> known;
+  for (const CsvFile::Row& row : file.rows)
+    if (const auto number = whole_number(row.cells[dof])) known.insert(*number);
+  long long missing = 1;
+  while (known.count(missing) != 0) ++missing;
+  return missing;
 }
 
 }  // namespace
@@ -36,7 +47,8 @@ DofTable read_dof_table(std::string_view content, const std::string& name) {
     if (!number || *number < 1)
       file.fail(row, fmt::format("\"{}\" for dof; expected a whole number from 1", shortened(row.cells[dof])));
     if (static_cast<std::size_t>(*number) > count)
-      file.fail(row, fmt::format("dof {} of a table of {}; expected 1 to {}, each once", *number, count, count));
+      file.fail(row, fmt::format("dof {} of a table of {}; expected 1 to {}, each once: {} is missing", *number, count,
+                                 count, first_missing(file, dof)));
     DofName& one = table.dofs[static_cast<std::size_t>(*number) - 1];
     if (one.dof != 0) file.fail(row, fmt::format("dof {} stands a second time", *number));
     one.dof = static_cast<int>(*number);

@@ -54,7 +54,7 @@ void SpectrumTaker::see(const Marcher& marcher) {
 
 void SpectrumTaker::instant(const ContactInstant& one) {
   if (!of_.force || one.point != stop_) return;
-  const double at = (one.time - window_.from) * rate_;
+  const double at = (one.time - window_.from) * rate_ + rounding;
   if (at < 0 || at >= static_cast<double>(last_)) return;
   flush(one.time - (static_cast<double>(bins_.size()) - 2) / rate_);
   const auto bin = static_cast<std::size_t>(std::max(static_cast<long long>(at), next_)) % bins_.size();

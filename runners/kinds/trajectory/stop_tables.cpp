@@ -47,12 +47,13 @@ NumberTable spectra_head() {
 
 Table histogram_head() {
   return {"histogram",
-          "One class of the peak forces of the shocks at one stop of one case.",
+          "One class of the peak forces of the shocks at one stop of one case. Of more than 100000 different peaks "
+          "neighbours are counted as one.",
           {stop_or_point,
            {"from", "N", "The class begins above it; the first one at 0."},
            {"to", "N", "Its end."},
            {"shocks", "1", "Shocks whose peak force is in it, both sides."},
-           {"share", "1", "Their share of the shocks listed at this stop."}},
+           {"share", "1", "Their share of the shocks at this stop."}},
           {}};
 }
 
@@ -83,7 +84,7 @@ void add_shocks(CaseRecord& record, const ShockRecorder& recorder, const std::ve
                shock.peak, shock.impulse, shock.duration, shock.speed_in, static_cast<double>(shock.rebounds),
                shock.open_end ? 1.0 : 0.0});
   if (recorder.count() > static_cast<long long>(table.rows()))
-    record.notes.push_back(fmt::format("shocks.csv and histogram.csv have {} of {} shocks; measures have all of them",
+    record.notes.push_back(fmt::format("shocks.csv has {} of {} shocks; histogram.csv and measures have all of them",
                                        table.rows(), recorder.count()));
   record.numbers.push_back(std::move(table));
 }
@@ -92,22 +93,19 @@ void add_shocks(CaseRecord& record, const ShockRecorder& recorder, const std::ve
 void add_histogram(CaseRecord& record, const OutputWatch& outputs, const std::vector<std::string>& names) {
   Table table = histogram_head();
   const int classes = outputs.asked().classes;
-  const WindowParts& window = outputs.asked().window;
   for (std::size_t point = 0; point < names.size(); ++point) {
-    std::vector<double> peaks;
-    for (const Shock& shock : outputs.shocks()->shocks())
-      if (shock.point == static_cast<int>(point) && shock.begin >= window.from && shock.begin <= window.to)
-        peaks.push_back(shock.peak);
-    if (peaks.empty()) continue;
-    const double largest = *std::max_element(peaks.begin(), peaks.end());
+    const CountedValues& peaks = outputs.shocks()->peaks(static_cast<int>(point));
+    if (peaks.count() == 0) continue;
+    double largest = 0;
+    for (const auto& [peak, times] : peaks.counted()) largest = std::max(largest, peak);
     std::vector<long long> counts(static_cast<std::size_t>(classes), 0);
-    for (const double peak : peaks)
-      ++counts[static_cast<std::size_t>(std::clamp(static_cast<int>(std::ceil(peak / largest * classes)), 1, classes) -
-                                        1)];
+    for (const auto& [peak, times] : peaks.counted())
+      counts[static_cast<std::size_t>(std::clamp(static_cast<int>(std::ceil(peak / largest * classes)), 1, classes) -
+                                      1)] += times;
     for (int i = 0; i < classes; ++i) {
       const long long count = counts[static_cast<std::size_t>(i)];
       table.rows.push_back({names[point], largest * i / classes, largest * (i + 1) / classes, count,
-                            static_cast<double>(count) / static_cast<double>(peaks.size())});
+                            static_cast<double>(count) / static_cast<double>(peaks.count())});
     }
   }
   record.tables.push_back(std::move(table));
@@ -121,6 +119,10 @@ StopReading part_reading(const StopWatches& watches, int point, int part) {
   reading.displacement = statistics.displacement(point, part);
   reading.pushed = statistics.pushed(point, StopSide::lower, part);
   reading.pushed->add(statistics.pushed(point, StopSide::upper, part));
+  if (const ShockRecorder* shocks = watches.outputs->shocks()) {
+    reading.shocks = shocks->totals(point, StopSide::lower, part);
+    reading.shocks->add(shocks->totals(point, StopSide::upper, part));
+  }
   if (watches.tangents && watches.tangents->has(point))
     reading.wear_power = watches.tangents->work(point, part) / reading.window;
   return reading;
@@ -149,6 +151,7 @@ std::vector<double> ratio_series(const std::vector<double>& a, const std::vector
 void put_halves(CaseRecord& record, const StopWatches& watches, int point, const std::string& name) {
   const StopStatistics& statistics = *watches.outputs->statistics();
   std::vector<double> displacement, squares, force, force_squares, rate, share, wear;
+  std::vector<double> shocks, shock_rate, rebounds, lasted, hit, peaks;
   const double length = statistics.window().length();
   for (int part = 0; part < statistics.window().count; ++part) {
     const StopReading reading = part_reading(watches, point, part);
@@ -159,6 +162,13 @@ void put_halves(CaseRecord& record, const StopWatches& watches, int point, const
     rate.push_back(static_cast<double>(reading.pushed->impacts) / length);
     share.push_back(reading.pushed->contact_time / length);
     if (reading.wear_power) wear.push_back(*reading.wear_power);
+    if (!reading.shocks) continue;
+    shocks.push_back(static_cast<double>(reading.shocks->shocks));
+    shock_rate.push_back(shocks.back() / length);
+    rebounds.push_back(static_cast<double>(reading.shocks->rebounds));
+    lasted.push_back(reading.shocks->lasted);
+    hit.push_back(reading.shocks->pushed);
+    peaks.push_back(shocks.back() * reading.shocks->peaks.mean);
   }
   const std::string of = "[" + name + "]";
   put_half(record, "window_displacement_mean" + of, displacement, false);
@@ -169,6 +179,10 @@ void put_halves(CaseRecord& record, const StopWatches& watches, int point, const
   put_half(record, "window_contact_share" + of, share, false);
   put_half(record, "window_contact_rms_force" + of, ratio_series(force_squares, share), true);
   put_half(record, "window_contact_force" + of, ratio_series(force, share), false);
+  put_half(record, "shock_rate" + of, shock_rate, false);
+  put_half(record, "shock_time" + of, ratio_series(lasted, shocks), false);
+  put_half(record, "rebound_time" + of, ratio_series(hit, rebounds), false);
+  put_half(record, "shock_force_mean" + of, ratio_series(peaks, shocks), false);
   put_half(record, "wear_power" + of, wear, false);
 }
 
@@ -179,6 +193,7 @@ void add_parts(CaseRecord& record, const StopWatches& watches, const SemiDiscret
   // Columns that one stop has, all have.
   StopReading known;
   known.pushed.emplace();
+  if (watches.outputs->shocks()) known.shocks.emplace();
   const int stops = static_cast<int>(names.size());
   for (int point = 0; watches.tangents && point < stops; ++point)
     if (watches.tangents->has(point)) known.wear_power = 0;

@@ -99,6 +99,37 @@ TEST_CASE("beyond the list totals go on, and are those of shocks that begin in t
   CHECK(totals.peaks.deviation() == Approx(std::sqrt((25 + 1 + 49) / 3.0 - 169.0 / 9)).epsilon(1e-14));
   CHECK(totals.lasted == 3 * tick);
   CHECK(recorder.totals(0, StopSide::upper).shocks == 0);
+  CHECK(recorder.peaks(0).count() == 3);
+}
+
+TEST_CASE("classes of more peaks than are kept have all of them, to the peaks that count as one") {
+  constexpr int n = 20000, most = 1000, classes = 10;
+  CountedValues many(most), few(most);
+  for (int i = 0; i < n; ++i) {
+    many.add(1 + i * 7919LL % n);  // 1 … n, each once
+    few.add(1 + i % 7);
+  }
+  for (const CountedValues* one : {&many, &few}) {
+    CHECK(one->count() == n);
+    CHECK(one->counted().size() < 2 * most);
+  }
+  std::vector<long long> counts(classes, 0);
+  double largest = 0;
+  long long heaviest = 0;
+  for (const auto& [value, times] : many.counted()) {
+    counts[static_cast<std::size_t>(std::ceil(value / n * classes)) - 1] += times;
+    largest = std::max(largest, value);
+    heaviest = std::max(heaviest, times);
+  }
+  CHECK(largest == n);
+  CHECK(heaviest < 10 * n / most);
+  for (const long long count : counts) CHECK(std::abs(count - n / classes) < 2 * heaviest);
+  // Values that come again are counted exactly.
+  for (const int value : {1, 7}) {
+    long long found = 0;
+    for (const auto& [own, times] : few.counted()) found += own == value ? times : 0;
+    CHECK(found == n / 7 + (value <= n % 7 ? 1 : 0));
+  }
 }
 
 // A mass of 100 kg on 1e4 N/m comes back to a stop of 1e6 N/m with the speed with which it left: contact lasts half a

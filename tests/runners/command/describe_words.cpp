@@ -20,4 +20,7 @@ TEST_CASE("A measure of a stop is described by its name with that of the stop") 
   CHECK(describe_word("wear_power[bar-a]", out));
   CHECK_THAT(out.str(), Catch::Contains("bar-a") && Catch::Contains("W"));
   CHECK_FALSE(describe_word("energy_left[bar-a]", out));
+  std::ostringstream bare;
+  CHECK(describe_word("shock_rate", bare));
+  CHECK_THAT(bare.str(), Catch::StartsWith("shock_rate[NAME] (a measure of a case, in 1/s)"));
 }

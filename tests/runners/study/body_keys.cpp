@@ -68,6 +68,16 @@ TEST_CASE("numbers by body are those of each body, and a mesh is called by their
   CHECK(refusal(given) == "/mesh/modes: says no number for one of the bodies; expected one for each");
 }
 
+TEST_CASE("a body that one element cannot be is one of more elements") {
+  Json given = with_body_key("/mesh/elements", 4);
+  given["scene"]["bodies"]["rod"]["supports"] =
+      Json::parse(R"([{"name": "left", "x": 0, "type": "clamped"}, {"name": "right", "x": 1, "type": "clamped"}])");
+  given["scene"]["bodies"]["rod"]["length"] = 1;
+  CHECK(structure_of(parse(given).cases.front()).joined->all.front().dofs() == 6);
+  given["mesh"]["elements"] = 1;
+  CHECK_THAT(refusal(given), Catch::StartsWith("/scene/bodies/rod/supports: the supports hold every dof"));
+}
+
 TEST_CASE("one body is a structure like any other") {
   Json single = small_study(), body = small_study();
   body["scene"]["bodies"]["tube"] = body["scene"]["structure"];

@@ -107,7 +107,7 @@ TEST_CASE("a fault of a table of dofs has file, line, what was found and what wa
   CHECK(table_fault(table_header + "1,N1,uy,0,0,0,\n1,N2,uy,0,0,0,\n") ==
         "dofs.csv, line 3: dof 1 stands a second time");
   CHECK(table_fault(table_header + "1,N1,uy,0,0,0,\n3,N2,uy,0,0,0,\n") ==
-        "dofs.csv, line 3: dof 3 of a table of 2; expected 1 to 2, each once");
+        "dofs.csv, line 3: dof 3 of a table of 2; expected 1 to 2, each once: 2 is missing");
   CHECK(table_fault(table_header + "1,N1,uy,0,0,0,\n2,N1,uy,0,0,0,\n") == "dofs.csv, line 3: N1 uy is dof 1 and dof 2");
   CHECK(table_fault(table_header + "1,N1,uy,0,0,0,\n2,N1,rz,1,0,0,\n") ==
         "dofs.csv, line 3: node N1 has two places; expected the same x, y, z in its rows");

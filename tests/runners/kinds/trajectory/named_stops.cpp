@@ -96,7 +96,11 @@ TEST_CASE("an observed measure of a stop that is not there is refused with the n
   CHECK(refusal("impulse[plate]") == "none");
   CHECK_THAT(refusal("impulse[plato]"),
              Catch::Contains("/observe/0: no stop \"plato\"") && Catch::Contains("did you mean \"plate\"?"));
-  CHECK_THAT(refusal("energy_left[plate]"), Catch::Contains("/observe"));
+  CHECK_THAT(refusal("energy_left[plate]"), Catch::Contains("/observe: no measure \"energy_left\" of a stop"));
+  CHECK_THAT(refusal("rms_forces[plate]"), Catch::Contains("did you mean \"rms_force\"?"));
+  CHECK_THAT(refusal("rms_force"), Catch::Contains("expected rms_force[NAME]"));
+  CHECK_THAT(refusal("impulse[]"), Catch::Contains("expected impulse[NAME]"));
+  CHECK(refusal("impulse") == "none");
   study["scene"]["stops"] = {{"lower", -0.01}, {"at", "tip"}};
   CHECK_THAT(refusal("impulse[plate]"), Catch::Contains("the scene has no stops with names"));
 }

@@ -132,6 +132,55 @@ TEST_CASE("of a single step no interval is told") {
   CHECK(told(table, "sentence").text() == "Rms force at bar: 10.0 to 11.0 N; what the step leaves open is not known.");
 }
 
+TEST_CASE("seeds at a single step say the values first, then what moves them") {
+  StudyResults results;
+  results.kind = "trajectory";
+  results.columns = {"seed", "step"};
+  for (const double seed : {1, 2, 3, 4}) {
+    CaseRecord& record = results.cases.emplace_back();
+    record.id = std::to_string(seed);
+    record.status = "done";
+    record.axes = {{"seed", seed}, {"step", 1e-3}};
+    record.measures = {{"impulse", 3.0}, {"rms_force[bar]", 10 + seed}};
+  }
+  const answers::Answer answer = answers::measure_answer(answers::Compared(results), {"rms_force[bar]"}, false);
+  REQUIRE_FALSE(answer.sentences.empty());
+  CHECK(answer.sentences.front().text == "Rms force at bar: 11 to 14 N; what the step leaves open is not known.");
+}
+
+TEST_CASE("what only the sampling leaves open is said of the sampling") {
+  StudyResults results = two_forces();
+  for (std::size_t i : {2, 3}) {
+    results.cases[i].measures.back().second = 10.1;
+    results.cases[i].measures.emplace_back("confidence.rms_force[bar]", 5.0);
+  }
+  const answers::Answer answer = answers::measure_answer(answers::Compared(results), {"rms_force[bar]"}, false);
+  REQUIRE_FALSE(answer.sentences.empty());
+  CHECK_THAT(answer.sentences.front().text, Catch::Contains("sampling 5"));
+}
+
+TEST_CASE("where a window has parts, a stop's total is told by its mean over them, and an extreme by its values") {
+  StudyResults results = two_forces();
+  results.study["window"] = {{"from", 1}, {"to", 3}, {"parts", 10}};
+  for (CaseRecord& record : results.cases) {
+    const double value = record.measures.back().second;
+    record.measures.emplace_back("window_contact_rms_force[bar]", value - 0.5);
+    record.measures.emplace_back("confidence.window_contact_rms_force[bar]", 0.3);
+    record.measures.emplace_back("peak_force[bar]", 3 * value);
+    record.measures.emplace_back("energy_left", 0.5);
+    record.measures.emplace_back("window_force", value);
+    record.measures.emplace_back("confidence.window_force", 0.3);
+  }
+  const auto said = [&](const char* measure) {
+    const answers::Answer answer = answers::measure_answer(answers::Compared(results), {measure}, false);
+    return answer.sentences.empty() ? "" : answer.sentences.front().text;
+  };
+  CHECK_THAT(said("rms_force[bar]"), Catch::StartsWith("Rms force in contact at bar: 9.2 to 10.8 N; "));
+  CHECK_THAT(said("peak_force[bar]"), Catch::StartsWith("Peak force at bar: "));
+  CHECK_THAT(said("impulse"), Catch::Contains("orce on the stops"));
+  CHECK_THAT(said("energy_left"), Catch::Contains("is not compared: the motion is chaotic"));
+}
+
 TEST_CASE("measures of a whole case, and studies without stops with names, have no row") {
   StudyResults results = two_forces();
   for (CaseRecord& record : results.cases) record.measures.pop_back();
