@@ -53,8 +53,8 @@ std::string spring_mark(double x, double y, bool spring, bool rotation) {
   std::string marks;
   if (spring) {
     std::string zigzag = fmt::format("M{:.1f} {:.1f}v4", x, y);
-    for (int k = 0; k < 4; ++k) zigzag += "l6 2.5l-12 5l6 2.5";
-    marks += path(zigzag + "v4", "spring") + ground_mark(x, y + 48);
+    for (int k = 0; k < 3; ++k) zigzag += "l6 1.5l-12 3l6 1.5";
+    marks += path(zigzag + "v4", "spring") + ground_mark(x, y + 26);
   }
   if (rotation) marks += path(fmt::format("M{:.1f} {:.1f}a11 11 0 1 1 14 6", x - 11, y - 3), "spring");
   return marks;
@@ -95,7 +95,7 @@ HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& fra
     out.svg += mark_of(support, x, frame.rest, side);
     const bool spring = number_of(support, "stiffness") > 0;
     if (supports.size() <= most_named)
-      out.svg += spring     ? label(x + 12, frame.rest + 34, support.value("name", ""), "start", 1)
+      out.svg += spring     ? label(x + 14, frame.rest + 22, support.value("name", ""), "start", 1)
                  : side < 0 ? label(x + 4, frame.rest + 44, support.value("name", ""), "start", 1)
                             : label(x, frame.rest + 44, support.value("name", ""), "middle", 1);
     places.push_back(place);
@@ -116,10 +116,9 @@ HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& fra
   if (!out.measured) return out;
   for (std::size_t i = 0; i + 1 < places.size(); ++i) {
     const double from = x_of(places[i]), to = x_of(places[i + 1]);
-    out.spans +=
-        line(to, frame.measure - 5, to, frame.measure + 5, "measure") +
-        label((from + to) / 2, frame.measure + 12, number_text(places[i + 1] - places[i], shown_digits) + " m",
-              "middle", 1);
+    out.spans += line(to, frame.measure - 5, to, frame.measure + 5, "measure") +
+                 label((from + to) / 2, frame.measure + 12, number_text(places[i + 1] - places[i], shown_digits) + " m",
+                       "middle", 1);
   }
   return out;
 }

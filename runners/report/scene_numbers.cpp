@@ -50,14 +50,15 @@ std::vector<std::string> load_words(const SceneValues& scene) {
     if (!term.is_object()) return {scene.text("/scene/load", "")};
     if (term.contains("force")) {
       const auto place = term.contains("at") ? term["at"] : nlohmann::ordered_json();
-      const std::string where = place.is_number()                          ? "x = " + place.dump() + " m"
-                                : place.is_object() && place.contains("x") ? "x = " + place["x"].dump() + " m"
-                                : place.is_object()                        ? place_words(place)
-                                                                           : "";
+      const std::string where = place.is_number()   ? "x = " + place.dump() + " m"
+                                : place.is_object() ? place_words(place)
+                                                    : "";
       words.push_back(fmt::format("F(t){} = {}", where.empty() ? "" : " at " + where, history_words(term["force"])));
     } else {
-      words.push_back(fmt::format("{} times {}", term.contains("shape") ? term["shape"].dump() : "f(x)",
-                                  term.contains("time") ? history_words(term["time"]) : "g(t)"));
+      const std::string body = term.value("body", "");
+      words.push_back(fmt::format("{} times {}{}", term.contains("shape") ? history_words(term["shape"]) : "f(x)",
+                                  term.contains("time") ? history_words(term["time"]) : "g(t)",
+                                  body.empty() ? "" : " along " + body));
     }
   }
   return words;

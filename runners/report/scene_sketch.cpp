@@ -17,8 +17,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Pixels of the drawing: where a structure begins, how long it is, and how far stops may lie off.
-constexpr double sketch_width = 640, sketch_height = 184, sketch_left = 76, sketch_span = 480, nearest_gap = 9,
-                 widest_gap = 44, tallest_nodes = 230, least_span = 36, row_half = 62;
+constexpr double sketch_width = 640, sketch_height = 184, sketch_left = 76, sketch_span = 480, together_span = 420,
+                 nearest_gap = 9, widest_gap = 44, tallest_nodes = 230, least_span = 36, points_span = 140,
+                 row_half = 62;
 constexpr std::size_t most_labelled = 12, most_unnamed = 4;
 
 /// Pixels between rest and a stop: gaps are to scale among each other, none so small that it does not show.
@@ -99,7 +100,7 @@ class SceneDrawing {
       layouts_.push_back(layout);
       sizes_.push_back(piece_size(body, layout));
     }
-    stops_ = scene_.stops(sizes_.front().length > 0 ? sizes_.front().length : 1);
+    stops_ = scene_.stops(scene_.number("/scene/structure/length").value_or(1));
   }
 
   std::string svg(const std::string& said) {
@@ -113,9 +114,8 @@ class SceneDrawing {
     for (std::size_t i = 0; i < stops_.size(); ++i) draw_stop(i);
     for (std::size_t k = 0; k < loads_.forces.size(); ++k) draw_force(k);
     const auto [from, to] = label_.reach(0, height_);
-    return fmt::format(
-        "<svg class=\"sketch\" viewBox=\"0 {:.0f} {} {:.0f}\" role=\"img\" aria-label=\"{}\">{}</svg>\n", from,
-        sketch_width, to - from, escape(said), strokes_);
+    return fmt::format("<svg class=\"sketch\" viewBox=\"0 {:.0f} {} {:.0f}\" role=\"img\" aria-label=\"{}\">{}</svg>\n",
+                       from, sketch_width, to - from, escape(said), strokes_);
   }
 
  private:
@@ -154,8 +154,8 @@ class SceneDrawing {
     frame.left = margin;
     frame.span = sketch_width - 2 * margin;
     if (!(size.length > 0 || size.tall > 0)) return {frame};
-    frame.scale = std::min(size.length > 0 ? frame.span / size.length : 1e300,
-                           size.tall > 0 ? tallest_nodes / size.tall : 1e300);
+    frame.scale =
+        std::min(size.length > 0 ? frame.span / size.length : 1e300, size.tall > 0 ? tallest_nodes / size.tall : 1e300);
     frame.left += (frame.span - frame.scale * size.length) / 2;
     frame.span = frame.scale * size.length;
     height_ = 2 * row_half + std::max(60.0, frame.scale * size.tall);
@@ -170,7 +170,8 @@ class SceneDrawing {
     if (const auto x = number_at(place, "x")) return *x;
     const auto node = number_at(drawn, key);
     const Json* layout = layouts_[body];
-    if (node && *node >= 0 && layout && layout->contains("x")) return layout->at("x").at(static_cast<std::size_t>(*node));
+    if (node && *node >= 0 && layout && layout->contains("x"))
+      return layout->at("x").at(static_cast<std::size_t>(*node));
     return sizes_[body].first + sizes_[body].length / 2;
   }
   Json drawn_stop(std::size_t i) const {
@@ -186,8 +187,8 @@ class SceneDrawing {
       const std::size_t at = body_of(stop.at), to = stop.to.is_object() ? body_of(stop.to) : at;
       if (at == to || std::max(at, to) >= bodies_.size()) continue;
       const Json drawn = drawn_stop(i);
-      meetings.push_back({at, to, x_of(stop.at, drawn, "at", at), x_of(stop.to, drawn, "to", to),
-                          stop.upper || !stop.lower});
+      meetings.push_back(
+          {at, to, x_of(stop.at, drawn, "at", at), x_of(stop.to, drawn, "to", to), stop.upper || !stop.lower});
     }
     const std::vector<BodyPlace> places = body_places(shapes, meetings);
     const bool columns = all_along(shapes);
@@ -199,7 +200,7 @@ class SceneDrawing {
       right = std::max(right, sizes_[b].first + places[b].shift + sizes_[b].length);
       tallest = std::max(tallest, sizes_[b].tall);
     }
-    double scale = right > left ? sketch_span / (right - left) : 1;
+    double scale = right > left ? together_span / (right - left) : 1;
     if (tallest > 0) scale = std::min(scale, tallest_nodes / tallest);
     std::vector<double> half(static_cast<std::size_t>(rows), row_half), middle = half;
     for (std::size_t b = 0; b < sizes_.size(); ++b) {
@@ -226,11 +227,11 @@ class SceneDrawing {
       frame.loaded = loads_.on(frame.name);
       frame.forward = !away;
       const double along = sizes_[b].length * scale, from = sizes_[b].first + places[b].shift - left;
-      frame.span = std::max(least_span, along);
-      frame.left = sketch_left + (sketch_span - scale * (right - left)) / 2 + from * scale - (frame.span - along) / 2;
+      frame.span = std::max(layouts_[b] && along == 0 ? points_span : least_span, along);
+      frame.left = sketch_left + (together_span - scale * (right - left)) / 2 + from * scale - (frame.span - along) / 2;
       frame.rest = middle[row];
       if (columns) {
-        constexpr double apart = 50, room = 560;
+        constexpr double apart = 60, room = 560;
         frame.span = (room - apart * (rows - 1)) / rows;
         frame.left = 40 + static_cast<double>(row) * (frame.span + apart) + (away ? frame.span : 0);
         frame.axis = {away ? -1.0 : 1.0, 0};
@@ -267,8 +268,8 @@ class SceneDrawing {
     const std::optional<Spot> at = spot_of(stop.at, drawn, "at"), to = spot_of(stop.to, drawn, "to");
     if (!at) return;
     const Gaps gaps(stops_);
-    const bool named = stop.name.empty() ? stops_.size() <= most_unnamed || i + 1 == stops_.size()
-                                         : stops_.size() <= most_labelled;
+    const bool named =
+        stop.name.empty() ? stops_.size() <= most_unnamed || i + 1 == stops_.size() : stops_.size() <= most_labelled;
     std::string name = stop.name.empty() || !named ? "" : stop.name + " ";
     if (to) strokes_ += circle(to->x, to->y, 4, "stop");
     const auto join = [&](double x, double y) {  // to the other place of the stop, round what lies between
@@ -305,7 +306,9 @@ class SceneDrawing {
       strokes_ += face(x, y, side * dx, side * dy);
       join(x + 6 * side * dx, y + 6 * side * dy);
       if (!named) continue;
-      strokes_ += to ? label_(x + 16, y - 4, name + metres(*value), "start", side * dy > 0 ? 1 : -1)
+      const bool across = std::abs(dx) > std::abs(dy);
+      strokes_ += to ? label_(across ? x : x + 16, across ? y - 18 : y - 4, name + metres(*value),
+                              across ? "middle" : "start", side * dy > 0 ? 1 : -1)
                      : beside(x, y, side * dx, side * dy, name + metres(*value));
       name.clear();
     }
@@ -317,7 +320,8 @@ class SceneDrawing {
                            : Json();
     const std::optional<Spot> at = spot_of(loads_.forces[k], drawn, "at");
     if (!at) return;
-    const double size = std::hypot(at->dx, at->dy), dx = size > 0 ? at->dx / size : 0, dy = size > 0 ? at->dy / size : 0;
+    const double size = std::hypot(at->dx, at->dy), dx = size > 0 ? at->dx / size : 0,
+                 dy = size > 0 ? at->dy / size : 0;
     const std::string here = fmt::format("{:.1f} {:.1f} {:.2f} {:.2f}", at->x, at->y, dx, dy);
     if (std::find(pushed_.begin(), pushed_.end(), here) != pushed_.end()) return;
     pushed_.push_back(here);
@@ -327,7 +331,8 @@ class SceneDrawing {
       return;
     }
     const double x = at->x - (far + at->back) * dx, y = at->y - (far + at->back) * dy;
-    strokes_ += arrow(x, y, at->x - (near + at->back) * dx, at->y - (near + at->back) * dy) + beside(x, y, -dx, -dy, "F(t)");
+    strokes_ +=
+        arrow(x, y, at->x - (near + at->back) * dx, at->y - (near + at->back) * dy) + beside(x, y, -dx, -dy, "F(t)");
   }
 
   SceneValues scene_;

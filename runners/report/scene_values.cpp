@@ -174,7 +174,8 @@ std::vector<SceneValues::Stop> SceneValues::stops(double length) const {
     for (const SceneJson& x : *where)
       if (x.is_number()) places.push_back(x.get<double>());
   } else if (word("/scene/stops/at") == "tip") {
-    places = {length};
+    // The tip of a bar is its end that is not held.
+    places = {word("/scene/structure/type") == "bar" && word("/scene/structure/fixed") != "left" ? 0 : length};
   } else {
     // At nodes: a few of them stand for all.
     const auto elements = static_cast<std::size_t>(std::max(1.0, number("/mesh/elements").value_or(most_stops)));

@@ -35,6 +35,7 @@ std::string measured(double from, double to, double y) {
 
 std::string name_and_length(const PieceFrame& frame, double length) {
   const bool longer = frame.span > 1.01 * frame.scale * length;
+  if (frame.name.empty()) return "";
   return length > 0 ? frame.name + ", " + metres(length) + (longer ? " (drawn longer)" : "") : frame.name;
 }
 
@@ -125,8 +126,7 @@ Piece oscillator(const SceneValues& scene, const PieceFrame& frame, bool met, La
   const double half = frame.alone ? 35 : 20, high = 44, low = axis.upright() ? high / 2 : 0,
                mass = frame.alone ? 254 : frame.span - half, coil = (mass - half - 20) / 8;
   std::string spring = fmt::format("M0 {:.1f}h20", low - high / 2), out;
-  for (int k = 0; k < 4; ++k)
-    spring += fmt::format("l{0:.2f} -9l{0:.2f} 9l{0:.2f} 9l{0:.2f} -9", coil / 2);
+  for (int k = 0; k < 4; ++k) spring += fmt::format("l{0:.2f} -9l{0:.2f} 9l{0:.2f} 9l{0:.2f} -9", coil / 2);
   const bool held = !scene.text("/scene/structure/stiffness", "").empty();
   if (held || frame.alone) out += wall(0, low - high, low, -1);
   if (!axis.upright()) out += line(0, low, frame.span, low, "hatch");
@@ -164,7 +164,7 @@ Piece bar(const SceneValues& scene, const PieceFrame& frame, const std::vector<J
     if (!axis.upright()) strokes += pin(along(place));
   out = axis.strokes(strokes);
   if (frame.loaded) {
-    const Spot from = axis.spot(frame.span / 2 - 25, top - 12), to = axis.spot(frame.span / 2 + 25, top - 12);
+    const Spot from = axis.spot(frame.span / 2 - 25, top - 8), to = axis.spot(frame.span / 2 + 25, top - 8);
     out += arrow(from.x, from.y, to.x, to.y) + label((from.x + to.x) / 2, (from.y + to.y) / 2 - 8, "f(x, t)");
   }
   if (frame.alone)
@@ -173,7 +173,9 @@ Piece bar(const SceneValues& scene, const PieceFrame& frame, const std::vector<J
     out += axis.text(frame.span / 2, 16, frame.name + ", " + metres(length), label, "start");
   else
     out += axis.text(frame.span / 2, -8, frame.name + ", " + metres(length), label);
-  return {out, [=](const Json& place) { return std::optional(Axis(frame).spot(along(place), axis.upright() ? 0 : pin_height)); }};
+  return {out, [=](const Json& place) {
+            return std::optional(Axis(frame).spot(along(place), axis.upright() ? 0 : pin_height));
+          }};
 }
 
 // Of matrices with places: nodes and what the stiffness joins.
@@ -192,8 +194,8 @@ Piece nodes(const Json& layout, const PieceFrame& frame, const PieceSize& size, 
   out = path(d, "structure mesh");
   for (const Json& node : layout.at("held")) {
     const Spot one = at(node);
-    out += fmt::format("<rect class=\"solid\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"8\" height=\"8\"/>", one.x - 4,
-                       one.y - 4);
+    out +=
+        fmt::format("<rect class=\"solid\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"8\" height=\"8\"/>", one.x - 4, one.y - 4);
   }
   if (frame.measure > 0) {
     const double low = frame.measure;
@@ -203,8 +205,7 @@ Piece nodes(const Json& layout, const PieceFrame& frame, const PieceSize& size, 
       out += measured(frame.left, frame.left + frame.span, low) +
              label(frame.left + frame.span / 2, low - 4, metres(size.length));
   }
-  out += label(frame.left + frame.span + 12, frame.rest + 4, frame.name.empty() ? "" : name_and_length(frame, size.length),
-               "start", 1);
+  out += label(frame.left + frame.span + 12, frame.rest + 4, name_and_length(frame, size.length), "start", 1);
   return {out, [=](const Json& place) -> std::optional<Spot> {
             const Json found = place.value("at", Json(-1)), direction = place.value("direction", Json());
             if (!found.is_number_integer() || found.get<int>() < 0) return std::nullopt;
@@ -237,7 +238,7 @@ Piece points(const Json& layout, const PieceFrame& frame, const std::vector<Json
   std::string out = line(frame.left, frame.rest, frame.left + frame.span, frame.rest, "measure");
   for (std::size_t k = 0; k < names.size(); ++k) {
     out += circle(px(k), frame.rest, 6, "body");
-    if (names.size() <= most_sketch_labels) out += label(px(k), frame.rest + 80, names[k], "middle", 1);
+    if (names.size() <= most_sketch_labels) out += label(px(k), frame.rest + 62, names[k], "middle", 1);
   }
   out += label(frame.left + frame.span + 12, frame.rest + 4, frame.name, "start", 1);
   return {names.empty() ? "" : out, [=](const Json& place) -> std::optional<Spot> {

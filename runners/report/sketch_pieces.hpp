@@ -28,11 +28,11 @@ struct PieceSize {
 /// Where it is drawn, pixels: where its x begins, how long it is, the height of its line, pixels per metre.
 struct PieceFrame {
   double left = 0, span = 0, rest = 0, scale = 1;
-  double measure = 0;                    ///< the height of its length, 0 for none
-  std::array<double, 2> axis = {1, 0};   ///< of what moves along its axis: where that points, from its wall
-  bool forward = true;                   ///< whether its displacements point there too
-  bool alone = true, loaded = false;     ///< the only structure of its scene; pushed along its length
-  std::string name = {}, shaken = {};    ///< of a body; the motion of what holds it
+  double measure = 0;                   ///< the height of its length, 0 for none
+  std::array<double, 2> axis = {1, 0};  ///< of what moves along its axis: where that points, from its wall
+  bool forward = true;                  ///< whether its displacements point there too
+  bool alone = true, loaded = false;    ///< the only structure of its scene; pushed along its length
+  std::string name = {}, shaken = {};   ///< of a body; the motion of what holds it
 };
 
 struct Piece {
@@ -40,7 +40,8 @@ struct Piece {
   std::function<std::optional<Spot>(const nlohmann::ordered_json& place)> spot;
 };
 
-/// `layout`: of its files, null for none. `used`: places of stops and loads, which points without a place are drawn for.
+/// `layout`: of its files, null for none. `used`: places of stops and loads, which points without a place are drawn
+/// for.
 PieceSize piece_size(const SceneValues& scene, const nlohmann::ordered_json* layout);
 /// Nothing for a structure that cannot be drawn.
 std::optional<Piece> draw_piece(const SceneValues& scene, const nlohmann::ordered_json* layout, const PieceFrame& frame,

@@ -38,9 +38,7 @@ struct DrawnBody {
   const AssembledStructure* structure = nullptr;
   std::optional<NodeLayout> layout = {};
 
-  DrawnPlace of(const Place& place) const {
-    return layout ? drawn_place(*structure, *layout, place) : DrawnPlace();
-  }
+  DrawnPlace of(const Place& place) const { return layout ? drawn_place(*structure, *layout, place) : DrawnPlace(); }
 };
 
 Json structure_layout(const SceneSpec& scene) {
