@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <ricochet/scene/bodies.hpp>
+#include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/clearances.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/planes.hpp>
@@ -108,7 +110,7 @@ class FilmShape {
     const int most = std::max(
         smooth, std::min<int>(Snapshots::most_places, Snapshots::most_nodes / static_cast<int>(parts_.size())));
     const int count = std::min(most, std::max(static_cast<int>(elements.size()) + 1, smooth));
-    part.x = node_positions(elements.back().left + elements.back().length, count - 1);
+    part.x = node_positions(structure_length(*part.alone), count - 1);
   }
 
   void place_bodies() {
@@ -225,29 +227,28 @@ class FilmShape {
           point.point = name;
           place(name, row(part, point, nullptr));
         }
+    const auto known = [&](const std::string& name) {
+      const auto begin = shape_.names.begin() + static_cast<std::ptrdiff_t>(part.first);
+      const auto found = std::find(begin, shape_.names.end(), name);
+      return found == shape_.names.end() ? -1 : static_cast<int>(found - shape_.names.begin());
+    };
     for (std::size_t i = 0; i < scene_.stops.named.size(); ++i) {
       const NamedStop& stop = scene_.stops.named[i];
-      if (!named(stop.at, part) || point(part, stop) >= 0) continue;
-      place(stop.name, joined_ ? row(part, stop.at, nullptr) : stop_row(scene_, problem_.space, stop, i));
+      for (const Place* one : {&stop.at, joined_ && stop.to ? &*stop.to : nullptr}) {
+        if (!one || !named(*one, part)) continue;
+        const bool own = !joined_ && (stop.to || one->point.empty());
+        const std::string name = !one->point.empty() ? one->point : joined_ ? stop.name : "";
+        int& index = points_[one] = own ? -1 : known(prefix + name);
+        if (index < 0)
+          index = place(joined_ ? name : stop.name,
+                        joined_ ? row(part, *one, nullptr) : stop_row(scene_, problem_.space, stop, i));
+      }
     }
     if (!files.modes && !joined_)
       for (const PointSpec& one : scene_.points) place(one.name, files.row(one.at, ""));
     if (shape_.x.size() == part.first && !joined_)
       place("tip", given_tip(std::get<AssembledSpec>(scene_.structure), scene_));
   }
-  // The place of points where a stop acts; −1 where it is none of them.
-  int point(const FilmPart& part, const NamedStop& stop) const {
-    const bool own = !joined_ && (stop.to || stop.at.point.empty());
-    const std::string prefix = joined_ ? part.name + " " : "";
-    for (const std::string& name : {own ? std::string() : prefix + stop.at.point, prefix + stop.name}) {
-      const auto found =
-          std::find(shape_.names.begin() + static_cast<std::ptrdiff_t>(std::min(part.first, shape_.names.size())),
-                    shape_.names.end(), name);
-      if (found != shape_.names.end()) return static_cast<int>(found - shape_.names.begin());
-    }
-    return -1;
-  }
-
   // Between two places of a structure, a share of the way from one to the next.
   static double index(const FilmPart& part, double x) {
     const auto first = static_cast<double>(part.first);
@@ -255,10 +256,11 @@ class FilmShape {
     const double last = static_cast<double>(part.x.size() - 1);
     return first + std::clamp(x / part.x.back() * last, 0.0, last);
   }
-  double at(const Place& place, const NamedStop& stop) const {
+  double at(const Place& place) const {
     const FilmPart& part = parts_[part_of(place)];
     if (!part.files()) return index(part, place.x.value_or(0));
-    if (!part.layout) return point(part, stop);
+    if (const auto found = points_.find(&place); found != points_.end()) return found->second;
+    if (!part.layout) return -1;
     const int node = drawn_place(*part.files(), *part.layout, place).node;
     return node < 0 ? -1 : static_cast<double>(part.first) + node;
   }
@@ -282,7 +284,7 @@ class FilmShape {
       }
       // A point of a stop of its own shows what the stop bounds.
       const bool between = stop.to && (joined_ || !parts_.front().files() || plane_);
-      shape_.stops.push_back({at(stop.at, stop), between ? at(*stop.to, stop) : -1, towards, stop.name});
+      shape_.stops.push_back({at(stop.at), between ? at(*stop.to) : -1, towards, stop.name});
     }
     for (std::size_t i = 0; scene_.stops.named.empty() && i < problem_.contact_x.size(); ++i)
       shape_.stops.push_back({index(parts_.front(), problem_.contact_x[i]), -1, direction({}), ""});
@@ -296,6 +298,7 @@ class FilmShape {
   double longest_ = 0;
   Snapshots shape_;
   std::vector<PlaceRow> values_;
+  std::map<const Place*, int> points_;  // of stops that points stand for
 };
 
 }  // namespace
