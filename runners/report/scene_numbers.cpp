@@ -37,8 +37,8 @@ std::string history_words(const nlohmann::ordered_json& given) {
   const auto& psd = given["psd"];
   const auto& density = psd.contains("formula") ? psd["formula"] : psd.value("file", nlohmann::ordered_json(""));
   return fmt::format("random, one-sided density {} N²/Hz from {} to {} Hz",
-                     density.is_string() ? density.get<std::string>() : density.dump(), psd["from"].dump(),
-                     psd["to"].dump());
+                     density.is_string() ? density.get<std::string>() : density.dump(),
+                     number_text(number_at(psd, "from").value_or(0)), number_text(number_at(psd, "to").value_or(0)));
 }
 
 /// Loads in words, a line for each term.

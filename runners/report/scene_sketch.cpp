@@ -331,8 +331,8 @@ class SceneDrawing {
       return;
     }
     const double x = at->x - (far + at->back) * dx, y = at->y - (far + at->back) * dy;
-    strokes_ +=
-        arrow(x, y, at->x - (near + at->back) * dx, at->y - (near + at->back) * dy) + beside(x, y, -dx, -dy, "F(t)");
+    strokes_ += arrow(x, y, at->x - (near + at->back) * dx, at->y - (near + at->back) * dy) +
+                (std::abs(dx) > std::abs(dy) ? beside(x, y, -dx, -dy, "F(t)") : label_(x + 7, y + 4, "F(t)", "start"));
   }
 
   SceneValues scene_;

@@ -238,7 +238,8 @@ Piece points(const Json& layout, const PieceFrame& frame, const std::vector<Json
   std::string out = line(frame.left, frame.rest, frame.left + frame.span, frame.rest, "measure");
   for (std::size_t k = 0; k < names.size(); ++k) {
     out += circle(px(k), frame.rest, 6, "body");
-    if (names.size() <= most_sketch_labels) out += label(px(k), frame.rest + 62, names[k], "middle", 1);
+    if (names.size() <= most_sketch_labels)
+      out += label(px(k), frame.rest + (frame.alone ? 80 : 62), names[k], "middle", 1);
   }
   out += label(frame.left + frame.span + 12, frame.rest + 4, frame.name, "start", 1);
   return {names.empty() ? "" : out, [=](const Json& place) -> std::optional<Spot> {

@@ -11,7 +11,6 @@
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/study_tables.hpp"
-#include "runners/study/axis_meaning.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/table/in_order_met.hpp"
 
@@ -84,26 +83,6 @@ std::string level_text(const StudyResults& results, const std::string& role, con
   return fmt::format("{}", fmt::join(parts, " + "));
 }
 
-std::string measure_words(const std::string& name) {
-  const MeasureInfo* info = measure_info(name);
-  return info && *info->reading.words ? info->reading.words : in_words(name);
-}
-
-/// The name of an axis: of a stop of a list with the name of that, "stiffness of bar-a".
-std::string axis_text(const StudyResults& results, const std::string& column) {
-  constexpr const char* of_stops = "stops.";
-  if (column.find('.') == std::string::npos) return column;
-  if (column.starts_with(of_stops)) {
-    std::string pointer = "/scene/" + column.substr(0, column.find('.', std::string(of_stops).size())) + "/name";
-    std::replace(pointer.begin(), pointer.end(), '.', '/');
-    const nlohmann::ordered_json::json_pointer place(pointer);
-    if (results.study.contains(place) && results.study.at(place).is_string())
-      return in_words(column.substr(column.rfind('.') + 1)) + " of " + results.study.at(place).get<std::string>();
-  }
-  const std::string said = spoken_choice(column);
-  return said.starts_with("the ") ? said.substr(4) : said;
-}
-
 /// What ran of a role: its methods in order of appearance, each with the values that its parameters had; of a plain
 /// axis its values. "alpha (order 1, 2), beta".
 std::string ran_text(const StudyResults& results, const std::string& role) {
@@ -161,7 +140,7 @@ Fill limits_fill(const StudyResults& results) {
     out << line_fill(count_text(reasons.size() - most_reasons, "more reason", "more reasons") + " in reasons.csv.");
   std::vector<std::string> open;
   for (const answers::Clause& one : answers::answers_type().read(results.derived))
-    if (one.form == "open") open.push_back(measure_words(one.measure));
+    if (one.form == "open") open.push_back(in_words(one.measure));
   if (!open.empty()) out << line_fill("Not resolved: " + list_text(open, most_values) + ".");
   std::size_t notes = 0;
   for (const CaseRecord& record : results.cases) notes += record.notes.empty() ? 0 : 1;
