@@ -33,6 +33,8 @@
       return found;
     });
   };
+  // What an axis is called where there is room.
+  ricochet.said = (column) => ricochet.data.page.axes.find(({ name }) => name === column)?.said || column;
   // What short names mean: "α structure.damping.stiffness · N elements".
   ricochet.keyTo = (used) => Array.from(used, (name) => name + " " + meanings[name]).join(" · ");
 }
