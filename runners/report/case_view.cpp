@@ -35,6 +35,22 @@ std::string apart(const std::string& before, const std::string& column, const st
 
 }  // namespace
 
+std::string axis_text(const StudyResults& results, const std::string& column) {
+  const std::size_t owner = column.find('.'), name = column.find('.', owner + 1);
+  if (role_of(column) != column || owner == std::string::npos) return column;
+  const std::string last = in_words(column.substr(column.rfind('.') + 1));
+  if (name != std::string::npos && column.starts_with("bodies."))
+    return last + " of " + column.substr(owner + 1, name - owner - 1);
+  if (name != std::string::npos && column.starts_with("stops.")) {
+    const nlohmann::ordered_json::json_pointer place("/scene/stops/" + column.substr(owner + 1, name - owner - 1) +
+                                                     "/name");
+    if (results.study.contains(place) && results.study.at(place).is_string())
+      return last + " of " + results.study.at(place).get<std::string>();
+  }
+  const std::string said = spoken_choice(column);
+  return said.starts_with("the ") ? said.substr(4) : said;
+}
+
 std::string shown_unit(const std::string& unit) {
   return unit == "1" ? "" : unit;
 }

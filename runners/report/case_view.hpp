@@ -28,6 +28,9 @@ struct CaseGroup {
   Cases cases;
 };
 
+/// The name of an axis as it is read: of a stop of a list with the name of that, "stiffness of bar-a".
+std::string axis_text(const StudyResults& results, const std::string& column);
+
 /// The cases of a study as a report speaks of them: which axes vary, short labels, groups, one colour per mass matrix.
 /// A *role* is a method's name with its parameters: "mass" stands for the columns mass, mass.velocity, …
 class CaseView {

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "runners/report/html.hpp"
-#include "runners/report/sketch_lines.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -20,12 +19,8 @@ std::vector<Json> objects_at(const SceneValues& scene, const std::string& pointe
   return found && found->is_array() ? found->get<std::vector<Json>>() : std::vector<Json>();
 }
 
-/// The number there, the first of a list; 0 where there is none.
-double number_of(const Json& object, const std::string& key) {
-  const auto found = object.find(key);
-  if (found == object.end()) return 0;
-  const Json& value = found->is_array() && !found->empty() ? found->front() : *found;
-  return value.is_number() ? value.get<double>() : 0;
+double number_of(const Json& object, const char* key) {
+  return number_at(object, key).value_or(0);
 }
 
 std::string ground_mark(double x, double y) {
@@ -58,8 +53,8 @@ std::string spring_mark(double x, double y, bool spring, bool rotation) {
   std::string marks;
   if (spring) {
     std::string zigzag = fmt::format("M{:.1f} {:.1f}v4", x, y);
-    for (int k = 0; k < 4; ++k) zigzag += "l6 2.5l-12 5l6 2.5";
-    marks += path(zigzag + "v4", "spring") + ground_mark(x, y + 48);
+    for (int k = 0; k < 3; ++k) zigzag += "l6 1.5l-12 3l6 1.5";
+    marks += path(zigzag + "v4", "spring") + ground_mark(x, y + 26);
   }
   if (rotation) marks += path(fmt::format("M{:.1f} {:.1f}a11 11 0 1 1 14 6", x - 11, y - 3), "spring");
   return marks;
@@ -88,7 +83,7 @@ std::string semicolon_list(const std::vector<std::string>& texts) {
 
 }  // namespace
 
-HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& frame) {
+HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& frame, Labels& label) {
   HeldBeam out;
   const auto x_of = [&](double x) { return frame.left + frame.span * std::clamp(x / length, 0.0, 1.0); };
   const std::vector<Json> supports = objects_at(scene, "/scene/structure/supports");
@@ -100,14 +95,14 @@ HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& fra
     out.svg += mark_of(support, x, frame.rest, side);
     const bool spring = number_of(support, "stiffness") > 0;
     if (supports.size() <= most_named)
-      out.svg += spring     ? label(x + 12, frame.rest + 34, support.value("name", ""), "start")
-                 : side < 0 ? label(x + 4, frame.rest + 44, support.value("name", ""), "start")
-                            : label(x, frame.rest + 44, support.value("name", ""));
+      out.svg += spring     ? label(x + 14, frame.rest + 22, support.value("name", ""), "start", 1)
+                 : side < 0 ? label(x + 4, frame.rest + 44, support.value("name", ""), "start", 1)
+                            : label(x, frame.rest + 44, support.value("name", ""), "middle", 1);
     places.push_back(place);
   }
   for (const Json& mass : objects_at(scene, "/scene/structure/masses")) {
     const double x = x_of(number_of(mass, "x"));
-    out.masses += fmt::format("<circle class=\"body\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"8\"/>", x, frame.rest) +
+    out.masses += circle(x, frame.rest, 8, "body") +
                   label(x, frame.rest - 14, number_text(number_of(mass, "mass"), shown_digits) + " kg");
   }
   if (const auto tension = scene.number("/scene/structure/tension"); tension && *tension != 0) {
@@ -117,13 +112,13 @@ HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& fra
   }
   std::sort(places.begin(), places.end());
   places.erase(std::unique(places.begin(), places.end()), places.end());
-  out.measured = out.given && places.size() > 2 && places.size() <= most_spans + 1;
+  out.measured = frame.measure > 0 && out.given && places.size() > 2 && places.size() <= most_spans + 1;
   if (!out.measured) return out;
   for (std::size_t i = 0; i + 1 < places.size(); ++i) {
     const double from = x_of(places[i]), to = x_of(places[i + 1]);
-    out.spans +=
-        line(to, frame.measure - 5, to, frame.measure + 5, "measure") +
-        label((from + to) / 2, frame.measure + 12, number_text(places[i + 1] - places[i], shown_digits) + " m");
+    out.spans += line(to, frame.measure - 5, to, frame.measure + 5, "measure") +
+                 label((from + to) / 2, frame.measure + 12, number_text(places[i + 1] - places[i], shown_digits) + " m",
+                       "middle", 1);
   }
   return out;
 }

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "runners/report/scene_values.hpp"
+#include "runners/report/sketch_lines.hpp"
 
 /// \file
 /// What holds a beam that says it itself, drawn: clamps, pins, guides, springs, point masses, spans.
 namespace ricochet::report {
 
-/// Where the beam lies in the drawing, in pixels.
+/// Where the beam lies in the drawing, in pixels; measure: the height of its spans, 0 for none.
 struct BeamFrame {
   double left, span, rest, measure;
 };
@@ -19,7 +20,7 @@ struct HeldBeam {
   bool measured = false;  ///< whether `spans` says the lengths
   std::string svg, masses, spans;
 };
-HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& frame);
+HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& frame, Labels& label);
 
 /// Supports, sections and masses in words: name and text, for the table beside the drawing.
 std::vector<std::pair<std::string, std::string>> held_beam_words(const SceneValues& scene);

@@ -155,7 +155,10 @@ std::string status_mark(const std::string& status) {
 
 std::string in_words(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
+  const std::size_t bracket = name.find('[');
+  return bracket == std::string::npos || !name.ends_with(']')
+             ? name
+             : name.substr(0, bracket) + " at " + name.substr(bracket + 1, name.size() - bracket - 2);
 }
 
 std::string list_text(std::vector<std::string> items, size_t most) {

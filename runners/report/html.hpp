@@ -42,7 +42,7 @@ std::string share_text(double share, std::optional<double> low, std::optional<do
 /// Legend symbol of a status: ✓ done, ⊘ refused, ✕ diverged, ! failed; a question mark for an unknown one.
 std::string status_mark(const std::string& status);
 
-/// The name of a column as words: "energy_end" → "energy end".
+/// The name of a column as words: "energy_end" → "energy end", "peak_force[plate]" → "peak force at plate".
 std::string in_words(std::string name);
 /// "a, b, c and 4 more".
 std::string list_text(std::vector<std::string> items, size_t most = 6);

@@ -70,6 +70,7 @@ PageJson axes_json(const CaseView& view) {
       at.push_back(place->second);
     }
     out.push_back({{"name", column},
+                   {"said", axis_text(view.results(), column)},
                    {"unit", view.unit_of(column)},
                    {"texts", std::move(texts)},
                    {"numbers", std::move(numbers)},

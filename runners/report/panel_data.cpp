@@ -150,13 +150,14 @@ PageJson stops_json(const std::vector<double>& places) {
   return out;
 }
 
-// Of a structure of files: nodes on a plane, or points.
+// Stops, and nodes on a plane or points.
 void add_drawing(const Snapshots& shots, PageJson& out) {
-  out["names"] = shots.names;
+  if (!shots.names.empty()) out["names"] = shots.names;
   out["stops"] = PageJson::array();
   for (const Snapshots::Stop& stop : shots.stops)
-    out["stops"].push_back({{"at", stop.at}, {"to", stop.to}, {"direction", stop.direction}});
+    out["stops"].push_back({{"at", stop.at}, {"to", stop.to}, {"direction", stop.direction}, {"name", stop.name}});
   if (shots.y.empty()) return;
+  for (const auto& [name, first] : shots.bodies) out["bodies"].push_back({{"name", name}, {"first", first}});
   static const char* const axes[] = {"x", "y", "z"};
   out["axes"] = {axes[shots.axes[0]], axes[shots.axes[1]]};
   out["y"] = shots.y;
@@ -178,7 +179,7 @@ PageJson one_case(const std::string& id, const Snapshots& shots, CurveData& bloc
                   {"upper", stops_json(shots.upper)},
                   {"metres", shots.metres},
                   {"newtons", shots.newtons}};
-  if (!shots.names.empty()) add_drawing(shots, out);
+  add_drawing(shots, out);
   return out;
 }
 

@@ -30,6 +30,9 @@
     const unit = along === "step" ? data.view.unit("step") || "s" : "elements", x = ricochet.logAxis([along === "step" ? "step h" : "mesh", unit], sizes, false), step = along === "step";
     const beyond = 0.3, spread = Math.max(sizes.high / sizes.low, 2), end = step ? sizes.low / Math.pow(spread, 0.5 * beyond) : sizes.high * Math.pow(spread, 0.5 * beyond);
     Object.assign(x, step ? { inverse: true, min: end / 1.02, max: sizes.high * 1.05 } : { min: sizes.low / 1.05, max: end * 1.02 });
+    // A decade has no label of its own in so short a range.
+    const ticks = ricochet.distinct(methods.flatMap((row) => points(row).map((one) => one.size)));
+    if (spread < 30 && ticks.length <= 8) { x.axisTick.customValues = x.axisLabel.customValues = ticks; x.axisLabel.formatter = (value) => ricochet.format.shown(value, 3); }
     const out = ricochet.view([step ? "step h" : "mesh", unit], quantity, x, y), narrow = window.innerWidth < 600;
     out.option.grid.right = narrow ? 96 : 170;
     const clip = (value) => Math.min(Math.max(value, y.min), y.max), share = (value) => (logarithmic ? Math.log(clip(value) / y.min) / Math.log(y.max / y.min) : (clip(value) - y.min) / (y.max - y.min));

@@ -4,44 +4,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
-#include "runners/report/held_beam.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/scene_values.hpp"
-#include "runners/report/sketch_lines.hpp"
-#include "runners/report/structure_sketch.hpp"
+#include "runners/report/sketch_pieces.hpp"
+#include "runners/study/body_places.hpp"
 
 namespace ricochet::report {
 namespace {
 
-// Pixels of the drawing: where the structure begins, how long it is, its line at rest, and how far stops may lie off.
-constexpr double sketch_width = 640, sketch_height = 184, sketch_left = 76, sketch_span = 480, sketch_rest = 84,
-                 nearest_gap = 9, widest_gap = 44;
+using Json = nlohmann::ordered_json;
 
-/// A stop above (or below) a point: its face level at y, hatched away from the structure.
-std::string level_stop(double x, double y, double side) {
-  std::string hatch;
-  for (double u = -9; u <= 9; u += 6) hatch += fmt::format("M{:.1f} {:.1f}l5 {:.1f}", x + u, y, side * 6);
-  return line(x - 12, y, x + 12, y, "stop") + path(hatch, "stop");
-}
-
-/// A stop across the way of a tip that moves along x.
-std::string upright_stop(double x, double y, double side) {
-  std::string hatch;
-  for (double v = -14; v <= 14; v += 7) hatch += fmt::format("M{:.1f} {:.1f}l{:.1f} 5", x, y + v, side * 6);
-  return line(x, y - 18, x, y + 18, "stop") + path(hatch, "stop");
-}
-
-std::string metres(double gap) {
-  return number_text(gap, 4) + " m";
-}
+// Pixels of the drawing: where a structure begins, how long it is, and how far stops may lie off.
+constexpr double sketch_width = 640, sketch_height = 184, sketch_left = 76, sketch_span = 480, together_span = 420,
+                 nearest_gap = 9, widest_gap = 44, tallest_nodes = 230, least_span = 36, points_span = 140,
+                 row_half = 62;
+constexpr std::size_t most_labelled = 12, most_unnamed = 4;
 
 /// Pixels between rest and a stop: gaps are to scale among each other, none so small that it does not show.
 class Gaps {
  public:
   explicit Gaps(const std::vector<SceneValues::Stop>& stops) {
     for (const SceneValues::Stop& stop : stops)
-      for (const auto& gap : {stop.lower, stop.upper})
+      for (const auto& gap : {stop.lower, stop.upper, stop.radius})
         if (gap && std::isfinite(*gap)) largest_ = std::max(largest_, std::abs(*gap));
   }
   double operator()(double gap) const {
@@ -54,280 +40,321 @@ class Gaps {
   double largest_ = 0;
 };
 
-/// Motions of supports by tables: which supports, what is given, and where it stands.
-std::vector<std::string> motion_words(const SceneValues& scene) {
-  std::vector<std::string> words;
-  const auto* motions = scene.at("/scene/motions");
-  if (!motions || !motions->is_array()) return words;
-  for (const auto& motion : *motions) {
-    const bool accelerates = motion.contains("acceleration");
-    const auto& given = motion[accelerates ? "acceleration" : "displacement"];
-    std::string who;
-    for (const auto& name : motion["supports"]) who += (who.empty() ? "" : ", ") + name.get<std::string>();
-    const auto& source = given.contains("file") ? given["file"] : given["formula"];
-    words.push_back(fmt::format("{} of {}: {}", accelerates ? "acceleration" : "displacement",
-                                who == "all" ? "all supports" : who,
-                                source.is_string() ? source.get<std::string>() : source.dump()));
-  }
-  return words;
-}
-
-/// A history: its formula, its file, or its spectrum.
-std::string history_words(const nlohmann::ordered_json& given) {
-  if (given.is_string()) return given.get<std::string>();
-  if (!given.is_object()) return given.dump();
-  if (given.contains("file")) return given["file"].get<std::string>();
-  if (!given.contains("psd")) return given.dump();
-  const auto& psd = given["psd"];
-  const auto& density = psd.contains("formula") ? psd["formula"] : psd.value("file", nlohmann::ordered_json(""));
-  return fmt::format("random, one-sided density {} N²/Hz from {} to {} Hz",
-                     density.is_string() ? density.get<std::string>() : density.dump(), psd["from"].dump(),
-                     psd["to"].dump());
-}
-
-/// Loads in words, a line for each term.
-std::vector<std::string> load_words(const SceneValues& scene) {
-  const auto* load = scene.at("/scene/load");
-  if (!load || !load->is_array()) return {scene.text("/scene/load", "")};
-  std::vector<std::string> words;
-  for (const auto& term : *load) {
-    if (!term.is_object()) return {scene.text("/scene/load", "")};
-    if (term.contains("force")) {
-      const auto place = term.contains("at") ? term["at"] : nlohmann::ordered_json();
-      const std::string where = place.is_number()                          ? "x = " + place.dump() + " m"
-                                : place.is_object() && place.contains("x") ? "x = " + place["x"].dump() + " m"
-                                : place.is_object()                        ? place_words(place)
-                                                                           : "";
-      words.push_back(fmt::format("F(t){} = {}", where.empty() ? "" : " at " + where, history_words(term["force"])));
-    } else {
-      words.push_back(fmt::format("{} times {}", term.contains("shape") ? term["shape"].dump() : "f(x)",
-                                  term.contains("time") ? history_words(term["time"]) : "g(t)"));
-    }
-  }
-  return words;
-}
-
+// What moves what holds a structure, where something does.
 std::string support_words(const SceneValues& scene) {
-  if (const auto* motions = scene.at("/scene/motions"); motions && !motions->empty())
-    return motions->front().contains("acceleration") ? "a(t)" : "φ(t)";
-  const std::string amplitude = scene.text("/scene/support/amplitude", "m");
-  return amplitude.empty() ? "" : "A₀ sin(ωt)";
+  const auto* motions = scene.at("/scene/motions");
+  const auto* supports = scene.at("/scene/structure/supports");
+  const auto moves = [&](const Json& motion) {
+    const Json named = motion.value("supports", Json());
+    if (!supports || !supports->is_array() || !named.is_array()) return true;
+    return std::any_of(named.begin(), named.end(), [&](const Json& name) {
+      return name == "all" || std::any_of(supports->begin(), supports->end(),
+                                          [&](const Json& one) { return one.value("name", Json()) == name; });
+    });
+  };
+  if (motions && motions->is_array())
+    for (const Json& motion : *motions)
+      if (moves(motion)) return motion.contains("acceleration") ? "a(t)" : "φ(t)";
+  return scene.text("/scene/support/amplitude", "m").empty() ? "" : "A₀ sin(ωt)";
 }
 
-bool loaded(const SceneValues& scene) {
-  const auto* load = scene.at("/scene/load");
-  return load && (load->is_string()   ? load->get<std::string>() != "0"
-                  : load->is_number() ? load->get<double>() != 0
-                                      : !load->empty());
-}
+// What pushes: forces at places, and bodies that are pushed along their length.
+struct Loads {
+  std::vector<Json> forces;         ///< places
+  std::vector<std::size_t> number;  ///< of each among those that have a place
+  std::vector<std::string> along;   ///< bodies
 
-/// Where forces at points push, of a load that is made of these alone.
-std::vector<double> point_forces(const SceneValues& scene) {
-  std::vector<double> places;
-  const auto* load = scene.at("/scene/load");
-  if (!load || !load->is_array()) return places;
-  for (const auto& term : *load) {
-    if (!term.is_object() || !term.contains("force") || !term.contains("at")) return {};
-    const auto& at = term["at"].is_object() && term["at"].contains("x") ? term["at"]["x"] : term["at"];
-    if (!at.is_number()) return {};
-    // Forces along y and z at one place are one arrow.
-    if (const double x = at.get<double>(); std::find(places.begin(), places.end(), x) == places.end())
-      places.push_back(x);
-  }
-  return places;
-}
-
-std::string beam(const SceneValues& scene) {
-  const double length = scene.number("/scene/structure/length").value_or(1);
-  const auto x_of = [&](double x) { return sketch_left + sketch_span * std::clamp(x / length, 0.0, 1.0); };
-  const HeldBeam held = held_beam(scene, length, {sketch_left, sketch_span, sketch_rest, sketch_height - 14});
-  std::string out = (held.given ? held.svg : wall(sketch_left, sketch_rest - 30, sketch_rest + 30, -1)) +
-                    line(sketch_left, sketch_rest, sketch_left + sketch_span, sketch_rest, "structure") + held.masses;
-  if (const std::string shaken = support_words(scene); !shaken.empty())
-    out += arrow(sketch_left - 24, sketch_rest - 24, sketch_left - 24, sketch_rest + 24, true) +
-           label(sketch_left - 24, sketch_rest + 48, shaken);
-  const std::vector<double> forces = point_forces(scene);
-  for (const double x : forces)
-    out += arrow(x_of(x), sketch_rest - 34, x_of(x), sketch_rest - 6) + label(x_of(x), sketch_rest - 38, "F(t)");
-  if (loaded(scene) && forces.empty()) {
-    for (int k = 1; k <= 6; ++k)
-      out += arrow(sketch_left + sketch_span * k / 7.0, sketch_rest - 30, sketch_left + sketch_span * k / 7.0,
-                   sketch_rest - 8);
-    out += label(sketch_left + sketch_span / 14.0 - 6, sketch_rest - 34, "f(x, t)");
-  }
-  const std::vector<SceneValues::Stop> stops = scene.stops(length);
-  const Gaps gaps(stops);
-  const bool few = stops.size() <= 4;
-  for (const SceneValues::Stop& stop : stops) {
-    const double x = x_of(stop.x);
-    if (stop.upper) out += level_stop(x, sketch_rest - gaps(*stop.upper), -1);
-    if (stop.lower) out += level_stop(x, sketch_rest + gaps(*stop.lower), 1);
-    if (!stop.name.empty()) out += label(x, sketch_rest - widest_gap - 24, stop.name);
-    if (!few && &stop != &stops.back()) continue;
-    if (stop.upper) out += label(x, sketch_rest - gaps(*stop.upper) - 11, metres(*stop.upper));
-    if (stop.lower) out += label(x, sketch_rest + gaps(*stop.lower) + 20, metres(*stop.lower));
-  }
-  out += line(sketch_left, sketch_height - 14, sketch_left + sketch_span, sketch_height - 14, "measure") +
-         line(sketch_left, sketch_height - 19, sketch_left, sketch_height - 9, "measure") +
-         line(sketch_left + sketch_span, sketch_height - 19, sketch_left + sketch_span, sketch_height - 9, "measure");
-  return out + (held.measured ? held.spans
-                              : label(sketch_left + sketch_span / 2, sketch_height - 18,
-                                      "L = " + scene.text("/scene/structure/length", "m")));
-}
-
-/// A pin on what moves along x, between the stops of its tip.
-std::string tip_stops(const SceneValues& scene, double length, double x, double y) {
-  const std::vector<SceneValues::Stop> stops = scene.stops(length);
-  const Gaps gaps(stops);
-  std::string out;
-  for (const SceneValues::Stop& stop : stops) {
-    const std::string name = stop.name.empty() ? "" : stop.name + " ";
-    if (stop.upper)
-      out += upright_stop(x + 4 + gaps(*stop.upper), y, 1) +
-             label(x + 14 + gaps(*stop.upper), y + 4, name + metres(*stop.upper), "start");
-    if (stop.lower)
-      out += upright_stop(x - 4 - gaps(*stop.lower), y, -1) +
-             label(x - 14 - gaps(*stop.lower), y + 4, name + metres(*stop.lower), "end");
-  }
-  return out + (stops.empty() ? "" : line(x, y - 10, x, y + 22, "structure"));
-}
-
-std::string oscillator(const SceneValues& scene) {
-  const double mass = 330, low = 128;
-  std::string spring = fmt::format("M{:.1f} {:.1f}h20", sketch_left, low - 22);
-  for (int k = 0; k < 8; ++k) spring += k % 2 == 0 ? "l10 -9l10 9" : "l10 9l10 -9";
-  std::string out =
-      wall(sketch_left, low - 44, low, -1) + line(sketch_left, low, sketch_left + sketch_span, low, "hatch") +
-      fmt::format("<rect class=\"body\" x=\"{}\" y=\"{}\" width=\"70\" height=\"44\"/>", mass - 35, low - 44) +
-      label(mass, low - 17, "m");
-  if (!scene.text("/scene/structure/stiffness", "").empty())
-    out += path(spring + fmt::format("L{:.1f} {:.1f}", mass - 35, low - 22), "spring") +
-           label(sketch_left + 110, low - 36, "k");
-  if (!scene.text("/scene/structure/force/amplitude", "").empty())
-    out += arrow(mass + 37, low - 22, mass + 92, low - 22) + label(mass + 98, low - 18, "F cos(ωt + ψ)", "start");
-  if (const std::string shaken = support_words(scene); !shaken.empty())
-    out +=
-        arrow(sketch_left - 56, low - 22, sketch_left - 12, low - 22, true) + label(sketch_left - 34, low - 34, shaken);
-  return out + tip_stops(scene, 0, mass, low - 68);
-}
-
-std::string bar(const SceneValues& scene) {
-  const std::string fixed = scene.word("/scene/structure/fixed");
-  const bool right = fixed == "right", held = fixed == "left" || right;
-  const double from = sketch_left + 60, to = sketch_left + sketch_span - 60, tip = fixed == "left" ? to : from;
-  std::string out = fmt::format("<rect class=\"body\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"18\"/>", from,
-                                sketch_rest + 14, to - from);
-  if (held)
-    out += right ? wall(to, sketch_rest - 4, sketch_rest + 50, 1) : wall(from, sketch_rest - 4, sketch_rest + 50, -1);
-  if (loaded(scene))
-    out += arrow((from + to) / 2 - 25, sketch_rest + 2, (from + to) / 2 + 25, sketch_rest + 2) +
-           label((from + to) / 2, sketch_rest - 6, "f(x, t)");
-  out += tip_stops(scene, scene.number("/scene/structure/length").value_or(1), tip, sketch_rest - 8);
-  return out + label((from + to) / 2, sketch_rest + 54, "L = " + scene.text("/scene/structure/length", "m"));
-}
-
-struct Structure {
-  const char* name;
-  std::string (*draw)(const SceneValues&);
-  std::vector<std::tuple<const char*, const char*, const char*>> numbers;  ///< symbol, key, unit
+  bool on(const std::string& body) const { return std::find(along.begin(), along.end(), body) != along.end(); }
 };
 
-const std::vector<Structure>& structures() {
-  static const std::vector<Structure> all = {
-      {"beam",
-       beam,
-       {{"L", "length", "m"},
-        {"E", "young", "Pa"},
-        {"ρ", "density", "kg/m³"},
-        {"added mass", "added_mass", "kg/m"},
-        {"tension", "tension", "N"},
-        {"foundation", "foundation", "N/m²"},
-        {"α (damping, of K)", "damping/stiffness", "s"},
-        {"η (damping, of M)", "damping/mass", "1/s"},
-        {"damping ratio", "damping/ratio", ""}}},
-      {"oscillator",
-       oscillator,
-       {{"m", "mass", "kg"},
-        {"k", "stiffness", "N/m"},
-        {"c", "damping", "N s/m"},
-        {"F", "force/amplitude", "N"},
-        {"ω of F", "force/pulsation", "rad/s"},
-        {"ψ", "force/phase", "rad"}}},
-      {"bar",
-       bar,
-       {{"L", "length", "m"},
-        {"EA", "EA", "N"},
-        {"ρA", "rhoA", "kg/m"},
-        {"α (damping, of K)", "damping/stiffness", "s"},
-        {"η (damping, of M)", "damping/mass", "1/s"}}},
-      {"modal", nullptr, {{"modes", "modes", ""}, {"shapes", "shapes", ""}, {"residual", "residual", ""}}},
-      {"assembled",
-       nullptr,
-       {{"K", "stiffness", ""},
-        {"M", "mass", ""},
-        {"α (damping, of K)", "damping/stiffness", "s"},
-        {"η (damping, of M)", "damping/mass", "1/s"},
-        {"damping ratio", "damping/ratio", ""},
-        {"C", "damping/file", ""}}}};
-  return all;
+Loads loads_of(const SceneValues& scene) {
+  Loads out;
+  const Json* load = scene.at("/scene/load");
+  if (!load) return out;
+  if (!load->is_array()) {
+    if (load->is_string() ? load->get<std::string>() != "0" : first_number(load).value_or(0) != 0) out.along = {""};
+    return out;
+  }
+  std::size_t placed = 0;
+  for (const Json& term : *load) {
+    const Json at = term.is_object() ? term.value("at", Json()) : Json();
+    if (!term.is_object() || !term.contains("force")) {
+      out.along.push_back(term.is_object() ? term.value("body", "") : "");
+    } else if (at.is_object()) {
+      out.forces.push_back(at);
+      out.number.push_back(placed++);
+    } else {
+      out.forces.push_back(first_number(&at) ? Json{{"x", *first_number(&at)}} : Json::object());
+      out.number.push_back(std::string::npos);
+    }
+  }
+  return out;
 }
 
-const Structure* structure_of(const SceneValues& scene) {
-  const auto found = std::find_if(structures().begin(), structures().end(), [&](const Structure& one) {
-    return one.name == scene.word("/scene/structure/type");
-  });
-  return found == structures().end() ? nullptr : &*found;
-}
+class SceneDrawing {
+ public:
+  explicit SceneDrawing(const Json& study)
+      : scene_(study), bodies_(scene_.bodies()), loads_(loads_of(scene_)), layout_(scene_.at("/files/layout")) {
+    for (const auto& [name, body] : bodies_) {
+      const Json* layout = name.empty() ? layout_ : body.at("/files/layout/bodies/" + name);
+      layouts_.push_back(layout);
+      sizes_.push_back(piece_size(body, layout));
+    }
+    stops_ = scene_.stops(scene_.number("/scene/structure/length").value_or(1));
+  }
+
+  std::string svg(const std::string& said) {
+    for (const PieceFrame& frame : bodies_.size() == 1 ? alone() : together()) {
+      const std::size_t b = pieces_.size();
+      const auto piece = draw_piece(bodies_[b].second, layouts_[b], frame, places_of(b), label_);
+      pieces_.push_back(piece.value_or(Piece{"", [](const Json&) { return std::nullopt; }}));
+      strokes_ += pieces_.back().svg;
+    }
+    if (strokes_.empty()) return "";
+    for (std::size_t i = 0; i < stops_.size(); ++i) draw_stop(i);
+    for (std::size_t k = 0; k < loads_.forces.size(); ++k) draw_force(k);
+    const auto [from, to] = label_.reach(0, height_);
+    return fmt::format("<svg class=\"sketch\" viewBox=\"0 {:.0f} {} {:.0f}\" role=\"img\" aria-label=\"{}\">{}</svg>\n",
+                       from, sketch_width, to - from, escape(said), strokes_);
+  }
+
+ private:
+  std::size_t body_of(const Json& place) const {
+    const std::string name = place.value("body", "");
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      if (bodies_[b].first == name) return b;
+    return bodies_.size() == 1 ? 0 : bodies_.size();
+  }
+  std::vector<Json> places_of(std::size_t body) const {
+    std::vector<Json> out;
+    const auto add = [&](const Json& place) {
+      if (place.is_object() && body_of(place) == body) out.push_back(place);
+    };
+    for (const SceneValues::Stop& stop : stops_) {
+      add(stop.at);
+      add(stop.to);
+    }
+    if (!sizes_[body].along)
+      for (const Json& place : loads_.forces) add(place);
+    return out;
+  }
+
+  std::vector<PieceFrame> alone() {
+    const PieceSize& size = sizes_.front();
+    const std::string type = scene_.word("/scene/structure/type");
+    PieceFrame frame{sketch_left, sketch_span, 84};
+    frame.shaken = support_words(scene_);
+    frame.loaded = loads_.on("");
+    height_ = sketch_height;
+    if (type == "beam") frame.measure = height_ - 14;
+    if (type == "oscillator") frame.rest = 128;
+    if (type == "bar") frame = {136, 360, 144, 1, 0, {1, 0}, true, true, frame.loaded, {}, {}};
+    if (!layouts_.front()) return {frame};
+    constexpr double margin = 122;
+    frame.left = margin;
+    frame.span = sketch_width - 2 * margin;
+    if (!(size.length > 0 || size.tall > 0)) return {frame};
+    frame.scale =
+        std::min(size.length > 0 ? frame.span / size.length : 1e300, size.tall > 0 ? tallest_nodes / size.tall : 1e300);
+    frame.left += (frame.span - frame.scale * size.length) / 2;
+    frame.span = frame.scale * size.length;
+    height_ = 2 * row_half + std::max(60.0, frame.scale * size.tall);
+    frame.rest = height_ / 2;
+    frame.measure = height_ - 12;
+    return {frame};
+  }
+
+  // x of a place of its own body, m.
+  double x_of(const Json& place, const Json& drawn, const char* key, std::size_t body) const {
+    if (sizes_[body].along) return 0;
+    if (const auto x = number_at(place, "x")) return *x;
+    const auto node = number_at(drawn, key);
+    const Json* layout = layouts_[body];
+    if (node && *node >= 0 && layout && layout->contains("x"))
+      return layout->at("x").at(static_cast<std::size_t>(*node));
+    return sizes_[body].first + sizes_[body].length / 2;
+  }
+  Json drawn_stop(std::size_t i) const {
+    return layout_ && layout_->contains("stops") && i < layout_->at("stops").size() ? layout_->at("stops")[i] : Json();
+  }
+
+  std::vector<PieceFrame> together() {
+    std::vector<BodyShape> shapes;
+    for (const PieceSize& size : sizes_) shapes.push_back({size.first, size.length, size.along});
+    std::vector<BodyMeeting> meetings;
+    for (std::size_t i = 0; i < stops_.size(); ++i) {
+      const SceneValues::Stop& stop = stops_[i];
+      const std::size_t at = body_of(stop.at), to = stop.to.is_object() ? body_of(stop.to) : at;
+      if (at == to || std::max(at, to) >= bodies_.size()) continue;
+      const Json drawn = drawn_stop(i);
+      meetings.push_back(
+          {at, to, x_of(stop.at, drawn, "at", at), x_of(stop.to, drawn, "to", to), stop.upper || !stop.lower});
+    }
+    const std::vector<BodyPlace> places = body_places(shapes, meetings);
+    const bool columns = all_along(shapes);
+    int rows = 0;
+    double left = 1e300, right = -1e300, tallest = 0;
+    for (std::size_t b = 0; b < sizes_.size(); ++b) {
+      rows = std::max(rows, places[b].row + 1);
+      left = std::min(left, sizes_[b].first + places[b].shift);
+      right = std::max(right, sizes_[b].first + places[b].shift + sizes_[b].length);
+      tallest = std::max(tallest, sizes_[b].tall);
+    }
+    double scale = right > left ? together_span / (right - left) : 1;
+    if (tallest > 0) scale = std::min(scale, tallest_nodes / tallest);
+    std::vector<double> half(static_cast<std::size_t>(rows), row_half), middle = half;
+    for (std::size_t b = 0; b < sizes_.size(); ++b) {
+      double& one = half[static_cast<std::size_t>(places[b].row)];
+      one = std::max(one, row_half + scale * sizes_[b].tall / 2);
+    }
+    height_ = columns ? sketch_height : 0;
+    for (auto row = half.size(); !columns && row-- > 0; height_ += half[row]) middle[row] = height_ += half[row];
+    std::vector<PieceFrame> out;
+    for (std::size_t b = 0; b < sizes_.size(); ++b) {
+      const SceneValues& body = bodies_[b].second;
+      const std::string type = body.word("/scene/structure/type");
+      const auto row = static_cast<std::size_t>(places[b].row);
+      // What moves along its axis has its wall away from what it meets.
+      bool away = false;
+      for (auto one = meetings.rbegin(); one != meetings.rend(); ++one)
+        if (one->at == b || one->to == b) away = places[one->at == b ? one->to : one->at].row < places[b].row;
+      away = away && type == "oscillator";
+      PieceFrame frame;
+      frame.alone = false;
+      frame.scale = scale;
+      frame.name = bodies_[b].first;
+      frame.shaken = support_words(body);
+      frame.loaded = loads_.on(frame.name);
+      frame.forward = !away;
+      const double along = sizes_[b].length * scale, from = sizes_[b].first + places[b].shift - left;
+      frame.span = std::max(layouts_[b] && along == 0 ? points_span : least_span, along);
+      frame.left = sketch_left + (together_span - scale * (right - left)) / 2 + from * scale - (frame.span - along) / 2;
+      frame.rest = middle[row];
+      if (columns) {
+        constexpr double apart = 60, room = 560;
+        frame.span = (room - apart * (rows - 1)) / rows;
+        frame.left = 40 + static_cast<double>(row) * (frame.span + apart) + (away ? frame.span : 0);
+        frame.axis = {away ? -1.0 : 1.0, 0};
+        frame.rest = 128;
+      } else if (sizes_[b].along) {
+        frame.span = 100;
+        frame.left = sketch_left + (from + (right > left ? 0 : 0.5)) * scale;
+        frame.axis = {0, away ? 1.0 : -1.0};
+        frame.rest = middle[row] + (away ? -50 : 50);
+      }
+      out.push_back(std::move(frame));
+    }
+    return out;
+  }
+
+  // Where the place of a stop or a load is; `drawn` stands for it where a layout has it.
+  std::optional<Spot> spot_of(const Json& place, const Json& drawn, const char* key) const {
+    const std::size_t body = place.is_object() ? body_of(place) : pieces_.size();
+    if (body >= pieces_.size()) return std::nullopt;
+    const bool known = drawn.is_object() && drawn.contains(key) && layouts_[body] && layouts_[body]->contains("nodes");
+    return pieces_[body].spot(known ? Json{{"at", drawn[key]}, {"direction", drawn["direction"]}} : place);
+  }
+
+  // Beside a mark on the side where it points.
+  std::string beside(double x, double y, double dx, double dy, const std::string& text) {
+    const bool across = std::abs(dx) > 0.5 * std::abs(dy);
+    const double low = across ? 4 + 12 * dy : dy > 0 ? 22 : -12;
+    return label_(x + 12 * dx, y + low, text, !across ? "middle" : dx > 0 ? "start" : "end", dy > 0 ? 1 : -1);
+  }
+
+  void draw_stop(std::size_t i) {
+    const SceneValues::Stop& stop = stops_[i];
+    const Json drawn = drawn_stop(i);
+    const std::optional<Spot> at = spot_of(stop.at, drawn, "at"), to = spot_of(stop.to, drawn, "to");
+    if (!at) return;
+    const Gaps gaps(stops_);
+    const bool named =
+        stop.name.empty() ? stops_.size() <= most_unnamed || i + 1 == stops_.size() : stops_.size() <= most_labelled;
+    std::string name = stop.name.empty() || !named ? "" : stop.name + " ";
+    if (to) strokes_ += circle(to->x, to->y, 4, "stop");
+    const auto join = [&](double x, double y) {  // to the other place of the stop, round what lies between
+      if (!to) return;
+      const bool flat = std::abs(to->dx * (to->x - x) + to->dy * (to->y - y)) < 0.5 * std::abs(to->x - x);
+      const double bow = flat ? 36 : 0;
+      strokes_ += path(fmt::format("M{:.1f} {:.1f}Q{:.1f} {:.1f} {:.1f} {:.1f}", x, y, (x + to->x) / 2 + bow * at->dx,
+                                   (y + to->y) / 2 + bow * at->dy, to->x, to->y),
+                       "stop link");
+    };
+    if (stop.radius) {
+      const double r = gaps(*stop.radius);
+      std::string d;
+      for (int k = 0; k < 48; ++k) {
+        const double c = r * std::cos(M_PI * k / 24), s = r * std::sin(M_PI * k / 24);
+        d += fmt::format("{}{:.1f} {:.1f}", k ? "L" : "M", at->x + c * at->ring[0] + s * at->ring[2],
+                         at->y + c * at->ring[1] + s * at->ring[3]);
+      }
+      strokes_ += path(d + "z", "stop") + label_(at->x, at->y - r - 10, name + "radius " + metres(*stop.radius));
+      join(at->x, at->y - r);
+      return;
+    }
+    constexpr double leaves = 0.2;
+    const double size = std::hypot(at->dx, at->dy);
+    if (size < leaves) {  // along the line of sight
+      strokes_ += circle(at->x, at->y, 9, "stop") + (named ? beside(at->x, at->y, 1, -1, stop.name) : "");
+      return;
+    }
+    const double dx = at->dx / size, dy = at->dy / size;
+    for (const auto& [side, value, more] :
+         {std::tuple(1.0, stop.upper, at->front), std::tuple(-1.0, stop.lower, at->back)}) {
+      if (!value) continue;
+      const double far = side * (gaps(*value) + more), x = at->x + far * dx, y = at->y + far * dy;
+      strokes_ += face(x, y, side * dx, side * dy);
+      join(x + 6 * side * dx, y + 6 * side * dy);
+      if (!named) continue;
+      const bool across = std::abs(dx) > std::abs(dy);
+      strokes_ += to ? label_(across ? x : x + 16, across ? y - 18 : y - 4, name + metres(*value),
+                              across ? "middle" : "start", side * dy > 0 ? 1 : -1)
+                     : beside(x, y, side * dx, side * dy, name + metres(*value));
+      name.clear();
+    }
+  }
+
+  void draw_force(std::size_t k) {
+    const Json drawn = layout_ && layout_->contains("loads") && loads_.number[k] < layout_->at("loads").size()
+                           ? layout_->at("loads")[loads_.number[k]]
+                           : Json();
+    const std::optional<Spot> at = spot_of(loads_.forces[k], drawn, "at");
+    if (!at) return;
+    const double size = std::hypot(at->dx, at->dy), dx = size > 0 ? at->dx / size : 0,
+                 dy = size > 0 ? at->dy / size : 0;
+    const std::string here = fmt::format("{:.1f} {:.1f} {:.2f} {:.2f}", at->x, at->y, dx, dy);
+    if (std::find(pushed_.begin(), pushed_.end(), here) != pushed_.end()) return;
+    pushed_.push_back(here);
+    constexpr double near = 6, far = 34;
+    if (size == 0) {
+      strokes_ += label_(at->x, at->y - 10, "F(t)");
+      return;
+    }
+    const double x = at->x - (far + at->back) * dx, y = at->y - (far + at->back) * dy;
+    strokes_ += arrow(x, y, at->x - (near + at->back) * dx, at->y - (near + at->back) * dy) +
+                (std::abs(dx) > std::abs(dy) ? beside(x, y, -dx, -dy, "F(t)") : label_(x + 7, y + 4, "F(t)", "start"));
+  }
+
+  SceneValues scene_;
+  std::vector<std::pair<std::string, SceneValues>> bodies_;
+  Loads loads_;
+  const Json* layout_;
+  std::vector<const Json*> layouts_;
+  std::vector<PieceSize> sizes_;
+  std::vector<SceneValues::Stop> stops_;
+  std::vector<Piece> pieces_;
+  std::vector<std::string> pushed_;
+  std::string strokes_;
+  Labels label_;
+  double height_ = 0;
+};
 
 }  // namespace
 
 std::string scene_svg(const nlohmann::ordered_json& study) {
-  const SceneValues scene(study);
-  const Structure* structure = structure_of(scene);
-  if (!structure) return "";
-  const StructureSketch files = structure->draw ? StructureSketch() : structure_sketch(scene, sketch_width);
-  const std::string drawn = structure->draw ? structure->draw(scene) : files.svg;
-  if (drawn.empty()) return "";
-  std::string said = std::string("Sketch of the scene: ") + structure->name;
+  std::string said = "Sketch of the scene: " + SceneValues(study).word("/scene/structure/type");
   for (const auto& [symbol, text] : scene_numbers(study)) said += ", " + symbol + " " + text;
-  return fmt::format("<svg class=\"sketch\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">{}</svg>\n",
-                     sketch_width, structure->draw ? sketch_height : files.height, escape(said), drawn);
-}
-
-std::vector<std::pair<std::string, std::string>> scene_numbers(const nlohmann::ordered_json& study) {
-  const SceneValues scene(study);
-  std::vector<std::pair<std::string, std::string>> out;
-  const auto add = [&](const std::string& symbol, const std::string& text) {
-    if (!text.empty()) out.emplace_back(symbol, text);
-  };
-  const Structure* structure = structure_of(scene);
-  if (!structure) return out;
-  for (const auto& [symbol, key, unit] : structure->numbers)
-    add(symbol, scene.text(std::string("/scene/structure/") + key, unit));
-  if (const auto section = scene.section()) {
-    add("EI", number_text(section->EI, 4) + " N m²");
-    add("ρS", number_text(section->rhoS, 4) + " kg/m");
-  }
-  for (const auto& [symbol, text] : held_beam_words(scene)) add(symbol, text);
-  for (const auto& [symbol, key] : {std::pair("lower stop", "lower"), {"upper stop", "upper"}}) {
-    const std::string pointer = std::string("/scene/stops/") + key;
-    const auto* stop = scene.at(pointer);
-    // A stop at rest is one all the same.
-    add(symbol,
-        stop && scene.text(pointer, "m").empty() ? "0 m" : scene.text(pointer, stop && stop->is_string() ? "" : "m"));
-  }
-  for (const auto& [name, text] : scene.named_stops()) add("stop " + name, text);
-  const auto* at = scene.at("/scene/stops/at");
-  if (at) add("stops at", at->is_string() ? at->get<std::string>() : scene.text("/scene/stops/at", "m"));
-  add("A₀ (clamp)", scene.text("/scene/support/amplitude", "m"));
-  if (!scene.text("/scene/support/amplitude", "").empty())
-    add("ω (clamp)", scene.text("/scene/support/pulsation", "rad/s"));
-  for (const std::string& words : motion_words(scene)) add("motion", words);
-  for (const std::string& words : load_words(scene)) add("load", words);
-  add("u(x, 0)", scene.text("/scene/initial/displacement", ""));
-  add("u_t(x, 0)", scene.text("/scene/initial/velocity", ""));
-  add("duration", scene.text("/duration", "s"));
-  return out;
+  return SceneDrawing(study).svg(said);
 }
 
 }  // namespace ricochet::report

@@ -16,11 +16,6 @@ using SceneJson = nlohmann::ordered_json;
 constexpr std::size_t most_stops = 12;
 constexpr int scene_digits = 4;
 
-std::optional<double> first_number(const SceneJson* value) {
-  if (value && value->is_array() && !value->empty()) value = &value->front();
-  return value && value->is_number() ? std::optional(value->get<double>()) : std::nullopt;
-}
-
 /// A stop's formula at x; nothing where there is no stop or no formula that can be read.
 std::optional<double> stop_at(const SceneJson* formula, double x) {
   if (formula && formula->is_array() && !formula->empty()) formula = &formula->front();
@@ -38,12 +33,24 @@ std::string with(const std::string& number, const std::string& unit) {
   return unit.empty() ? number : number + " " + unit;
 }
 
+constexpr const char* one_structure = "/scene/structure";
+
 }  // namespace
+
+std::optional<double> first_number(const SceneJson* value) {
+  if (value && value->is_array() && !value->empty()) value = &value->front();
+  return value && value->is_number() ? std::optional(value->get<double>()) : std::nullopt;
+}
+
+std::optional<double> number_at(const SceneJson& object, const char* key) {
+  const auto found = object.is_object() ? object.find(key) : object.end();
+  return found == object.end() ? std::nullopt : first_number(&*found);
+}
 
 std::string place_words(const SceneJson& one) {
   std::string where = one.value("body", "");
   const auto add = [&where](const std::string& part) { where += (where.empty() || part.empty() ? "" : " ") + part; };
-  if (one.contains("x")) add("x = " + number_text(one["x"].get<double>(), scene_digits) + " m");
+  if (const auto x = number_at(one, "x")) add("x = " + number_text(*x, scene_digits) + " m");
   add(one.value("node", ""));
   if (one.contains("point")) add("point " + one.value("point", ""));
   if (one.contains("component")) add((one.contains("x") ? "along " : "") + one.value("component", ""));
@@ -51,8 +58,21 @@ std::string place_words(const SceneJson& one) {
   return where.empty() ? "dofs" : where;
 }
 
+std::string SceneValues::real(const std::string& pointer) const {
+  return pointer.starts_with(one_structure) ? structure_ + pointer.substr(std::string(one_structure).size()) : pointer;
+}
+
+std::vector<std::pair<std::string, SceneValues>> SceneValues::bodies() const {
+  std::vector<std::pair<std::string, SceneValues>> out;
+  if (const SceneJson* bodies = at("/scene/bodies"); bodies && bodies->is_object())
+    for (const auto& [name, ignored] : bodies->items())
+      out.emplace_back(name, SceneValues(study_, "/scene/bodies/" + name));
+  if (out.empty()) out.emplace_back("", *this);
+  return out;
+}
+
 const SceneJson* SceneValues::at(const std::string& pointer) const {
-  const SceneJson::json_pointer place(pointer);
+  const SceneJson::json_pointer place(real(pointer));
   return study_.contains(place) && !study_.at(place).is_null() ? &study_.at(place) : nullptr;
 }
 
@@ -72,7 +92,7 @@ std::vector<double> SceneValues::swept(const std::string& pointer) const {
   if (const SceneJson* axes = at("/axes"); axes && axes->is_array())
     for (const SceneJson& one : *axes) sweeps.push_back(&one);
   for (const SceneJson* one : sweeps) {
-    if (!one->is_object() || one->value("pointer", "") != pointer) continue;
+    if (!one->is_object() || one->value("pointer", "") != real(pointer)) continue;
     if (one->contains("values") && (*one)["values"].is_array()) {
       std::vector<double> out;
       for (const SceneJson& value : (*one)["values"])
@@ -113,17 +133,27 @@ std::vector<std::pair<std::string, std::string>> SceneValues::named_stops() cons
   std::vector<std::pair<std::string, std::string>> out;
   const SceneJson* list = at("/scene/stops");
   if (!list || !list->is_array()) return out;
-  for (const SceneJson& stop : *list) {
-    std::string text = place_words(stop.at("at"));
-    if (stop.contains("to") && !stop["to"].is_null()) text += " less " + place_words(stop["to"]);
-    for (const char* side : {"lower", "upper"})
-      if (stop.contains(side) && !stop[side].is_null())
-        text += fmt::format(", {} {} m", side, number_text(stop[side].get<double>(), scene_digits));
-    if (stop.contains("clearance"))
-      text += fmt::format(", within {} m in a polygon of {} sides",
-                          number_text(stop["clearance"].at("radius").get<double>(), scene_digits),
-                          number_text(first_number(&stop["clearance"].at("sides")).value_or(0), scene_digits));
-    out.emplace_back(stop.value("name", ""), text);
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const SceneJson& stop = (*list)[i];
+    const std::string here = "/scene/stops/" + std::to_string(i);
+    std::string words = place_words(stop.at("at"));
+    if (stop.contains("to") && !stop["to"].is_null()) words += " less " + place_words(stop["to"]);
+    const auto add = [&](const char* name, const std::string& key, const char* unit) {
+      const SceneJson* value = at(here + key);
+      if (!value) return;
+      const std::string said = text(here + key, unit);
+      words += fmt::format(", {} {}", name, !said.empty() ? said : with("0", unit));
+    };
+    add("lower", "/lower", "m");
+    add("upper", "/upper", "m");
+    add("within", "/clearance/radius", "m");
+    add("sides", "/clearance/sides", "");
+    add("stiffness", "/stiffness", "N/m");
+    add("damping", "/damping", "N s/m");
+    add("restitution", "/restitution", "");
+    if (const SceneJson* by = at(here + "/moves_with"); by && !(by->is_string() && by->get<std::string>().empty()))
+      words += by->is_string() ? ", moves with " + by->get<std::string>() : ", moves by itself";
+    out.emplace_back(stop.value("name", ""), words);
   }
   return out;
 }
@@ -131,19 +161,10 @@ std::vector<std::pair<std::string, std::string>> SceneValues::named_stops() cons
 std::vector<SceneValues::Stop> SceneValues::stops(double length) const {
   if (const SceneJson* list = at("/scene/stops"); list && list->is_array()) {
     std::vector<Stop> out;
-    for (const SceneJson& stop : *list) {
-      const SceneJson& place = stop.at("at");
-      if (!place.contains("x") || out.size() >= most_stops || (stop.contains("to") && !stop["to"].is_null())) continue;
-      // The sketch shows what bounds uy.
-      if (place.value("component", "uy") != "uy" || place.contains("direction")) continue;
-      Stop shown{place["x"].get<double>(), first_number(&stop["lower"]), first_number(&stop["upper"]),
-                 stop.value("name", "")};
-      if (stop.contains("clearance")) {
-        shown.upper = first_number(&stop["clearance"].at("radius"));
-        if (shown.upper) shown.lower = -*shown.upper;
-      }
-      out.push_back(std::move(shown));
-    }
+    for (const SceneJson& stop : *list)
+      out.push_back({stop.value("at", SceneJson()), stop.value("to", SceneJson()), number_at(stop, "lower"),
+                     number_at(stop, "upper"), number_at(stop.value("clearance", SceneJson()), "radius"),
+                     stop.value("name", "")});
     return out;
   }
   const SceneJson *lower = at("/scene/stops/lower"), *upper = at("/scene/stops/upper"), *where = at("/scene/stops/at");
@@ -153,7 +174,8 @@ std::vector<SceneValues::Stop> SceneValues::stops(double length) const {
     for (const SceneJson& x : *where)
       if (x.is_number()) places.push_back(x.get<double>());
   } else if (word("/scene/stops/at") == "tip") {
-    places = {length};
+    // The tip of a bar is its end that is not held.
+    places = {word("/scene/structure/type") == "bar" && word("/scene/structure/fixed") != "left" ? 0 : length};
   } else {
     // At nodes: a few of them stand for all.
     const auto elements = static_cast<std::size_t>(std::max(1.0, number("/mesh/elements").value_or(most_stops)));
@@ -170,7 +192,8 @@ std::vector<SceneValues::Stop> SceneValues::stops(double length) const {
   if (places.size() > most_stops) places.resize(most_stops);
   std::vector<Stop> out;
   for (const double x : places) {
-    const Stop stop{x, stop_at(lower, x), stop_at(upper, x)};
+    Stop stop{SceneJson::object(), {}, stop_at(lower, x), stop_at(upper, x), {}};
+    stop.at["x"] = x;
     if (stop.lower || stop.upper) out.push_back(stop);
   }
   return out;

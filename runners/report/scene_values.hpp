@@ -7,6 +7,11 @@
 
 namespace ricochet::report {
 
+/// A number, the first of a list; nothing for what is none.
+std::optional<double> first_number(const nlohmann::ordered_json* value);
+/// The number of an object at a key.
+std::optional<double> number_at(const nlohmann::ordered_json& object, const char* key);
+
 /// A place as a study writes it, in words: "x = 0.5 m", "N3 uy", "point plate1".
 std::string place_words(const nlohmann::ordered_json& place);
 
@@ -14,8 +19,12 @@ std::string place_words(const nlohmann::ordered_json& place);
 /// is left out of the drawing rather than being an error.
 class SceneValues {
  public:
-  explicit SceneValues(const nlohmann::ordered_json& study) : study_(study) {}
+  /// `structure`: where what /scene/structure means here stands, of one body of several.
+  explicit SceneValues(const nlohmann::ordered_json& study, std::string structure = "/scene/structure")
+      : study_(study), structure_(std::move(structure)) {}
 
+  /// The same scene as each of its bodies sees it, by name; of one structure that, without a name.
+  std::vector<std::pair<std::string, SceneValues>> bodies() const;
   /// What stands at a pointer; null where nothing does.
   const nlohmann::ordered_json* at(const std::string& pointer) const;
   std::string word(const std::string& pointer) const;
@@ -24,13 +33,13 @@ class SceneValues {
   /// It with its unit; of several "from … to … (8 values)"; "" for nothing and for a lone 0.
   std::string text(const std::string& pointer, const std::string& unit) const;
 
-  /// A stop at one place: where along the structure, and how far it lies from rest.
+  /// A stop: its places as a study writes them, and how far it lies from rest.
   struct Stop {
-    double x = 0;
-    std::optional<double> lower, upper;
-    std::string name = {};  ///< where it has one
+    nlohmann::ordered_json at, to = {};          ///< to: null for the ground
+    std::optional<double> lower, upper, radius;  ///< radius: of a clearance
+    std::string name = {};                       ///< where it has one
   };
-  /// The stops, at most twelve places of a structure this long; none where there is no contact.
+  /// The stops, of a list all; else at most twelve places of a structure this long; none where there is no contact.
   std::vector<Stop> stops(double length) const;
   /// Name of each stop that has one, and its place and bounds in words.
   std::vector<std::pair<std::string, std::string>> named_stops() const;
@@ -41,10 +50,13 @@ class SceneValues {
   std::optional<Section> section() const;
 
  private:
+  /// Where a pointer leads in the study.
+  std::string real(const std::string& pointer) const;
   /// The values that a sweep gives to this place.
   std::vector<double> swept(const std::string& pointer) const;
 
   const nlohmann::ordered_json& study_;
+  std::string structure_;
 };
 
 }  // namespace ricochet::report

@@ -11,6 +11,7 @@
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/study_tables.hpp"
+#include "runners/study/body_keys.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet::report {
@@ -71,6 +72,17 @@ Fill answer_fill(const StudyResults& results) {
   return out;
 }
 
+/// A mesh of bodies by the numbers that the study gives each: "rod 10 + strap 4"; any other value as it is.
+std::string level_text(const StudyResults& results, const std::string& role, const std::string& value) {
+  if ((role != "elements" && role != "modes") || !results.study.contains("/scene/bodies"_json_pointer)) return value;
+  const auto number = nlohmann::ordered_json::parse(value, nullptr, false);
+  const auto said = number.is_number() ? said_of_mesh(results.study, role, number) : number;
+  if (!said.is_object()) return value;
+  std::vector<std::string> parts;
+  for (const auto& [body, count] : said.items()) parts.push_back(body + " " + count.dump());
+  return fmt::format("{}", fmt::join(parts, " + "));
+}
+
 /// What ran of a role: its methods in order of appearance, each with the values that its parameters had; of a plain
 /// axis its values. "alpha (order 1, 2), beta".
 std::string ran_text(const StudyResults& results, const std::string& role) {
@@ -95,7 +107,7 @@ std::string ran_text(const StudyResults& results, const std::string& role) {
       for (const auto& [value, ignored] : met.list()) values.push_back(value);
       said.push_back(parameter + " " + list_text(values, most_values));
     }
-    out.push_back(said.empty() ? name : fmt::format("{} ({})", name, fmt::join(said, "; ")));
+    out.push_back(said.empty() ? level_text(results, role, name) : fmt::format("{} ({})", name, fmt::join(said, "; ")));
   }
   return list_text(out, most_values);
 }
@@ -109,7 +121,9 @@ Fill methods_fill(const CaseView& view) {
       roles.push_back(role);
   for (const std::string& role : roles) {
     const std::string ran = ran_text(view.results(), role), unit = view.unit_of(role);
-    if (!ran.empty()) out << pair_fill("role", role + (unit.empty() ? "" : " (" + unit + ")"), "values", ran);
+    if (!ran.empty())
+      out << pair_fill("role", axis_text(view.results(), role) + (unit.empty() ? "" : " (" + unit + ")"), "values",
+                       ran);
   }
   return out;
 }
@@ -131,6 +145,26 @@ Fill limits_fill(const StudyResults& results) {
   std::size_t notes = 0;
   for (const CaseRecord& record : results.cases) notes += record.notes.empty() ? 0 : 1;
   if (notes > 0) out << line_fill(count_text(notes, "case", "cases") + " with remarks, under Notes in the report.");
+  return out;
+}
+
+/// What the sketch does not say: a paragraph for the structure, or each body, for stops, loads and all else.
+Fill numbers_fill(const StudyResults& results) {
+  Fill out{Fill::type::list};
+  std::string kind, paragraph;
+  const auto end = [&] {
+    if (!paragraph.empty()) out << line_fill(paragraph);
+    paragraph.clear();
+  };
+  for (const auto& [symbol, text] : scene_numbers(results.study)) {
+    std::string first = symbol.substr(0, symbol.find(' '));
+    const bool own = first == "body" || first == "stop" || first == "load" || first == "motion";
+    if (!own) first.clear();
+    if (first != kind || first == "body") end();
+    kind = first;
+    paragraph += (paragraph.empty() ? "" : " · ") + symbol + (own ? ": " : " = ") + text;
+  }
+  end();
   return out;
 }
 
@@ -179,10 +213,7 @@ std::string summary_html(const CaseView& view, const std::string& measures) {
   with.set("name", results.name);
   if (!results.question.empty()) with.set("question", results.question);
   with.set("sketch", scene_svg(results.study));
-  std::string numbers;
-  for (const auto& [symbol, text] : scene_numbers(results.study))
-    numbers += (numbers.empty() ? "" : " · ") + symbol + " = " + text;
-  with.set("numbers", numbers);
+  with.set("numbers", numbers_fill(results));
   with.set("lines", answer_fill(results));
   with.set("measures", measures);
   with.set("methods", methods_fill(view));

@@ -21,28 +21,47 @@ bool unpack(const std::vector<double>& bytes, std::size_t count, std::vector<Who
   return true;
 }
 
-// What only structures of files have, in columns behind the others.
+// Numbers of a list of words; the words stand beside them.
+template <class Values, class Word>
+void add_words(const char* name, const Values& values, const Word& word, NumberTable& table) {
+  std::vector<double> numbers;
+  std::vector<std::string> words;
+  for (const auto& one : values) {
+    numbers.push_back(static_cast<double>(words.size()));
+    words.push_back(word(one));
+  }
+  table.columns.push_back({name, "", ""});
+  table.values.emplace_back(numbers);
+  table.words.emplace_back(name, words);
+}
+
+// How it is drawn, in columns behind the others.
 void add_drawing(const Snapshots& snapshots, NumberTable& table) {
-  std::vector<double> names, held(snapshots.held.begin(), snapshots.held.end()), links, stops, directions;
-  for (std::size_t i = 0; i < snapshots.names.size(); ++i) names.push_back(static_cast<double>(i));
+  std::vector<double> held(snapshots.held.begin(), snapshots.held.end()), links, stops, directions, bodies;
+  for (const auto& [name, first] : snapshots.bodies) bodies.push_back(first);
   for (const auto& [a, b] : snapshots.links)
     links.insert(links.end(), {static_cast<double>(a), static_cast<double>(b)});
   for (const Snapshots::Stop& stop : snapshots.stops) {
-    stops.insert(stops.end(), {static_cast<double>(stop.at), static_cast<double>(stop.to)});
+    stops.insert(stops.end(), {stop.at, stop.to});
     directions.insert(directions.end(), stop.direction.begin(), stop.direction.end());
   }
   const std::vector<double> axes(snapshots.axes.begin(), snapshots.axes.end());
-  for (const auto& [name, values] : {std::pair<const char*, const std::vector<double>&>("names", names),
-                                     {"axes", axes},
+  for (const auto& [name, values] : {std::pair<const char*, const std::vector<double>&>("axes", axes),
                                      {"y", snapshots.y},
                                      {"held", held},
                                      {"links", links},
                                      {"stops", stops},
-                                     {"directions", directions}}) {
+                                     {"directions", directions},
+                                     {"body_places", bodies}}) {
     table.columns.push_back({name, "", ""});
     table.values.emplace_back(values);
   }
-  table.words.emplace_back("names", snapshots.names);
+  add_words(
+      "names", snapshots.names, [](const std::string& name) { return name; }, table);
+  add_words(
+      "stop_names", snapshots.stops, [](const Snapshots::Stop& stop) { return stop.name; }, table);
+  add_words(
+      "bodies", snapshots.bodies, [](const auto& body) { return body.first; }, table);
 }
 
 void take_drawing(const NumberTable& table, Snapshots& out) {
@@ -50,7 +69,11 @@ void take_drawing(const NumberTable& table, Snapshots& out) {
     const std::vector<double>* values = table.numbers(name);
     return values ? *values : std::vector<double>();
   };
-  if (const auto* names = table.words_of("names")) out.names = *names;
+  const auto words = [&](const char* name) {
+    const std::vector<std::string>* found = table.words_of(name);
+    return found ? *found : std::vector<std::string>();
+  };
+  out.names = words("names");
   const std::vector<double> axes = column("axes"), links = column("links"), stops = column("stops"),
                             directions = column("directions");
   for (std::size_t k = 0; k < axes.size() && k < out.axes.size(); ++k) out.axes[k] = static_cast<std::size_t>(axes[k]);
@@ -58,9 +81,15 @@ void take_drawing(const NumberTable& table, Snapshots& out) {
   for (const double one : column("held")) out.held.push_back(static_cast<int>(one));
   for (std::size_t k = 0; k + 1 < links.size(); k += 2)
     out.links.emplace_back(static_cast<int>(links[k]), static_cast<int>(links[k + 1]));
+  const std::vector<std::string> stop_names = words("stop_names"), bodies = words("bodies");
   for (std::size_t k = 0; k + 1 < std::min(stops.size(), directions.size()); k += 2)
-    out.stops.push_back(
-        {static_cast<int>(stops[k]), static_cast<int>(stops[k + 1]), {directions[k], directions[k + 1]}});
+    out.stops.push_back({stops[k],
+                         stops[k + 1],
+                         {directions[k], directions[k + 1]},
+                         k / 2 < stop_names.size() ? stop_names[k / 2] : ""});
+  const std::vector<double> first = column("body_places");
+  for (std::size_t b = 0; b < std::min(first.size(), bodies.size()); ++b)
+    out.bodies.emplace_back(bodies[b], static_cast<int>(first[b]));
 }
 
 }  // namespace
@@ -88,7 +117,7 @@ NumberTable table_of(const Snapshots& snapshots) {
       snapshots.upper,
       packed(snapshots.pushed),
       packed(snapshots.force)};
-  if (!snapshots.names.empty()) add_drawing(snapshots, table);
+  add_drawing(snapshots, table);
   return table;
 }
 

@@ -28,19 +28,23 @@ struct Snapshots {
   std::vector<std::uint32_t> pushed;
   std::vector<std::int16_t> force;
 
-  /// Of a structure of files. Nodes: x and y are their places on the plane of two axes (0 x, 1 y, 2 z), and each has
-  /// two displacements along these. Else y is empty, and each place is a point without a place, one bar each.
+  /// A stop of a contact point. Places count from 0; 2.25 is a quarter of the way from the third to the fourth.
   struct Stop {
-    int at = -1, to = -1;               ///< places; −1: none that is drawn, the ground
-    std::array<double, 2> direction{};  ///< on the plane
+    double at = -1, to = -1;            ///< −1: none that is drawn, the ground
+    std::array<double, 2> direction{};  ///< of the displacement that it bounds; the first alone where there is one
+    std::string name = {};              ///< where it has one
     bool operator==(const Stop&) const = default;
   };
+  std::vector<Stop> stops;
+  /// Nodes: x and y are their places on the plane of two axes (0 x, 1 y, 2 z), and each has two displacements along
+  /// these. Axes 2, 1: structures along x, displaced along z and y. Else y is empty; with names, places are points
+  /// without a place, one bar each.
   std::array<std::size_t, 2> axes{0, 1};
-  std::vector<std::string> names;  ///< of the places; empty for beams, bars and oscillators
+  std::vector<std::string> names;  ///< of the places; empty for one beam in one plane, bar or oscillator
   std::vector<double> y;
   std::vector<int> held;
   std::vector<std::pair<int, int>> links;
-  std::vector<Stop> stops;  ///< of each contact point
+  std::vector<std::pair<std::string, int>> bodies;  ///< of several, name and first place
 
   /// Displacements at one instant.
   std::size_t values() const { return y.empty() ? x.size() : 2 * x.size(); }

@@ -1,20 +1,23 @@
 #pragma once
+#include <Eigen/Core>
+#include <optional>
+#include <ricochet/scene/discrete_problem.hpp>
+#include <ricochet/scene/scene.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 
 #include "runners/store/snapshots.hpp"
 
 namespace ricochet {
 
-/// What a film of a structure of files shows: nodes on a plane with what joins them; or, where no node has a place of
-/// its own, a bar for each point.
+/// What a film shows of a structure: places of a beam, a bar or an oscillator; nodes on a plane with what joins them,
+/// also those of bodies and of a beam in two planes; or, where no node has a place of its own, a bar for each point.
 struct DrawnRows {
-  Snapshots shape;  ///< all that does not change, without stops' bounds
+  Snapshots shape;  ///< all that does not change, with a stop for each contact point, without bounds
   SparseRows rows;  ///< of its values at an instant, on the dofs of the mesh
   /// What supports add to them, values × r: static modes there, and their own displacements.
   Eigen::MatrixXd on_supports;
+  Eigen::VectorXd by_clamp;  ///< how much of the harmonic motion of all supports each value has
 };
-
-/// Nothing for beams, bars and oscillators.
-std::optional<DrawnRows> drawn_rows(const SceneSpec& scene, const SemiDiscrete& problem);
+DrawnRows drawn_rows(const SceneSpec& scene, const SemiDiscrete& problem);
 
 }  // namespace ricochet

@@ -27,15 +27,6 @@ std::vector<std::int16_t> counted(const std::vector<double>& values, double unit
   return counts;
 }
 
-// Places along the structure: its nodes where there are many, else as fine as the eye wants its cubics.
-std::vector<double> drawn_places(const FiniteElementSpace& space) {
-  if (space.elements.empty()) return {0};
-  const auto& last = space.elements.back();
-  const int elements = static_cast<int>(space.elements.size()), smooth = 25;
-  const int count = std::min(Snapshots::most_places, std::max(elements + 1, smooth));
-  return node_positions(last.left + last.length, count - 1);
-}
-
 }  // namespace
 
 int snapshots_asked(const Json& settings) {
@@ -46,17 +37,11 @@ SnapshotTaker::SnapshotTaker(const SceneSpec& scene, const Marcher& marcher, lon
     : steps_(steps), count_(std::min<long long>(count, steps)) {
   if (count_ <= 0) return;
   const SemiDiscrete& problem = *marcher.program().problem;
-  std::optional<DrawnRows> drawn = drawn_rows(scene, problem);
-  if (drawn) {
-    shape_ = std::move(drawn->shape);
-    at_ = problem.on_unknowns(std::move(drawn->rows));
-    by_support_ = drawn->on_supports.rowwise().sum();
-  } else {
-    shape_.along = problem.space.basis == FiniteElementSpace::Basis::linear && !problem.space.elements.empty();
-    shape_.x = drawn_places(problem.space);
-    at_ = problem.space.elements.empty() ? problem.tip : place_rows(problem, shape_.x);
-    by_support_ = Eigen::VectorXd::Ones(at_.rows());
-  }
+  DrawnRows drawn = drawn_rows(scene, problem);
+  shape_ = std::move(drawn.shape);
+  shape_.along = problem.space.basis == FiniteElementSpace::Basis::linear && !problem.space.elements.empty();
+  at_ = problem.on_unknowns(std::move(drawn.rows));
+  by_support_ = std::move(drawn.by_clamp);
   const std::vector<Snapshots::Stop> stops = std::move(shape_.stops);
   shape_.stops.clear();
   const int points = marcher.program().contact ? problem.points() : 0;
@@ -73,7 +58,7 @@ SnapshotTaker::SnapshotTaker(const SceneSpec& scene, const Marcher& marcher, lon
   // Displacements are drawn as the stops see them.
   if (!problem.motions.empty() && !problem.motions.carry_stops) {
     const std::vector<std::vector<std::size_t>>& moved = problem.motions.supports;
-    shares_ = drawn ? of_motions(problem.motions, drawn->on_supports) : motion_shapes(problem, shape_.x);
+    shares_ = of_motions(problem.motions, drawn.on_supports);
     shares_.conservativeResize(shares_.rows() + 1, Eigen::NoChange);
     // The clamp is the first support, which moves by one motion at most.
     for (std::size_t k = 0; k < moved.size(); ++k)

@@ -8,15 +8,24 @@
       Object.assign(this, { one, ...held, t: block("t"), clamp: block("clamp"), counts: block("u"), pushed: block("pushed"), forces: block("force") });
       this.largest = this.counts.reduce((most, count) => Math.max(most, Math.abs(count)), 0) * this.metres;
       this.strongest = this.forces.reduce((most, count) => Math.max(most, Math.abs(count)), 0) * this.newtons;
+      this.parts = this.y ? 2 : 1;
+      this.oblique = this.y && this.axes[0] === "z";
       this.mass = this.x.length === 1 && !this.names;
       this.length = this.x[this.x.length - 1];
-      this.parts = this.y ? 2 : 1;
       this.shown = this.y ? this.mainPart() : 0;
+      if (!this.stops.length) this.stops = this.point.map((x) => ({ at: this.length ? x / this.length * (this.x.length - 1) : 0, to: -1, name: "" }));
+      if (!this.y) for (const stop of this.stops) stop.direction = [1, 0];
     }
     get count() { return this.t.length; }
-    part(k, place, c) { return this.metres * this.counts[(k * this.x.length + place) * this.parts + c]; }
+    // Between two places: a straight line.
+    part(k, place, c) {
+      const p = Math.floor(place), share = place - p, at = (q) => this.metres * this.counts[(k * this.x.length + q) * this.parts + c];
+      return share ? (1 - share) * at(p) + share * at(p + 1) : at(p);
+    }
     // Of nodes on a plane the displacement along one axis.
     at(k, place) { return this.part(k, place, this.shown); }
+    // What a stop bounds of a place.
+    bounded(k, place, direction) { return this.part(k, place, 0) * direction[0] + (this.y ? this.part(k, place, 1) * direction[1] : 0); }
     // The axis along which nodes move most.
     mainPart() {
       const sums = [0, 0];
@@ -40,15 +49,6 @@
       while (high - low > 1) { const middle = (low + high) >> 1; if (this.t[middle] <= time) low = middle; else high = middle; }
       return time - this.t[low] < this.t[high] - time ? low : high;
     }
-    // Between two places: a straight line.
-    between(k, x) {
-      const last = this.x.length - 1;
-      let right = 1;
-      while (right < last && this.x[right] < x) ++right;
-      if (last === 0 || x >= this.x[last]) return this.at(k, last);
-      const share = (x - this.x[right - 1]) / (this.x[right] - this.x[right - 1]);
-      return (1 - share) * this.at(k, right - 1) + share * this.at(k, right);
-    }
     // Points that are pushed at an instant, {point, force}.
     contacts(k) {
       const m = this.point.length, out = [];
@@ -70,22 +70,24 @@
     return { context, width, height, ink: ricochet.theme.ink() };
   }
 
-  // Nodes on their plane: one scale for places, one for displacements, by which the largest is a tenth of the structure.
-  function planeScales(shots, box, largest) {
-    const { x, y } = shots[0], room = 46, extent = (values) => Math.max(...values) - Math.min(...values), wide = extent(x), tall = extent(y);
-    const along = Math.min((box.width - 2 * room) / (wide || 1e-300), (box.height - 2 * room) / (tall || 1e-300)), larger = 0.1 * Math.max(wide, tall) / largest;
-    return { left: box.left + 0.5 * (box.width - along * wide), lowX: Math.min(...x), middle: box.top + 0.5 * (box.height + along * tall), lowY: Math.min(...y), along, across: along * larger, larger };
-  }
-  // How lengths become pixels in a box: `along` of positions, `across` of displacements.
-  function scalesOf(shots, box) {
-    const finite = shots.flatMap((one) => [...one.lower, ...one.upper]).filter((stop) => stop !== null), largest = Math.max(...shots.map((one) => one.largest), 1e-300);
-    const reach = Math.max(largest, ...finite.map(Math.abs).filter((stop) => stop < 3 * largest)) * 1.15, length = Math.max(...shots.map((one) => one.length));
-    if (shots[0].y) return planeScales(shots, box, largest);
-    if (shots[0].names) return { left: box.left + 26, middle: box.top + 0.47 * box.height, along: (box.width - 52) / shots[0].x.length, across: 0.4 * box.height / reach };
-    if (shots[0].mass) return { centre: box.left + 0.5 * box.width, across: 0.42 * box.width / reach };
-    if (shots[0].along) { const across = 0.12 * length / largest, along = box.width / (1.35 * length); return { left: box.left + 0.13 * box.width, along, across: along * across, larger: across }; }
-    const along = (box.width - 40) / length, across = 0.44 * box.height / reach;
-    return { left: box.left + 26, middle: box.top + 0.5 * box.height, along, across, larger: across / along };
+  // Where a structure is drawn in a box: `rest` of a place, pixels, `axes`: pixels of a metre of each displacement; `across` of them, `larger` than lengths.
+  function geometryOf(shots, box, row) {
+    const [{ x, y, names, mass, along: bar, oblique }] = shots, largest = Math.max(...shots.map((one) => one.largest), 1e-300);
+    const finite = shots.flatMap((one) => [...one.lower, ...one.upper]).filter((stop) => stop !== null).map(Math.abs).filter((stop) => stop < 3 * largest), reach = Math.max(largest, ...finite);
+    const extent = (values) => Math.max(...values) - Math.min(...values), middle = box.top + 0.5 * box.height, length = Math.max(...shots.map((one) => one.length)), rowY = box.top + box.height * (0.35 + 0.3 * row);
+    if (y) {
+      const wide = extent(x), tall = extent(y), room = 60, along = Math.min((box.width - 2 * room) / (wide || 1e-300), (box.height - 2 * room) / (tall || 1e-300)), larger = (tall ? 0.1 * Math.max(wide, tall) : 0.42 * box.height / along) / reach;
+      const across = along * larger, left = box.left + 0.5 * (box.width - along * wide) - along * Math.min(...x), low = middle + 0.5 * along * tall + along * Math.min(...y);
+      return { rest: (p) => [left + along * x[p], low - along * y[p]], axes: [oblique ? [-0.62 * across, 0.46 * across] : [across, 0], [0, -across]], larger };
+    }
+    if (names) {
+      const along = (box.width - 52) / x.length, across = 0.36 * box.height / reach, aside = row === 0.5 ? 0 : 8 * (row - 0.5);
+      return { rest: (p) => [box.left + 26 + along * (p + 0.5) + aside, box.top + 0.47 * box.height], axes: [[0, -across]], wide: along };
+    }
+    if (mass) return { rest: () => [box.left + 0.5 * box.width, rowY], axes: [[0.36 * box.width / reach, 0]], half: 11 };
+    if (bar) { const larger = 0.12 * length / largest, along = box.width / (1.35 * length); return { rest: (p) => [box.left + 0.13 * box.width + along * x[p], rowY], axes: [[along * larger, 0]], larger }; }
+    const along = (box.width - 60) / length, across = 0.4 * box.height / reach;
+    return { rest: (p) => [box.left + 36 + along * x[p], middle], axes: [[0, -across]], larger: across / along };
   }
 
   function stroke(context, colour, width, dash, path) {
@@ -128,105 +130,122 @@
   }
   const arrowLength = (force, strongest) => 12 + 42 * Math.abs(force) / strongest;
 
-  // Each draws {shots, k, colour, dash} with scales into a box.
-  const drawers = {
-    beam(context, { shots, k, colour, dash }, { left, middle, along, across }, box, strongest, ink) {
-      const px = (x) => left + along * x, py = (u) => middle - across * u, half = Math.min(9, 0.5 * along * shots.length / Math.max(1, shots.point.length));
-      for (const [stops, side] of [[shots.lower, 1], [shots.upper, -1]])
-        stops.forEach((u, p) => { if (u !== null) stop(context, ink, [px(shots.point[p]) - half, py(u)], [px(shots.point[p]) + half, py(u)], [0, side]); });
-      for (const { x, type } of shots.supports) support(context, ink, type, px(x), py(shots.clamp[k]), x < 0.5 * shots.length ? -1 : 1);
-      stroke(context, colour, 3, dash, (c) => shots.x.forEach((x, place) => c.lineTo(px(x), py(shots.at(k, place)))));
-      for (const { point, force } of shots.contacts(k)) {
-        const x = shots.point[point];
-        arrow(context, colour, [px(x), py(shots.between(k, x)) + 3 * Math.sign(force)], [0, -Math.sign(force) * arrowLength(force, strongest)]);
-      }
-    },
-    bar(context, { shots, k, colour, dash, row }, { left, along, across }, box, strongest, ink) {
-      const y = box.top + box.height * (0.35 + 0.3 * row), px = (x, u) => left + along * x + across * u, high = 14;
-      shots.point.forEach((x, p) => {
-        for (const [u, side] of [[shots.lower[p], -1], [shots.upper[p], 1]]) if (u !== null) stop(context, ink, [px(x, u), y - high - 4], [px(x, u), y + high + 4], [side, 0]);
-      });
-      stroke(context, colour, 1.6, dash, (c) => {
-        shots.x.forEach((x, place) => { const at = px(x, shots.at(k, place)); c.moveTo(at, y - high); c.lineTo(at, y + high); });
-        for (const edge of [-high, high]) { c.moveTo(px(0, shots.at(k, 0)), y + edge); c.lineTo(px(shots.length, shots.tip(k)), y + edge); }
-      });
-      for (const { point, force } of shots.contacts(k)) arrow(context, colour, [px(shots.point[point], shots.between(k, shots.point[point])), y], [Math.sign(force) * arrowLength(force, strongest), 0]);
-    },
-    // Nodes where they are, with displacements made larger; a stop stands where its node would touch it.
-    plane(context, { shots, k, colour, dash }, { left, lowX, middle, lowY, along, across }, box, strongest, ink) {
-      const px = (p) => left + along * (shots.x[p] - lowX) + across * shots.part(k, p, 0), py = (p) => middle - along * (shots.y[p] - lowY) - across * shots.part(k, p, 1);
-      const rest = (p) => [left + along * (shots.x[p] - lowX), middle - along * (shots.y[p] - lowY)], half = 9;
-      stroke(context, ink, 0.6, [2, 3], (c) => { for (const [a, b] of shots.links) { c.moveTo(...rest(a)); c.lineTo(...rest(b)); } });
-      stroke(context, colour, 2.4, dash, (c) => {
-        for (const [a, b] of shots.links) { c.moveTo(px(a), py(a)); c.lineTo(px(b), py(b)); }
-        if (!shots.links.length) shots.x.forEach((_, p) => { c.moveTo(px(p) + 2, py(p)); c.arc(px(p), py(p), 2, 0, 7); });
-      });
-      context.fillStyle = ink;
-      for (const p of shots.held) context.fillRect(px(p) - 4, py(p) - 4, 8, 8);
-      shots.stops.forEach(({ at, to, direction: [dx, dy] }, i) => {
-        const size = Math.hypot(dx, dy);
-        if (at < 0 || size < 0.2) return;
-        const [ex, ey] = [dx / size, -dy / size], [x, y] = rest(at), moved = to < 0 ? 0 : across * (shots.part(k, to, 0) * dx + shots.part(k, to, 1) * dy) / size;
-        for (const [bound, side] of [[shots.lower[i], -1], [shots.upper[i], 1]]) {
-          if (bound === null) continue;
-          const far = across * bound + moved, fx = x + far * ex, fy = y + far * ey;
-          stop(context, ink, [fx - half * ey, fy + half * ex], [fx + half * ey, fy - half * ex], [side * ex, side * ey]);
+  const between = (f, p) => { const q = Math.floor(p), share = p - q, a = f(q); if (!share) return a; const b = f(q + 1); return a.map((value, i) => (1 - share) * value + share * b[i]); };
+
+  // One case at an instant: stops behind, what moves over them, forces in front.
+  class Stage {
+    constructor(context, film, geometry, ink, taken) { Object.assign(this, { context, ...film, ...geometry, ink, taken }); }
+    rested(p) { return between(this.rest, p); }
+    shift(p) { const { shots, k, axes } = this; return axes.reduce(([x, y], [ax, ay], c) => { const u = shots.part(k, p, c); return [x + ax * u, y + ay * u]; }, [0, 0]); }
+    moved(p) { const [x, y] = this.rested(p), [dx, dy] = this.shift(p); return [x + dx, y + dy]; }
+    // Pixels of a metre along what a stop bounds.
+    towards(direction) { return this.axes.reduce(([x, y], [ax, ay], c) => [x + ax * direction[c], y + ay * direction[c]], [0, 0]); }
+    // A text that covers no other; none where there is no room.
+    label(x, y, words) {
+      const { context, taken } = this;
+      if (!words || !taken) return;
+      const wide = context.measureText(words).width, free = (top) => taken.every(([l, r, t]) => x + 0.5 * wide < l || x - 0.5 * wide > r || Math.abs(top - t) > 12);
+      const top = [0, -13, 13, -26, 26].map((more) => y + more).find(free);
+      if (top === undefined) return;
+      taken.push([x - 0.5 * wide, x + 0.5 * wide, top]);
+      context.textAlign = "center";
+      context.textBaseline = "middle";
+      context.fillStyle = this.ink;
+      context.fillText(words, x, top);
+      context.textAlign = "start";
+    }
+    stops() {
+      const { context, ink, shots, k } = this, reach = Math.min(9, 200 / Math.max(1, shots.stops.length)), { text } = ricochet.format, named = shots.stops.length <= 12 || shots.stops.some((one, i) => i && one.name === shots.stops[i - 1].name);
+      let ringed = "";
+      shots.stops.forEach(({ at, to, direction, name }, i) => {
+        if (at < 0) return;
+        const rest = this.rested(at), away = to < 0 ? 0 : shots.bounded(k, to, direction), [tx, ty] = this.towards(direction), size = Math.hypot(tx, ty), sides = shots.stops.filter((one) => one.name === name && one.at === at).length;
+        if (shots.y && sides > 2 && name) {   // the sides of a clearance
+          if (ringed === name) return;
+          ringed = name;
+          const [bx, by] = to < 0 ? [0, 0] : this.shift(to), radius = shots.upper[i] ?? -shots.lower[i], point = (turn) => this.towards([radius * Math.sin(turn), radius * Math.cos(turn)]);
+          stroke(context, ink, 1.4, [], (c) => { for (let n = 0; n <= 48; ++n) { const [x, y] = point(n / 24 * Math.PI); c.lineTo(rest[0] + bx + x, rest[1] + by + y); } });
+          const [, up] = point(0);
+          return this.label(rest[0] + bx, rest[1] + by + up - 12, name + " " + text(radius, 3) + " m");
+        }
+        if (size < 0.2 * Math.hypot(...this.axes[0])) return;
+        const [ex, ey] = [tx / size, ty / size];
+        let words = named ? name : "";
+        for (const [bound, side] of [[shots.upper[i], 1], [shots.lower[i], -1]]) {
+          if (bound === null || bound === undefined) continue;
+          const far = (bound + away) * size + side * (this.half ?? 0), x = rest[0] + far * ex, y = rest[1] + far * ey, half = shots.mass || shots.along ? 20 : reach;
+          stop(context, ink, [x - half * ey, y + half * ex], [x + half * ey, y - half * ex], [side * ex, side * ey]);
+          if (to >= 0) stroke(context, ink, 0.8, [3, 3], (c) => { c.moveTo(x, y); c.lineTo(...this.moved(to)); });
+          if (named && name) this.label(x + side * 14 * ex, y + side * (half > 9 ? 30 : 15) * (half > 9 ? 1 : ey), (words + " " + text(bound, 3) + " m").trim());
+          words = "";
         }
       });
-      for (const { point, force } of shots.contacts(k)) {
-        const { at, direction: [dx, dy] } = shots.stops[point], size = Math.hypot(dx, dy), long = Math.sign(force) * arrowLength(force, strongest);
-        if (at >= 0 && size >= 0.2) arrow(context, colour, [px(at), py(at)], [long * dx / size, -long * dy / size]);
+    }
+    // What holds it, and what it is.
+    shape() {
+      const { context, ink, shots, k, colour, dash } = this, line = (c, places) => places.forEach((p, n) => (n ? c.lineTo(...this.moved(p)) : c.moveTo(...this.moved(p)))), all = shots.x.map((_, p) => p);
+      if (shots.y) {
+        const joined = new Set(shots.links.flat());
+        stroke(context, ink, 0.6, [2, 3], (c) => { for (const [a, b] of shots.links) { c.moveTo(...this.rested(a)); c.lineTo(...this.rested(b)); } });
+        stroke(context, colour, 2.4, dash, (c) => {
+          for (const link of shots.links) line(c, link);
+          for (const p of all) if (!joined.has(p)) { const [x, y] = this.moved(p); c.rect(x - 6, y - 6, 12, 12); }
+        });
+        context.fillStyle = ink;
+        for (const p of shots.held) { const [x, y] = this.moved(p); context.fillRect(x - 4, y - 4, 8, 8); }
+        for (const { name, first } of shots.bodies ?? []) { const [x, y] = this.rested(first); this.label(x - 8 - 0.5 * context.measureText(name).width, y, name); }
+      } else if (shots.names) {
+        const [[left, y], [right]] = [this.rest(-0.5), this.rest(shots.x.length - 0.5)];
+        stroke(context, ink, 0.6, [], (c) => { c.moveTo(left, y); c.lineTo(right, y); });
+        for (const p of all) stroke(context, colour, 5, dash.length ? [3, 2] : [], (c) => { c.moveTo(...this.rest(p)); c.lineTo(...this.moved(p)); });
+        for (const p of all) this.label(this.rest(p)[0], this.box.top + this.box.height - 8, shots.names[p]);
+      } else if (shots.mass) {
+        const [x, y] = this.moved(0), half = this.half, coils = 12, from = this.box.left + 6, to = x - half;
+        stroke(context, ink, 1.2, [], (c) => { c.moveTo(from, y); for (let n = 1; n < coils; ++n) c.lineTo(from + n / coils * (to - from), y + (n % 2 ? -6 : 6)); c.lineTo(to, y); });
+        stroke(context, colour, 2.4, dash, (c) => c.rect(x - half, y - half, 2 * half, 2 * half));
+      } else if (shots.along) {
+        const high = 14;
+        stroke(context, colour, 1.6, dash, (c) => {
+          for (const p of all) { const [x, y] = this.moved(p); c.moveTo(x, y - high); c.lineTo(x, y + high); }
+          for (const edge of [-high, high]) for (const p of [0, all.length - 1]) { const [x, y] = this.moved(p); if (p) c.lineTo(x, y + edge); else c.moveTo(x, y + edge); }
+        });
+      } else {
+        for (const { x, type } of shots.supports) { const [px, py] = this.rested(x / shots.length * (all.length - 1)), [, up] = this.towards([shots.clamp[k]]); support(context, ink, type, px, py + up, x < 0.5 * shots.length ? -1 : 1); }
+        stroke(context, colour, 3, dash, (c) => line(c, all));
       }
-    },
-    // Points without places: what each is displaced by, beside its stops.
-    points(context, { shots, k, colour, dash, row }, { left, middle, along, across }, box, strongest, ink) {
-      const px = (p) => left + along * (p + 0.5) + (row === 0.5 ? 0 : 8 * (row - 0.5)), py = (u) => middle - across * u, half = Math.min(14, 0.35 * along);
-      stroke(context, ink, 0.6, [], (c) => { c.moveTo(left, middle); c.lineTo(left + along * shots.x.length, middle); });
-      shots.stops.forEach(({ at }, i) => {
-        for (const [u, side] of [[shots.lower[i], 1], [shots.upper[i], -1]]) if (u !== null && at >= 0) stop(context, ink, [px(at) - half, py(u)], [px(at) + half, py(u)], [0, side]);
-      });
-      shots.x.forEach((_, p) => stroke(context, colour, 5, dash.length ? [3, 2] : [], (c) => { c.moveTo(px(p), middle); c.lineTo(px(p), py(shots.at(k, p))); }));
-      context.fillStyle = ink;
-      context.textBaseline = "bottom";
-      context.textAlign = "center";
-      shots.names.forEach((name, p) => context.fillText(name, left + along * (p + 0.5), box.top + box.height - 2, along));
-      context.textAlign = "start";
+    }
+    forces(strongest) {
+      const { context, shots, k, colour } = this;
       for (const { point, force } of shots.contacts(k)) {
-        const { at } = shots.stops[point];
-        if (at >= 0) arrow(context, colour, [px(at) + 9, py(shots.at(k, at))], [0, -Math.sign(force) * arrowLength(force, strongest)]);
+        const { at, direction } = shots.stops[point], [tx, ty] = this.towards(direction), size = Math.hypot(tx, ty);
+        if (at < 0 || !(size > 0)) continue;
+        const long = Math.sign(force) * arrowLength(force, strongest) / size, [x, y] = this.moved(at), off = this.half ?? 0;
+        arrow(context, colour, [x - Math.sign(force) * off * tx / size, y - Math.sign(force) * off * ty / size], [long * tx, long * ty]);
       }
-    },
-    mass(context, { shots, k, colour, dash, row }, { centre, across }, box, strongest, ink) {
-      const y = box.top + box.height * (0.35 + 0.3 * row), px = (u) => centre + across * u, half = 11, u = shots.at(k, 0), wall = box.left + 6;
-      for (const [at, side] of [[shots.lower[0], -1], [shots.upper[0], 1]])
-        if (at !== null && at !== undefined) stop(context, ink, [px(at) + side * half, y - 26], [px(at) + side * half, y + 26], [side, 0]);
-      stroke(context, ink, 1.2, [], (c) => {
-        const coils = 12, from = wall, to = px(u) - half;
-        c.moveTo(from, y);
-        for (let n = 1; n < coils; ++n) c.lineTo(from + n / coils * (to - from), y + (n % 2 ? -6 : 6));
-        c.lineTo(to, y);
-      });
-      stroke(context, colour, 2.4, dash, (c) => c.rect(px(u) - half, y - half, 2 * half, 2 * half));
-      for (const { force } of shots.contacts(k)) arrow(context, colour, [px(u) - Math.sign(force) * half, y], [Math.sign(force) * arrowLength(force, strongest), 0]);
-    },
-  };
+    }
+  }
 
   // Draws films [{shots, k, colour, dash, name}] over each other or side by side; returns what is to be said of the scale.
   function drawStage(canvas, films, overlay) {
     const { context, width, height, ink } = fresh(canvas), all = films.map((film) => film.shots), beside = !overlay && films.length > 1;
     const boxes = films.map((_, f) => (beside ? { left: f * width / films.length, top: 22, width: width / films.length, height: height - 26 } : { left: 0, top: 22, width, height: height - 26 }));
-    const strongest = Math.max(...all.map((one) => one.strongest), 1e-300), draw = all[0].y ? drawers.plane : all[0].names ? drawers.points : all[0].mass ? drawers.mass : all[0].along ? drawers.bar : drawers.beam;
-    let scales = null;
+    const strongest = Math.max(...all.map((one) => one.strongest), 1e-300);
+    let geometry = null;
+    const taken = [];
     context.clearRect(0, 0, width, height);
     films.forEach((film, f) => {
-      scales = scalesOf(all, boxes[f]);
+      const row = beside || films.length < 2 ? 0.5 : f;
+      geometry = { ...geometryOf(all, boxes[f], row), box: boxes[f] };
       context.fillStyle = film.colour;
       context.textBaseline = "top";
       context.fillText(film.name, beside ? boxes[f].left + 4 : 4 + f * width / films.length, 4, width / films.length - 8);
-      draw(context, { ...film, row: beside ? 0.5 : films.length > 1 ? f : 0.5 }, scales, boxes[f], strongest, ink);
+      const stage = new Stage(context, film, geometry, ink, beside || !f ? taken : null);
+      stage.stops();
+      stage.shape();
+      stage.forces(strongest);
     });
     const { text, shown } = ricochet.format, arrows = strongest > 1e-299 ? " The longest arrow is a force of " + text(strongest, 3) + " N." : "";
-    return (scales.larger === undefined ? "" : "Displacements are drawn " + shown(scales.larger, 2) + " times as large as lengths.") + arrows;
+    return (geometry.larger === undefined ? "" : "Displacements are drawn " + shown(geometry.larger, 2) + " times as large as lengths.") + arrows;
   }
 
   Object.assign(ricochet, { Snapshots, drawStage, freshCanvas: fresh });

@@ -78,7 +78,7 @@ ricochet.keyOf = (values) => values.map((value) => (value === null || value === 
     withUnit: ([name, unit]) => (unitless(unit) ? name : name + " (" + unit + ")"),
     unit: ([, unit]) => (unitless(unit) ? "" : " " + unit),
     mark: (status) => marks[status] || "?",
-    spaced: (name) => name.replace(/_/g, " "),
+    spaced: (name) => name.replace(/_/g, " ").replace(/\[(.*)\]$/, " at $1"),
     escape: (value) => String(value).replace(/[&<>"']/g, (c) => "&#" + c.charCodeAt(0) + ";"),
   };
 }

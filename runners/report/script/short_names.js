@@ -17,7 +17,8 @@
   let known = null;
   function table() {
     if (known && (known.whole || !ricochet.data)) return known;
-    const schemes = ricochet.data ? methods(ricochet.data.page.words) : [], all = schemes.map(([name, said]) => [name, said]).concat(names);
+    const usual = new Set(names.map(([full]) => full)), axes = ricochet.data ? ricochet.data.page.axes.filter(({ name, said }) => said && said !== name && !usual.has(name)).map(({ name, said }) => [name, said, name]) : [];
+    const schemes = axes.concat(ricochet.data ? methods(ricochet.data.page.words) : []), all = schemes.map(([name, said]) => [name, said]).concat(names);
     known = { whole: Boolean(ricochet.data), short: new Map(all), pattern: new RegExp("(?<![\\w.-])(?<!\\bthe )(?:" + schemes.map(([full]) => named(full)).concat(names.map(([full]) => named(full))).join("|") + ")(?![\\w-]|\\.\\w)", "g") };
     for (const [full, brief] of schemes) meanings[brief] = full;
     return known;
@@ -32,6 +33,8 @@
       return found;
     });
   };
+  // What an axis is called where there is room.
+  ricochet.said = (column) => ricochet.data.page.axes.find(({ name }) => name === column)?.said || column;
   // What short names mean: "α structure.damping.stiffness · N elements".
   ricochet.keyTo = (used) => Array.from(used, (name) => name + " " + meanings[name]).join(" · ");
 }

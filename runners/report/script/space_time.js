@@ -55,16 +55,22 @@
       context.stroke();
       context.fillStyle = ink;
       context.textBaseline = "top";
-      const ends = [[0, "left"], [shots.count - 1, "right"]];
-      for (const [instant, align] of ends) { context.textAlign = align; context.fillText(shown(shots.t[instant], 4), instant ? frame.x + frame.width : frame.x, frame.y + frame.height + 6); }
+      for (const [instant, align] of [[0, "left"], [shots.count - 1, "right"]]) { context.textAlign = align; context.fillText(shown(shots.t[instant], 4), instant ? frame.x + frame.width : frame.x, frame.y + frame.height + 6); }
       context.textAlign = "center";
-      context.fillText("t (s)", frame.x + 0.5 * frame.width, frame.y + frame.height + 6);
+      context.fillText(shots.y ? "t (s), u" + shots.axes[shots.shown] : "t (s)", frame.x + 0.5 * frame.width, frame.y + frame.height + 6);
       if (shots.mass) return;
       context.textAlign = "right";
-      const labels = shots.names ? [shots.names[shots.names.length - 1], shots.y ? "u" + shots.axes[shots.shown] : "point", shots.names[0]] : [shown(length, 4), "x (m)", "0"], lines = ["top", "middle", "bottom"];
-      labels.forEach((words, end) => {
+      const ends = shots.bodies ? [] : shots.names ? [shots.names[shots.names.length - 1], "", shots.names[0]] : [shown(length, 4), "x (m)", "0"], lines = ["top", "middle", "bottom"];
+      ends.forEach((words, end) => {
         context.textBaseline = lines[end];
         context.fillText(words, frame.x - 6, frame.y + 0.5 * end * frame.height, margin.left - 8);
+      });
+      context.textBaseline = "middle";
+      const row = (place) => frame.y + frame.height * (1 - place / shots.x.length);
+      (shots.bodies ?? []).forEach(({ name, first }, b) => {
+        const next = shots.bodies[b + 1]?.first ?? shots.x.length;
+        context.fillText(name, frame.x - 6, 0.5 * (row(first) + row(next)), margin.left - 8);
+        if (b) context.fillRect(frame.x, row(first) - 0.5, frame.width, 1);
       });
     }
   }

@@ -132,7 +132,8 @@ TEST_CASE("matrices with places are drawn as nodes, links, stops with their name
   CHECK_THAT(svg, Contains("wall 0.002 m") && Contains("pair 0.003 m") && Contains(">F(t)<") && Contains(">1 m<"));
   CHECK_THAT(svg, Contains(">x<") && Contains(">z<"));
   CHECK(count(svg, "rect class=\"solid\"") == 1);
-  CHECK(count(svg, "<line class=\"stop\"") == 4);  // three faces, and the line to the other node
+  CHECK(count(svg, "<line class=\"stop\"") == 3);  // faces
+  CHECK(count(svg, "stop link") == 2);             // of both, a line to the other node
   CHECK(value_of(study, "damping ratio") == "0.02");
   CHECK(value_of(study, "load") == "F(t) at A ux = sin(t)");
 }
@@ -145,9 +146,75 @@ TEST_CASE("points without places are drawn in a row, each with its stops", "[rep
     "files": {"layout": {"points": ["force", "middle"]}}})json");
   const std::string svg = report::scene_svg(study);
   CHECK(count(svg, "<circle class=\"body\"") == 2);
-  CHECK_THAT(svg, Contains(">plate<") && Contains(">middle<") && Contains(">0.002 m<") && Contains(">F(t)<"));
+  CHECK_THAT(svg, Contains(">plate 0.002 m<") && Contains(">middle<") && Contains(">F(t)<"));
   CHECK(value_of(study, "load") == "F(t) at point force = f.csv");
   Scene none = study;
   none.erase("files");
   CHECK(report::scene_svg(none).empty());
+}
+
+namespace {
+
+Scene rods(const std::string& stops) {
+  return Scene::parse(R"({"scene": {"bodies": {
+    "rod": {"type": "beam", "length": 0.5, "section": {"type": "given", "EI": 14.4, "rhoS": 0.6},
+            "supports": [{"name": "a", "x": 0, "type": "pinned"}]},
+    "strap": {"type": "beam", "length": 0.25, "section": {"type": "given", "EI": 1, "rhoS": 0.1}},
+    "ball": {"type": "oscillator", "mass": 0.1, "stiffness": 3}}, "stops": )" +
+                      stops + "}}");
+}
+
+// The heights of the lines of beams, from above.
+std::vector<double> beam_heights(const std::string& svg) {
+  std::vector<double> out;
+  const std::string mark = "<line class=\"structure\"";
+  for (std::size_t at = svg.find(mark); at != std::string::npos; at = svg.find(mark, at + 1))
+    out.push_back(std::stod(svg.substr(svg.find("y1=\"", at) + 4)));
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("bodies are drawn by name, above what goes upwards to them, with the stops between them", "[report]") {
+  const Scene study = rods(R"([
+    {"name": "dimple", "at": {"body": "rod", "x": 0.25}, "to": {"body": "strap", "x": 0.1}, "upper": 1e-4},
+    {"name": "wall", "at": {"body": "ball"}, "lower": -0.001}])");
+  const std::string svg = report::scene_svg(study);
+  for (const char* text : {">rod, 0.5 m<", ">strap, 0.25 m<", ">ball<", ">dimple 0.0001 m<"})
+    CHECK_THAT(svg, Contains(text));
+  CHECK(count(svg, "stop link") == 1);
+  CHECK(count(svg, "<line class=\"stop\"") == 2);
+  auto heights = beam_heights(svg);
+  REQUIRE(heights.size() == 2);
+  CHECK(heights[0] > heights[1]);
+  heights = beam_heights(report::scene_svg(rods(R"([
+    {"name": "dimple", "at": {"body": "rod", "x": 0.25}, "to": {"body": "strap", "x": 0.1}, "lower": -1e-4}])")));
+  CHECK(heights[0] < heights[1]);
+  CHECK_THAT(value_of(study, "body rod"), Contains("beam, EI 14.4 N m²") || Contains("beam, L 0.5 m"));
+  CHECK(value_of(study, "stop dimple") == "rod x = 0.25 m less strap x = 0.1 m, upper 0.0001 m");
+}
+
+TEST_CASE("a stop between two places of a beam, a direction and a clearance are drawn", "[report]") {
+  Scene study = beam();
+  study["scene"]["structure"]["planes"] = 2;
+  study["scene"]["stops"] = Scene::parse(R"([
+    {"name": "span", "at": {"x": 0.5}, "to": {"x": 1}, "upper": 1e-3},
+    {"name": "slant", "at": {"x": 1, "direction": [0.6, 0.8]}, "lower": -2e-3},
+    {"name": "plate", "at": {"x": 1.2}, "clearance": {"radius": 3e-3, "sides": [8, 16]}}])");
+  const std::string svg = report::scene_svg(study);
+  CHECK_THAT(svg, Contains(">span 0.001 m<") && Contains(">plate radius 0.003 m<") && Contains(">z<"));
+  CHECK(count(svg, "stop link") == 1);
+  CHECK(count(svg, "<line class=\"stop\"") == 2);
+  CHECK(value_of(study, "stop plate") == "x = 1.2 m, within 0.003 m, sides 8 and 16");
+  CHECK(value_of(study, "stop slant") == "x = 1 m along [0.6,0.8], lower −0.002 m");
+}
+
+TEST_CASE("a stop whose numbers are lists, with parameters of its own, is told and drawn", "[report]") {
+  Scene study = beam();
+  study["scene"]["stops"] = Scene::parse(R"([{"name": "bar", "at": {"x": [0.5, 1]}, "lower": 0, "upper": [1e-3, 2e-3],
+    "stiffness": [1e5, 1e6], "restitution": 0.5, "moves_with": "clamp"}])");
+  CHECK(value_of(study, "stop bar") ==
+        "x = 0.5 m, lower 0 m, upper 0.001 and 0.002 m, stiffness 1e5 and 1e6 N/m, "
+        "restitution 0.5, moves with clamp");
+  CHECK(count(report::scene_svg(study), "<line class=\"stop\"") == 2);
 }

@@ -12,7 +12,7 @@
   class AlongAxis {
     constructor(view, column) {
       const onAxis = view.all.filter((one) => numberOf(one, column) !== null), offAxis = view.all.filter((one) => !onAxis.includes(one));
-      Object.assign(this, { column, x: [column === "step" ? "step h" : column, view.unit(column) || "1"] });
+      Object.assign(this, { column, x: [column === "step" ? "step h" : ricochet.said(column), view.unit(column) || "1"] });
       this.xRange = new Interval().include(...onAxis.map((one) => numberOf(one, column)));
       this.curves = new ricochet.MethodCurves(view, onAxis, column, { among: view.all, byMass: true });
       // Methods without this parameter, otherwise as the chart's: what the parameter's limit is compared with. They are drawn across.

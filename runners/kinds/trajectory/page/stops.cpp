@@ -8,6 +8,7 @@
 
 #include "runners/answers/compared.hpp"
 #include "runners/answers/limits.hpp"
+#include "runners/answers/uncertainty.hpp"
 #include "runners/report/html.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/table_reader.hpp"
@@ -100,10 +101,21 @@ std::string stops_html(const CaseView& view) {
     if (std::none_of(stops.begin(), stops.end(), [&](const std::string& stop) { return rows.contains({name, stop}); }))
       continue;
     html.row(in_words(name));
-    std::string unit;
+    answers::MeasureWords words;
+    double size = 0;
+    const auto ends = [&](const Row& row) {
+      const bool known = !at(row, "low").is_nothing();
+      return std::pair(at(row, known ? "low" : "least").number().value_or(0),
+                       at(row, known ? "high" : "largest").number().value_or(0));
+    };
     for (const std::string& stop : stops)
-      if (const auto found = rows.find({name, stop}); found != rows.end()) unit = at(*found->second, "unit").text();
-    html.text(unit);
+      if (const auto found = rows.find({name, stop}); found != rows.end()) {
+        words.unit = at(*found->second, "unit").text();
+        const auto [low, high] = ends(*found->second);
+        size = std::max({size, std::abs(low), std::abs(high)});
+      }
+    words = answers::prefixed(std::move(words), size);
+    html.text(words.unit);
     for (const std::string& stop : stops) {
       const auto found = rows.find({name, stop});
       if (found == rows.end()) {
@@ -112,11 +124,10 @@ std::string stops_html(const CaseView& view) {
       }
       const Row& row = *found->second;
       const bool known = !at(row, "low").is_nothing();
-      const double low = at(row, known ? "low" : "least").number().value_or(0),
-                   high = at(row, known ? "high" : "largest").number().value_or(0);
-      const std::string text = number_text(low, 3) == number_text(high, 3)
-                                   ? number_text(low, 3)
-                                   : number_text(low, 3) + " to " + number_text(high, 3);
+      const auto [least, largest] = ends(row);
+      const std::string low = answers::short_number(words.factor * least, 3),
+                        high = answers::short_number(words.factor * largest, 3),
+                        text = low == high ? low : low + " to " + high;
       html.number(known ? text : text + " ?", at(row, "sentence").text());
     }
   }

@@ -116,3 +116,73 @@ TEST_CASE("a description in modes is filmed at its points") {
   REQUIRE(film.stops.size() == 1);
   CHECK(film.stops[0].at == 1);
 }
+
+namespace {
+
+Json two_rods(const std::string& more) {
+  return Json::parse(R"json({
+    "name": "rods", "kind": "trajectory",
+    "scene": {"bodies": {
+      "rod": {"type": "beam", "length": 1, "section": {"type": "given", "EI": 10, "rhoS": 1}, )json" +
+                     more + R"json(
+              "supports": [{"name": "a", "x": 0, "type": "pinned"}, {"name": "b", "x": 1, "type": "pinned"}]},
+      "ball": {"type": "oscillator", "mass": 1, "stiffness": 10}},
+      "stops": [{"name": "gap", "at": {"body": "rod", "x": 0.3}, "to": {"body": "ball"}, "upper": 1e-3}],
+      "load": [{"at": {"body": "rod", "x": 0.5}, "force": "sin(3*t)"}]},
+    "mesh": {"elements": {"rod": 10}},
+    "methods": {"mass": "consistent", "contact": {"name": "penalty", "stiffness": 1e4},
+                "time": "newmark-dumont-paoli"},
+    "step": 1e-3, "duration": 0.5, "samples": 40, "snapshots": 20})json");
+}
+
+}  // namespace
+
+TEST_CASE("bodies are filmed in rows, and their stop holds a place of each") {
+  const ScratchFolder folder;
+  const CaseRecord record = run_in(two_rods(""), folder);
+  const Snapshots film = film_of(record);
+  REQUIRE(film.bodies.size() == 2);
+  CHECK(film.bodies[0] == std::pair<std::string, int>("rod", 0));
+  const auto ball = static_cast<std::size_t>(film.bodies[1].second);
+  CHECK(film.x.size() == ball + 1);
+  CHECK(film.y[ball] > film.y[0]);     // the rod goes upwards to it
+  CHECK(film.x[ball] == Approx(0.3));  // and stands across from it
+  REQUIRE(film.stops.size() == 1);
+  CHECK(film.stops[0].name == "gap");
+  CHECK(film.stops[0].to == static_cast<double>(ball));
+  CHECK(film.stops[0].at == Approx(0.3 * static_cast<double>(ball - 1)));
+  CHECK(film.held == std::vector<int>{0, static_cast<int>(ball) - 1});
+  // Supported ends stay where they are, and nothing moves along the rod.
+  for (std::size_t k = 0; k < film.t.size(); ++k)
+    for (std::size_t p = 0; p < film.x.size(); ++p) {
+      const std::size_t at = 2 * (k * film.x.size() + p);
+      CHECK(film.displacement[at] == 0);
+      if (p == 0 || p + 1 == ball) CHECK(film.displacement[at + 1] == 0);
+    }
+}
+
+TEST_CASE("a beam in two planes is filmed in both, and every side of a clearance has its direction") {
+  const ScratchFolder folder;
+  Json text = two_rods("\"planes\": 2,");
+  text["scene"]["structure"] = text["scene"]["bodies"]["rod"];
+  text["scene"].erase("bodies");
+  text["mesh"]["elements"] = 10;
+  text["scene"]["stops"] =
+      Json::parse(R"([{"name": "plate", "at": {"x": 0.5}, "clearance": {"radius": 1, "sides": 8}}])");
+  text["scene"]["load"] = Json::parse(R"([{"at": {"x": 0.5, "component": "uz"}, "force": "1"}])");
+  const Snapshots film = film_of(run_in(text, folder));
+  CHECK(film.axes == std::array<std::size_t, 2>{2, 1});
+  CHECK(film.values() == 2 * film.x.size());
+  REQUIRE(film.stops.size() == 4);
+  for (const Snapshots::Stop& stop : film.stops) {
+    CHECK(stop.name == "plate");
+    CHECK(std::hypot(stop.direction[0], stop.direction[1]) == Approx(1));
+  }
+  // A push along z moves it along z alone.
+  bool moved = false;
+  for (std::size_t i = 0; i < film.displacement.size(); i += 2) {
+    moved = moved || film.displacement[i] != 0;
+    CHECK(film.displacement[i + 1] == 0);
+  }
+  CHECK(moved);
+}
