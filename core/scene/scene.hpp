@@ -212,6 +212,7 @@ struct MotionSpec {
   std::shared_ptr<const TimeTable> table = {};  ///< what it was made of; null: of something else
   bool accelerates = true;                      ///< whether the table gives φ'', and not φ
   std::string component = {};                   ///< of a beam in two planes: uy or uz; empty: uy
+  double period = 0;                            ///< s, after which it repeats; 0: none is declared
 };
 
 /// The word for all supports together, where a name may stand.

@@ -43,6 +43,7 @@ std::optional<std::string> SetSteps::refusal(const Program& program) {
       return "its impact measure does not see the effort of its own step";
   }
   if (!program.contact) return std::nullopt;
+  if (!program.problem->motions.empty()) return "supports or stops move by histories";
   if (program.law->memory_per_point() > 0) return "its law keeps a memory";
   if (program.law->reads()) {
     const auto slopes = slopes_of(program);
