@@ -55,8 +55,15 @@ void name_dofs(const AssembledStructure& given, const JoinedBody& body, Assemble
     out.dofs_known.direction.push_back(direction.empty() ? -1 : direction[static_cast<std::size_t>(i)]);
 }
 
-void add_supports(const SemiDiscrete& problem, JoinedBody& body, AssembledStructure& out) {
-  for (const std::string& name : problem.supports) {
+// A support that holds a beam in two planes is one along y, "plate", and one along z, "plate.uz".
+void add_supports(const SemiDiscrete& problem, JoinedBody& body, JoinedBodies& joined, AssembledStructure& out) {
+  const auto* beam = std::get_if<BeamSpec>(&body.alone.structure);
+  for (std::size_t j = 0; j < problem.supports.size(); ++j) {
+    const bool across = beam && beam->planes == 2 && j >= problem.supports.size() / 2;
+    const std::string name = problem.supports[j] + (across ? ".uz" : "");
+    if (const std::size_t next = out.supports.size();
+        across && std::find(out.supports.begin(), out.supports.end(), name) == out.supports.end())
+      joined.supports_across.push_back(next);
     const auto found = std::find(out.supports.begin(), out.supports.end(), name);
     body.supports.push_back(static_cast<int>(found - out.supports.begin()));
     if (found == out.supports.end()) out.supports.push_back(name);
@@ -157,7 +164,7 @@ std::shared_ptr<const AssembledStructure> join_bodies(const Bodies& bodies, int 
       name_dofs(body, problem, *out);
     }
     for (const std::string& note : problem.notes) out->notes.push_back("body " + one.name + ": " + note);
-    add_supports(problem, body, *out);
+    add_supports(problem, body, *joined, *out);
   }
   out->stiffness = sparse_matrix(dofs, dofs, stiffness);
   out->mass = sparse_matrix(dofs, dofs, mass);

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <ricochet/contract/mass_strategy.hpp>
@@ -50,6 +51,12 @@ struct JoinedBody {
 struct JoinedBodies {
   int mesh = 1;
   std::vector<JoinedBody> all;
+  std::vector<std::size_t> supports_across = {};  ///< numbers of those that move along z
+
+  /// Whether a support of these moves along z.
+  bool across(std::size_t support) const {
+    return std::find(supports_across.begin(), supports_across.end(), support) != supports_across.end();
+  }
 
   /// The body of a place; throws InputError at `pointer` with the nearest name.
   const JoinedBody& of(const Place& place, const std::string& pointer) const;

@@ -76,9 +76,12 @@ PlaceRow beam_row(const SceneSpec& scene, const FiniteElementSpace& space, const
 }  // namespace
 
 std::array<double, 2> stop_shares(const SceneSpec& scene, std::size_t stop) {
-  const auto* beam = std::get_if<BeamSpec>(&scene.structure);
-  if (!beam || scene.stops.named.empty()) return {1, 0};
+  if (scene.stops.named.empty()) return {1, 0};
   const NamedStop& one = scene.stops.named[stop];
+  const JoinedBodies* bodies = bodies_of(scene.structure);
+  const auto* beam =
+      std::get_if<BeamSpec>(bodies ? &bodies->of(one.at, stop_pointer(stop, "/at")).alone.structure : &scene.structure);
+  if (!beam) return {1, 0};
   const auto shares_at = [&](const Place& place) {
     return plane_shares(place, beam->planes == 2, stop_pointer(stop, "/at"));
   };

@@ -199,6 +199,8 @@ ObjectForm load_history(const char* unit) {
 
 ObjectForm stop_motion_form() {
   ObjectForm keys;
+  keys.fields = {
+      quiet(of_form(Field::Form::text, "component", Json(""), "What a clearance moves along; absent: its first."))};
   keys.ways = motion_form().ways;
   return keys;
 }
