@@ -83,6 +83,11 @@ SceneSpec on_mesh(SceneSpec scene, int mesh);
 /// The bodies of a scene; null where it has one structure.
 const JoinedBodies* bodies_of(const StructureSpec& structure);
 
+/// Puts how bodies begin into `position` and `velocity`, absolute; those of which nothing is said stay as they are.
+void begin_bodies(const JoinedBodies& bodies, const InitialSpec& initial, SemiDiscrete& problem);
+/// Throws InputError for an initial state that its body does not have, below /scene/initial/BODY.
+void check_initial_of_bodies(const JoinedBodies& bodies, const InitialSpec& initial);
+
 /// A basis of each body, joined: modes of all bodies first, then the coordinates of stops.
 ModalBasis join_bases(const JoinedBodies& bodies, const SemiDiscrete& problem, const SparseMatrix& mass,
                       const BasisSpec& spec);

@@ -232,6 +232,8 @@ struct InitialSpec {
   std::vector<DofState> dofs = {};               ///< of matrices that are given: those that do not begin at rest at 0
   bool equilibrium = false;                      ///< the displacement is that at rest under F(0) and the stops
   Formula displacement_z = {}, velocity_z = {};  ///< of u_z of a beam in two planes
+  std::string body = {};                         ///< which this is of, among of_bodies
+  std::vector<InitialSpec> of_bodies = {};       ///< of several bodies those that do not begin at rest at 0
 };
 
 /// One part of a load whose form in space stays as it is: a shape that a history scales, or a force at a point.

@@ -148,6 +148,10 @@ Eigen::MatrixXd support_shapes(const SemiDiscrete& problem, const std::vector<do
 /// The share that places x (m) have of each motion, places × motions: Σ of (Hψ)_j over the supports that it moves.
 Eigen::MatrixXd motion_shapes(const SemiDiscrete& problem, const std::vector<double>& x);
 
+/// Interpolation of w = u0 − φ(0) and w_t = u1 − φ'(0): values and slopes at the free nodes into `position` and
+/// `velocity`. What the clamp imposes is dropped, and a note says so when the formulas differ from it.
+void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem);
+
 /// The displacement space of the structure without contact dofs, on `elements` equal elements; of a beam with supports,
 /// sections or masses between its ends, on those of beam_intervals().
 FiniteElementSpace make_space(const StructureSpec& structure, int elements);

@@ -118,7 +118,9 @@ std::vector<std::pair<std::string, std::string>> SceneValues::named_stops() cons
     if (stop.contains("to") && !stop["to"].is_null()) text += " less " + place_words(stop["to"]);
     for (const char* side : {"lower", "upper"})
       if (stop.contains(side) && !stop[side].is_null())
-        text += fmt::format(", {} {} m", side, number_text(stop[side].get<double>(), scene_digits));
+        text += fmt::format(
+            ", {} {} m", side,
+            stop[side].is_number() ? number_text(stop[side].get<double>(), scene_digits) : stop[side].dump());
     if (stop.contains("clearance"))
       text += fmt::format(", within {} m in a polygon of {} sides",
                           number_text(stop["clearance"].at("radius").get<double>(), scene_digits),

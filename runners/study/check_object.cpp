@@ -64,7 +64,6 @@ Json check_formula(const Field& field, const Json& value, const std::string& poi
     Formula(value.get<std::string>(), pointer, field.variables);
     return value;
   }
-  if (value.is_object() && !field.given.empty()) return check_object(field.given.front(), value, pointer, axes);
   const bool listed = !field.nested.empty();
   if (listed && value.is_array() && !value.empty()) {
     Json result = Json::array();
@@ -217,6 +216,8 @@ Json check_value(const Field& field, const Json& value, const std::string& point
     axes.push_back(std::move(axis));
     return list;
   }
+  if (value.is_object() && !field.given.empty() && field.form != Field::Form::object)
+    return check_object(field.given.front(), value, pointer, axes);
   switch (field.form) {
     case Field::Form::bodies:
       return check_bodies(field, value, pointer, axes);
@@ -226,7 +227,6 @@ Json check_value(const Field& field, const Json& value, const std::string& point
         throw InputError(pointer, expectation(field) + "; a list is not possible here");
       return check_scalar(field, value, pointer);
     case Field::Form::text:
-      if (value.is_object() && !field.given.empty()) return check_object(field.given.front(), value, pointer, axes);
       if (!value.is_string()) throw InputError(pointer, "expected a text, found " + quote(value));
       return value;
     case Field::Form::formula:
@@ -242,6 +242,7 @@ Json check_value(const Field& field, const Json& value, const std::string& point
     case Field::Form::object:
       if (field.nullable && value.is_null()) return value;
       if (value.is_array() && !field.listed.empty()) return check_listed(field, value, pointer, axes);
+      if (!field.given.empty() && by_body(value)) return check_by_body(field, value, pointer, axes);
       return check_object(field.nested.front(), value, pointer, axes);
     case Field::Form::objects:
       return check_objects(field, value, pointer, axes);

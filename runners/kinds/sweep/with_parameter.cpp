@@ -34,11 +34,20 @@ void collect(const ObjectForm& form, Json value, const std::string& pointer, std
   for (const Field* field : fields_of(form, value, pointer)) {
     const std::string here = pointer_to(pointer, field->key());
     const auto found = value.find(field->key());
-    if (found == value.end()) continue;
+    const bool number = field->form == Field::Form::formula ||
+                        (field->form == Field::Form::scalar && field->spec.type == ParameterSpec::Type::real);
+    if (found == value.end()) {
+      // What is not written out has its default.
+      if (number && field->quiet && field->fallback && !field->fallback->is_null()) scalars.push_back({here, field});
+      continue;
+    }
     if (field->form == Field::Form::object && found->is_array())
       for (std::size_t i = 0; i < found->size(); ++i)
         collect(field->listed.front(), (*found)[i], pointer_to(here, i), scalars);
-    else if (found->is_object() && !field->given.empty())
+    else if (field->form == Field::Form::object && !field->given.empty() && by_body(*found))
+      for (const auto& [name, one] : found->items())
+        collect(field->given.front(), one, pointer_to(here, name), scalars);
+    else if (field->form != Field::Form::object && found->is_object() && !field->given.empty())
       collect(field->given.front(), *found, here, scalars);
     else if (field->form == Field::Form::object)
       collect(field->nested.front(), *found, here, scalars);
@@ -53,8 +62,7 @@ void collect(const ObjectForm& form, Json value, const std::string& pointer, std
     else if (is_object_list(*field, *found))
       for (std::size_t i = 0; i < found->size(); ++i)
         collect(field->nested.front(), (*found)[i], pointer_to(here, i), scalars);
-    else if (field->form == Field::Form::formula || (field->form == Field::Form::place && found->is_number()) ||
-             (field->form == Field::Form::scalar && field->spec.type == ParameterSpec::Type::real))
+    else if (number || (field->form == Field::Form::place && found->is_number()))
       scalars.push_back({here, field});
     else if (field->form == Field::Form::places && found->is_array())
       for (std::size_t i = 0; i < found->size(); ++i)
@@ -93,7 +101,9 @@ void change_scene(StudyCase& one, const std::string& pointer, double value) {
   const auto scalar =
       std::find_if(scalars.begin(), scalars.end(), [&](const Scalar& known) { return known.pointer == pointer; });
   if (scalar == scalars.end()) throw InputError(pointer, "names no number of this scene");
-  Json& place = one.scene_json[Json::json_pointer(pointer.substr(std::string("/scene").size()))];
+  const Json::json_pointer there(pointer.substr(std::string("/scene").size()));
+  if (!one.scene_json.contains(there)) one.scene_json[there] = *scalar->field->fallback;
+  Json& place = one.scene_json[there];
   place = changed(place, *scalar->field, pointer, value);
 }
 
@@ -155,13 +165,14 @@ StudyCase with_parameters(const StudyCase& study_case, const std::vector<std::pa
 
 StudyCase at_rest(const StudyCase& study_case) {
   StudyCase one = study_case;
-  one.scene.initial.displacement = one.scene.initial.velocity = Formula(0.0);
-  one.scene.initial.displacement_z = one.scene.initial.velocity_z = Formula();
-  one.scene.initial.dofs.clear();
+  InitialSpec rest;
+  rest.displacement = rest.velocity = Formula(0.0);
+  rest.projection = one.scene.initial.projection;
+  one.scene.initial = std::move(rest);
   if (one.scene_json.is_object())
-    for (const char* key : {"displacement", "velocity"}) one.scene_json["initial"][key] = "0";
-  if (one.scene_json.is_object())
-    for (const char* key : {"file", "displacement_z", "velocity_z"}) one.scene_json["initial"].erase(key);
+    one.scene_json["initial"] = {{"displacement", "0"},
+                                 {"velocity", "0"},
+                                 {"projection", one.scene_json["initial"].value("projection", "none")}};
   return one;
 }
 
