@@ -40,7 +40,8 @@ bool by_body(const Json& value) {
          std::all_of(value.begin(), value.end(), [](const Json& one) { return one.is_object(); });
 }
 
-Json check_by_body(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
+Json check_given(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
+  if (field.form != Field::Form::object) return check_object(field.given.front(), value, pointer, axes);
   Json result = Json::object();
   for (const auto& [name, one] : value.items())
     result[name] = check_object(field.given.front(), one, pointer_to(pointer, name), axes);

@@ -15,8 +15,8 @@ Json check_bodies(const Field& field, const Json& value, const std::string& poin
 
 /// Whether an object speaks of bodies by name: all that it holds are objects.
 bool by_body(const Json& value);
-/// An object of names, each with what the field says of a body.
-Json check_by_body(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes);
+/// The object that may stand for a value; of an object, one by body.
+Json check_given(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes);
 
 /// A number for each body by name.
 Json check_per_body(const Field& field, const Json& value, const std::string& pointer);

@@ -216,8 +216,8 @@ Json check_value(const Field& field, const Json& value, const std::string& point
     axes.push_back(std::move(axis));
     return list;
   }
-  if (value.is_object() && !field.given.empty() && field.form != Field::Form::object)
-    return check_object(field.given.front(), value, pointer, axes);
+  if (value.is_object() && !field.given.empty() && (field.form != Field::Form::object || by_body(value)))
+    return check_given(field, value, pointer, axes);
   switch (field.form) {
     case Field::Form::bodies:
       return check_bodies(field, value, pointer, axes);
@@ -242,7 +242,6 @@ Json check_value(const Field& field, const Json& value, const std::string& point
     case Field::Form::object:
       if (field.nullable && value.is_null()) return value;
       if (value.is_array() && !field.listed.empty()) return check_listed(field, value, pointer, axes);
-      if (!field.given.empty() && by_body(value)) return check_by_body(field, value, pointer, axes);
       return check_object(field.nested.front(), value, pointer, axes);
     case Field::Form::objects:
       return check_objects(field, value, pointer, axes);
