@@ -84,11 +84,12 @@ TEST_CASE("while stops of their own stiffness and damping push, steps without a 
   // A twelfth as stiff, as the law says, four times as stiff; what damps stands beside what does not.
   SceneSpec scene = pressed(StopsSpec::Place::tip, 1e-4);
   scene.stops = {};
-  for (const auto& [x, stiffness, damping] :
-       {std::tuple(0.5, std::optional(8e2), std::optional<double>()), {1.0, std::nullopt, 3.0}, {1.501, 4e4, 0.0}}) {
+  for (const auto& [x, gap, stiffness, damping] : {std::tuple(0.5, 0.002, std::optional(8e2), std::optional<double>()),
+                                                   {1.0, 0.008, std::nullopt, 3.0},
+                                                   {1.501, 0.02, 4e4, 0.0}}) {
     Place place;
     place.x = x;
-    NamedStop stop{.name = fmt::format("at{:.0f}", 10 * x), .at = place, .to = {}, .lower = -1e-4, .upper = 1e-4};
+    NamedStop stop{.name = fmt::format("at{:.0f}", 10 * x), .at = place, .to = {}, .lower = -gap, .upper = gap};
     stop.own = {.stiffness = stiffness, .damping = damping};
     scene.stops.named.push_back(stop);
   }
