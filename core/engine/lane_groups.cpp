@@ -33,13 +33,23 @@ bool same_load(const SemiDiscrete& a, const SemiDiscrete& b) {
   return true;
 }
 
+// Histories as well.
+bool same_motions(const SupportMotions& a, const SupportMotions& b) {
+  if (a.histories.size() != b.histories.size()) return false;
+  if (a.empty()) return true;
+  if (a.at_points != b.at_points || a.at_tip != b.at_tip) return false;
+  for (const double t : {0.0, 0.0137, 0.1973, 0.7719, 3.3391})
+    if (a.values(t, false) != b.values(t, false)) return false;
+  return true;
+}
+
 bool same_problem(const SemiDiscrete& a, const SemiDiscrete& b) {
   return a.dofs() == b.dofs() && a.points() == b.points() && same_matrix(a.stiffness, b.stiffness) &&
          same_matrix(a.inertia.mass, b.inertia.mass) && same_matrix(a.inertia.coupling, b.inertia.coupling) &&
          same_matrix(a.inertia.velocity_mass, b.inertia.velocity_mass) &&
          same_matrix(a.inertia.inverse, b.inertia.inverse) && a.damping == b.damping &&
          a.support.pulsation == b.support.pulsation && a.contact_x == b.contact_x && a.stops == b.stops &&
-         a.own == b.own && same_load(a, b);
+         a.own == b.own && same_load(a, b) && same_motions(a.motions, b.motions);
 }
 
 // A load is a formula, which keeps what it works with inside: every program that may run beside others has its own.

@@ -90,6 +90,8 @@ class Marcher {
   double lift_rate(int lane, int point, double t) const {
     return support_rate(lane, t) + motions().point_rate(point, t);
   }
+  /// Σ weight lift(t + at·h).
+  double lift_levels(int lane, int point, double t, const Levels& levels) const;
   const SupportMotions& motions() const { return program_.problem->motions; }
   /// Which stops pushed a lane at the last instant of contact: lower, upper.
   std::array<bool, 2> pushed_by(int lane) const;

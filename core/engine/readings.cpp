@@ -35,6 +35,12 @@ double Marcher::support_levels(int lane, double t, const Levels& levels) const {
   return sum;
 }
 
+double Marcher::lift_levels(int lane, int point, double t, const Levels& levels) const {
+  double sum = support_levels(lane, t, levels);
+  for (const Level& level : levels) sum += level.weight * motions().point(point, t + level.at * program_.h);
+  return sum;
+}
+
 const double* Marcher::distributed_load(const Levels& levels, double t) {
   return load_window_ ? load_window_->sum(levels, t) : nullptr;
 }

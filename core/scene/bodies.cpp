@@ -55,8 +55,15 @@ void name_dofs(const AssembledStructure& given, const JoinedBody& body, Assemble
     out.dofs_known.direction.push_back(direction.empty() ? -1 : direction[static_cast<std::size_t>(i)]);
 }
 
-void add_supports(const SemiDiscrete& problem, JoinedBody& body, AssembledStructure& out) {
-  for (const std::string& name : problem.supports) {
+// A support that holds a beam in two planes is one along y, "plate", and one along z, "plate.uz".
+void add_supports(const SemiDiscrete& problem, JoinedBody& body, JoinedBodies& joined, AssembledStructure& out) {
+  const auto* beam = std::get_if<BeamSpec>(&body.alone.structure);
+  for (std::size_t j = 0; j < problem.supports.size(); ++j) {
+    const bool across = beam && beam->planes == 2 && j >= problem.supports.size() / 2;
+    const std::string name = problem.supports[j] + (across ? ".uz" : "");
+    if (const std::size_t next = out.supports.size();
+        across && std::find(out.supports.begin(), out.supports.end(), name) == out.supports.end())
+      joined.supports_across.push_back(next);
     const auto found = std::find(out.supports.begin(), out.supports.end(), name);
     body.supports.push_back(static_cast<int>(found - out.supports.begin()));
     if (found == out.supports.end()) out.supports.push_back(name);
@@ -157,7 +164,7 @@ std::shared_ptr<const AssembledStructure> join_bodies(const Bodies& bodies, int 
       name_dofs(body, problem, *out);
     }
     for (const std::string& note : problem.notes) out->notes.push_back("body " + one.name + ": " + note);
-    add_supports(problem, body, *out);
+    add_supports(problem, body, *joined, *out);
   }
   out->stiffness = sparse_matrix(dofs, dofs, stiffness);
   out->mass = sparse_matrix(dofs, dofs, mass);
@@ -176,6 +183,65 @@ std::shared_ptr<const AssembledStructure> join_bodies(const Bodies& bodies, int 
   if (!all_alike(bodies.all)) out->damping.resize(dofs, dofs);
   out->joined = std::move(joined);
   return out;
+}
+
+void begin_bodies(const JoinedBodies& bodies, const InitialSpec& initial, SemiDiscrete& problem) {
+  for (const InitialSpec& one : initial.of_bodies) {
+    Place place;
+    place.body = one.body;
+    const JoinedBody& body = bodies.of(place, "/scene/initial");
+    SceneSpec alone = body.alone;
+    alone.initial = one;
+    SemiDiscrete begun;
+    begun.space = body.space;
+    interpolate_initial(alone, begun);
+    problem.position.segment(body.first, body.dofs()) = begun.position;
+    problem.velocity.segment(body.first, body.dofs()) = begun.velocity;
+    for (const std::string& note : begun.notes) problem.notes.push_back("body " + body.name + ": " + note);
+  }
+}
+
+namespace {
+
+// That a structure by itself can begin so.
+void check_initial_alone(const SceneSpec& alone, const JoinedBody& body) {
+  const InitialSpec& initial = alone.initial;
+  if (const auto* given = std::get_if<AssembledSpec>(&alone.structure))
+    return check_given_initial(*given->structure, initial,
+                               "body " + body.name + " has no x; expected 0, or the file of an initial state");
+  if (!initial.dofs.empty())
+    throw InputError("/scene/initial/file", fmt::format("a {} begins as formulas in x say; expected displacement and "
+                                                        "velocity",
+                                                        body.space.structure));
+  const auto* beam = std::get_if<BeamSpec>(&alone.structure);
+  for (const auto& [formula, key] :
+       {std::pair(&initial.displacement_z, "displacement_z"), {&initial.velocity_z, "velocity_z"}})
+    if (!formula->is_zero() && !(beam && beam->planes == 2))
+      throw InputError(std::string("/scene/initial/") + key, "only a beam of planes 2 moves along uz; expected 0");
+  std::vector<double> nodes = mesh_nodes(alone, body.elements);
+  if (nodes.empty()) nodes = {0};
+  for (const double x : nodes)
+    for (const Formula* formula :
+         {&initial.displacement, &initial.velocity, &initial.displacement_z, &initial.velocity_z})
+      (*formula)(x);
+}
+
+}  // namespace
+
+void check_initial_of_bodies(const JoinedBodies& bodies, const InitialSpec& initial) {
+  for (const InitialSpec& one : initial.of_bodies) {
+    Place place;
+    place.body = one.body;
+    const JoinedBody& body = bodies.of(place, "/scene/initial");
+    SceneSpec alone = body.alone;
+    alone.initial = one;
+    try {
+      check_initial_alone(alone, body);
+    } catch (const InputError& error) {
+      const std::string whole = "/scene/initial";
+      throw InputError(whole + "/" + body.name + error.pointer().substr(whole.size()), error.what());
+    }
+  }
 }
 
 const JoinedBodies* bodies_of(const StructureSpec& structure) {

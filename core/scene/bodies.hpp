@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <ricochet/contract/mass_strategy.hpp>
@@ -50,6 +51,12 @@ struct JoinedBody {
 struct JoinedBodies {
   int mesh = 1;
   std::vector<JoinedBody> all;
+  std::vector<std::size_t> supports_across = {};  ///< numbers of those that move along z
+
+  /// Whether a support of these moves along z.
+  bool across(std::size_t support) const {
+    return std::find(supports_across.begin(), supports_across.end(), support) != supports_across.end();
+  }
 
   /// The body of a place; throws InputError at `pointer` with the nearest name.
   const JoinedBody& of(const Place& place, const std::string& pointer) const;
@@ -75,6 +82,11 @@ SceneSpec on_mesh(SceneSpec scene, int mesh);
 
 /// The bodies of a scene; null where it has one structure.
 const JoinedBodies* bodies_of(const StructureSpec& structure);
+
+/// Puts how bodies begin into `position` and `velocity`, absolute; those of which nothing is said stay as they are.
+void begin_bodies(const JoinedBodies& bodies, const InitialSpec& initial, SemiDiscrete& problem);
+/// Throws InputError for an initial state that its body does not have, below /scene/initial/BODY.
+void check_initial_of_bodies(const JoinedBodies& bodies, const InitialSpec& initial);
 
 /// A basis of each body, joined: modes of all bodies first, then the coordinates of stops.
 ModalBasis join_bases(const JoinedBodies& bodies, const SemiDiscrete& problem, const SparseMatrix& mass,

@@ -76,9 +76,12 @@ PlaceRow beam_row(const SceneSpec& scene, const FiniteElementSpace& space, const
 }  // namespace
 
 std::array<double, 2> stop_shares(const SceneSpec& scene, std::size_t stop) {
-  const auto* beam = std::get_if<BeamSpec>(&scene.structure);
-  if (!beam || scene.stops.named.empty()) return {1, 0};
+  if (scene.stops.named.empty()) return {1, 0};
   const NamedStop& one = scene.stops.named[stop];
+  const JoinedBodies* bodies = bodies_of(scene.structure);
+  const auto* beam =
+      std::get_if<BeamSpec>(bodies ? &bodies->of(one.at, stop_pointer(stop, "/at")).alone.structure : &scene.structure);
+  if (!beam) return {1, 0};
   const auto shares_at = [&](const Place& place) {
     return plane_shares(place, beam->planes == 2, stop_pointer(stop, "/at"));
   };
@@ -283,6 +286,17 @@ Eigen::VectorXd initial_dofs(const AssembledStructure& structure, const InitialS
   return out;
 }
 
+void check_given_initial(const AssembledStructure& structure, const InitialSpec& initial, const std::string& no_x) {
+  for (const auto& [formula, key] : {std::pair(&initial.displacement, "displacement"), {&initial.velocity, "velocity"}})
+    if (!formula->is_zero()) throw InputError(fmt::format("/scene/initial/{}", key), no_x);
+  for (const DofState& state : initial.dofs)
+    if (structure.where[static_cast<std::size_t>(state.dof) - 1].free < 0 &&
+        (state.displacement != 0 || state.velocity != 0))
+      throw InputError("/scene/initial/file",
+                       fmt::format("dof {} is held, and would begin at {:.6g} with {:.6g}; expected 0 and 0", state.dof,
+                                   state.displacement, state.velocity));
+}
+
 void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond) {
   const bool modal = assembled_of(scene)->modes.has_value(), bodies = assembled_of(scene)->joined != nullptr;
   const std::string no_x = bodies ? "bodies have no x in common; expected "
@@ -294,11 +308,9 @@ void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, co
     throw InputError("/scene/stops", no_x + "a list of stops with name and place");
   if (!scene.load.formula.is_zero())
     throw InputError("/scene/load", no_x + "a list of entries {\"at\": place, \"force\": F(t)}");
-  for (const auto& [formula, key] :
-       {std::pair(&scene.initial.displacement, "displacement"), {&scene.initial.velocity, "velocity"}})
-    if (!formula->is_zero())
-      throw InputError(fmt::format("/scene/initial/{}", key),
-                       no_x + (bodies ? "0, or equilibrium" : "0, or the file of an initial state"));
+  check_given_initial(*assembled_of(scene), scene.initial,
+                      no_x + (bodies ? "an object by body, or equilibrium" : "0, or the file of an initial state"));
+  if (bodies) check_initial_of_bodies(*assembled_of(scene)->joined, scene.initial);
   for (std::size_t k = 0; k < scene.load.terms.size(); ++k) {
     const LoadTerm& term = scene.load.terms[k];
     const std::string pointer = fmt::format("/scene/load/{}", k);
@@ -321,20 +333,19 @@ void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, co
     term.history(0, 0);
   }
   tip_row(scene, space);
-  const AssembledStructure& structure = *assembled_of(scene);
-  for (const DofState& state : scene.initial.dofs)
-    if (structure.where[static_cast<std::size_t>(state.dof) - 1].free < 0 &&
-        (state.displacement != 0 || state.velocity != 0))
-      throw InputError("/scene/initial/file",
-                       fmt::format("dof {} is held, and would begin at {:.6g} with {:.6g}; expected 0 and 0", state.dof,
-                                   state.displacement, state.velocity));
   if (moves_by_histories(scene) || scene.support.amplitude != 0 || scene.initial.equilibrium)
     return;  // discretise() knows where the stops are at t = 0
   const ContactPoints points = contact_points(scene, space, 1);
-  const Eigen::VectorXd start = points.rows * initial_dofs(structure, scene.initial, &DofState::displacement);
+  SemiDiscrete begun;
+  begun.position = begun.velocity = initial_dofs(*assembled_of(scene), scene.initial, &DofState::displacement);
+  if (bodies) begin_bodies(*assembled_of(scene)->joined, scene.initial, begun);
+  const Eigen::VectorXd start = points.rows * begun.position;
+  const bool by_body = !scene.initial.of_bodies.empty();
   check_between_stops(points.x, start, points.lower, points.upper,
-                      scene.initial.dofs.empty() ? "/scene/stops" : "/scene/initial/file", "the initial displacement",
-                      beyond, points.names);
+                      by_body                      ? "/scene/initial"
+                      : scene.initial.dofs.empty() ? "/scene/stops"
+                                                   : "/scene/initial/file",
+                      "the initial displacement", beyond, points.names);
 }
 
 }  // namespace ricochet

@@ -72,6 +72,10 @@ void check_named_stops(const SceneSpec& scene, const FiniteElementSpace& space);
 /// of the list and nothing pushes back.
 void check_named_start(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond);
 
+/// Throws InputError for formulas, which matrices that are given have no x for (`no_x` says so and what is expected),
+/// and for a held dof that begins elsewhere.
+void check_given_initial(const AssembledStructure& structure, const InitialSpec& initial, const std::string& no_x);
+
 /// What the study may not say of matrices that are given: positions x, formulas in x, a clamp that moves, a held dof
 /// that begins elsewhere, an initial state beyond a stop where nothing pushes back.
 void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond);

@@ -212,6 +212,7 @@ struct MotionSpec {
   std::shared_ptr<const TimeTable> table = {};  ///< what it was made of; null: of something else
   bool accelerates = true;                      ///< whether the table gives φ'', and not φ
   std::string component = {};                   ///< of a beam in two planes: uy or uz; empty: uy
+  double period = 0;                            ///< s, after which it repeats; 0: none is declared
 };
 
 /// The word for all supports together, where a name may stand.
@@ -231,6 +232,8 @@ struct InitialSpec {
   std::vector<DofState> dofs = {};               ///< of matrices that are given: those that do not begin at rest at 0
   bool equilibrium = false;                      ///< the displacement is that at rest under F(0) and the stops
   Formula displacement_z = {}, velocity_z = {};  ///< of u_z of a beam in two planes
+  std::string body = {};                         ///< which this is of, among of_bodies
+  std::vector<InitialSpec> of_bodies = {};       ///< of several bodies those that do not begin at rest at 0
 };
 
 /// One part of a load whose form in space stays as it is: a shape that a history scales, or a force at a point.

@@ -22,10 +22,6 @@
 
 namespace ricochet {
 
-/// Interpolation of w = u0 − φ(0) and w_t = u1 − φ'(0): values and slopes at the free nodes into `position` and
-/// `velocity`. What the clamp imposes is dropped, and a note says so when the formulas differ from it.
-void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem);
-
 /// Fills problem.kernel_energy from the state as it is. `pushed`: Gᵀp of a compliant law that pushes in it, n; empty:
 /// none does.
 void measure_mass_constraint(SemiDiscrete& problem, const Eigen::VectorXd& pushed = {});
@@ -101,6 +97,7 @@ void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem) {
   if (const auto* spec = std::get_if<AssembledSpec>(&scene.structure)) {
     problem.position = initial_dofs(*spec->structure, scene.initial, &DofState::displacement);
     problem.velocity = initial_dofs(*spec->structure, scene.initial, &DofState::velocity);
+    if (const JoinedBodies* bodies = bodies_of(scene.structure)) begin_bodies(*bodies, scene.initial, problem);
     if (problem.support.amplitude != 0) {
       const Eigen::VectorXd lift = problem.static_modes.rowwise().sum();
       problem.position -= support.position * lift;

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <memory>
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/errors.hpp>
@@ -119,6 +120,17 @@ struct SemiDiscrete {
   bool changed_by_law() const { return own_stiffness.rows() > 0; }
   int dofs() const { return static_cast<int>(position.size()); }
   int points() const { return static_cast<int>(contact.rows()); }
+  /// The first contact point of the stop of a contact point: of a clearance its first side.
+  int stop_row(int point) const {
+    for (const Clearance& one : clearances)
+      if (point >= one.first && point <= one.last()) return one.first;
+    return point;
+  }
+  /// Whether a contact point is a side of a clearance.
+  bool round(int point) const {
+    return std::any_of(clearances.begin(), clearances.end(),
+                       [&](const Clearance& one) { return point >= one.first && point <= one.last(); });
+  }
   /// Whether q counts coordinates of modes.
   bool in_modes() const { return basis || (space.given && space.given->modes); }
   /// Rows on the dofs of the mesh as rows on q.
@@ -135,6 +147,10 @@ Eigen::MatrixXd support_shapes(const SemiDiscrete& problem, const std::vector<do
 
 /// The share that places x (m) have of each motion, places × motions: Σ of (Hψ)_j over the supports that it moves.
 Eigen::MatrixXd motion_shapes(const SemiDiscrete& problem, const std::vector<double>& x);
+
+/// Interpolation of w = u0 − φ(0) and w_t = u1 − φ'(0): values and slopes at the free nodes into `position` and
+/// `velocity`. What the clamp imposes is dropped, and a note says so when the formulas differ from it.
+void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem);
 
 /// The displacement space of the structure without contact dofs, on `elements` equal elements; of a beam with supports,
 /// sections or masses between its ends, on those of beam_intervals().

@@ -8,11 +8,13 @@
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/discrete_problem.hpp>
+#include <ricochet/scene/moved_supports.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/planes.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/supports.hpp>
+#include <tuple>
 
 namespace ricochet {
 namespace {
@@ -51,81 +53,6 @@ void hold(const AssembledSpec& spec, int, SemiDiscrete& problem) {
   problem.held = structure.definite;
   problem.static_modes = structure.static_modes;
   problem.support_loads = structure.support_loads;
-}
-
-// The number of a support; throws InputError with the nearest name.
-std::size_t number_of(const std::string& name, const std::vector<std::string>& names, const std::string& pointer) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
-  const std::string nearest = nearest_name(name, names);
-  throw InputError(pointer, fmt::format("no support \"{}\"{}", name,
-                                        nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
-}
-
-// The number of the first support along z; without such, how many supports there are.
-std::size_t first_across(const StructureSpec& structure) {
-  const auto* beam = std::get_if<BeamSpec>(&structure);
-  return support_names(structure).size() / static_cast<std::size_t>(beam ? beam->planes : 1);
-}
-
-// The number of the first support along a component.
-std::size_t first_along(const StructureSpec& structure, const std::string& component, const std::string& pointer) {
-  if (component.empty()) return 0;
-  const auto* beam = std::get_if<BeamSpec>(&structure);
-  if (!beam) throw InputError(pointer + "/component", "only supports of a beam in two planes move along a component");
-  Place towards;
-  towards.component = component;
-  return plane_shares(towards, beam->planes == 2, pointer)[1] == 1 ? first_across(structure) : 0;
-}
-
-// The supports that each motion moves, and the motion of each support, −1 where it rests.
-struct Moved {
-  std::vector<std::vector<std::size_t>> supports;
-  std::vector<int> motion;
-};
-
-Moved moved_supports(const SceneSpec& scene) {
-  const std::vector<std::string> names = support_names(scene.structure);
-  if (names.empty())
-    throw InputError("/scene/motions", "nothing holds the structure; expected a support that could move");
-  Moved moved{{}, std::vector<int>(names.size(), -1)};
-  for (std::size_t k = 0; k < scene.motions.size(); ++k) {
-    const MotionSpec& motion = scene.motions[k];
-    const std::string pointer = fmt::format("/scene/motions/{}/supports", k);
-    std::vector<std::size_t>& mine = moved.supports.emplace_back();
-    const std::size_t first = first_along(scene.structure, motion.component, fmt::format("/scene/motions/{}", k));
-    for (std::size_t j = 0; j < (motion.supports.empty() ? first_across(scene.structure) : motion.supports.size()); ++j)
-      mine.push_back(first + (motion.supports.empty() ? j : number_of(motion.supports[j], names, pointer)));
-    for (const std::size_t j : mine) {
-      if (moved.motion[j] >= 0)
-        throw InputError(pointer, fmt::format("motions/{} moves the support \"{}\" too; expected one motion of each "
-                                              "support",
-                                              moved.motion[j], names[j]));
-      moved.motion[j] = static_cast<int>(k);
-    }
-  }
-  return moved;
-}
-
-// The motion that carries a stop along y or z, −1: none.
-int carried_by(const std::string& carrier, const SceneSpec& scene, const Moved& moved, const std::string& pointer,
-               int plane = 0) {
-  if (carrier.empty()) return -1;
-  const std::size_t count = first_across(scene.structure), begin = plane == 0 ? 0 : count;
-  const int first = moved.motion[begin];
-  if (carrier != all_supports) return moved.motion[begin + number_of(carrier, support_names(scene.structure), pointer)];
-  const auto mine = moved.motion.begin() + static_cast<std::ptrdiff_t>(begin);
-  if (!std::all_of(mine, mine + static_cast<std::ptrdiff_t>(count), [&](int one) { return one == first; }))
-    throw InputError(pointer, "the supports move apart; expected the name of one");
-  return first;
-}
-
-std::string carrier_pointer(const SceneSpec& scene, std::size_t stop) {
-  return scene.stops.named.empty() ? "/scene/stops/moves_with" : fmt::format("/scene/stops/{}/moves_with", stop);
-}
-
-const std::string& carrier_of(const SceneSpec& scene, std::size_t stop) {
-  return scene.stops.named.empty() ? scene.stops.moves_with : scene.stops.named[stop].moves_with;
 }
 
 }  // namespace
@@ -176,6 +103,8 @@ std::vector<std::pair<int, double>> held_by(const std::vector<double>& supports,
 
 void check_motions(const SceneSpec& scene) {
   const std::size_t stops = std::max<std::size_t>(1, scene.stops.named.size());
+  for (std::size_t i = 0; i < scene.stops.named.size(); ++i)
+    if (scene.stops.named[i].motion) own_share(scene.stops.named[i], i);
   if (scene.motions.empty()) {
     if (scene.from_supports)
       throw InputError("/scene/frame", "\"supports\" has no motion to count from; expected motions");
@@ -188,15 +117,8 @@ void check_motions(const SceneSpec& scene) {
   if (scene.support.amplitude != 0)
     throw InputError("/scene/support",
                      "support and motions stand together; expected the motion of supports among motions");
-  const Moved moved = moved_supports(scene);
-  for (std::size_t i = 0; i < scene.stops.named.size(); ++i)
-    if (const NamedStop& stop = scene.stops.named[i];
-        stop.side && !stop.moves_with.empty() && !std::holds_alternative<BeamSpec>(scene.structure))
-      throw InputError(
-          carrier_pointer(scene, i),
-          "where a support of matrices or modes moves in the plane of a clearance is not known; expected a "
-          "clearance that stands still");
-  for (std::size_t i = 0; i < stops; ++i) carried_by(carrier_of(scene, i), scene, moved, carrier_pointer(scene, i));
+  const MovedSupports moved = moved_supports(scene);
+  for (std::size_t i = 0; i < stops; ++i) carried_by(scene, i, moved);
 }
 
 void hold_by_supports(const StructureSpec& structure, int elements, SemiDiscrete& problem) {
@@ -231,7 +153,7 @@ void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, Sem
                  DistributedLoad& load) {
   if (!moves_by_histories(scene)) return;
   SupportMotions& motions = problem.motions;
-  const Moved moved = scene.motions.empty() ? Moved{} : moved_supports(scene);
+  const MovedSupports moved = scene.motions.empty() ? MovedSupports{} : moved_supports(scene);
   motions.supports = moved.supports;
   motions.from_supports = scene.from_supports;
   for (std::size_t k = 0; k < scene.motions.size(); ++k) {
@@ -241,15 +163,18 @@ void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, Sem
     load.add(push, Formula([history](double t) { return history->acceleration(t); }, "motion of supports",
                            fmt::format("/scene/motions/{}", k)));
   }
-  // A stop that moves by itself is one more motion, of no support.
-  std::vector<std::pair<Eigen::Index, Eigen::Index>> alone;
+  // A stop that moves by itself is one more motion, of no support: a clearance along one of its components.
+  std::vector<std::tuple<Eigen::Index, Eigen::Index, double>> alone;
   for (std::size_t i = 0; i < scene.stops.named.size(); ++i) {
-    const std::shared_ptr<const MotionSpec>& own = scene.stops.named[i].motion;
-    if (!own) continue;
-    alone.emplace_back(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(motions.histories.size()));
-    motions.histories.push_back(own->history);
-    motions.supports.emplace_back();
-    motions.carry_stops = true;
+    const NamedStop& stop = scene.stops.named[i];
+    if (!stop.motion) continue;
+    if (!stop.side || stop.side->number == 0) {
+      motions.histories.push_back(stop.motion->history);
+      motions.supports.emplace_back();
+      motions.carry_stops = true;
+    }
+    alone.emplace_back(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(motions.histories.size()) - 1,
+                       own_share(stop, i));
   }
   motions.at_points = of_motions(motions, problem.contact * problem.static_modes + on_supports);
   motions.at_tip = motion_shapes(problem, {shown_position(scene)});
@@ -257,15 +182,10 @@ void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, Sem
   for (Eigen::Index i = 0; i < problem.points(); ++i) {
     const auto stop = static_cast<std::size_t>(i);
     motions.carry_stops = motions.carry_stops || !carrier_of(scene, stop).empty();
-    const std::array<double, 2> shares = stop_shares(scene, stop);
-    for (const int plane : {0, 1}) {
-      const double share = shares[static_cast<std::size_t>(plane)];
-      if (share == 0) continue;
-      const int motion = carried_by(carrier_of(scene, stop), scene, moved, carrier_pointer(scene, stop), plane);
+    for (const auto& [share, motion] : carried_by(scene, stop, moved))
       if (motion >= 0) motions.at_points(i, motion) -= share;
-    }
   }
-  for (const auto& [stop, motion] : alone) motions.at_points(stop, motion) = -1;
+  for (const auto& [stop, motion, share] : alone) motions.at_points(stop, motion) = -share;
 }
 
 namespace {
@@ -279,24 +199,32 @@ bool along_y(const SemiDiscrete& problem, const SparseRows& rows) {
   return true;
 }
 
+// Without the columns of supports along z, which the harmonic motion leaves at rest.
+Eigen::MatrixXd without_across(const SceneSpec& scene, Eigen::MatrixXd columns) {
+  if (const JoinedBodies* bodies = bodies_of(scene.structure))
+    for (const std::size_t j : bodies->supports_across) columns.col(static_cast<Eigen::Index>(j)).setZero();
+  return columns;
+}
+
 // Whether the supports, moved together by 1, lift the stops and the tip by 1.
-bool lift_alike(const SemiDiscrete& problem, const Eigen::MatrixXd& on_supports) {
+bool lift_alike(const SceneSpec& scene, const SemiDiscrete& problem, const Eigen::MatrixXd& on_supports) {
   if (!problem.space.given) return problem.space.across.empty() || along_y(problem, problem.contact);
   constexpr double alike = 1e-9;  // round-off of static modes
-  const Eigen::VectorXd points = (problem.contact * problem.static_modes + on_supports).rowwise().sum();
+  const Eigen::VectorXd points =
+      without_across(scene, problem.contact * problem.static_modes + on_supports).rowwise().sum();
   return (points.size() == 0 || (points.array() - 1).abs().maxCoeff() <= alike) &&
-         std::abs(problem.tip_on_supports.sum() - 1) <= alike;
+         std::abs(without_across(scene, problem.tip_on_supports).sum() - 1) <= alike;
 }
 
 }  // namespace
 
 void add_support(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, SemiDiscrete& problem,
                  DistributedLoad& load) {
-  const bool lifts_alike = scene.support.amplitude == 0 || lift_alike(problem, on_supports);
+  const bool lifts_alike = scene.support.amplitude == 0 || lift_alike(scene, problem, on_supports);
   if (scene.support.amplitude == 0 || (lifts_alike && !problem.space.given))
     return add_motions(scene, on_supports, problem, load);
   if (lifts_alike) {
-    problem.support_shape = problem.support_loads.rowwise().sum();
+    problem.support_shape = without_across(scene, problem.support_loads).rowwise().sum();
     return;
   }
   const auto* beam = std::get_if<BeamSpec>(&scene.structure);
@@ -324,7 +252,7 @@ bool support_bends(const SceneSpec& scene) {
   problem.contact = std::move(points.rows);
   hold_by_supports(scene.structure, 1, problem);
   show_tip(scene, problem);
-  return !lift_alike(problem, points.on_supports);
+  return !lift_alike(scene, problem, points.on_supports);
 }
 
 }  // namespace ricochet

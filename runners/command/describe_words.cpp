@@ -70,6 +70,7 @@ std::string type_of(const Field& field) {
     case Field::Form::place:
       return field.plain ? "number or place" : "place";
     case Field::Form::object:
+      if (!field.given.empty()) return "object, or objects by body";
       return field.listed.empty() ? "object" : "object, or a list of objects";
     case Field::Form::bodies:
       return "structures by name";

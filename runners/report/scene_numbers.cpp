@@ -10,7 +10,15 @@
 namespace ricochet::report {
 namespace {
 
-/// Motions of supports by tables: which supports, what is given, and where it stands.
+/// A motion: its formula, its file, or its amplitude and pulsation.
+std::string motion_text(const nlohmann::ordered_json& given) {
+  for (const char* key : {"file", "formula"})
+    if (given.contains(key)) return given[key].is_string() ? given[key].get<std::string>() : given[key].dump();
+  return fmt::format("{} m sin({} rad/s t + {})", given["amplitude"].dump(), given["pulsation"].dump(),
+                     given["phase"].dump());
+}
+
+/// Motions of supports: which supports, what is given, and where it stands.
 std::vector<std::string> motion_words(const SceneValues& scene) {
   std::vector<std::string> words;
   const auto* motions = scene.at("/scene/motions");
@@ -20,10 +28,8 @@ std::vector<std::string> motion_words(const SceneValues& scene) {
     const auto& given = motion[accelerates ? "acceleration" : "displacement"];
     std::string who;
     for (const auto& name : motion["supports"]) who += (who.empty() ? "" : ", ") + name.get<std::string>();
-    const auto& source = given.contains("file") ? given["file"] : given["formula"];
     words.push_back(fmt::format("{} of {}: {}", accelerates ? "acceleration" : "displacement",
-                                who == "all" ? "all supports" : who,
-                                source.is_string() ? source.get<std::string>() : source.dump()));
+                                who == "all" ? "all supports" : who, motion_text(given)));
   }
   return words;
 }
@@ -164,6 +170,12 @@ std::vector<std::pair<std::string, std::string>> scene_numbers(const nlohmann::o
   for (const std::string& words : load_words(scene)) add("load", words);
   add("u(x, 0)", scene.text("/scene/initial/displacement", ""));
   add("u_t(x, 0)", scene.text("/scene/initial/velocity", ""));
+  if (const auto* initial = scene.at("/scene/initial"))
+    for (const auto& [name, one] : initial->items())
+      if (one.is_object()) {
+        add("u(x, 0) of " + name, scene.text("/scene/initial/" + name + "/displacement", ""));
+        add("u_t(x, 0) of " + name, scene.text("/scene/initial/" + name + "/velocity", ""));
+      }
   add("duration", scene.text("/duration", "s"));
   return out;
 }

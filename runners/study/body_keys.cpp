@@ -35,6 +35,19 @@ Json check_bodies(const Field& field, const Json& value, const std::string& poin
   return result;
 }
 
+bool by_body(const Json& value) {
+  return value.is_object() && !value.empty() &&
+         std::all_of(value.begin(), value.end(), [](const Json& one) { return one.is_object(); });
+}
+
+Json check_given(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
+  if (field.form != Field::Form::object) return check_object(field.given.front(), value, pointer, axes);
+  Json result = Json::object();
+  for (const auto& [name, one] : value.items())
+    result[name] = check_object(field.given.front(), one, pointer_to(pointer, name), axes);
+  return result;
+}
+
 Json check_per_body(const Field& field, const Json& value, const std::string& pointer) {
   if (value.empty()) throw InputError(pointer, "an empty object; expected a number for each body");
   Json result = Json::object();
@@ -167,7 +180,10 @@ Json without_body(Json scene) {
 }
 
 std::string pointer_in_bodies(const std::string& pointer, const Json& scene) {
-  const std::string whole = "/scene/structure";
+  const std::string whole = "/scene/structure", begins = "/scene/initial/";
+  if (pointer.starts_with(begins) && scene.contains("bodies") && scene.at("bodies").size() == 1 &&
+      by_body(scene.at("initial")) && !pointer.starts_with(begins + scene.at("bodies").begin().key() + "/"))
+    return pointer_to("/scene/initial", scene.at("bodies").begin().key()) + pointer.substr(begins.size() - 1);
   if (!scene.contains("bodies") || !pointer.starts_with(whole)) return pointer;
   if (scene.at("bodies").size() != 1) return "/scene/bodies" + pointer.substr(whole.size());
   return pointer_to("/scene/bodies", scene.at("bodies").begin().key()) + pointer.substr(whole.size());

@@ -13,6 +13,11 @@ namespace ricochet {
 /// An object of names, each with a structure.
 Json check_bodies(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes);
 
+/// Whether an object speaks of bodies by name: all that it holds are objects.
+bool by_body(const Json& value);
+/// The object that may stand for a value; of an object, one by body.
+Json check_given(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes);
+
 /// A number for each body by name.
 Json check_per_body(const Field& field, const Json& value, const std::string& pointer);
 

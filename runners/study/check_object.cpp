@@ -65,7 +65,6 @@ Json check_formula(const Field& field, const Json& value, const std::string& poi
     Formula(value.get<std::string>(), pointer, field.variables);
     return value;
   }
-  if (value.is_object() && !field.given.empty()) return check_object(field.given.front(), value, pointer, axes);
   const bool listed = !field.nested.empty();
   if (listed && value.is_array() && !value.empty()) {
     Json result = Json::array();
@@ -210,6 +209,8 @@ Json check_value(const Field& field, const Json& value, const std::string& point
     axes.push_back(std::move(axis));
     return list;
   }
+  if (value.is_object() && !field.given.empty() && (field.form != Field::Form::object || by_body(value)))
+    return check_given(field, value, pointer, axes);
   switch (field.form) {
     case Field::Form::bodies:
       return check_bodies(field, value, pointer, axes);
@@ -219,7 +220,6 @@ Json check_value(const Field& field, const Json& value, const std::string& point
         throw InputError(pointer, expectation(field) + "; a list is not possible here");
       return check_scalar(field, value, pointer);
     case Field::Form::text:
-      if (value.is_object() && !field.given.empty()) return check_object(field.given.front(), value, pointer, axes);
       if (!value.is_string()) throw InputError(pointer, "expected a text, found " + quote(value));
       return value;
     case Field::Form::formula:

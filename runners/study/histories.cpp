@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 #include <ricochet/scene/history/random_load.hpp>
 
 #include "runners/json/json_text.hpp"
@@ -14,6 +15,11 @@ namespace {
 
 using namespace keys;
 
+// What repeats says so.
+Field period_key(const char* text) {
+  return quiet(single(real("period", "s", positive, 0.0, text)));
+}
+
 std::vector<Field> table_fields(const char* unit, std::vector<std::string> between, std::vector<std::string> beyond) {
   const std::string value = std::string("Column of the values, in ") + unit + ".";
   const std::string first = between.front();
@@ -23,22 +29,33 @@ std::vector<Field> table_fields(const char* unit, std::vector<std::string> betwe
           real("factor", "1", any, 1.0, "What the values are multiplied by."),
           word("interpolation", std::move(between), first, "Between entries: straight, a natural spline, or steps."),
           word("before", beyond, "error", "Before the first entry."),
-          word("after", beyond, "error", "After the last entry.")};
+          word("after", beyond, "error", "After the last entry."),
+          period_key("After which the table repeats: from its first entry to its last, which are alike.")};
 }
 
 // A formula in t, sampled: motions need what belongs together of displacement, velocity and acceleration.
 ObjectForm sampled(const char* unit) {
   ObjectForm keys;
   keys.fields = {single(formula("formula", unit, "t", false, std::nullopt, "In t; taken at the instants.")),
-                 single(real("every", "s", positive, std::nullopt, "Between instants.")),
-                 single(real("until", "s", positive, std::nullopt, "The last instant.")),
-                 word("after", {"error", "zero", "hold"}, "error", "After it.")};
+                 single(real("every", "s", positive, std::nullopt, "Between instants; of a period, at most.")),
+                 quiet(single(real("until", "s", positive, 0.0, "The last instant; none of what repeats."))),
+                 word("after", {"error", "zero", "hold"}, "error", "After it."),
+                 period_key("After which the formula repeats."),
+                 quiet(single(real("pulsation", "rad/s", positive, 0.0, "2π over the period, in its place.")))};
   return keys;
 }
 
-Field history(const char* key, const char* unit, const char* text, ObjectForm table) {
+ObjectForm harmonic() {
+  ObjectForm keys;
+  keys.fields = {single(real("amplitude", "m", any, std::nullopt, "A of A sin(ωt + ψ).")),
+                 single(real("pulsation", "rad/s", positive, std::nullopt, "ω.")),
+                 single(real("phase", "rad", any, 0.0, "ψ."))};
+  return keys;
+}
+
+Field history(const char* key, const char* unit, const char* text, std::vector<ObjectForm> ways) {
   ObjectForm either;
-  either.ways = {std::move(table), sampled(unit)};
+  either.ways = std::move(ways);
   Field field = object(key, std::nullopt, text, std::move(either));
   field.spec.unit = unit;
   return field;
@@ -46,8 +63,10 @@ Field history(const char* key, const char* unit, const char* text, ObjectForm ta
 
 ObjectForm start_form() {
   ObjectForm keys;
-  keys.fields = {single(real("displacement", "m", any, 0.0, "φ(0).")),
-                 single(real("velocity", "m/s", any, 0.0, "φ'(0)."))};
+  keys.fields = {
+      single(real("displacement", "m", any, 0.0, "φ(0); null, of what repeats: the one without a mean of φ.")),
+      single(real("velocity", "m/s", any, 0.0, "φ'(0); null, of what repeats: the one without drift."))};
+  for (Field& field : keys.fields) field.nullable = true;
   return keys;
 }
 
@@ -61,6 +80,19 @@ TimeTable::Between between(const std::string& word) {
   return word == "step" ? TimeTable::Between::step : TimeTable::Between::linear;
 }
 
+// The period that a history declares.
+void set_period(const Json& json, const std::string& pointer, TimeTable& table) {
+  const double pulsation = json.value("pulsation", 0.0);
+  table.period = json.value("period", pulsation > 0 ? 2 * std::numbers::pi / pulsation : 0.0);
+  if (table.period == 0) return;
+  if (json.contains("period") && pulsation > 0)
+    throw InputError(pointer + "/pulsation", "stands beside a period; expected one of both");
+  if (json.contains("until")) throw InputError(pointer + "/until", "stands beside a period; expected one of both");
+  for (const auto& [key, way] : {std::pair("/before", table.before), {"/after", table.after}})
+    if (way != TimeTable::Beyond::error)
+      throw InputError(pointer + key, "stands beside a period; what repeats has neither beginning nor end");
+}
+
 TimeTable read_table(const Json& json, const std::string& pointer, StudyFiles* files) {
   if (!files) throw InputError(pointer + "/file", "a scene that names files stands in a study alone");
   TimeTable table = files->table(json, pointer);
@@ -69,6 +101,7 @@ TimeTable read_table(const Json& json, const std::string& pointer, StudyFiles* f
   table.between = between(json.at("interpolation").get<std::string>());
   table.before = beyond(json.at("before").get<std::string>());
   table.after = beyond(json.at("after").get<std::string>());
+  set_period(json, pointer, table);
   table.check(pointer);
   return table;
 }
@@ -77,23 +110,54 @@ TimeTable sample(const Json& json, const std::string& pointer, TimeTable::Betwee
   const Json& given = json.at("formula");
   const Formula formula =
       given.is_number() ? Formula(given.get<double>()) : Formula(given.get<std::string>(), pointer + "/formula", "t");
-  const double every = json.at("every").get<double>(), until = json.at("until").get<double>();
+  TimeTable table;
+  table.after = beyond(json.at("after").get<std::string>());
+  set_period(json, pointer, table);
+  const double every = json.at("every").get<double>(), until = json.value("until", table.period);
   constexpr double most = 1e7;
+  if (until == 0)
+    throw InputError(pointer + "/until", "missing; expected the last instant in s, or the period of what repeats");
   if (!(until / every >= 1) || until / every > most)
     throw InputError(pointer + "/every",
                      fmt::format("{:.6g} s of instants {:.6g} s apart are {:.3g}; expected 1 to {:g}", until, every,
                                  until / every, most));
-  TimeTable table;
   table.name = given.is_number() ? given.dump() : given.get<std::string>();
   const auto count = static_cast<long long>(std::ceil(until / every - 1e-9));
+  const double apart = table.period > 0 ? until / static_cast<double>(count) : every;
   for (long long i = 0; i <= count; ++i) {
-    const double t = i == count ? until : static_cast<double>(i) * every;
+    const double t = i == count ? until : static_cast<double>(i) * apart;
     table.times.push_back(t);
     table.values.push_back(formula(0, t));
   }
   table.between = between;
-  table.after = beyond(json.at("after").get<std::string>());
+  if (table.period > 0) table.check(pointer);
   return table;
+}
+
+// φ and φ' at t = 0 of a motion by its acceleration. Of one that repeats φ' has no mean, and null is what leaves none.
+std::pair<double, double> read_start(const Json& start, const std::string& pointer, const TimeTable& acceleration) {
+  std::pair<double, double> out;
+  const auto number = [&](const char* key, double steady) {
+    if (!start.at(key).is_null()) return start.at(key).get<double>();
+    if (acceleration.period > 0) return steady;
+    throw InputError(pointer + "/start/" + key, "null is the start of what repeats; expected a number, or a period");
+  };
+  const SteadyStart steady = acceleration.period > 0 ? steady_start(acceleration) : SteadyStart{};
+  constexpr double round_off = 1e-9;
+  if (std::abs(steady.mean_acceleration) > round_off * steady.largest_acceleration)
+    throw InputError(pointer + "/acceleration",
+                     fmt::format("{} has a mean of {:.6g} m/s² over its period, so the velocity grows without end; "
+                                 "expected values whose mean is 0",
+                                 acceleration.name, steady.mean_acceleration));
+  out = {number("displacement", steady.position), number("velocity", steady.velocity)};
+  if (const double drift = out.second - steady.velocity;
+      acceleration.period > 0 && std::abs(drift) > 1e-6 * steady.largest_velocity)
+    throw InputError(pointer + "/start/velocity",
+                     fmt::format("{:.9g} m/s leaves a mean velocity of {:.6g} m/s, a drift; expected {:.15g}, or null, "
+                                 "which stands for it",
+                                 out.second, drift, steady.velocity));
+  if (acceleration.period > 0) out.second = steady.velocity;  // in all its digits
+  return out;
 }
 
 void read_spectrum(const Json& json, const std::string& pointer, long long seed, std::size_t number, LoadTerm& term) {
@@ -135,6 +199,8 @@ ObjectForm load_history(const char* unit) {
 
 ObjectForm stop_motion_form() {
   ObjectForm keys;
+  keys.fields = {
+      quiet(of_form(Field::Form::text, "component", Json(""), "What a clearance moves along; absent: its first."))};
   keys.ways = motion_form().ways;
   return keys;
 }
@@ -145,11 +211,12 @@ ObjectForm motion_form() {
   ObjectForm displacement;
   displacement.fields = table_fields("m", {"cubic"}, {"error", "hold"});
   ObjectForm by_acceleration;
-  by_acceleration.fields = {
-      history("acceleration", "m/s²", "φ''(t), straight between entries, integrated exactly.", acceleration),
-      object("start", Json::object(), "φ and φ' at t = 0.", start_form())};
+  by_acceleration.fields = {history("acceleration", "m/s²", "φ''(t), straight between entries, integrated exactly.",
+                                    {acceleration, sampled("m/s²")}),
+                            object("start", Json::object(), "φ and φ' at t = 0.", start_form())};
   ObjectForm by_displacement;
-  by_displacement.fields = {history("displacement", "m", "φ(t), a natural spline through the entries.", displacement)};
+  by_displacement.fields = {history("displacement", "m", "φ(t), a natural spline through the entries, or harmonic.",
+                                    {displacement, sampled("m"), harmonic()})};
   Field supports =
       of_form(Field::Form::words, "supports", Json("all"), "Names of the supports that move so, or \"all\".");
   supports.spec.type = ParameterSpec::Type::word;
@@ -175,14 +242,22 @@ MotionSpec read_motion(const Json& json, const std::string& pointer, StudyFiles*
   const bool accelerates = json.contains("acceleration");
   const std::string key = accelerates ? "acceleration" : "displacement", here = pointer + "/" + key;
   const Json& given = json.at(key);
+  motion.accelerates = accelerates;
+  if (given.contains("amplitude")) {
+    const double pulsation = given.at("pulsation").get<double>();
+    motion.period = 2 * std::numbers::pi / pulsation;
+    motion.history = std::make_shared<const HarmonicMotion>(given.at("amplitude").get<double>(), pulsation,
+                                                            given.at("phase").get<double>());
+    return motion;
+  }
   const TimeTable::Between way = accelerates ? TimeTable::Between::linear : TimeTable::Between::cubic;
   motion.table = std::make_shared<const TimeTable>(given.contains("file") ? read_table(given, here, files)
                                                                           : sample(given, here, way));
-  motion.accelerates = accelerates;
+  motion.period = motion.table->period;
   if (accelerates) {
-    const Json& start = json.at("start");
-    motion.history = std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(
-        *motion.table, start.at("displacement").get<double>(), start.at("velocity").get<double>()));
+    const auto [displacement, velocity] = read_start(json.at("start"), pointer, *motion.table);
+    motion.history =
+        std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(*motion.table, displacement, velocity));
   } else {
     motion.history = std::make_shared<const PiecewiseCubic>(PiecewiseCubic::interpolate(*motion.table));
   }

@@ -3,6 +3,7 @@
 #include "runners/json/json_text.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/study/histories.hpp"
+#include "runners/study/initial_keys.hpp"
 #include "runners/study/observed_keys.hpp"
 #include "runners/study/plane_keys.hpp"
 
@@ -236,26 +237,11 @@ SceneSpec read_scene(const Json& given, StudyFiles* files) {
   for (std::size_t i = 0; i < motions.size(); ++i)
     spec.motions.push_back(read_motion(motions[i], pointer_to("/scene/motions", i), files));
   spec.from_supports = scene.value("frame", "") == "supports";
-  const Json& initial = scene.at("initial");
-  spec.initial.displacement = read_formula(initial.at("displacement"), "/scene/initial/displacement", "x");
-  spec.initial.velocity = read_formula(initial.at("velocity"), "/scene/initial/velocity", "x");
-  spec.initial.projection = initial.at("projection") == "constraint"      ? InitialSpec::Projection::constraint
-                            : initial.at("projection") == "least-squares" ? InitialSpec::Projection::least_squares
-                                                                          : InitialSpec::Projection::none;
-  spec.initial.equilibrium = initial.value("equilibrium", false);
-  if (initial.contains("displacement_z"))
-    spec.initial.displacement_z = read_formula(initial.at("displacement_z"), "/scene/initial/displacement_z", "x");
-  if (initial.contains("velocity_z"))
-    spec.initial.velocity_z = read_formula(initial.at("velocity_z"), "/scene/initial/velocity_z", "x");
+  spec.initial = read_initial(scene, files);
   spec.points = read_points(scene);
   if (const Json basis = scene.value("basis", Json(nullptr)); !basis.is_null())
     spec.basis = BasisSpec{basis.at("modes").get<int>(), basis.at("residual") == "stops",
                            basis.value("of_bodies", std::vector<int>())};
-  if (initial.contains("file") && files) {
-    if (scene.contains("bodies"))
-      throw InputError("/scene/initial/file", "bodies begin at rest or in equilibrium; expected no file");
-    spec.initial.dofs = files->initial(initial, scene.at("structure"));
-  }
   return spec;
 }
 

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "runners/study/histories.hpp"
+#include "runners/study/initial_keys.hpp"
 
 namespace ricochet {
 namespace {
@@ -189,8 +190,8 @@ TimeTable StudyFiles::table(const Json& history, const std::string& pointer) {
   }
 }
 
-std::vector<DofState> StudyFiles::initial(const Json& initial, const Json& structure) {
-  const std::string name = initial.at("file").get<std::string>(), pointer = "/scene/initial/file";
+std::vector<DofState> StudyFiles::initial(const Json& initial, const Json& structure, const std::string& pointer) {
+  const auto name = initial.at("file").get<std::string>();
   if (file_keys(structure).empty())
     throw InputError(pointer, "the file of an initial state is one of matrices that are given; expected formulas in x");
   std::vector<double> ratios;
@@ -236,9 +237,9 @@ void StudyFiles::add_digests(Json& scene) const {
   };
   if (scene.contains("bodies"))
     for (Json& structure : scene["bodies"]) add(structure);
-  if (!scene.contains("structure") || !add(scene["structure"])) return;
-  if (Json& initial = scene["initial"]; initial.contains("file"))
-    initial["digest"] = digest(initial.at("file").get<std::string>());
+  if (scene.contains("structure")) add(scene["structure"]);
+  for (Json* initial : initial_objects(scene))
+    if (initial->contains("file")) (*initial)["digest"] = digest(initial->at("file").get<std::string>());
 }
 
 Json StudyFiles::said() const {

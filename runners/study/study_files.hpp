@@ -28,9 +28,8 @@ class StudyFiles {
   /// Two columns of a CSV file that a checked history names: {"file", "time", "value"}. Throws InputError below
   /// `pointer`.
   TimeTable table(const Json& history, const std::string& pointer);
-  /// How the dofs of such a structure begin: the file of a checked initial state. Throws InputError below
-  /// /scene/initial.
-  std::vector<DofState> initial(const Json& initial, const Json& structure);
+  /// How the dofs of such a structure begin: the file of a checked initial state, which stands at `pointer`.
+  std::vector<DofState> initial(const Json& initial, const Json& structure, const std::string& pointer);
   /// Adds to a scene the digests of the files that it names: they determine its results.
   void add_digests(Json& scene) const;
   /// What a stored study keeps: the folder, and the digest of each file by its name; null where no file was read.

@@ -2,6 +2,7 @@
 
 #include "runners/study/fields.hpp"
 #include "runners/study/histories.hpp"
+#include "runners/study/initial_keys.hpp"
 #include "runners/study/observed_keys.hpp"
 #include "runners/study/plane_keys.hpp"
 
@@ -263,23 +264,6 @@ ObjectForm scene() {
                     real("pulsation", "rad/s", non_negative, std::nullopt, "ω of the motion of the supports."),
                     real("phase", "rad", any, 0.0, "ψ of the motion of the supports.")};
 
-  ObjectForm initial;
-  initial.fields = {
-      formula("displacement", "m", "x", false, Json("0"),
-              "Absolute displacement u(x,0); beyond a stop under compliant laws only."),
-      formula("velocity", "m/s", "x", false, Json("0"), "Absolute velocity u_t(x,0)."),
-      word("projection", {"none", "constraint", "least-squares"}, "none",
-           "\"constraint\": on Zᵀ(Kq − F) = 0, Z the kernel of a singular mass; \"least-squares\": on `mesh.modes`.")};
-  initial.fields.back().axis = true;
-  initial.fields.push_back(
-      of_form(Field::Form::text, "file", Json(""),
-              "CSV of an assembled structure: dof, or node and component; displacement, velocity."));
-  initial.fields.back().quiet = true;
-  initial.fields.push_back(quiet(of_form(Field::Form::scalar, "equilibrium", Json(false),
-                                         "Whether it begins at rest under F(0) and its stops: K q = F(0) + Hᵀp.")));
-  initial.fields.back().spec.type = ParameterSpec::Type::boolean;
-  for (Field& field : initial_across_keys()) initial.fields.push_back(std::move(field));
-
   ObjectForm point;
   point.fields = {place("at", Json(nullptr), "Where the force acts: x in m, or a place; an oscillator has none."),
                   single(formula("force", "N", "t", false, std::nullopt, "Force F(t); or a table, or a spectrum."))};
@@ -300,20 +284,19 @@ ObjectForm scene() {
   seed.axis = true;
 
   ObjectForm keys;
-  keys.fields = {
-      object("structure", std::nullopt, "The structure.", structure()),
-      bodies(),
-      object("stops", Json::object(),
-             "Two rigid stops g1(x) ≤ u ≤ g2(x), or a list of stops that have names; absent: none.", stops),
-      object("support", Json{{"amplitude", 0.0}, {"pulsation", 0.0}, {"phase", 0.0}},
-             "Motion of all supports together, φ(t) = A0 sin(ωt + ψ); absent: at rest.", support),
-      std::move(load),
-      object("initial", Json::object(), "Initial state, absolute unless `frame` says; absent: at rest.", initial),
-      quiet(objects("motions", "Motions of supports by tables, in the place of `support`.", motion_form())),
-      quiet(word("frame", {"absolute", "supports"}, "absolute",
-                 "What the initial state and the displacements shown count from, with `motions`.")),
-      quiet(seed),
-      points_key()};
+  keys.fields = {object("structure", std::nullopt, "The structure.", structure()),
+                 bodies(),
+                 object("stops", Json::object(),
+                        "Two rigid stops g1(x) ≤ u ≤ g2(x), or a list of stops that have names; absent: none.", stops),
+                 object("support", Json{{"amplitude", 0.0}, {"pulsation", 0.0}, {"phase", 0.0}},
+                        "Motion of all supports together, φ(t) = A0 sin(ωt + ψ); absent: at rest.", support),
+                 std::move(load),
+                 initial_key(),
+                 quiet(objects("motions", "Motions of supports by tables, in the place of `support`.", motion_form())),
+                 quiet(word("frame", {"absolute", "supports"}, "absolute",
+                            "What the initial state and the displacements shown count from, with `motions`.")),
+                 quiet(seed),
+                 points_key()};
   keys.fields[0].unless = "bodies";
   keys.fields[2].listed.push_back(named_stop());
   return keys;

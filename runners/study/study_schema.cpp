@@ -151,6 +151,11 @@ class SchemaWriter {
         if (!field.listed.empty())
           return either("array", {{"items", object(field.listed.front())}, {"minItems", 1}},
                         object(field.nested.front()));
+        if (!field.given.empty())
+          return {{"anyOf", Json::array({object(field.nested.front()),
+                                         {{"type", "object"},
+                                          {"additionalProperties", object(field.given.front())},
+                                          {"minProperties", 1}}})}};
         return or_null(field, object(field.nested.front()));
       case Field::Form::objects:
         if (field.count == 0) return {{"type", "array"}, {"items", object(field.nested.front())}};

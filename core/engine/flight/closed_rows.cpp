@@ -122,12 +122,15 @@ ClosedRows::Vector ClosedRows::vector_of(int stage, const Combination& c) const 
 void ClosedRows::add_points(const Program& program) {
   const LaneSpec& lane = program.lanes.front();
   const double omega = program.problem->support.pulsation;
-  ContactSlopes slopes;
   rigid = !program.law->reads();
-  if (!rigid) slopes = *program.law->linear_slopes(0);
-  viscosity = slopes.viscosity;
-  damps = viscosity != 0;
-  means = slopes.before != 0;
+  const auto slopes_of = [&](const ClosedPoint& closed) {
+    return rigid ? ContactSlopes{} : *program.law->linear_slopes(program.law_set(closed.point, 0));
+  };
+  for (const ClosedPoint& closed : closed_) {
+    const ContactSlopes slopes = slopes_of(closed);
+    damps = damps || slopes.viscosity != 0;
+    means = means || slopes.before != 0;
+  }
   MatrixXd W(m_, m_);
   for (int at = 0; at < stages(); ++at) {
     if (!reads(at)) continue;
@@ -136,7 +139,9 @@ void ClosedRows::add_points(const Program& program) {
     position.slots = {1};
     for (const ClosedPoint& closed : closed_) {
       const RowVectorXd h = contact_.row(closed.point);
+      const ContactSlopes slopes = slopes_of(closed);
       Point point;
+      point.viscosity = slopes.viscosity;
       point.side = closed.lower ? 1 : -1;
       point.stop = closed.lower ? lane.lower[closed.point] : lane.upper[closed.point];
       point.place = row_of(at, position, h, harmonic(PhaseWeights({{stage.facts.from, 1}}, omega, program.h), drive_));

@@ -24,9 +24,12 @@ std::string ClosedSteps::why_not(const Program& program) {
   if (program.tangents > 0) return "tangents are taken along";
   if (program.problem->changed_by_law()) return "the law measures no displacements";
   if (program.law->memory_per_point() > 0) return "the law keeps a memory";
-  if (program.own_sets) return "stops have parameters of their own";
-  if (program.law->layer(0) != 0) return "the law acts before the stop";
-  if (program.law->reads() && !program.law->linear_slopes(0)) return "the force of the law is not linear in the depth";
+  for (int i = 0; i < (program.own_sets ? program.problem->points() : 1); ++i) {
+    const int set = program.law_set(i, 0);
+    if (program.law->layer(set) != 0) return "the law acts before the stop";
+    if (program.law->reads() && !program.law->linear_slopes(set))
+      return "the force of the law is not linear in the depth";
+  }
   const StageProgram* last = nullptr;
   for (std::size_t k = 0; k < program.stages.size(); ++k) {
     const StageProgram& stage = program.stages[k];
@@ -133,7 +136,7 @@ FlightSums ClosedSteps::works(const double* x, long long step) {
   if (rows_.damps)
     for (std::size_t i = 0; i < m; ++i) {
       const double rate = row(rows_.points[i].rate, x, step);
-      works.law += rows_.momentum[i] * rows_.viscosity * rate * rate;
+      works.law += rows_.momentum[i] * rows_.points[i].viscosity * rate * rate;
     }
   works.gain = works.contact - works.damping - works.scheme;
   return works;

@@ -36,7 +36,8 @@ class ClosedRows {
   struct Point {
     double side = 1, stop = 0;
     double target = 0;  // t of (7)
-    Row law;            // F, E, W
+    double viscosity = 0;
+    Row law;  // F, E, W
     Row depth, before, rate;
     Row place;  // absolute, before the stage
   };
@@ -76,7 +77,6 @@ class ClosedRows {
   std::size_t memory() const { return memory_; }
 
   bool damps = false, means = false, rigid = false;
-  double viscosity = 0;
   std::vector<double> momentum;  ///< of each effort
   std::vector<Point> points;     ///< of each effort
   std::vector<double> solution;  ///< W₀⁻¹, by rows

@@ -182,7 +182,9 @@ void EnergyAudit::count_contact(const StageView& view, int lane) {
     for (const int j : view.pushed) {
       const double p = view.effort[0][j * T_ + lane];
       if (p == 0) continue;
-      state.closed.press(j, p);
+      // The sides of a clearance are one stop.
+      const SemiDiscrete& problem = model_.problem();
+      state.closed.press(problem.stop_row(j), problem.round(j) ? -std::abs(p) : p);
       // An effort that gives no momentum only puts a position right: it is no force.
       if (momentum != 0) state.force += p;
       contact.impulse += momentum * std::abs(p);
@@ -190,6 +192,17 @@ void EnergyAudit::count_contact(const StageView& view, int lane) {
     contact.residual = std::max(contact.residual, outcome.residual);
   }
   if (view.program->closes_instant) close_instant(view, state);
+}
+
+// Whether a stop that closes has held its point, or a clearance one of its sides, from the start.
+bool EnergyAudit::held_at_start(StartContact& start, int point, int side) const {
+  const std::vector<Clearance>& clearances = model_.problem().clearances;
+  const auto found =
+      std::find_if(clearances.begin(), clearances.end(), [&](const Clearance& one) { return one.first == point; });
+  if (found == clearances.end()) return start.take(point, side);
+  for (int row = found->first; row <= found->last(); ++row)
+    if (start.holds(row, 1) || start.holds(row, -1)) return true;
+  return false;
 }
 
 // What an instant of contact was, beside the one before it.
@@ -201,7 +214,7 @@ void EnergyAudit::close_instant(const StageView& view, Lane& state) {
   if (state.still) return;
   int impacts = 0;
   const ClosedPoints::Change change = state.closed.end_instant([&](int point, int before, int now) {
-    impacts += now != 0 && now != before && !(state.start.any() && state.start.take(point, now));
+    impacts += now != 0 && now != before && !(state.start.any() && held_at_start(state.start, point, now));
   });
   contact.active = change.active;
   contact.active_set_changes += change.changed;

@@ -43,7 +43,7 @@ struct EnergyTotals {
 };
 
 /// Contact seen over a run, per lane. It is looked at once per instant: each sub-step, with the stages that ask
-/// together as one.
+/// together as one. The sides of a clearance are one point.
 struct ContactTotals {
   /// Times that a point closed, summed over the points; contact that is there from the start (StartContact) is none.
   long long impacts = 0;
@@ -154,6 +154,7 @@ class EnergyAudit final : public StepObserver {
   long long next_shown(const Marcher& marcher) const;
   void confirm(Lane& state, double scheme, bool flown);
   void count_contact(const StageView& view, int lane);
+  bool held_at_start(StartContact& start, int point, int side) const;
   void close_instant(const StageView& view, Lane& state);
 
   const MarchModel& model_;

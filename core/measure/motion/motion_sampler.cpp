@@ -104,17 +104,18 @@ void ContactLog::see(const Marcher& marcher, const StageView& view) {
 
 void ContactLog::read(const Marcher& marcher, const StageView& view) {
   const double* efforts = view.effort[0];
+  const SemiDiscrete& problem = model_.problem();
   state_known_ = false;
   double force = 0;
   for (const int j : view.pushed) {
     const double p = efforts[j * T_];
     if (p == 0) continue;
     force += p;
-    const int side = p > 0 ? 0 : 1;
-    asked_[static_cast<std::size_t>(j)] = p > 0 ? 1 : -1;
+    const int way = p > 0 ? 0 : 1, side = problem.round(j) ? 1 : way;  // a clearance has one side
+    asked_[static_cast<std::size_t>(problem.stop_row(j))] = side == 0 ? 1 : -1;
     now_[side] = true;
     if (closed_[side] || start_.holds(j, p > 0 ? 1 : -1)) continue;
-    const double time = onset(marcher, view, j, side);
+    const double time = onset(marcher, view, j, way);
     onset_[side] = hit_[side] ? std::min(onset_[side], time) : time;
     hit_[side] = true;
   }

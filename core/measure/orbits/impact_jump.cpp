@@ -225,14 +225,14 @@ void ImpactJump::watch(const Marcher& marcher, Lane& lane, int index, int point,
   impact.point = point;
   impact.acceleration = lane.orbit.acceleration(h);
   const Eigen::VectorXd now = lane.orbit.velocity(h, 0);
-  const double speed = rows.times(point, now.data()) + marcher.support_rate(index, time);
+  const double speed = rows.times(point, now.data()) + marcher.lift_rate(index, point, time);
   const double gap = (side == 0 ? spec.lower[point] : spec.upper[point]) - rows.times(point, lane.orbit.q[0].data()) -
-                     marcher.support(index, time);
+                     marcher.lift(index, point, time);
   // Closing towards a lower stop, gap and speed are both negative.
   const double ahead = speed != 0 ? std::min(std::max(gap / speed, -2 * h), 2 * h) : 0.0;
   impact.time = time + ahead;
   impact.velocity = lane.orbit.velocity(h, -ahead);
-  impact.approach = rows.times(point, impact.velocity.data()) + marcher.support_rate(index, impact.time);
+  impact.approach = rows.times(point, impact.velocity.data()) + marcher.lift_rate(index, point, impact.time);
   lane.known = impact.approach != 0;
 }
 
@@ -332,7 +332,8 @@ void ImpactJump::finish(Marcher& marcher, Lane& lane, int index) {
   Eigen::VectorXd lost = impact.velocity - after;
   const double taken = rows.times(impact.point, lost.data());
   if (restitution_ && taken != 0) lost *= (1 + *restitution_) * impact.approach / taken;
-  const double clamp = -omega * omega * marcher.support(index, impact.time);
+  const double clamp = -omega * omega * marcher.support(index, impact.time) +
+                       marcher.motions().point_acceleration(impact.point, impact.time);
   const double pushed = rows.times(impact.point, impact.acceleration.data()) + clamp;
   for (std::size_t k = 0; k < lane.columns.size(); ++k) {
     const Past& past = lane.columns[k];

@@ -9,7 +9,7 @@ namespace ricochet {
 namespace {
 
 struct Shape {
-  Eigen::VectorXd nodal;  // tip displacement 1
+  Eigen::VectorXd nodal;  // displacement 1 of the tip, or where stops are
   double pulsation = 0;
 };
 
@@ -28,8 +28,11 @@ std::vector<Shape> slow_shapes(const SemiDiscrete& problem, int count) {
   for (const int mode : order) {
     if (static_cast<int>(shapes.size()) == count || masses[mode] <= 0) break;
     Eigen::VectorXd shape = model.to_nodal(Eigen::VectorXd::Unit(masses.size(), mode));
-    const double tip = (problem.tip * shape)[0];
-    if (std::abs(tip) < 1e-9 * shape.lpNorm<Eigen::Infinity>()) continue;
+    double tip = (problem.tip * shape)[0];
+    const double least = 1e-9 * shape.lpNorm<Eigen::Infinity>();
+    // What the tip does not see, as motions across it, is measured where it meets stops.
+    if (std::abs(tip) < least && problem.points() > 0) tip = (problem.contact * shape).lpNorm<Eigen::Infinity>();
+    if (std::abs(tip) < least) continue;
     shapes.push_back({shape / tip, std::sqrt(model.stiffness().coeff(mode, mode) / masses[mode])});
   }
   return shapes;
@@ -43,8 +46,9 @@ void set_random_state(LaneSpec& lane, const SemiDiscrete& problem, std::uint64_t
   const auto uniform = [&] { return 2 * (static_cast<double>(random() >> 11) * 0x1p-53) - 1; };
   const double clamp = lane.amplitude * std::sin(lane.phase);
   double room = std::numeric_limits<double>::infinity();
+  const auto lift = [&](Eigen::Index i) { return clamp + problem.motions.point(static_cast<int>(i), 0); };
   for (Eigen::Index i = 0; i < lane.lower.size(); ++i)
-    room = std::min({room, std::abs(lane.upper[i] - clamp), std::abs(clamp - lane.lower[i])});
+    room = std::min({room, std::abs(lane.upper[i] - lift(i)), std::abs(lift(i) - lane.lower[i])});
   if (!std::isfinite(room)) room = lane.amplitude != 0 ? std::abs(lane.amplitude) : 1.0;
   lane.position.setZero(problem.dofs());
   lane.velocity.setZero(problem.dofs());
@@ -57,7 +61,7 @@ void set_random_state(LaneSpec& lane, const SemiDiscrete& problem, std::uint64_t
   const Eigen::VectorXd at = problem.contact * lane.position;
   double factor = 1;
   for (Eigen::Index i = 0; i < at.size(); ++i) {
-    const double limit = 0.95 * (at[i] > 0 ? lane.upper[i] - clamp : clamp - lane.lower[i]);
+    const double limit = 0.95 * (at[i] > 0 ? lane.upper[i] - lift(i) : lift(i) - lane.lower[i]);
     // A stop that presses on the structure at rest leaves no room to keep to.
     if (limit > 0 && std::abs(at[i]) > limit) factor = std::min(factor, limit / std::abs(at[i]));
   }

@@ -65,7 +65,8 @@ class SectionMarch::Watch final : public StepObserver {
     if (steps.closed.empty()) return;
     Orbit& orbit = *orbits_.front();
     for (const ClosedPoint& closed : steps.closed)
-      push(orbit, closed.point, closed.lower ? 0 : 1, kept_step(marcher, orbit));
+      push(orbit, model_.problem().stop_row(closed.point), side_of(closed.point, closed.lower),
+           kept_step(marcher, orbit));
     orbit.contact_steps += steps.instants * steps.steps;
     for (BriefContact& contact : orbit.brief)
       if (contact.point >= 0) contact.steps += steps.instants * steps.steps;
@@ -104,9 +105,10 @@ class SectionMarch::Watch final : public StepObserver {
     const std::int64_t step = kept_step(marcher, orbit) + 1;
     for (int i = points; i-- > 0;) {
       const double p = efforts[static_cast<std::ptrdiff_t>(i) * width];
-      if (p > 0) first[0] = i;
-      if (p < 0) first[1] = i;
-      if (p != 0) push(orbit, i, p > 0 ? 0 : 1, step);
+      if (p == 0) continue;
+      const std::size_t side = side_of(i, p > 0);
+      first[side] = i;
+      push(orbit, model_.problem().stop_row(i), side, step);
     }
     std::array<bool, 2>& asked = asked_[static_cast<std::size_t>(lane)];
     if (view.program->opens_instant) asked = {false, false};
@@ -125,6 +127,9 @@ class SectionMarch::Watch final : public StepObserver {
     closed_ &= ~(1u << lane);
     closed_ |= static_cast<std::uint32_t>(any) << lane;
   }
+
+  // 0 lower, 1 upper; the sides of a clearance are one, upper.
+  std::size_t side_of(int point, bool lower) const { return lower && !model_.problem().round(point) ? 0 : 1; }
 
   // Steps since its periods are kept.
   std::int64_t kept_step(const Marcher& marcher, const Orbit& orbit) const {
@@ -146,7 +151,7 @@ class SectionMarch::Watch final : public StepObserver {
     if (closed && ++contact.steps <= briefest_contact) return;
     if (!closed) {
       const double after = velocity(marcher, view, lane, model_.contact(), static_cast<int>(contact.point)) +
-                           marcher.support_rate(lane, view.from);
+                           marcher.lift_rate(lane, static_cast<int>(contact.point), view.from);
       if (after * contact.before < 0 && std::abs(after) >= least_rebound * std::abs(contact.before))
         orbit.rebounds_so_far += std::abs(after - contact.before);
     }
@@ -155,7 +160,7 @@ class SectionMarch::Watch final : public StepObserver {
 
   void begin(const Marcher& marcher, const StageView& view, int lane, int side, int point, Orbit& orbit) {
     const double t = view.from;
-    const double speed = closing_speed(marcher, view, lane, side, point);
+    const double speed = closing_speed(marcher, view, lane, point);
     const double turns = (static_cast<double>(marcher.step() % plan_.steps_per_period) + view.program->facts.from) /
                          plan_.steps_per_period;
     const double periods = orbit.transient_periods + orbit.kept_periods;
@@ -164,18 +169,21 @@ class SectionMarch::Watch final : public StepObserver {
         {2 * std::numbers::pi * turns, side, std::abs(speed), point, h_ * (steps + periods * plan_.steps_per_period)});
     ++counts_[static_cast<std::size_t>(lane)][static_cast<std::size_t>(side)];
     orbit.brief[side] = {point, 0,
-                         velocity(marcher, view, lane, model_.contact(), point) + marcher.support_rate(lane, t)};
+                         velocity(marcher, view, lane, model_.contact(), point) + marcher.lift_rate(lane, point, t)};
     if (plan_.section != SectionKind::impact) return;
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    orbit.points.push_back({displacement(marcher, view, lane) + marcher.support(lane, t),
-                            velocity(marcher, view, lane, model_.tip(), 0) + marcher.support_rate(lane, t), nan, nan});
+    const SupportMotions& motions = marcher.motions();
+    orbit.points.push_back(
+        {displacement(marcher, view, lane) + (marcher.support(lane, t) + motions.tip(t)),
+         velocity(marcher, view, lane, model_.tip(), 0) + (marcher.support_rate(lane, t) + motions.tip_rate(t)), nan,
+         nan});
   }
 
   // The velocity at which a point meets its stop: between that of the scheme and that of the free step to come, at the
   // time when the gap closes. A point without mass changes its velocity within few steps.
-  double closing_speed(const Marcher& marcher, const StageView& view, int lane, int side, int point) const {
+  double closing_speed(const Marcher& marcher, const StageView& view, int lane, int point) const {
     const double t = view.from, dt = view.to - view.from;
-    const double before = velocity(marcher, view, lane, model_.contact(), point) + marcher.support_rate(lane, t);
+    const double before = velocity(marcher, view, lane, model_.contact(), point) + marcher.lift_rate(lane, point, t);
     const Program& program = marcher.program();
     const StageProgram& stage = program.stages[static_cast<std::size_t>(view.stage)];
     const Combination& update = view.plan->update[0];
@@ -189,14 +197,14 @@ class SectionMarch::Watch final : public StepObserver {
         if (weights[j] != 0) sum += weights[j] * slot_at(view, marcher.width(), lane, static_cast<int>(j), point);
       return sum;
     };
-    const double measured = view.free[static_cast<std::ptrdiff_t>(point) * marcher.width() + lane] -
-                            marcher.support_levels(lane, view.time, stage.measure_levels);
+    const std::ptrdiff_t place = static_cast<std::ptrdiff_t>(point) * marcher.width() + lane;
+    const double measured = view.free[place] - marcher.lift_levels(lane, point, view.time, stage.measure_levels);
     const double z = (measured - at(stage.measure.slots)) / stage.measure_z;
-    const double now = at({1.0}) + marcher.support(lane, t);
-    const double next = at(update.slots) + update.z * z + marcher.support(lane, view.to);
+    const double now = at({1.0}) + marcher.lift(lane, point, t);
+    const double next = at(update.slots) + update.z * z + marcher.lift(lane, point, view.to);
     const double after = (next - now) / dt;
     const LaneSpec& spec = program.lanes[static_cast<std::size_t>(lane)];
-    const double stop = side == 0 ? spec.lower[point] : spec.upper[point];
+    const double stop = view.effort[0][place] > 0 ? spec.lower[point] : spec.upper[point];
     const double ahead = next != now ? std::clamp((stop - now) / (next - now), 0.0, 1.0) : 0.0;
     // The velocity stands where it does after any sub-step.
     const double offset = offset_ * h_ / dt, share = (ahead - offset) / (0.5 - offset);
@@ -344,6 +352,7 @@ void SectionMarch::end_transient(int place, Orbit& orbit) const {
   // Contact that is there when the kept periods begin is no impact of theirs.
   const std::array<bool, 2> closed = marcher_.pushed_by(place);
   std::copy(closed.begin(), closed.end(), orbit.closed);
+  if (!marcher_.program().problem->clearances.empty()) orbit.closed[1] = closed[0] || closed[1];
   orbit.entry = marcher_.lane_state(place);
   orbit.pushed.assign(2 * static_cast<std::size_t>(marcher_.program().model->contact().rows()), 0);
 }

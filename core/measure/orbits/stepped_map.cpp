@@ -32,8 +32,9 @@ class ContactWatch final : public StepObserver {
   }
   void step_done(Marcher& marcher) override {
     if (points_ == 0) return;
-    const VectorXd y = marcher.program().problem->contact * marcher.position(0);
-    places_.push_back(y.array() + marcher.support(0, marcher.time()));
+    VectorXd y = marcher.program().problem->contact * marcher.position(0);
+    for (int i = 0; i < points_; ++i) y[i] += marcher.lift(0, i, marcher.time());
+    places_.push_back(y);
     sides_.push_back(now_);
     std::fill(now_.begin(), now_.end(), 0);
     if (std::any_of(sides_.back().begin(), sides_.back().end(), [](int side) { return side != 0; }))

@@ -173,6 +173,7 @@ void StabilityPredictor::choose_sets() {
                                    : "stop " + problem_->stops[static_cast<std::size_t>(i)];
   };
   const auto alone = [&](int i) { sets_.push_back({where(i), {i}}); };
+  if (!problem_->clearances.empty()) return choose_around(points, where);
   if (points.size() == 1)
     sets_.push_back({"the contact point", points});
   else if (points.size() <= most_single_points)
@@ -180,6 +181,31 @@ void StabilityPredictor::choose_sets() {
   else
     for (const int i : {points.front(), points[points.size() / 2]}) alone(i);
   if (points.size() > 1) sets_.push_back({fmt::format("all {} points", points.size()), points});
+}
+
+// Of clearances two sides beside each other close together at most. They hold both displacements, as others beside them
+// would.
+void StabilityPredictor::choose_around(const std::vector<int>& points, const std::function<std::string(int)>& where) {
+  std::vector<int> together;
+  int stops = 0;
+  const bool few = points.size() <= most_single_points;
+  for (const int i : points) {
+    if (problem_->round(i)) continue;
+    sets_.push_back({where(i), {i}});
+    together.push_back(i);
+    ++stops;
+  }
+  for (const Clearance& one : problem_->clearances) {
+    const auto sides = static_cast<int>(one.angles.size());
+    for (int k = 0; k < sides; ++k)
+      if (few || k == 0 || k == sides / 2)
+        sets_.push_back({fmt::format("{}, side {}", where(one.first), k + 1), {one.first + k}});
+    const std::vector<int> corner{one.first, one.first + 1};
+    sets_.push_back({fmt::format("{}, a corner,", where(one.first)), corner});
+    together.insert(together.end(), corner.begin(), corner.end());
+    ++stops;
+  }
+  if (stops > 1) sets_.push_back({fmt::format("all {} stops", stops), together});
 }
 
 double StabilityPredictor::first_pulsation() const {

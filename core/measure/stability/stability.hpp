@@ -96,8 +96,9 @@ class StabilityPredictor {
   /// Refused above 1200 dofs, where modes cost more than marching.
   SpectrumOrRefusal open(const StepPlan& plan, double h, Detail detail = Detail::full) const;
   /// Closed sets that are looked at: each point alone where there are at most 20 (else the tip and the middle one),
-  /// and all together. Empty without contact, above 160 dofs, and for laws without a constant stiffness: notes() say
-  /// which.
+  /// and all together. Of a clearance each side alone (of many the first and the middle one), and a corner of two,
+  /// which holds what all of them would. Empty without contact, above 160 dofs, and for laws without a constant
+  /// stiffness: notes() say which.
   const std::vector<ClosedSet>& sets() const { return sets_; }
   SpectrumOrRefusal closed(const StepPlan& plan, double h, const ClosedSet& set, Detail detail = Detail::full) const;
   /// The set with the largest radius; of stable sets the first that has marginal roots.
@@ -113,6 +114,7 @@ class StabilityPredictor {
 
  private:
   void choose_sets();
+  void choose_around(const std::vector<int>& points, const std::function<std::string(int)>& where);
   const StructureModes& held_at(const ClosedSet& set) const;
   Excitation excite(const StructureModes& modes, double h) const;
   std::optional<Refusal> add_modes(RootCollector& found, const StepPlan& plan, const StructureModes& modes,

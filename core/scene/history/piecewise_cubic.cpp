@@ -26,6 +26,39 @@ std::vector<double> spline_curvatures(const std::vector<double>& t, const std::v
   return curvature;
 }
 
+// The same of what repeats: f'' is equal at both ends. The cyclic system is a tridiagonal one and a corner of rank one
+// (Sherman and Morrison).
+std::vector<double> periodic_curvatures(const std::vector<double>& t, const std::vector<double>& f) {
+  const std::size_t n = t.size() - 1;
+  std::vector<double> curvature(n + 1, 0.0), corner(n, 0.0), above(n, 0.0);
+  if (n == 1) return curvature;
+  const auto length = [&](std::size_t i) { return t[i + 1] - t[i]; };
+  const double wrap = length(n - 1) / 6, shift = -(length(n - 1) + length(0)) / 3;
+  corner[0] = shift;
+  corner[n - 1] = wrap;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t before = i == 0 ? n - 1 : i - 1;
+    double pivot = (length(before) + length(i)) / 3, jump = (f[i + 1] - f[i]) / length(i);
+    jump -= (f[before + 1] - f[before]) / length(before);
+    if (i == 0) pivot -= shift;
+    if (i == n - 1) pivot -= wrap * wrap / shift;
+    const double left = i == 0 ? 0 : length(before) / 6;
+    pivot -= i == 0 ? 0 : left * above[i - 1];
+    above[i] = i == n - 1 ? 0 : length(i) / 6 / pivot;
+    curvature[i] = (jump - (i == 0 ? 0 : left * curvature[i - 1])) / pivot;
+    corner[i] = (corner[i] - (i == 0 ? 0 : left * corner[i - 1])) / pivot;
+  }
+  for (std::size_t i = n - 1; i-- > 0;) {
+    curvature[i] -= above[i] * curvature[i + 1];
+    corner[i] -= above[i] * corner[i + 1];
+  }
+  const double share =
+      (curvature[0] + wrap / shift * curvature[n - 1]) / (1 + corner[0] + wrap / shift * corner[n - 1]);
+  for (std::size_t i = 0; i < n; ++i) curvature[i] -= share * corner[i];
+  curvature[n] = curvature[0];
+  return curvature;
+}
+
 double outside(TimeTable::Beyond beyond, double value) {
   return beyond == TimeTable::Beyond::zero ? 0.0 : value;
 }
@@ -44,6 +77,19 @@ void TimeTable::check(const std::string& pointer) const {
       throw InputError(pointer, fmt::format("{}, entry {}: t = {:.9g} after {:.9g}; times must increase", name, i + 1,
                                             times[i], times[i - 1]));
   }
+  if (period == 0) return;
+  constexpr double alike = 1e-9;
+  const double length = times.back() - times.front();
+  if (std::abs(length - period) > alike * period)
+    throw InputError(pointer + "/period", fmt::format("{} is {:.12g} s long and is to repeat after {:.12g} s; expected "
+                                                      "one period of it, {:.12g} s",
+                                                      name, length, period, length));
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  if (std::abs(values.back() - values.front()) > alike * largest)
+    throw InputError(pointer + "/period",
+                     fmt::format("{} begins with {:.9g} and ends with {:.9g}; what repeats ends as it begins", name,
+                                 values.front(), values.back()));
 }
 
 PiecewiseCubic PiecewiseCubic::interpolate(const TimeTable& table) {
@@ -51,7 +97,8 @@ PiecewiseCubic PiecewiseCubic::interpolate(const TimeTable& table) {
   const std::size_t n = t.size();
   std::vector<double> starts{t.front() - 1}, bends(n, 0.0);
   std::vector<Piece> pieces{{outside(table.before, f.front()), 0, 0, 0}};
-  if (table.between == TimeTable::Between::cubic) bends = spline_curvatures(t, f);
+  if (table.between == TimeTable::Between::cubic)
+    bends = table.period > 0 ? periodic_curvatures(t, f) : spline_curvatures(t, f);
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const double length = t[i + 1] - t[i];
     Piece piece{f[i], 0, 0, 0};
@@ -63,7 +110,7 @@ PiecewiseCubic PiecewiseCubic::interpolate(const TimeTable& table) {
   }
   starts.push_back(t.back());
   pieces.push_back({outside(table.after, f.back()), 0, 0, 0});
-  return {std::move(starts), std::move(pieces)};
+  return {std::move(starts), std::move(pieces), table.period};
 }
 
 PiecewiseCubic PiecewiseCubic::integrate_twice(const TimeTable& acceleration, double position, double velocity) {
@@ -82,20 +129,50 @@ PiecewiseCubic PiecewiseCubic::integrate_twice(const TimeTable& acceleration, do
   // What comes before the first instant ends there with the same position and velocity.
   const double a = rate.pieces_[0][0], s = rate.starts_[1] - rate.starts_[0];
   pieces[0] = {a * s * s / 2, -a * s, a / 2, 0};
-  const PiecewiseCubic raw(rate.starts_, pieces);
-  const double more = velocity - raw.rate(0), place = position - raw.value(0);
+  const PiecewiseCubic raw(rate.starts_, pieces, rate.period_);
+  const double more = velocity - raw.rate(0), place = position - raw.value(0) - more * raw.within(0);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     pieces[i][0] += place + more * rate.starts_[i];
     pieces[i][1] += more;
   }
-  return {std::move(rate.starts_), std::move(pieces)};
+  return {std::move(rate.starts_), std::move(pieces), rate.period_};
 }
 
-PiecewiseCubic::PiecewiseCubic(std::vector<double> starts, std::vector<Piece> pieces)
-    : starts_(std::move(starts)), pieces_(std::move(pieces)) {}
+SteadyStart steady_start(const TimeTable& acceleration) {
+  TimeTable once = acceleration;
+  once.period = 0;
+  const PiecewiseCubic raw = PiecewiseCubic::integrate_twice(once, 0, 0);
+  const std::vector<double>& t = acceleration.times;
+  const double begin = t.front(), end = t.back(), period = end - begin, first = raw.rate(begin);
+  SteadyStart out;
+  out.mean_acceleration = (raw.rate(end) - first) / period;
+  // From φ' = `speed` at the first instant on, one period leads back.
+  const double speed = first - (raw.value(end) - raw.value(begin)) / period;
+  const auto place = [&](double at) { return raw.value(at) - raw.value(begin) + (speed - first) * (at - begin); };
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < t.size(); ++i) {
+    out.largest_acceleration = std::max(out.largest_acceleration, std::abs(acceleration.values[i]));
+    out.largest_velocity = std::max(out.largest_velocity, std::abs(raw.rate(t[i]) - first + speed));
+    sum += (t[i + 1] - t[i]) / 6 * (place(t[i]) + 4 * place((t[i] + t[i + 1]) / 2) + place(t[i + 1]));
+  }
+  const double zero = -begin - period * std::floor(-begin / period) + begin;  // t = 0 within the table
+  out.velocity = raw.rate(zero) - first + speed;
+  out.position = place(zero) - sum / period;
+  return out;
+}
+
+PiecewiseCubic::PiecewiseCubic(std::vector<double> starts, std::vector<Piece> pieces, double period)
+    : starts_(std::move(starts)), pieces_(std::move(pieces)), period_(period) {}
 
 PiecewiseCubic::PiecewiseCubic(const PiecewiseCubic& other)
-    : TimeHistory(other), starts_(other.starts_), pieces_(other.pieces_) {}
+    : TimeHistory(other), starts_(other.starts_), pieces_(other.pieces_), period_(other.period_) {}
+
+double PiecewiseCubic::within(double t) const {
+  if (period_ == 0) return t;
+  const double first = starts_[1], since = t - first;
+  const double rest = since - period_ * std::floor(since / period_);
+  return rest < period_ ? first + rest : first;
+}
 
 std::size_t PiecewiseCubic::piece(double t) const {
   std::size_t i = near_.load(std::memory_order_relaxed);
@@ -113,21 +190,24 @@ std::size_t PiecewiseCubic::piece(double t) const {
   return i;
 }
 
-double PiecewiseCubic::value(double t) const {
+double PiecewiseCubic::value(double at) const {
+  const double t = within(at);
   const std::size_t i = piece(t);
   const Piece& c = pieces_[i];
   const double s = t - starts_[i];
   return c[0] + s * (c[1] + s * (c[2] + s * c[3]));
 }
 
-double PiecewiseCubic::rate(double t) const {
+double PiecewiseCubic::rate(double at) const {
+  const double t = within(at);
   const std::size_t i = piece(t);
   const Piece& c = pieces_[i];
   const double s = t - starts_[i];
   return c[1] + s * (2 * c[2] + s * 3 * c[3]);
 }
 
-double PiecewiseCubic::acceleration(double t) const {
+double PiecewiseCubic::acceleration(double at) const {
+  const double t = within(at);
   const std::size_t i = piece(t);
   const Piece& c = pieces_[i];
   return 2 * c[2] + 6 * c[3] * (t - starts_[i]);

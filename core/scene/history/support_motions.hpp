@@ -20,7 +20,14 @@ struct SupportMotions {
   /// Σ_j A_ij φ_j(t) of contact point i, m, and its rate.
   double point(int i, double t) const { return empty() ? 0.0 : sum(at_points.row(i), t, false); }
   double point_rate(int i, double t) const { return empty() ? 0.0 : sum(at_points.row(i), t, true); }
-  /// The same of the tip.
+  /// Σ_j A_ij φ_j''(t), m/s².
+  double point_acceleration(int i, double t) const {
+    double total = 0;
+    for (std::size_t j = 0; j < histories.size(); ++j)
+      total += at_points(i, static_cast<Eigen::Index>(j)) * histories[j]->acceleration(t);
+    return total;
+  }
+  /// Σ_j A_ij φ_j(t) of the tip, m, and its rate.
   double tip(double t) const { return empty() ? 0.0 : sum(at_tip, t, false); }
   double tip_rate(double t) const { return empty() ? 0.0 : sum(at_tip, t, true); }
 

@@ -148,18 +148,6 @@ void check_continuation(const Json& resolved) {
       if (const auto at = mark["parameter"][i].get<double>(); at < from || at > to)
         throw InputError(pointer_to("/mark/parameter", i),
                          fmt::format("the mark at {} is outside the range from {} to {}", at, from, to));
-  const Json& scene = resolved.at("scene");
-  const auto pulsation = [](const Json& of) {
-    const auto found = of.find("pulsation");
-    return found == of.end() || found->is_array() || (found->is_number() && found->get<double>() != 0);
-  };
-  const auto support = scene.find("support");
-  const auto force = scene.at("structure").find("force");
-  const bool shaken = support != scene.end() && support->is_object() && pulsation(*support);
-  if (!shaken && !(force != scene.at("structure").end() && force->is_object() && pulsation(*force)))
-    throw InputError("/scene/support",
-                     "nothing is periodic: give support.pulsation or structure.force.pulsation, and loads with that "
-                     "period");
 }
 
 void check_followed(const Json& resolved, const Json& settings, const Registry& registry, double, int) {

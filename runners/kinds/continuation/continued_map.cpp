@@ -37,13 +37,22 @@ bool is_length(const std::string& pointer) {
 
 // A load that is not its own image half a period later, with the sign changed: where it is seen, in words.
 std::string not_odd(const SemiDiscrete& problem, double period) {
-  if (!problem.load || problem.load->absent()) return "";
+  const bool loaded = problem.load && !problem.load->absent();
   constexpr int phases = 16;
   constexpr double tolerance = 1e-9;
   Eigen::VectorXd now = Eigen::VectorXd::Zero(problem.dofs()), later = now;
   double largest = 0, worst = 0, when = 0;
   for (int k = 0; k < phases; ++k) {
     const double t = period * (k + 0.37) / (2 * phases);
+    const auto lifts = [&](double at) -> Eigen::VectorXd {
+      return problem.motions.at_points * problem.motions.values(at, false);
+    };
+    if (!problem.motions.empty()) {
+      const Eigen::VectorXd one = lifts(t), other = lifts(t + period / 2);
+      if ((one + other).cwiseAbs().maxCoeff() > tolerance * one.cwiseAbs().maxCoeff())
+        return fmt::format("motions at t = {:.4g} s are not minus those half a period later", t);
+    }
+    if (!loaded) continue;
     problem.load->assemble(t, now.data());
     problem.load->assemble(t + period / 2, later.data());
     largest = std::max(largest, now.cwiseAbs().maxCoeff());

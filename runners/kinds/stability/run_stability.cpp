@@ -72,10 +72,6 @@ class StabilityRun {
     if (const auto* refusal = std::get_if<Refusal>(&discretised)) return refused(refusal->sentence);
     problem_ = std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(discretised)));
     record_.notes = problem_->notes;
-    if (!problem_->clearances.empty())
-      return refused(
-          "closed contact is predicted with every contact point held, and the sides of a clearance are never held "
-          "together: expected stops, or the kind trajectory");
     scheme_ = make_scheme(case_, registry_);
     facts_ = problem_facts(*problem_, *law);
     if (const auto refusal = refuse_own(*law, problem_->own, problem_->stops)) return refused(refusal->sentence);

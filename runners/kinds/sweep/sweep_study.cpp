@@ -126,7 +126,9 @@ void check_pointer(const Json& resolved, const std::string& pointer, const std::
   }
   const std::string role = role_of(pointer);
   if (role.empty()) {
-    const Json& value = resolved.at(Json::json_pointer(pointer));
+    const Json::json_pointer there(pointer);
+    if (!resolved.contains(there)) return;  // its default
+    const Json& value = resolved.at(there);
     refuse_list(value, pointer, where);
     if (value.is_null())
       throw InputError(where, fmt::format("{} is null, no stop is there; expected one to move", pointer));

@@ -13,7 +13,9 @@
 
 #include "runners/json/json_text.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/study/body_keys.hpp"
 #include "runners/study/check_object.hpp"
+#include "runners/study/plane_keys.hpp"
 #include "runners/study/read_scene.hpp"
 
 namespace ricochet {
@@ -27,16 +29,30 @@ struct Scalar {
   const Field* field = nullptr;
 };
 
-void collect(const ObjectForm& form, const Json& value, const std::string& pointer, std::vector<Scalar>& scalars) {
+void collect(const ObjectForm& form, Json value, const std::string& pointer, std::vector<Scalar>& scalars) {
+  value.erase("digest");  // no key of a study: what its files hold
   for (const Field* field : fields_of(form, value, pointer)) {
     const std::string here = pointer_to(pointer, field->key());
     const auto found = value.find(field->key());
-    if (found == value.end()) continue;
+    const bool number = field->form == Field::Form::formula ||
+                        (field->form == Field::Form::scalar && field->spec.type == ParameterSpec::Type::real);
+    if (found == value.end()) {
+      // What is not written out has its default.
+      if (number && field->quiet && field->fallback && !field->fallback->is_null()) scalars.push_back({here, field});
+      continue;
+    }
     if (field->form == Field::Form::object && found->is_array())
       for (std::size_t i = 0; i < found->size(); ++i)
         collect(field->listed.front(), (*found)[i], pointer_to(here, i), scalars);
+    else if (field->form == Field::Form::object && !field->given.empty() && by_body(*found))
+      for (const auto& [name, one] : found->items())
+        collect(field->given.front(), one, pointer_to(here, name), scalars);
+    else if (field->form != Field::Form::object && found->is_object() && !field->given.empty())
+      collect(field->given.front(), *found, here, scalars);
     else if (field->form == Field::Form::object)
       collect(field->nested.front(), *found, here, scalars);
+    else if (field->form == Field::Form::place && found->contains("x"))
+      scalars.push_back({pointer_to(here, "x"), field});
     else if (field->form == Field::Form::objects && found->is_array())
       for (std::size_t i = 0; i < found->size(); ++i)
         collect(field->nested.front(), (*found)[i], pointer_to(here, i), scalars);
@@ -46,8 +62,7 @@ void collect(const ObjectForm& form, const Json& value, const std::string& point
     else if (is_object_list(*field, *found))
       for (std::size_t i = 0; i < found->size(); ++i)
         collect(field->nested.front(), (*found)[i], pointer_to(here, i), scalars);
-    else if (field->form == Field::Form::formula || (field->form == Field::Form::place && found->is_number()) ||
-             (field->form == Field::Form::scalar && field->spec.type == ParameterSpec::Type::real))
+    else if (number || (field->form == Field::Form::place && found->is_number()))
       scalars.push_back({here, field});
     else if (field->form == Field::Form::places && found->is_array())
       for (std::size_t i = 0; i < found->size(); ++i)
@@ -86,7 +101,9 @@ void change_scene(StudyCase& one, const std::string& pointer, double value) {
   const auto scalar =
       std::find_if(scalars.begin(), scalars.end(), [&](const Scalar& known) { return known.pointer == pointer; });
   if (scalar == scalars.end()) throw InputError(pointer, "names no number of this scene");
-  Json& place = one.scene_json[Json::json_pointer(pointer.substr(std::string("/scene").size()))];
+  const Json::json_pointer there(pointer.substr(std::string("/scene").size()));
+  if (!one.scene_json.contains(there)) one.scene_json[there] = *scalar->field->fallback;
+  Json& place = one.scene_json[there];
   place = changed(place, *scalar->field, pointer, value);
 }
 
@@ -133,7 +150,14 @@ StudyCase with_parameters(const StudyCase& study_case, const std::vector<std::pa
   }
   if (scene) {
     one.scene = on_mesh(read_scene(one.scene_json, one.files.get()), one.elements);
-    check_scene(one.scene, one.elements, one.starts_beyond ? anywhere_beyond() : ForceBeyond());
+    try {
+      check_scene(one.scene, one.elements, one.starts_beyond ? anywhere_beyond() : ForceBeyond());
+    } catch (const BeyondStop&) {
+      throw;
+    } catch (const InputError& error) {
+      const std::string in_study = pointer_in_study(one.scene.stops, error.pointer());
+      throw InputError(pointer_in_bodies(in_study, one.scene_json), error.what());
+    }
   }
   if (one.steps_per_period > 0) check_forcing(one.scene);
   return one;
@@ -141,28 +165,58 @@ StudyCase with_parameters(const StudyCase& study_case, const std::vector<std::pa
 
 StudyCase at_rest(const StudyCase& study_case) {
   StudyCase one = study_case;
-  one.scene.initial.displacement = one.scene.initial.velocity = Formula(0.0);
-  one.scene.initial.displacement_z = one.scene.initial.velocity_z = Formula();
-  one.scene.initial.dofs.clear();
+  InitialSpec rest;
+  rest.displacement = rest.velocity = Formula(0.0);
+  rest.projection = one.scene.initial.projection;
+  one.scene.initial = std::move(rest);
   if (one.scene_json.is_object())
-    for (const char* key : {"displacement", "velocity"}) one.scene_json["initial"][key] = "0";
-  if (one.scene_json.is_object())
-    for (const char* key : {"file", "displacement_z", "velocity_z"}) one.scene_json["initial"].erase(key);
+    one.scene_json["initial"] = {{"displacement", "0"},
+                                 {"velocity", "0"},
+                                 {"projection", one.scene_json["initial"].value("projection", "none")}};
   return one;
 }
+
+namespace {
+
+// A history that is no harmonic of the support or an oscillator, and after what it repeats.
+struct Repeated {
+  std::string pointer;
+  double period = 0;  // s; 0: it says none
+};
+
+std::vector<Repeated> histories_of(const SceneSpec& scene) {
+  std::vector<Repeated> out;
+  const auto add = [&](const MotionSpec& motion, const std::string& pointer) {
+    out.push_back({pointer + (motion.accelerates ? "/acceleration" : "/displacement"), motion.period});
+  };
+  for (std::size_t i = 0; i < scene.motions.size(); ++i) add(scene.motions[i], pointer_to("/scene/motions", i));
+  for (const NamedStop& stop : scene.stops.named)
+    if (stop.motion) add(*stop.motion, pointer_to("/scene/stops", stop.entry) + "/moves_with");
+  for (std::size_t i = 0; i < scene.load.terms.size(); ++i)
+    if (const LoadTerm& term = scene.load.terms[i]; term.table)
+      out.push_back({pointer_to("/scene/load", i) + (term.force ? "/force" : "/time"), term.table->period});
+  return out;
+}
+
+}  // namespace
 
 double forcing_pulsation(const SceneSpec& scene) {
   const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
   const OscillatorSpec::Force force = oscillator ? oscillator->force : OscillatorSpec::Force{};
   if (scene.support.amplitude != 0 && scene.support.pulsation > 0) return scene.support.pulsation;
   if (force.amplitude != 0 && force.pulsation > 0) return force.pulsation;
-  return scene.support.pulsation > 0 ? scene.support.pulsation : force.pulsation;
+  if (scene.support.pulsation > 0) return scene.support.pulsation;
+  if (force.pulsation > 0) return force.pulsation;
+  double longest = 0;
+  for (const Repeated& one : histories_of(scene)) longest = std::max(longest, one.period);
+  return longest > 0 ? 2 * std::numbers::pi / longest : 0;
 }
 
 bool is_forced(const SceneSpec& scene) {
   const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
   return (scene.support.amplitude != 0 && scene.support.pulsation > 0) ||
-         (oscillator && oscillator->force.amplitude != 0 && oscillator->force.pulsation > 0) || scene.load.uses_t();
+         (oscillator && oscillator->force.amplitude != 0 && oscillator->force.pulsation > 0) || scene.load.uses_t() ||
+         moves_by_histories(scene);
 }
 
 namespace {
@@ -197,20 +251,18 @@ void check_repeats(const Formula& load, const std::string& pointer, const std::s
 }  // namespace
 
 void check_forcing(const SceneSpec& scene) {
-  if (moves_by_histories(scene))
-    throw InputError("/scene/motions",
-                     "motions by tables have no period, and steps per period need one: expected the "
-                     "harmonic `support`");
-  if (support_bends(scene))
-    throw InputError("/scene/support",
-                     "the supports do not lift the stops and the tip alike, and steps per period need that they do: "
-                     "expected stops on the ground whose displacement follows the supports");
+  const std::vector<Repeated> histories = histories_of(scene);
+  for (const Repeated& one : histories)
+    if (one.period == 0)
+      throw InputError(one.pointer,
+                       "says no period, and steps per period need one: expected \"period\" (s) of a table that repeats"
+                       ", \"pulsation\" (rad/s) of a formula that does, or of a displacement amplitude and pulsation");
   const double pulsation = forcing_pulsation(scene);
   const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
   if (!(pulsation > 0))
     throw InputError("/scene/support/pulsation",
                      fmt::format("no forcing has a period (the pulsation is 0); steps per period need one: expected a "
-                                 "pulsation above 0 of the support{}",
+                                 "pulsation above 0 of the support{}, or the period of a motion or a table",
                                  oscillator ? " or of the force" : ""));
   constexpr double tolerance = 1e-9;
   const double period = 2 * std::numbers::pi / pulsation;
@@ -222,6 +274,11 @@ void check_forcing(const SceneSpec& scene) {
                                    "rad/s; expected a whole multiple of it",
                                    oscillator->force.pulsation, pulsation));
   }
+  for (const Repeated& one : histories)
+    if (const double ratio = period / one.period; std::abs(ratio - std::round(ratio)) > tolerance * ratio)
+      throw InputError(one.pointer, fmt::format("repeats after {:.9g} s, and the forcing after {:.9g} s; expected a "
+                                                "whole fraction of that",
+                                                one.period, period));
   const LoadSpec load = scene.load;  // formulas keep their variables inside: evaluate our own copies
   check_repeats(load.formula, "/scene/load", "N/m", period, structure_length(scene));
   for (std::size_t i = 0; i < load.terms.size(); ++i) {

@@ -149,8 +149,7 @@ struct Watched {
     observers.add(&recorder);
     if (outputs.any()) observers.add(&outputs);
     if (means.asked()) observers.add(&means);
-    // Sides of a clearance have no sum that is a force.
-    if (has_window(study_case.settings) && !contacts.merges()) observers.add(&forces);
+    if (has_window(study_case.settings)) observers.add(&forces);
     if (orbits.any()) observers.add(&orbits);
     if (snapshots.taken()) observers.add(&snapshots);
     observers.add(&sampler);

@@ -95,7 +95,8 @@ std::vector<MeasureInfo> trajectory_measures() {
        "impulse over a step or two: it grows as the step shrinks."},
       {"contact_time", "s", "Time in contact, summed over the contact points.", Of::motion, true},
       {"contact_force_mean", "N",
-       "Mean of the contact force over the study's window, summed over the points: times the window it is the impulse. "
+       "Mean of the contact force over the study's window, summed over the points, of a clearance along its first "
+       "component: times the window it is the impulse. "
        "The instants of a step count by the momentum that an effort of each gives."},
       {"contact_force_deviation", "N", "Standard deviation of the contact force from that mean, over the window."},
       {"window_power", "W", "Energy lost at the stops in a second: mean over the parts of the study's window."},

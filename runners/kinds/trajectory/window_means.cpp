@@ -108,6 +108,11 @@ ForceWindow::ForceWindow(const Json& settings, const Marcher& marcher) {
   if (!has_window(settings)) return;
   from_ = settings.at("window").at("from").get<double>();
   to_ = settings.at("window").at("to").get<double>();
+  const SemiDiscrete& problem = *marcher.program().problem;
+  shares_.assign(static_cast<std::size_t>(problem.points()), 1.0);
+  for (const Clearance& one : problem.clearances)
+    for (std::size_t k = 0; k < one.angles.size(); ++k)
+      shares_[static_cast<std::size_t>(one.first) + k] = side_direction(one.angles[k])[0];
 }
 
 void ForceWindow::stage_solved(const Marcher& marcher, const StageView& view) {
@@ -117,7 +122,7 @@ void ForceWindow::stage_solved(const Marcher& marcher, const StageView& view) {
   lasts_ = std::max(lasts_, program.momentum);
   if (view.contact_lanes & 1u)
     for (int j = 0; j < marcher.program().model->problem().points(); ++j)
-      given_ += program.momentum * view.effort[0][j * marcher.width()];
+      given_ += program.momentum * shares_[static_cast<std::size_t>(j)] * view.effort[0][j * marcher.width()];
   const double t = view.time + program.facts.instant * marcher.program().h;
   if (!program.closes_instant || !(lasts_ > 0) || t < from_ || t > to_) return;
   add(given_ / lasts_, lasts_);
@@ -140,7 +145,8 @@ void ForceWindow::interval(Marcher& marcher, const StepInterval& steps) {
     steps.each_stage([&](int, std::span<const double> efforts, std::span<const double>) {
       const double t = first + static_cast<double>(step++) * h;
       double force = 0;
-      for (const double p : efforts) force += p;
+      for (std::size_t i = 0; i < efforts.size(); ++i)
+        force += shares_[static_cast<std::size_t>(steps.closed[i].point)] * efforts[i];
       if (t >= from_ && t <= to_) add(force, lasts);
     });
     return;

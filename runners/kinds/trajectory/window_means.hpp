@@ -87,6 +87,7 @@ class ForceWindow final : public StepObserver {
 
   double from_ = 0, to_ = -1;
   double given_ = 0, lasts_ = 0;  // by the instant under way
+  std::vector<double> shares_;    // of each point's effort in the force: of a side of a clearance along its first axis
   double weight_ = 0, mean_ = 0, squares_ = 0;
 };
 

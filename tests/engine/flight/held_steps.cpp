@@ -80,6 +80,31 @@ TEST_CASE("while stops hold, by one stage or several, steps without a search are
   CHECK(left_out > 10);
 }
 
+TEST_CASE("while stops of their own stiffness and damping push, steps without a search are those of every step") {
+  // A twelfth as stiff, as the law says, four times as stiff; what damps stands beside what does not.
+  SceneSpec scene = pressed(StopsSpec::Place::tip, 1e-4);
+  scene.stops = {};
+  for (const auto& [x, gap, stiffness, damping] : {std::tuple(0.5, 0.002, std::optional(8e2), std::optional<double>()),
+                                                   {1.0, 0.008, std::nullopt, 3.0},
+                                                   {1.501, 0.02, 4e4, 0.0}}) {
+    Place place;
+    place.x = x;
+    NamedStop stop{.name = fmt::format("at{:.0f}", 10 * x), .at = place, .to = {}, .lower = -gap, .upper = gap};
+    stop.own = {.stiffness = stiffness, .damping = damping};
+    scene.stops.named.push_back(stop);
+  }
+  for (const Choice& law :
+       {Choice{"penalty", {{"stiffness", 1e4}}}, Choice{"kelvin-voigt", {{"stiffness", 1e4}, {"viscosity", 1.0}}}})
+    for (const char* time : {"newmark-dumont-paoli", "midpoint", "bathe", "hht-alpha"}) {
+      const Methods methods{{"consistent"}, law, with_values(registry().time(time)->manual)};
+      const Compared result = compare(scene, 4, methods, 4e-5, 8000);
+      INFO(law.name << " × " << time << ": " << result.apart << result.cause);
+      CHECK(result.alike);
+      CHECK(result.flew);
+      CHECK(3 * result.visited < result.contact_steps);
+    }
+}
+
 TEST_CASE("a point that closes beside those that are held is not missed") {
   // All nodes, soft springs: the beam lays itself down point by point.
   const Methods methods{{"consistent"}, {"penalty", {{"stiffness", 2e3}}}, {"newmark-dumont-paoli"}};

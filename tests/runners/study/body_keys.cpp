@@ -129,10 +129,25 @@ TEST_CASE("bodies that cannot be are refused at their place") {
         "/mesh/elements: says no number for body rod; expected one for each beam or bar");
   CHECK_THAT(refusal(with("/mesh/elements", {{"rod", 4}})), Contains("the scene has one structure"));
   CHECK(refusal(with_body_key("/scene/initial", {{"file", "state.csv"}})) ==
-        "/scene/initial/file: bodies begin at rest or in equilibrium; expected no file");
-  CHECK_THAT(refusal(with_body_key("/scene/initial", {{"displacement", "x"}})),
-             Contains("/scene/initial/displacement: bodies have no x in common; expected 0, or equilibrium"));
+        "/scene/initial/file: a file of several bodies; expected an object by body, {\"name\": {\"file\": …}}");
+  CHECK_THAT(
+      refusal(with_body_key("/scene/initial", {{"displacement", "x"}})),
+      Contains("/scene/initial/displacement: bodies have no x in common; expected an object by body, or equilibrium"));
   CHECK_THAT(refusal(with_body_key("/scene/load", "1")), Contains("bodies have no x in common"));
+}
+
+TEST_CASE("an initial state by body is refused where its body cannot begin so") {
+  const auto begun = [](const char* initial) { return refusal(with_body_key("/scene/initial", Json::parse(initial))); };
+  CHECK(begun(R"({"rood": {"displacement": "x"}})") ==
+        "/scene/initial/rood: no body \"rood\" (bodies: \"ball\", \"rod\"); did you mean \"rod\"?");
+  CHECK(begun(R"({"rod": {"displacement_z": "x"}})") ==
+        "/scene/initial/rod/displacement_z: only a beam of planes 2 moves along uz; expected 0");
+  CHECK(begun(R"({"rod": {"displacement": "t"}})") != "none");
+  CHECK_THAT(begun(R"({"rod": {"displacment": 0}})"), Contains("did you mean \"displacement\"?"));
+  CHECK(begun(R"({"rod": {"velocity_factor": 2}})") ==
+        "/scene/initial/rod/velocity_factor: multiplies a file, and none is given; expected \"file\"");
+  CHECK_THAT(refusal(with("/scene/initial", Json::parse(R"({"rod": {"displacement": 0}})"))),
+             Contains("/scene/initial/rod: an initial state by body, and the scene has one structure"));
 }
 
 TEST_CASE("a stop has parameters and a motion of its own, and lists of its numbers are axes") {

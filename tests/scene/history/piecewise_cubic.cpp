@@ -106,3 +106,99 @@ TEST_CASE("tables that are none are refused") {
   table.values[1] = std::nan("");
   CHECK_THROWS_WITH(table.check(""), Catch::Contains("entry 2"));
 }
+
+namespace {
+
+// cos(2π(t − 0.3)) at uneven instants of one period, from 0.1 s to 1.1 s.
+TimeTable uneven_cosine(TimeTable::Between between) {
+  TimeTable table;
+  table.name = "cos.csv";
+  for (int i = 0; i <= 60; ++i) {
+    const double s = i / 60.0;
+    table.times.push_back(0.1 + s + 0.004 * std::sin(2 * pi * 3 * s));
+    table.values.push_back(std::cos(2 * pi * (table.times.back() - 0.3)));
+  }
+  table.values.back() = table.values.front();
+  table.between = between;
+  table.period = 1;
+  return table;
+}
+
+}  // namespace
+
+TEST_CASE("what repeats has the value, the slope and the curvature of one period before, and no kink at its ends") {
+  const PiecewiseCubic spline = PiecewiseCubic::interpolate(uneven_cosine(TimeTable::Between::cubic));
+  constexpr double longest = 1.3 / 60;  // between instants
+  for (double t = -1.7; t < 2.5; t += 0.0173) {
+    CHECK_THAT(spline.value(t), WithinAbs(std::cos(2 * pi * (t - 0.3)), 5.0 / 384 * std::pow(2 * pi * longest, 4)));
+    CHECK_THAT(spline.value(t + 41), WithinAbs(spline.value(t), 1e-12));  // round-off of t over a slope of 2π
+    CHECK_THAT(spline.acceleration(t), WithinAbs(-4 * pi * pi * std::cos(2 * pi * (t - 0.3)), 1));
+  }
+  constexpr double aside = 1e-9;  // the slope is 2π, f''' is 250: each moves by less than 1e-6 over that
+  for (const double end : {0.1, 1.1}) {
+    CHECK_THAT(spline.value(end - aside), WithinAbs(spline.value(end + aside), 1e-7));
+    CHECK_THAT(spline.rate(end - aside), WithinAbs(spline.rate(end + aside), 1e-6));
+    CHECK_THAT(spline.acceleration(end - aside), WithinAbs(spline.acceleration(end + aside), 1e-5));
+  }
+  // Three entries are two unknowns that are each other's neighbours twice.
+  TimeTable few;
+  few.times = {0, 1, 2};
+  few.values = {0, 1, 0};
+  few.between = TimeTable::Between::cubic;
+  few.period = 2;
+  const PiecewiseCubic wave = PiecewiseCubic::interpolate(few);
+  CHECK_THAT(wave.rate(0), WithinAbs(0, 1e-14));
+  CHECK_THAT(wave.acceleration(0), WithinAbs(6, 1e-12));
+  CHECK_THAT(wave.acceleration(1), WithinAbs(-6, 1e-12));
+}
+
+TEST_CASE("an acceleration that repeats begins a motion that does, at the velocity and the place without a mean") {
+  // A triangle wave, a(t + 1/2) = −a(t): so are φ' and φ. φ' rises by 1/4 in the middle half.
+  TimeTable table;
+  table.name = "a.csv";
+  table.times = {0, 0.25, 0.75, 1};
+  table.values = {0, 1, -1, 0};
+  table.period = 1;
+  const SteadyStart start = steady_start(table);
+  CHECK_THAT(start.mean_acceleration, WithinAbs(0, 1e-16));
+  CHECK_THAT(start.velocity, WithinAbs(-0.125, 1e-15));
+  CHECK_THAT(start.position, WithinAbs(0, 1e-16));
+  // The same wave as a table that begins elsewhere.
+  TimeTable later = table;
+  later.times = {0.25, 0.75, 1.25};
+  later.values = {1, -1, 1};
+  CHECK_THAT(steady_start(later).velocity, WithinAbs(-0.125, 1e-15));
+  CHECK_THAT(steady_start(later).position, WithinAbs(0, 1e-15));
+  for (const TimeTable& one : {table, later}) {
+    const PiecewiseCubic motion = PiecewiseCubic::integrate_twice(one, 0.5, -0.125);
+    for (const double t : {0.0, 0.1, 0.3, 0.6, 0.9}) {
+      CHECK_THAT(motion.value(t + 7), WithinAbs(motion.value(t), 1e-14));
+      CHECK_THAT(motion.value(t + 0.5) - 0.5, WithinAbs(0.5 - motion.value(t), 1e-14));
+      CHECK_THAT(motion.rate(t + 0.5), WithinAbs(-motion.rate(t), 1e-14));
+    }
+    CHECK(motion.value(0) == 0.5);
+  }
+  table.values = {0, 1, -0.5, 0};
+  CHECK_THAT(steady_start(table).mean_acceleration, WithinAbs(0.125 + 0.125 - 0.0625, 1e-15));
+}
+
+TEST_CASE("a table that repeats is as long as its period and ends as it begins") {
+  TimeTable table = triangle();
+  table.period = 0.05;
+  CHECK_NOTHROW(table.check("/scene/motions/0/acceleration"));
+  CHECK(table.covers(-3, 1e6, 0));
+  const auto refusal = [](const TimeTable& of) {
+    try {
+      of.check("/a");
+    } catch (const InputError& error) {
+      return error.pointer() + ": " + error.what();
+    }
+    return std::string("none");
+  };
+  table.period = 0.06;
+  CHECK(refusal(table) ==
+        "/a/period: a.csv is 0.05 s long and is to repeat after 0.06 s; expected one period of it, 0.05 s");
+  table.period = 0.05;
+  table.values.back() = 0.1;
+  CHECK(refusal(table) == "/a/period: a.csv begins with 0 and ends with 0.1; what repeats ends as it begins");
+}

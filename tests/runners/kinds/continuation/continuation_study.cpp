@@ -52,8 +52,9 @@ TEST_CASE("continuation follows real numbers of the scene or of a method alone")
 }
 
 TEST_CASE("a scene without a forcing period has no orbits") {
-  check_says(error_of(with("/scene/support/pulsation", 0)),
-             {"/scene/support: nothing is periodic: give support.pulsation or structure.force.pulsation"});
+  check_says(
+      error_of(with("/scene/support/pulsation", 0)),
+      {"/scene/support/pulsation: no forcing has a period (the pulsation is 0)", "the period of a motion or a table"});
 }
 
 TEST_CASE("a mass that the step does not resolve at its stop refuses the case") {
