@@ -15,12 +15,12 @@ namespace {
 
 constexpr double parameter_difference = 1e-6, smallest_step = 1e-9, first_step = 1e-3;  // of the range
 constexpr int easy = 4, hard = 7, most = 12;                                            // iterations
-constexpr double located = 1e-4, largest_step = 0.05;  // of the range: where the count outside changes, and elsewhere
-constexpr double growth = 1.5, sharpest = 0.70710678118654752;  // cos 45°
+constexpr double largest_step = 0.05;                                                   // of the range
+constexpr double growth = 1.5, sharpest = 0.70710678118654752;                          // cos 45°
 
 }  // namespace
 
-StepFollower::StepFollower(SteppedMap& map, const MapClock& clock, VectorXd x, double parameter, int way,
+StepFollower::StepFollower(FollowedMap& map, const MapClock& clock, VectorXd x, double parameter, int way,
                            const ArcSteps& limits)
     : map_(&map), clock_(clock), limits_(limits) {
   now_ = {std::move(x), parameter};
@@ -93,7 +93,7 @@ bool StepFollower::correct(Point& point, const Point& along, int& iterations) {
   return false;
 }
 
-void StepFollower::keep(const Point& point, const SteppedMap::Image& image,
+void StepFollower::keep(const Point& point, const FollowedMap::Image& image,
                         std::vector<std::complex<double>> multipliers) {
   BranchCorner corner;
   corner.parameter = point.parameter;
@@ -115,6 +115,27 @@ void StepFollower::keep(const Point& point, const SteppedMap::Image& image,
   trace_.states.emplace(static_cast<long long>(trace_.corners.size()) - 1, point.x);
 }
 
+// Of a map without steps of time: the orbit on the other side of a graze, with one run of contact more or less, at
+// the next value up or down. It is solved with the derivative of that side.
+bool StepFollower::pass_graze(Point& next) {
+  const double range = limits_.branch.largest - limits_.branch.least;
+  constexpr double nearest = 1e-8, farthest = 1.1e-4, decade = 10, near = 100;
+  for (double by = nearest * range; by < farthest * range; by *= decade)
+    for (const int side : {along_.parameter < 0 ? -1 : 1, along_.parameter < 0 ? 1 : -1}) try {
+        const double value = now_.parameter + side * by;
+        const ShotOrbit shot = shoot(*map_, now_.x, value, clock_, limits_.tolerance);
+        if (!shot.found || !(map_->metric().size(shot.x - now_.x) < near * map_->metric().parameter_metres() * by))
+          continue;
+        FollowedMap::Image image = map_->march(shot.x, value, clock_, true);
+        if (image.runs == trace_.corners.back().runs) continue;
+        last_ = std::move(image);
+        next = {shot.x, value};
+        return true;
+      } catch (const Refusal&) {  // no state there
+      }
+  return false;
+}
+
 bool StepFollower::advance(long long steps) {
   const StateMetric& metric = map_->metric();
   const BranchLimits& limits = limits_.branch;
@@ -125,6 +146,11 @@ bool StepFollower::advance(long long steps) {
     int iterations = 0;
     for (;; step_ *= 0.5) {
       if (step_ < smallest_step * range) {
+        if (limits_.smooth && pass_graze(next)) {
+          multipliers = multipliers_of(last_.derivative);
+          step_ = limits_.located * range;
+          break;
+        }
         const bool graze = rebounds_ > 0 && last_.runs != trace_.corners.back().runs;
         if (graze)
           trace_.end = fmt::format(
@@ -150,11 +176,13 @@ bool StepFollower::advance(long long steps) {
                              metres * metres * (next.parameter - now_.parameter) * along_.parameter) /
                             far;
       multipliers = multipliers_of(last_.derivative);
-      const bool crosses = outside(multipliers).total != trace_.corners.back().raw.outside.total;
+      bool crosses = outside(multipliers).total != trace_.corners.back().raw.outside.total;
+      if (limits_.smooth)
+        crosses |= last_.runs != trace_.corners.back().runs || (next.parameter - now_.parameter) * along_.parameter < 0;
       // Nearer than impacts are placed neither directions nor multipliers say anything.
       const double told = 5 * last_.rebounds;
       const bool straight = cosine >= sharpest || (far < told && cosine > 0);
-      if (straight && crosses && step_ > std::max(located * range, told)) continue;
+      if (straight && crosses && step_ > std::max(limits_.located * range, told)) continue;
       if (straight) break;
       failure_ = "the branch turns by more than 45 degrees within a step";
     }
@@ -167,7 +195,7 @@ bool StepFollower::advance(long long steps) {
       const ShotOrbit at = shoot(*map_, now_.x + share * by, limit, clock_, limits_.tolerance);
       if (at.found) {
         const Point end{at.x, limit};
-        const SteppedMap::Image image = map_->march(at.x, limit, clock_, true);
+        const FollowedMap::Image image = map_->march(at.x, limit, clock_, true);
         keep(end, image, multipliers_of(image.derivative));
       }
       trace_.end = fmt::format("the range ends at {:.10g}", limit);

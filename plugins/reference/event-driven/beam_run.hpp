@@ -29,6 +29,14 @@ class BeamRun {
 
   std::variant<SampledMotion, Refusal> motion();
 
+  /// The motion from modal displacements and velocities (a, b) of flight at t = 0 to the end of the grid, where they
+  /// are left in a, b. `tangent`: columns over (a, b) that follow it, the instants of switches moving with them.
+  /// A state at a stop or in contact at the end is refused.
+  std::variant<SampledMotion, Refusal> motion_from(Eigen::ArrayXd& a, Eigen::ArrayXd& b, Eigen::MatrixXd* tangent);
+  /// ⟨w, φ⟩ and ⟨w_t, φ⟩ of the initial formulas.
+  void project_start(Eigen::ArrayXd& a, Eigen::ArrayXd& b) const;
+  const Beam& beam() const { return beam_; }
+
   /// Share of the initial energy that the modes do not hold: large where the initial displacement is bent at the tip.
   double initial_energy_left_out() const { return initial_energy_ > 0 ? left_out_ / initial_energy_ : 0; }
 
@@ -47,6 +55,14 @@ class BeamRun {
   double lift_rate(double t) const { return -beam_.support.rate(t); }
 
   Failure begin();
+  void set_scales(double displacement, double velocity);  // largest initial ones
+  void move_tangent(const ModalPhase& phase, double t);
+  /// The tangent columns in the modes of the other phase, whose state `next` is: (a, b) → turn (a, b) + lifts.
+  ///
+  ///     δ⁺ = R δ⁻ + (R f⁻ + ∂R/∂t − f⁺) δt,   δt = −∇g·δ⁻ / g'
+  template <class Basis>
+  void switch_tangent(const ModalPhase& phase, const ModalPhase& next_phase, const ModalState& before, double slope,
+                      const Basis& basis, const Eigen::ArrayXd& lifted);
   bool held() const { return upper_ - lower_ <= 1e-12 * scale_; }
   double tolerance() const { return settings_.tolerance * scale_; }
   double force_tolerance() const { return 3 * tolerance() / std::pow(beam_.length, 3); }
@@ -101,6 +117,8 @@ class BeamRun {
   ModalState state_, ahead_;
   std::array<Guard, 2> guards_;
   Eigen::ArrayXd a_, b_;  // modal displacements and velocities, whole
+  Eigen::MatrixXd* tangent_ = nullptr;
+  double tangent_time_ = 0;
   double impulse_ = 0, momentum_ = 0;
   int level_ = 0;
   long long looks_ = 0;
