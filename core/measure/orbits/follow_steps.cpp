@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <ricochet/measure/orbits/shoot.hpp>
 #include <ricochet/measure/orbits/stepped_map.hpp>
+#include <tuple>
 
 namespace ricochet {
 
@@ -31,18 +33,23 @@ StepFollower::StepFollower(FollowedMap& map, const MapClock& clock, VectorXd x, 
     trace_.end = "the first orbit cannot be marched: " + text(last_.end);
     return;
   }
-  // The direction of the branch: (1 − P') dx = P_λ dλ.
-  const MatrixXd one = MatrixXd::Identity(map.size(), map.size());
+  if (set_tangent(way)) keep(now_, last_, multipliers_of(last_.derivative));
+}
+
+// The direction of the branch at the last orbit: (1 − P') dx = P_λ dλ.
+bool StepFollower::set_tangent(int way) {
+  const MatrixXd one = MatrixXd::Identity(map_->size(), map_->size());
   along_.x = DenseLu(one - last_.derivative).solve(by_parameter(now_));
   along_.parameter = 1;
-  const double size = map.metric().size(along_.x, along_.parameter);
+  const double size = map_->metric().size(along_.x, along_.parameter);
   if (!std::isfinite(size)) {
-    trace_.end = "the branch has no direction at its first orbit";
-    return;
+    trace_.end = trace_.corners.empty() ? "the branch has no direction at its first orbit"
+                                        : fmt::format("the branch has no direction at {:.10g}", now_.parameter);
+    return false;
   }
   along_.x *= way / size;
   along_.parameter *= way / size;
-  keep(now_, last_, multipliers_of(last_.derivative));
+  return true;
 }
 
 VectorXd StepFollower::by_parameter(const Point& point) {
@@ -115,20 +122,33 @@ void StepFollower::keep(const Point& point, const FollowedMap::Image& image,
   trace_.states.emplace(static_cast<long long>(trace_.corners.size()) - 1, point.x);
 }
 
-// Of a map without steps of time: the orbit on the other side of a graze, with one run of contact more or less, at
-// the next value up or down. It is solved with the derivative of that side.
+// The cosine between two directions.
+double StepFollower::cosine(const Point& a, const Point& b) const {
+  const StateMetric& metric = map_->metric();
+  const double dot = (metric.rows() * a.x).dot(metric.rows() * b.x) +
+                     metric.parameter_metres() * metric.parameter_metres() * a.parameter * b.parameter;
+  return dot / (metric.size(a.x, a.parameter) * metric.size(b.x, b.parameter));
+}
+
+// Of a map without steps of time, where no shorter step finds an orbit: a contact comes or goes. The orbit beyond is
+// looked for by longer steps, then with one contact more or less at the next values up and down, where the branch turns.
 bool StepFollower::pass_graze(Point& next) {
-  const double range = limits_.branch.largest - limits_.branch.least;
+  const double range = limits_.branch.largest - limits_.branch.least, metres = map_->metric().parameter_metres();
+  int iterations = 0;
+  for (double step = limits_.located * metres * range; step < largest_step * metres * range; step *= 2) try {
+      next = {now_.x + step * along_.x, now_.parameter + step * along_.parameter};
+      if (!correct(next, along_, iterations)) continue;
+      if (cosine({next.x - now_.x, next.parameter - now_.parameter}, along_) >= sharpest) return true;
+    } catch (const Refusal&) {  // no state there
+    }
   constexpr double nearest = 1e-8, farthest = 1.1e-4, decade = 10, near = 100;
   for (double by = nearest * range; by < farthest * range; by *= decade)
     for (const int side : {along_.parameter < 0 ? -1 : 1, along_.parameter < 0 ? 1 : -1}) try {
         const double value = now_.parameter + side * by;
         const ShotOrbit shot = shoot(*map_, now_.x, value, clock_, limits_.tolerance);
-        if (!shot.found || !(map_->metric().size(shot.x - now_.x) < near * map_->metric().parameter_metres() * by))
-          continue;
-        FollowedMap::Image image = map_->march(shot.x, value, clock_, true);
-        if (image.runs == trace_.corners.back().runs) continue;
-        last_ = std::move(image);
+        if (!shot.found || !(map_->metric().size(shot.x - now_.x) < near * metres * by)) continue;
+        last_ = map_->march(shot.x, value, clock_, true);
+        if (last_.runs == trace_.corners.back().runs) continue;
         next = {shot.x, value};
         return true;
       } catch (const Refusal&) {  // no state there
@@ -144,13 +164,20 @@ bool StepFollower::advance(long long steps) {
     Point next;
     std::vector<std::complex<double>> multipliers;
     int iterations = 0;
+    const double before = along_.parameter;
+    // Of a smooth map: the shortest step so far that changes what is placed. No shorter one may be found where contacts
+    // come or go that the map does not resolve.
+    std::optional<std::pair<Point, FollowedMap::Image>> across;
+    bool jumps = false;
     for (;; step_ *= 0.5) {
+      jumps = limits_.smooth && step_ < 0.01 * limits_.located * range;
+      if (jumps && across) std::tie(next, last_) = std::move(*across);
+      if (jumps && (across || pass_graze(next))) {
+        multipliers = multipliers_of(last_.derivative);
+        step_ = limits_.located * range;
+        break;
+      }
       if (step_ < smallest_step * range) {
-        if (limits_.smooth && pass_graze(next)) {
-          multipliers = multipliers_of(last_.derivative);
-          step_ = limits_.located * range;
-          break;
-        }
         const bool graze = rebounds_ > 0 && last_.runs != trace_.corners.back().runs;
         if (graze)
           trace_.end = fmt::format(
@@ -171,18 +198,22 @@ bool StepFollower::advance(long long steps) {
       }
       const VectorXd by = next.x - now_.x;
       const double far = metric.size(by, next.parameter - now_.parameter);
-      const double metres = metric.parameter_metres();
-      const double cosine = ((metric.rows() * by).dot(metric.rows() * along_.x) +
-                             metres * metres * (next.parameter - now_.parameter) * along_.parameter) /
-                            far;
+      const double cosine = this->cosine({by, next.parameter - now_.parameter}, along_);
       multipliers = multipliers_of(last_.derivative);
       bool crosses = outside(multipliers).total != trace_.corners.back().raw.outside.total;
-      if (limits_.smooth)
-        crosses |= last_.runs != trace_.corners.back().runs || (next.parameter - now_.parameter) * along_.parameter < 0;
+      const bool turns = outside(multipliers).above % 2 != trace_.corners.back().raw.outside.above % 2;
+      if (limits_.smooth) crosses |= last_.runs != trace_.corners.back().runs;
+      if (limits_.smooth && !turns && (next.parameter - now_.parameter) * along_.parameter < 0) {
+        failure_ = "the step goes back along the branch";
+        continue;
+      }
       // Nearer than impacts are placed neither directions nor multipliers say anything.
       const double told = 5 * last_.rebounds;
       const bool straight = cosine >= sharpest || (far < told && cosine > 0);
-      if (straight && crosses && step_ > std::max(limits_.located * range, told)) continue;
+      if (straight && crosses && step_ > std::max(limits_.located * range, told)) {
+        if (limits_.smooth) across = {next, last_};
+        continue;
+      }
       if (straight) break;
       failure_ = "the branch turns by more than 45 degrees within a step";
     }
@@ -205,6 +236,11 @@ bool StepFollower::advance(long long steps) {
     trace_.corners.back().way = along_.parameter < 0 ? -1 : 1;
     keep(next, last_, std::move(multipliers));
     now_ = std::move(next);
+    const int above = trace_.corners.back().raw.outside.above - trace_.corners.end()[-2].raw.outside.above;
+    if (limits_.smooth && (jumps || above % 2 != 0)) {
+      // λ turns where det(1 − P') changes its sign, over jumps and corners as well.
+      if (!set_tangent((above % 2 == 0) == (before > 0) ? 1 : -1)) break;
+    }
     if (iterations <= easy) step_ = std::min(growth * step_, largest_step * range);
     if (iterations > hard) step_ /= growth;
     if (static_cast<long long>(trace_.corners.size()) > limits.pieces)

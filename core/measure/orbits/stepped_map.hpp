@@ -104,6 +104,8 @@ class StepFollower {
   };
   bool correct(Point& point, const Point& along, int& iterations);
   bool pass_graze(Point& next);
+  double cosine(const Point& a, const Point& b) const;
+  bool set_tangent(int way);
   void keep(const Point& point, const FollowedMap::Image& image, std::vector<std::complex<double>> multipliers);
   Eigen::VectorXd by_parameter(const Point& point);
 

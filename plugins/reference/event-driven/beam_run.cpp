@@ -130,7 +130,12 @@ void BeamRun::impact(int side, double velocity) {
   if (tangent_) move_tangent(flight_, before.time);
   enter_contact(side, velocity, (beam_.lift_free * a_).sum(), (beam_.lift_free * b_).sum(),
                 beam_.change.transpose() * a_.matrix(), beam_.change.transpose() * b_.matrix());
-  if (tangent_) switch_tangent(flight_, contact_, before, velocity, beam_.change.transpose(), -beam_.lift_pinned);
+  if (tangent_) {
+    set_instants(flight_, velocity);
+    switch_tangent(flight_, contact_, before, beam_.change.transpose(), -beam_.lift_pinned);
+  }
+  // Continuous in the speed: a contact that its first force would end is left at once.
+  if (mapped_ && guards_[0].margin(contact_.read(state_).value) <= 0) release(true);
 }
 
 void BeamRun::enter_contact(int side, double velocity, double on_lift, double rate_on_lift,
@@ -152,17 +157,19 @@ void BeamRun::enter_contact(int side, double velocity, double on_lift, double ra
   }
 }
 
-void BeamRun::release() {
+void BeamRun::release(bool at_once) {
   const double t = state_.time;
   contact_.whole(state_, t, a_, b_);
   impulse_ += contact_impulse(t);
   out_.events.push_back({t, side_, false, 0});
   const ModalState before = state_;
-  const double slope = tangent_ ? contact_.read(state_).slope : 0;
-  if (tangent_) move_tangent(contact_, t);
+  if (tangent_ && !at_once) {
+    move_tangent(contact_, t);
+    set_instants(contact_, contact_.read(state_).slope);
+  }
   state_ = flight_.start(t, (beam_.change * a_.matrix()).array() + lift(t) * beam_.lift_free,
                          (beam_.change * b_.matrix()).array() + lift_rate(t) * beam_.lift_free);
-  if (tangent_) switch_tangent(contact_, flight_, before, slope, beam_.change, beam_.lift_free);
+  if (tangent_) switch_tangent(contact_, flight_, before, beam_.change, beam_.lift_free);
   guards_ = {Guard{lower_, 1}, Guard{upper_, -1}};
   Guard& left = guards_[side_ < 0 ? 0 : 1];
   left.on = false;
@@ -183,21 +190,25 @@ void BeamRun::move_tangent(const ModalPhase& phase, double t) {
   tangent_time_ = t;
 }
 
+void BeamRun::set_instants(const ModalPhase& phase, double slope) {
+  const Eigen::Index n = phase.size();
+  const ModalPhase::Watched& g = phase.watched();
+  instants_ = -(g.position.matrix().transpose() * tangent_->topRows(n) +
+                g.rate.matrix().transpose() * tangent_->bottomRows(n)) /
+              slope;
+}
+
 template <class Basis>
 void BeamRun::switch_tangent(const ModalPhase& phase, const ModalPhase& next_phase, const ModalState& before,
-                             double slope, const Basis& basis, const Eigen::ArrayXd& lifted) {
+                             const Basis& basis, const Eigen::ArrayXd& lifted) {
   const Eigen::Index n = basis.rows();
-  const ModalPhase::Watched& g = phase.watched();
-  const Eigen::RowVectorXd instants = -(g.position.matrix().transpose() * tangent_->topRows(n) +
-                                        g.rate.matrix().transpose() * tangent_->bottomRows(n)) /
-                                      slope;
   const Support& support = beam_.support;
   const double lift_curve = support.pulsation * support.pulsation * support.at(before.time);
   // Displacements and velocities go on: accelerations alone jump.
   const Eigen::VectorXd jump =
       basis * phase.acceleration(before).matrix() + (lift_curve * lifted - next_phase.acceleration(state_)).matrix();
   tangent_->topRows(n) = basis * tangent_->topRows(n);
-  tangent_->bottomRows(n) = basis * tangent_->bottomRows(n) + jump * instants;
+  tangent_->bottomRows(n) = basis * tangent_->bottomRows(n) + jump * instants_;
 }
 
 void BeamRun::project_start(Eigen::ArrayXd& a, Eigen::ArrayXd& b) const {
@@ -214,6 +225,7 @@ std::variant<SampledMotion, Refusal> BeamRun::motion_from(Eigen::ArrayXd& a, Eig
   side_ = level_ = 0;
   looks_ = 0;
   impulse_ = 0;
+  mapped_ = true;
   tangent_ = tangent;
   tangent_time_ = 0;
   set_scales(0, 0);

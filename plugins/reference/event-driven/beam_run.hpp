@@ -57,11 +57,12 @@ class BeamRun {
   Failure begin();
   void set_scales(double displacement, double velocity);  // largest initial ones
   void move_tangent(const ModalPhase& phase, double t);
-  /// The tangent columns in the modes of the other phase, whose state `next` is: (a, b) → turn (a, b) + lifts.
-  ///
-  ///     δ⁺ = R δ⁻ + (R f⁻ + ∂R/∂t − f⁺) δt,   δt = −∇g·δ⁻ / g'
+  /// How far the instant of a switch moves with each column: δt = −∇g·δ / g'.
+  void set_instants(const ModalPhase& phase, double slope);
+  /// The tangent columns in the modes of the next phase, which has begun: δ⁺ = R δ⁻ + (R f⁻ + ∂R/∂t − f⁺) δt, R the
+  /// change of modes and of the lift, f the rates on either side.
   template <class Basis>
-  void switch_tangent(const ModalPhase& phase, const ModalPhase& next_phase, const ModalState& before, double slope,
+  void switch_tangent(const ModalPhase& phase, const ModalPhase& next_phase, const ModalState& before,
                       const Basis& basis, const Eigen::ArrayXd& lifted);
   bool held() const { return upper_ - lower_ <= 1e-12 * scale_; }
   double tolerance() const { return settings_.tolerance * scale_; }
@@ -76,7 +77,7 @@ class BeamRun {
   /// With ⟨w,p⟩, ⟨w_t,p⟩ and all ⟨w,ψ_n⟩, ⟨w_t,ψ_n⟩.
   void enter_contact(int side, double velocity, double on_lift, double rate_on_lift, const Eigen::ArrayXd& on_modes,
                      const Eigen::ArrayXd& rate_on_modes);
-  void release();
+  void release(bool at_once = false);
 
   /// Σ⟨·, p⟩ of the equation of motion, integrated over time, per ρS: its change over a contact phase is the impulse.
   ///
@@ -118,7 +119,9 @@ class BeamRun {
   std::array<Guard, 2> guards_;
   Eigen::ArrayXd a_, b_;  // modal displacements and velocities, whole
   Eigen::MatrixXd* tangent_ = nullptr;
+  Eigen::RowVectorXd instants_;
   double tangent_time_ = 0;
+  bool mapped_ = false;  // by motion_from
   double impulse_ = 0, momentum_ = 0;
   int level_ = 0;
   long long looks_ = 0;
