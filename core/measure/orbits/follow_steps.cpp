@@ -131,7 +131,8 @@ double StepFollower::cosine(const Point& a, const Point& b) const {
 }
 
 // Of a map without steps of time, where no shorter step finds an orbit: a contact comes or goes. The orbit beyond is
-// looked for by longer steps, then with one contact more or less at the next values up and down, where the branch turns.
+// looked for by longer steps, then with one contact more or less at the next values up and down, where the branch
+// turns.
 bool StepFollower::pass_graze(Point& next) {
   const double range = limits_.branch.largest - limits_.branch.least, metres = map_->metric().parameter_metres();
   int iterations = 0;
@@ -236,10 +237,11 @@ bool StepFollower::advance(long long steps) {
     trace_.corners.back().way = along_.parameter < 0 ? -1 : 1;
     keep(next, last_, std::move(multipliers));
     now_ = std::move(next);
-    const int above = trace_.corners.back().raw.outside.above - trace_.corners.end()[-2].raw.outside.above;
-    if (limits_.smooth && (jumps || above % 2 != 0)) {
-      // λ turns where det(1 − P') changes its sign, over jumps and corners as well.
-      if (!set_tangent((above % 2 == 0) == (before > 0) ? 1 : -1)) break;
+    if (limits_.smooth) {
+      // λ turns where det(1 − P') changes its sign. A secant over a corner or a jump is no direction of the branch.
+      const BranchCorner &last = trace_.corners.back(), &one_before = trace_.corners.end()[-2];
+      const bool turns = (last.raw.outside.above - one_before.raw.outside.above) % 2 != 0;
+      if ((jumps || turns || last.runs != one_before.runs) && !set_tangent(turns == (before > 0) ? -1 : 1)) break;
     }
     if (iterations <= easy) step_ = std::min(growth * step_, largest_step * range);
     if (iterations > hard) step_ /= growth;

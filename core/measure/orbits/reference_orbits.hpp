@@ -22,6 +22,8 @@ class ReferenceOrbits final : public FollowedMap {
   int size() const override { return scene_.map->size(); }
   const StateMetric& metric() const override { return *metric_; }
   Image march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool derivative = false) override;
+  /// Displacement and velocity of the tip, as ReferenceMap has them.
+  std::pair<double, double> tip(const Eigen::VectorXd& x, double parameter) { return at(parameter).map->tip(x); }
   /// The state after so many periods from the scene's initial state.
   Eigen::VectorXd settle(double parameter, int periods);
 

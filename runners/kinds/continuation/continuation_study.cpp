@@ -99,7 +99,12 @@ std::vector<Field> continuation_keys() {
   ObjectForm at_most;
   at_most.fields = {integer("pieces", {1, 1000000000, false, false}, 200000, "Pieces or steps of a branch."),
                     single(real("arc", "m", positive, 1.0, "Length of a branch."))};
+  Field reference = methods("reference", Role::reference,
+                            "A reference whose orbits are followed too, or a list, whose first counts; null: none.");
+  reference.fallback = Json(nullptr);
+  reference.nullable = true;
   return {
+      std::move(reference),
       object("parameter", std::nullopt, "What branches are followed along.", std::move(parameter)),
       steps_per_period(),
       std::move(orbits),
