@@ -36,20 +36,23 @@ StepFollower::StepFollower(FollowedMap& map, const MapClock& clock, VectorXd x, 
   if (set_tangent(way)) keep(now_, last_, multipliers_of(last_.derivative));
 }
 
-// The direction of the branch at the last orbit: (1 − P') dx = P_λ dλ.
-bool StepFollower::set_tangent(int way) {
+// The direction of the branch at an orbit, λ growing: (1 − P') dx = P_λ dλ.
+std::optional<StepFollower::Point> StepFollower::tangent(const Point& at, const MatrixXd& derivative) {
   const MatrixXd one = MatrixXd::Identity(map_->size(), map_->size());
-  along_.x = DenseLu(one - last_.derivative).solve(by_parameter(now_));
-  along_.parameter = 1;
-  const double size = map_->metric().size(along_.x, along_.parameter);
-  if (!std::isfinite(size)) {
+  const VectorXd x = DenseLu(one - derivative).solve(by_parameter(at));
+  const double size = map_->metric().size(x, 1);
+  if (!std::isfinite(size)) return std::nullopt;
+  return Point{x / size, 1 / size};
+}
+
+bool StepFollower::set_tangent(int way) {
+  const auto found = tangent(now_, last_.derivative);
+  if (found)
+    along_ = {way * found->x, way * found->parameter};
+  else
     trace_.end = trace_.corners.empty() ? "the branch has no direction at its first orbit"
                                         : fmt::format("the branch has no direction at {:.10g}", now_.parameter);
-    return false;
-  }
-  along_.x *= way / size;
-  along_.parameter *= way / size;
-  return true;
+  return found.has_value();
 }
 
 VectorXd StepFollower::by_parameter(const Point& point) {
@@ -157,6 +160,47 @@ bool StepFollower::pass_graze(Point& next) {
   return false;
 }
 
+// Adds the orbit at which a contact comes or goes before the one beyond it: the last one along the branch on the side
+// with fewer contacts, where the map has a derivative. `along`: the direction before.
+void StepFollower::place_contact(const Point& beyond, const Point& along, bool turns) {
+  const FollowedMap::Image there = last_;
+  const bool vanishes = there.runs < trace_.corners.back().runs;
+  const int runs = std::min(there.runs, trace_.corners.back().runs);
+  const double range = map_->metric().parameter_metres() * (limits_.branch.largest - limits_.branch.least);
+  double low = 0, high = map_->metric().size(beyond.x - now_.x, beyond.parameter - now_.parameter);
+  Point direction = along;
+  if (vanishes) {
+    const auto back = tangent(beyond, there.derivative);
+    if (!back) return;
+    const int way = turns == (along.parameter > 0) ? 1 : -1;
+    direction = {way * back->x, way * back->parameter};
+    constexpr int over = 4;  // a jump leads beyond the contact
+    high *= over;
+  }
+  const Point& from = vanishes ? beyond : now_;
+  Point found;
+  FollowedMap::Image image;
+  while (high - low > smallest_step * range) {
+    const double step = 0.5 * (low + high);
+    Point point{from.x + step * direction.x, from.parameter + step * direction.parameter};
+    int iterations = 0;
+    bool before = false;
+    try {
+      before = correct(point, direction, iterations) && last_.runs == runs;
+    } catch (const Refusal&) {  // no state there
+    }
+    (before ? low : high) = step;
+    if (!before) continue;
+    found = std::move(point);
+    image = last_;
+  }
+  last_ = there;
+  if (low == 0) return;
+  trace_.corners.back().way = found.parameter < now_.parameter ? -1 : 1;
+  keep(found, image, multipliers_of(image.derivative));
+  now_ = std::move(found);
+}
+
 bool StepFollower::advance(long long steps) {
   const StateMetric& metric = map_->metric();
   const BranchLimits& limits = limits_.branch;
@@ -165,7 +209,8 @@ bool StepFollower::advance(long long steps) {
     Point next;
     std::vector<std::complex<double>> multipliers;
     int iterations = 0;
-    const double before = along_.parameter;
+    const Point before = along_;
+    const int runs = trace_.corners.back().runs, above = trace_.corners.back().raw.outside.above;
     // Of a smooth map: the shortest step so far that changes what is placed. No shorter one may be found where contacts
     // come or go that the map does not resolve.
     std::optional<std::pair<Point, FollowedMap::Image>> across;
@@ -202,9 +247,9 @@ bool StepFollower::advance(long long steps) {
       const double cosine = this->cosine({by, next.parameter - now_.parameter}, along_);
       multipliers = multipliers_of(last_.derivative);
       bool crosses = outside(multipliers).total != trace_.corners.back().raw.outside.total;
-      const bool turns = outside(multipliers).above % 2 != trace_.corners.back().raw.outside.above % 2;
-      if (limits_.smooth) crosses |= last_.runs != trace_.corners.back().runs;
-      if (limits_.smooth && !turns && (next.parameter - now_.parameter) * along_.parameter < 0) {
+      if (limits_.smooth) crosses |= last_.runs != runs;
+      if (limits_.smooth && (outside(multipliers).above - above) % 2 == 0 &&
+          (next.parameter - now_.parameter) * along_.parameter < 0) {
         failure_ = "the step goes back along the branch";
         continue;
       }
@@ -233,16 +278,14 @@ bool StepFollower::advance(long long steps) {
       trace_.end = fmt::format("the range ends at {:.10g}", limit);
       return false;
     }
+    const bool turns = (outside(multipliers).above - above) % 2 != 0, contact = last_.runs != runs;
+    if (limits_.smooth && contact) place_contact(next, before, turns);
     // The secant that ends here is that of the corner before.
-    trace_.corners.back().way = along_.parameter < 0 ? -1 : 1;
+    trace_.corners.back().way = next.parameter < now_.parameter ? -1 : 1;
     keep(next, last_, std::move(multipliers));
     now_ = std::move(next);
-    if (limits_.smooth) {
-      // λ turns where det(1 − P') changes its sign. A secant over a corner or a jump is no direction of the branch.
-      const BranchCorner &last = trace_.corners.back(), &one_before = trace_.corners.end()[-2];
-      const bool turns = (last.raw.outside.above - one_before.raw.outside.above) % 2 != 0;
-      if ((jumps || turns || last.runs != one_before.runs) && !set_tangent(turns == (before > 0) ? -1 : 1)) break;
-    }
+    // λ turns where det(1 − P') changes its sign. A secant over a corner or a jump is no direction of the branch.
+    if (limits_.smooth && (jumps || turns || contact) && !set_tangent(turns == (before.parameter > 0) ? -1 : 1)) break;
     if (iterations <= easy) step_ = std::min(growth * step_, largest_step * range);
     if (iterations > hard) step_ /= growth;
     if (static_cast<long long>(trace_.corners.size()) > limits.pieces)

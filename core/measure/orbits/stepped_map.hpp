@@ -105,7 +105,9 @@ class StepFollower {
   bool correct(Point& point, const Point& along, int& iterations);
   bool pass_graze(Point& next);
   double cosine(const Point& a, const Point& b) const;
+  std::optional<Point> tangent(const Point& at, const Eigen::MatrixXd& derivative);
   bool set_tangent(int way);
+  void place_contact(const Point& beyond, const Point& along, bool turns);
   void keep(const Point& point, const FollowedMap::Image& image, std::vector<std::complex<double>> multipliers);
   Eigen::VectorXd by_parameter(const Point& point);
 

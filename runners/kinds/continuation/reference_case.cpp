@@ -137,6 +137,8 @@ class ReferenceRun {
     search.half = branch.clock.half;
     search.prominence = plan_.prominence.value_or(least_fold * scale);
     search.by_steps = true;
+    constexpr double contacts = 1e-9;  // of the range
+    search.contacts = contacts * plan_.range();
     branch.points = special_points(branch.trace, search);
     steps_ += static_cast<long long>(branch.trace.corners.size());
     std::vector<BranchRow> rows = corner_rows_of(branch, plan_.multipliers);
