@@ -262,7 +262,6 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   const bool ways = given.contains("march");
   if (!ways) resolved.erase("march");
   if (!given.contains("compare")) resolved.erase("compare");
-  if (resolved.contains("reference") && resolved["reference"].is_null()) resolved.erase("reference");
   const auto files = std::make_shared<StudyFiles>(folder, resolved["files"], resolved.value("outside", false));
   resolved.erase("files");
   if (kind.check) kind.check(resolved);

@@ -93,7 +93,9 @@ std::vector<Crossing> crossings_of(const Corners& corners, const Circle& circle,
     const int counted = now.raw.outside.*circle.count - was.raw.outside.*circle.count;
     if (!by_steps && counted * (now.raw.outside.total - was.raw.outside.total) > 0)
       all.push_back({i, true, counted > 0 ? 1 : -1, now.parameter, now.arc, now.tip, {}});
-    if (was.smooth.outside.*circle.count == now.smooth.outside.*circle.count) continue;
+    const int smoothly = now.smooth.outside.*circle.count - was.smooth.outside.*circle.count;
+    if (smoothly == 0) continue;
+    if (by_steps && smoothly * (now.smooth.outside.total - was.smooth.outside.total) <= 0) continue;
     const double before = distance(was.smooth, circle.pair), after = distance(now.smooth, circle.pair);
     if (!(before * after <= 0) || before == after) continue;
     const double share = before / (before - after);

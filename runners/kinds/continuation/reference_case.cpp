@@ -123,6 +123,8 @@ class ReferenceRun {
     ArcSteps limits;
     limits.branch = {plan_.from, plan_.to, plan_.most_pieces, plan_.longest, {}, plan_.multipliers};
     limits.tolerance = solved * gap_;
+    constexpr double located = 2.5e-5;
+    limits.located = located;
     limits.smooth = true;
     StepFollower follower(map, branch.clock, shot.x, shot.parameter, way, limits);
     while (plan_.follow != Follow::none && follower.advance(1)) {
