@@ -21,7 +21,7 @@
 /// code of the library runs. Fields, in order: contract version, Eigen version, Eigen's alignment limits, libstdc++
 /// string ABI. The sizes of types stand beside it (RICOCHET_LAYOUTS).
 #ifndef RICOCHET_ABI_CONTRACT
-#define RICOCHET_ABI_CONTRACT 6
+#define RICOCHET_ABI_CONTRACT 7
 #endif
 #define RICOCHET_ABI_JOIN_(contract, world, major, align, static_align, cxx11) \
   ricochet_abi__contract_##contract##__eigen_##world##_##major##__align_##align##_##static_align##__cxx11_##cxx11
@@ -64,7 +64,8 @@
   X(ReferenceProblem, ricochet::ReferenceProblem)     \
   X(SampleGrid, ricochet::SampleGrid)                 \
   X(SampledMotion, ricochet::SampledMotion)           \
-  X(ReferenceMotion, ricochet::ReferenceMotion)
+  X(ReferenceMotion, ricochet::ReferenceMotion)       \
+  X(ReferenceMapImage, ricochet::ReferenceMap::Image)
 
 #define RICOCHET_EXPORT_LAYOUT_(name, ...)                                     \
   extern "C" __attribute__((visibility("default"), used, section("ricochet"))) \

@@ -164,6 +164,35 @@ class GuardedScheme final : public Guard<TimeScheme> {
   }
 };
 
+class GuardedMap final : public Guard<ReferenceMap> {
+ public:
+  using Guard::Guard;
+  int size() const override { RICOCHET_FORWARD(size); }
+  Eigen::VectorXd start() const override {
+    return sized("start", ask("start", [](auto& inner) { return inner.start(); }));
+  }
+  Eigen::VectorXd weights() const override {
+    return sized("weights", ask("weights", [](auto& inner) { return inner.weights(); }));
+  }
+  std::pair<double, double> tip(const Eigen::VectorXd& x) const override { RICOCHET_FORWARD(tip, x); }
+  Image march(const Eigen::VectorXd& x, double span, bool derivative) override {
+    Image image = ask("march", [&](auto& inner) { return inner.march(x, span, derivative); });
+    if (!image.stopped.empty()) return image;
+    sized("march", image.state);
+    const Eigen::Index columns = derivative ? size() : 0;
+    if (image.derivative.rows() != columns || image.derivative.cols() != columns)
+      fault("march", fmt::format("gives a derivative of {} × {}; expected {} × {}", image.derivative.rows(),
+                                 image.derivative.cols(), columns, columns));
+    return image;
+  }
+
+ private:
+  Eigen::VectorXd sized(const char* function, Eigen::VectorXd x) const {
+    if (x.size() != size()) fault(function, fmt::format("gives {} numbers; its states have {}", x.size(), size()));
+    return x;
+  }
+};
+
 class GuardedReference final : public Guard<ReferenceSolver> {
  public:
   using Guard::Guard;
@@ -178,6 +207,16 @@ class GuardedReference final : public Guard<ReferenceSolver> {
       check(found.coarser, grid, true);
     }
     return answer;
+  }
+  ReferenceMapOrRefusal map(const ReferenceProblem& problem) const override {
+    ReferenceMapOrRefusal answer = ask("map", [&](auto& inner) { return inner.map(problem); });
+    if (const auto* refusal = std::get_if<Refusal>(&answer)) {
+      check_refusal(*plugin_, "map", *refusal);
+      return answer;
+    }
+    auto& made = std::get<std::unique_ptr<ReferenceMap>>(answer);
+    if (!made) fault("map", "returned no object");
+    return std::make_unique<GuardedMap>(plugin_, std::move(made));
   }
 
  private:

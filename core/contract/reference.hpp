@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
 #include <ricochet/contract/errors.hpp>
 #include <string>
 #include <variant>
@@ -94,6 +95,29 @@ struct ReferenceMotion {
 
 using ReferenceOrRefusal = std::variant<ReferenceMotion, Refusal>;
 
+/// The motion as a map: from a state x at t = 0 to that at a later time. x is relative to the support, so that x → −x
+/// goes with the opposite support. Not to be shared between threads.
+class ReferenceMap {
+ public:
+  struct Image {
+    Eigen::VectorXd state;
+    Eigen::MatrixXd derivative;  ///< ∂state/∂x, size × size, impacts and releases included; empty where not asked for
+    std::string stopped;         ///< why there is no state, one clause; "" where there is one
+    int impacts = 0;             ///< on the way
+  };
+  virtual ~ReferenceMap() = default;
+  virtual int size() const = 0;
+  /// The initial state of the scene.
+  virtual Eigen::VectorXd start() const = 0;
+  /// Weights w: Σ (wᵢxᵢ)² is the mean square over x of the displacement, and of the velocity over ω; m².
+  virtual Eigen::VectorXd weights() const = 0;
+  /// Displacement and velocity of the tip at t = 0, absolute; m, m/s.
+  virtual std::pair<double, double> tip(const Eigen::VectorXd& x) const = 0;
+  /// The state `span` seconds later.
+  virtual Image march(const Eigen::VectorXd& x, double span, bool derivative) = 0;
+};
+using ReferenceMapOrRefusal = std::variant<std::unique_ptr<ReferenceMap>, Refusal>;
+
 /// A reference solver, a plugin of role `reference`.
 class ReferenceSolver {
  public:
@@ -102,6 +126,10 @@ class ReferenceSolver {
   virtual bool of_the_mesh() const { return false; }
   /// The motion on the grid, or a sentence that says why this scene has no such reference.
   virtual ReferenceOrRefusal solve(const ReferenceProblem& problem, const SampleGrid& grid) const = 0;
+  /// The motion as a map, or a sentence that says why this scene has none. The problem need not outlive it.
+  virtual ReferenceMapOrRefusal map(const ReferenceProblem&) const {
+    return Refusal{"it gives motions, and no map of states that orbits could be solved with"};
+  }
 };
 
 }  // namespace ricochet

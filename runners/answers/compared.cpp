@@ -88,12 +88,17 @@ Compared::Compared(const StudyResults& results) : results_(results) {
     asked_ = found->get<std::string>();
   for (const std::string& column : results.columns) {
     std::vector<std::string> texts;
-    for (const CaseRecord& record : results.cases) texts.push_back(report::CaseView::text(record, column));
+    std::vector<std::string> methods;  // without references
+    for (const CaseRecord& record : results.cases) {
+      texts.push_back(report::CaseView::text(record, column));
+      if (!is_reference(record)) methods.push_back(texts.back());
+    }
     std::set<double> numbers;
     for (const std::string& one : texts)
       if (const auto number = as_number(one)) numbers.insert(*number);
     if (column == "step" || column == "steps_per_period") steps_ = column;
-    const bool varies = std::any_of(texts.begin(), texts.end(), [&](const auto& one) { return one != texts.front(); });
+    const bool varies =
+        std::any_of(methods.begin(), methods.end(), [&](const auto& one) { return one != methods.front(); });
     texts_[column] = std::move(texts);
     numbers_[column] = {numbers.begin(), numbers.end()};
     if (!varies) continue;

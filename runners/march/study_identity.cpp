@@ -130,8 +130,11 @@ const std::string& arithmetic_digest() {
 }
 
 std::vector<std::filesystem::path> libraries_of(const StudyCase& study_case, const Registry& registry) {
-  return {registry.file(Role::mass, study_case.mass.name), registry.file(Role::contact, study_case.contact.name),
-          registry.file(Role::time, study_case.time.name)};
+  std::vector<std::filesystem::path> files = {registry.file(Role::mass, study_case.mass.name),
+                                              registry.file(Role::contact, study_case.contact.name),
+                                              registry.file(Role::time, study_case.time.name)};
+  if (study_case.of_reference) files.push_back(registry.file(Role::reference, study_case.references.front().name));
+  return files;
 }
 
 std::string StudyIdentity::of(const StudyCase& study_case) {

@@ -73,7 +73,7 @@ CaseView::CaseView(const StudyResults& results) : results_(results) {
     for (const CaseRecord& record : results.cases) {
       const std::string value = text(record, column);
       if (value.empty()) {
-        absent = true;
+        absent = absent || !is_reference(record);
         found.at.push_back(no_value);
         continue;
       }
@@ -84,6 +84,7 @@ CaseView::CaseView(const StudyResults& results) : results_(results) {
     if (found.texts.size() + absent > 1) varying_.push_back(column);
   }
   for (const CaseRecord& record : results.cases) {
+    if (is_reference(record)) continue;
     const std::string mass = mass_label(record);
     if (!contains(masses_, mass)) masses_.push_back(mass);
   }
@@ -130,6 +131,7 @@ std::string CaseView::text(const CaseRecord& record, std::string_view column) {
 }
 
 std::string CaseView::label(const CaseRecord& record, const std::vector<std::string>& columns) const {
+  if (is_reference(record)) return record.id;
   std::string out, previous_role;
   for (const std::string& column : columns) {
     if (values(column).size() < 2) continue;

@@ -38,6 +38,11 @@ struct CaseRecord {
   bool partial = false;    ///< saved while the case was running: what it had by then
 };
 
+/// Whether a reference solved the case, and none of the study's methods.
+inline bool is_reference(const CaseRecord& record) {
+  return record.id.starts_with(reference_id);
+}
+
 /// How a note of a case begins that names a reference that does not apply, and says why.
 inline constexpr const char* refused_reference = "reference that does not apply: ";
 

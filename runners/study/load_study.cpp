@@ -361,7 +361,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
     one.axes.insert(one.axes.end(), scene.axes.begin(), scene.axes.end());
     one.duration = duration;
     one.samples = samples;
-    one.references = references;
+    if (!kind.add_references) one.references = references;
     one.settings = settings;
     one.files = files;
     if (kind.complete) kind.complete(settings, registry, one);
@@ -369,6 +369,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
     study.cases.push_back(std::move(one));
   }
   apply_excludes(resolved["exclude"], study);
+  if (kind.add_references) kind.add_references(references, study);
   if (kind.check_cases) kind.check_cases(study);
   check_compare(study);
   study.axes = axis_meanings(study, registry);

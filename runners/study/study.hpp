@@ -22,6 +22,9 @@ struct MethodChoice {
   std::shared_ptr<const std::string> plan = {};  ///< the plan that the study states for it; null for a plugin
 };
 
+/// How the id of a case begins that a reference solves; those of the axes are hexadecimal.
+inline constexpr const char* reference_id = "reference";
+
 /// One combination of the study: everything that one run needs.
 struct StudyCase {
   std::string id;  ///< stable across re-orderings: hash of the axes, 10 hex digits
@@ -39,6 +42,7 @@ struct StudyCase {
   int samples = 0;
   std::string march = "every-step";      ///< auto, every-step, flights
   std::vector<MethodChoice> references;  ///< of kinds that compare, in the study's order
+  bool of_reference = false;             ///< solved by its one reference; its methods and its mesh have no part in it
   Json settings;  ///< the further keys of the kind, complete; null where it has none or all are at rest
   /// Whether its contact law pushes back what lies beyond a stop: then the scene may begin there.
   bool starts_beyond = false;

@@ -30,6 +30,8 @@ struct StudyKind {
   std::function<bool(const StudyCase& study_case)> marches_another;
   /// Completes a case before it gets its id.
   std::function<void(const Json& settings, const Registry& registry, StudyCase& study_case)> complete;
+  /// Appends cases that references solve; those of the axes then have none. Empty: cases have the study's references.
+  std::function<void(const std::vector<MethodChoice>& references, Study& study)> add_references;
   /// Refuses a study none of whose cases could run, once all cases are there.
   std::function<void(const Study& study)> check_cases;
 };

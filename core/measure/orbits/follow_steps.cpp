@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <ricochet/measure/orbits/shoot.hpp>
 #include <ricochet/measure/orbits/stepped_map.hpp>
+#include <tuple>
 
 namespace ricochet {
 
@@ -15,12 +17,12 @@ namespace {
 
 constexpr double parameter_difference = 1e-6, smallest_step = 1e-9, first_step = 1e-3;  // of the range
 constexpr int easy = 4, hard = 7, most = 12;                                            // iterations
-constexpr double located = 1e-4, largest_step = 0.05;  // of the range: where the count outside changes, and elsewhere
-constexpr double growth = 1.5, sharpest = 0.70710678118654752;  // cos 45°
+constexpr double largest_step = 0.05;                                                   // of the range
+constexpr double growth = 1.5, sharpest = 0.70710678118654752;                          // cos 45°
 
 }  // namespace
 
-StepFollower::StepFollower(SteppedMap& map, const MapClock& clock, VectorXd x, double parameter, int way,
+StepFollower::StepFollower(FollowedMap& map, const MapClock& clock, VectorXd x, double parameter, int way,
                            const ArcSteps& limits)
     : map_(&map), clock_(clock), limits_(limits) {
   now_ = {std::move(x), parameter};
@@ -31,18 +33,26 @@ StepFollower::StepFollower(SteppedMap& map, const MapClock& clock, VectorXd x, d
     trace_.end = "the first orbit cannot be marched: " + text(last_.end);
     return;
   }
-  // The direction of the branch: (1 − P') dx = P_λ dλ.
-  const MatrixXd one = MatrixXd::Identity(map.size(), map.size());
-  along_.x = DenseLu(one - last_.derivative).solve(by_parameter(now_));
-  along_.parameter = 1;
-  const double size = map.metric().size(along_.x, along_.parameter);
-  if (!std::isfinite(size)) {
-    trace_.end = "the branch has no direction at its first orbit";
-    return;
-  }
-  along_.x *= way / size;
-  along_.parameter *= way / size;
-  keep(now_, last_, multipliers_of(last_.derivative));
+  if (set_tangent(way)) keep(now_, last_, multipliers_of(last_.derivative));
+}
+
+// The direction of the branch at an orbit, λ growing: (1 − P') dx = P_λ dλ.
+std::optional<StepFollower::Point> StepFollower::tangent(const Point& at, const MatrixXd& derivative) {
+  const MatrixXd one = MatrixXd::Identity(map_->size(), map_->size());
+  const VectorXd x = DenseLu(one - derivative).solve(by_parameter(at));
+  const double size = map_->metric().size(x, 1);
+  if (!std::isfinite(size)) return std::nullopt;
+  return Point{x / size, 1 / size};
+}
+
+bool StepFollower::set_tangent(int way) {
+  const auto found = tangent(now_, last_.derivative);
+  if (found)
+    along_ = {way * found->x, way * found->parameter};
+  else
+    trace_.end = trace_.corners.empty() ? "the branch has no direction at its first orbit"
+                                        : fmt::format("the branch has no direction at {:.10g}", now_.parameter);
+  return found.has_value();
 }
 
 VectorXd StepFollower::by_parameter(const Point& point) {
@@ -93,7 +103,7 @@ bool StepFollower::correct(Point& point, const Point& along, int& iterations) {
   return false;
 }
 
-void StepFollower::keep(const Point& point, const SteppedMap::Image& image,
+void StepFollower::keep(const Point& point, const FollowedMap::Image& image,
                         std::vector<std::complex<double>> multipliers) {
   BranchCorner corner;
   corner.parameter = point.parameter;
@@ -115,6 +125,82 @@ void StepFollower::keep(const Point& point, const SteppedMap::Image& image,
   trace_.states.emplace(static_cast<long long>(trace_.corners.size()) - 1, point.x);
 }
 
+// The cosine between two directions.
+double StepFollower::cosine(const Point& a, const Point& b) const {
+  const StateMetric& metric = map_->metric();
+  const double dot = (metric.rows() * a.x).dot(metric.rows() * b.x) +
+                     metric.parameter_metres() * metric.parameter_metres() * a.parameter * b.parameter;
+  return dot / (metric.size(a.x, a.parameter) * metric.size(b.x, b.parameter));
+}
+
+// Of a map without steps of time, where no shorter step finds an orbit: a contact comes or goes. The orbit beyond is
+// looked for by longer steps, then with one contact more or less at the next values up and down, where the branch
+// turns.
+bool StepFollower::pass_graze(Point& next) {
+  const double range = limits_.branch.largest - limits_.branch.least, metres = map_->metric().parameter_metres();
+  int iterations = 0;
+  for (double step = limits_.located * metres * range; step < largest_step * metres * range; step *= 2) try {
+      next = {now_.x + step * along_.x, now_.parameter + step * along_.parameter};
+      if (!correct(next, along_, iterations)) continue;
+      if (cosine({next.x - now_.x, next.parameter - now_.parameter}, along_) >= sharpest) return true;
+    } catch (const Refusal&) {  // no state there
+    }
+  constexpr double nearest = 1e-8, farthest = 1.1e-4, decade = 10, near = 100;
+  for (double by = nearest * range; by < farthest * range; by *= decade)
+    for (const int side : {along_.parameter < 0 ? -1 : 1, along_.parameter < 0 ? 1 : -1}) try {
+        const double value = now_.parameter + side * by;
+        const ShotOrbit shot = shoot(*map_, now_.x, value, clock_, limits_.tolerance);
+        if (!shot.found || !(map_->metric().size(shot.x - now_.x) < near * metres * by)) continue;
+        last_ = map_->march(shot.x, value, clock_, true);
+        if (last_.runs == trace_.corners.back().runs) continue;
+        next = {shot.x, value};
+        return true;
+      } catch (const Refusal&) {  // no state there
+      }
+  return false;
+}
+
+// Adds the orbit at which a contact comes or goes before the one beyond it: the last one along the branch on the side
+// with fewer contacts, where the map has a derivative. `along`: the direction before.
+void StepFollower::place_contact(const Point& beyond, const Point& along, bool turns) {
+  const FollowedMap::Image there = last_;
+  const bool vanishes = there.runs < trace_.corners.back().runs;
+  const int runs = std::min(there.runs, trace_.corners.back().runs);
+  const double range = map_->metric().parameter_metres() * (limits_.branch.largest - limits_.branch.least);
+  double low = 0, high = map_->metric().size(beyond.x - now_.x, beyond.parameter - now_.parameter);
+  Point direction = along;
+  if (vanishes) {
+    const auto back = tangent(beyond, there.derivative);
+    if (!back) return;
+    const int way = turns == (along.parameter > 0) ? 1 : -1;
+    direction = {way * back->x, way * back->parameter};
+    constexpr int over = 4;  // a jump leads beyond the contact
+    high *= over;
+  }
+  const Point& from = vanishes ? beyond : now_;
+  Point found;
+  FollowedMap::Image image;
+  while (high - low > smallest_step * range) {
+    const double step = 0.5 * (low + high);
+    Point point{from.x + step * direction.x, from.parameter + step * direction.parameter};
+    int iterations = 0;
+    bool before = false;
+    try {
+      before = correct(point, direction, iterations) && last_.runs == runs;
+    } catch (const Refusal&) {  // no state there
+    }
+    (before ? low : high) = step;
+    if (!before) continue;
+    found = std::move(point);
+    image = last_;
+  }
+  last_ = there;
+  if (low == 0) return;
+  trace_.corners.back().way = found.parameter < now_.parameter ? -1 : 1;
+  keep(found, image, multipliers_of(image.derivative));
+  now_ = std::move(found);
+}
+
 bool StepFollower::advance(long long steps) {
   const StateMetric& metric = map_->metric();
   const BranchLimits& limits = limits_.branch;
@@ -123,7 +209,20 @@ bool StepFollower::advance(long long steps) {
     Point next;
     std::vector<std::complex<double>> multipliers;
     int iterations = 0;
+    const Point before = along_;
+    const int runs = trace_.corners.back().runs, above = trace_.corners.back().raw.outside.above;
+    // Of a smooth map: the shortest step so far that changes what is placed. No shorter one may be found where contacts
+    // come or go that the map does not resolve.
+    std::optional<std::pair<Point, FollowedMap::Image>> across;
+    bool jumps = false;
     for (;; step_ *= 0.5) {
+      jumps = limits_.smooth && step_ < 0.01 * limits_.located * range;
+      if (jumps && across) std::tie(next, last_) = std::move(*across);
+      if (jumps && (across || pass_graze(next))) {
+        multipliers = multipliers_of(last_.derivative);
+        step_ = limits_.located * range;
+        break;
+      }
       if (step_ < smallest_step * range) {
         const bool graze = rebounds_ > 0 && last_.runs != trace_.corners.back().runs;
         if (graze)
@@ -145,16 +244,22 @@ bool StepFollower::advance(long long steps) {
       }
       const VectorXd by = next.x - now_.x;
       const double far = metric.size(by, next.parameter - now_.parameter);
-      const double metres = metric.parameter_metres();
-      const double cosine = ((metric.rows() * by).dot(metric.rows() * along_.x) +
-                             metres * metres * (next.parameter - now_.parameter) * along_.parameter) /
-                            far;
+      const double cosine = this->cosine({by, next.parameter - now_.parameter}, along_);
       multipliers = multipliers_of(last_.derivative);
-      const bool crosses = outside(multipliers).total != trace_.corners.back().raw.outside.total;
+      bool crosses = outside(multipliers).total != trace_.corners.back().raw.outside.total;
+      if (limits_.smooth) crosses |= last_.runs != runs;
+      if (limits_.smooth && (outside(multipliers).above - above) % 2 == 0 &&
+          (next.parameter - now_.parameter) * along_.parameter < 0) {
+        failure_ = "the step goes back along the branch";
+        continue;
+      }
       // Nearer than impacts are placed neither directions nor multipliers say anything.
       const double told = 5 * last_.rebounds;
       const bool straight = cosine >= sharpest || (far < told && cosine > 0);
-      if (straight && crosses && step_ > std::max(located * range, told)) continue;
+      if (straight && crosses && step_ > std::max(limits_.located * range, told)) {
+        if (limits_.smooth) across = {next, last_};
+        continue;
+      }
       if (straight) break;
       failure_ = "the branch turns by more than 45 degrees within a step";
     }
@@ -167,16 +272,20 @@ bool StepFollower::advance(long long steps) {
       const ShotOrbit at = shoot(*map_, now_.x + share * by, limit, clock_, limits_.tolerance);
       if (at.found) {
         const Point end{at.x, limit};
-        const SteppedMap::Image image = map_->march(at.x, limit, clock_, true);
+        const FollowedMap::Image image = map_->march(at.x, limit, clock_, true);
         keep(end, image, multipliers_of(image.derivative));
       }
       trace_.end = fmt::format("the range ends at {:.10g}", limit);
       return false;
     }
+    const bool turns = (outside(multipliers).above - above) % 2 != 0, contact = last_.runs != runs;
+    if (limits_.smooth && contact) place_contact(next, before, turns);
     // The secant that ends here is that of the corner before.
-    trace_.corners.back().way = along_.parameter < 0 ? -1 : 1;
+    trace_.corners.back().way = next.parameter < now_.parameter ? -1 : 1;
     keep(next, last_, std::move(multipliers));
     now_ = std::move(next);
+    // λ turns where det(1 − P') changes its sign. A secant over a corner or a jump is no direction of the branch.
+    if (limits_.smooth && (jumps || turns || contact) && !set_tangent(turns == (before.parameter > 0) ? -1 : 1)) break;
     if (iterations <= easy) step_ = std::min(growth * step_, largest_step * range);
     if (iterations > hard) step_ /= growth;
     if (static_cast<long long>(trace_.corners.size()) > limits.pieces)

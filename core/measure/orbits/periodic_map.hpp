@@ -75,6 +75,7 @@ class StateVector {
 class StateMetric {
  public:
   StateMetric(const Program& program, int state_size, double parameter_metres);
+  StateMetric(Eigen::MatrixXd rows, double parameter_metres) : rows_(std::move(rows)), metres_(parameter_metres) {}
   double size(const Eigen::VectorXd& x, double parameter = 0) const;
   /// Weighted readings over x: size² = |rows x|² + (metres λ)².
   const Eigen::MatrixXd& rows() const { return rows_; }

@@ -93,7 +93,9 @@ std::vector<Crossing> crossings_of(const Corners& corners, const Circle& circle,
     const int counted = now.raw.outside.*circle.count - was.raw.outside.*circle.count;
     if (!by_steps && counted * (now.raw.outside.total - was.raw.outside.total) > 0)
       all.push_back({i, true, counted > 0 ? 1 : -1, now.parameter, now.arc, now.tip, {}});
-    if (was.smooth.outside.*circle.count == now.smooth.outside.*circle.count) continue;
+    const int smoothly = now.smooth.outside.*circle.count - was.smooth.outside.*circle.count;
+    if (smoothly == 0) continue;
+    if (by_steps && smoothly * (now.smooth.outside.total - was.smooth.outside.total) <= 0) continue;
     const double before = distance(was.smooth, circle.pair), after = distance(now.smooth, circle.pair);
     if (!(before * after <= 0) || before == after) continue;
     const double share = before / (before - after);
@@ -197,18 +199,21 @@ void place(const Corners& corners, double placed, SpecialPoint& point) {
   point.note += (point.note.empty() ? "" : "; ") + std::string("stops give back speed: the interval is not exact");
 }
 
-void add_folds(const BranchTrace& trace, double prominence, bool by_steps, std::vector<SpecialPoint>& points) {
+void add_folds(const BranchTrace& trace, const PointSearch& search, std::vector<SpecialPoint>& points) {
   const Corners& corners = trace.corners;
   for (const Turn& turn : turns_of(trace)) {
-    if (turn.prominence < prominence) continue;
+    if (turn.prominence < search.prominence) continue;
     const auto i = static_cast<std::size_t>(turn.corner);
     SpecialPoint point = at_corner(corners, i, "fold", "LP");
     // A motion without contact is one piece, however long: where it touches its stop the other piece tells.
     const double before = std::abs(corners[i].parameter - corners[i - 1].parameter),
                  after = std::abs(corners[i + 1].parameter - corners[i].parameter);
     const bool free = corners[i].runs == 0 || corners[i - 1].runs == 0;
-    const double half = 0.5 * (free ? std::min(before, after) : std::max(before, after));
-    if (by_steps) point.parameter = vertex(corners, i);
+    double half = 0.5 * (free ? std::min(before, after) : std::max(before, after));
+    if (search.contacts > 0 && corners[i - 1].runs != corners[i + 1].runs)
+      half = search.contacts;
+    else if (search.by_steps)
+      point.parameter = vertex(corners, i);
     point.low = point.parameter - half;
     point.high = point.parameter + half;
     point.multiplier = 1;
@@ -219,14 +224,23 @@ void add_folds(const BranchTrace& trace, double prominence, bool by_steps, std::
 }
 
 // A run that appears with its first step, or vanishes with its last one.
-void add_contacts(const Corners& corners, bool by_steps, std::vector<SpecialPoint>& points) {
+void add_contacts(const Corners& corners, const PointSearch& search, std::vector<SpecialPoint>& points) {
   for (std::size_t i = 1; i < corners.size(); ++i) {
     const BranchCorner &was = corners[i - 1], &now = corners[i];
-    if (was.runs == now.runs || (now.change.step < 0 && !by_steps)) continue;
-    if (by_steps) {
+    if (was.runs == now.runs || (now.change.step < 0 && !search.by_steps)) continue;
+    if (search.by_steps) {
       SpecialPoint point = at_corner(corners, i, "contact", "GR");
       point.low = point.high = was.parameter;
       widen(point, now.parameter);
+      if (search.contacts > 0) {
+        // On the side with fewer contacts.
+        const BranchCorner& placed = was.runs < now.runs ? was : now;
+        point.parameter = placed.parameter;
+        point.arc = placed.arc;
+        point.tip = placed.tip;
+        point.low = placed.parameter - search.contacts;
+        point.high = placed.parameter + search.contacts;
+      }
       if (std::min(was.runs, now.runs) == 0) point.note = "first contact";
       points.push_back(std::move(point));
       continue;
@@ -252,12 +266,12 @@ std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSe
   std::vector<SpecialPoint> points;
   const Corners& corners = trace.corners;
   if (corners.empty()) return points;
-  add_folds(trace, search.prominence, search.by_steps, points);
+  add_folds(trace, search, points);
   const Circle minus =
       search.half ? Circle{"symmetry", "BP", &Outside::below, false} : Circle{"flip", "PD", &Outside::below, false};
   add_crossings(corners, minus, search, points);
   add_crossings(corners, {"torus", "TR", &Outside::pairs, true}, search, points);
-  add_contacts(corners, search.by_steps, points);
+  add_contacts(corners, search, points);
   if (search.placed > 0)
     for (SpecialPoint& point : points) place(corners, search.placed, point);
   for (const MarkedOrbit& mark : trace.marks) {

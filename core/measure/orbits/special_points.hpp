@@ -26,6 +26,7 @@ struct PointSearch {
   bool half = false;
   double prominence = 0;  ///< least one of a fold, in units of λ
   bool by_steps = false;  ///< corners are orbits along a curve: what is between two of them is interpolated
+  double contacts = 0;    ///< to which contacts are placed on corners, in units of λ; 0: they lie between corners
   double placed = 0;      ///< m: arclength to which orbits are known, where stops give back speed
 };
 

@@ -136,14 +136,14 @@ SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const M
   return out;
 }
 
-ShotOrbit shoot(SteppedMap& map, VectorXd x, double parameter, const MapClock& clock, double tolerance, int most) {
+ShotOrbit shoot(FollowedMap& map, VectorXd x, double parameter, const MapClock& clock, double tolerance, int most) {
   ShotOrbit orbit;
   orbit.parameter = parameter;
   orbit.nearest = std::numeric_limits<double>::infinity();
   const MatrixXd one = MatrixXd::Identity(map.size(), map.size());
   VectorXd best = x;
   for (;; ++orbit.iterations) {
-    const SteppedMap::Image made = map.march(x, parameter, clock, true);
+    const FollowedMap::Image made = map.march(x, parameter, clock, true);
     orbit.end = made.end;
     if (made.end) break;
     const VectorXd left = made.image - x;

@@ -8,25 +8,12 @@
 
 namespace ricochet {
 
-/// P(x, λ) of programs that differ from value to value: steps, matrices, laws. x is a state in the coordinates of one
-/// of them; displacements and velocities of the others are carried there. Derivatives are those of tangent columns,
-/// with the jumps of impacts with inertia (impact_jump.hpp). One lane; not to be shared between threads.
-class SteppedMap {
+/// P(x, λ) as steps of arclength need it. Not to be shared between threads.
+class FollowedMap {
  public:
-  /// A program of one lane with so many tangents, and the group of its scene.
-  struct Scene {
-    Program program;
-    int group = 0;
-  };
-  using Make = std::function<Scene(double parameter, int tangents)>;
-  using Carry = std::function<LaneState(const LaneState& state, int from, int to)>;
-
-  /// `at`: the value whose coordinates x has. Throws Refusal of a law that keeps a memory.
-  SteppedMap(Make make, Carry carry, double at, double parameter_metres);
-
-  int size() const { return vector_->size(); }
-  const StateMetric& metric() const { return *metric_; }
-  const Program& reference() const { return *reference_; }
+  virtual ~FollowedMap() = default;
+  virtual int size() const = 0;
+  virtual const StateMetric& metric() const = 0;
 
   /// What one march shows. `derivative` where it was asked for.
   struct Image {
@@ -39,7 +26,30 @@ class SteppedMap {
     double tip = 0, tip_velocity = 0, penetration = 0;
     bool untold = false;  ///< an impact had no jump
   };
-  Image march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool derivative = false);
+  virtual Image march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool derivative = false) = 0;
+};
+
+/// P(x, λ) of programs that differ from value to value: steps, matrices, laws. x is a state in the coordinates of one
+/// of them; displacements and velocities of the others are carried there. Derivatives are those of tangent columns,
+/// with the jumps of impacts with inertia (impact_jump.hpp). One lane.
+class SteppedMap final : public FollowedMap {
+ public:
+  /// A program of one lane with so many tangents, and the group of its scene.
+  struct Scene {
+    Program program;
+    int group = 0;
+  };
+  using Make = std::function<Scene(double parameter, int tangents)>;
+  using Carry = std::function<LaneState(const LaneState& state, int from, int to)>;
+
+  /// `at`: the value whose coordinates x has. Throws Refusal of a law that keeps a memory.
+  SteppedMap(Make make, Carry carry, double at, double parameter_metres);
+
+  int size() const override { return vector_->size(); }
+  const StateMetric& metric() const override { return *metric_; }
+  const Program& reference() const { return *reference_; }
+
+  Image march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool derivative = false) override;
   /// A state of a program at this value, as x.
   Eigen::VectorXd read(const LaneState& state, int group) const;
 
@@ -57,7 +67,7 @@ class SteppedMap {
 
 /// P(x, λ) = x at a given λ by Newton's method. Converged where the residual is at most `tolerance`, or at most the
 /// rebounds of the orbit where stops give back speed.
-ShotOrbit shoot(SteppedMap& map, Eigen::VectorXd x, double parameter, const MapClock& clock, double tolerance,
+ShotOrbit shoot(FollowedMap& map, Eigen::VectorXd x, double parameter, const MapClock& clock, double tolerance,
                 int most = 30);
 
 /// How a branch is followed by steps.
@@ -65,16 +75,20 @@ struct ArcSteps {
   BranchLimits branch;
   double tolerance = 1e-12;  ///< of residuals, m
   double first = 0;          ///< step, m
+  double located = 1e-4;     ///< of the range: the step at which the count of multipliers outside may change
+  /// A map without steps of time: turns and contacts are placed to `located` too, and a branch goes on where a contact
+  /// that comes or goes turns it.
+  bool smooth = false;
 };
 
 /// Follows a branch of P(x, λ) = x by steps of arclength: secant predictor, Newton's method bordered by the secant,
 /// ∂P/∂λ by a difference over 1e-6 of the range. A step grows by half after at most four iterations, shrinks by as much
 /// after more than seven, is halved where none is found, the branch turns by more than 45 degrees, or the count of
-/// multipliers outside changes within more than 1e-4 of the range. Below 1e-9 of
-/// the range's length the branch ends.
+/// multipliers outside changes within more than `located` of the range. Below 1e-9 of the range's length the branch
+/// ends.
 class StepFollower {
  public:
-  StepFollower(SteppedMap& map, const MapClock& clock, Eigen::VectorXd x, double parameter, int way,
+  StepFollower(FollowedMap& map, const MapClock& clock, Eigen::VectorXd x, double parameter, int way,
                const ArcSteps& limits);
 
   /// Makes up to so many steps; false where the branch has ended.
@@ -89,15 +103,20 @@ class StepFollower {
     double parameter = 0;
   };
   bool correct(Point& point, const Point& along, int& iterations);
-  void keep(const Point& point, const SteppedMap::Image& image, std::vector<std::complex<double>> multipliers);
+  bool pass_graze(Point& next);
+  double cosine(const Point& a, const Point& b) const;
+  std::optional<Point> tangent(const Point& at, const Eigen::MatrixXd& derivative);
+  bool set_tangent(int way);
+  void place_contact(const Point& beyond, const Point& along, bool turns);
+  void keep(const Point& point, const FollowedMap::Image& image, std::vector<std::complex<double>> multipliers);
   Eigen::VectorXd by_parameter(const Point& point);
 
-  SteppedMap* map_;
+  FollowedMap* map_;
   MapClock clock_;
   ArcSteps limits_;
   Point now_, along_;  // the last orbit, the unit secant
   double step_ = 0, rebounds_ = 0;
-  SteppedMap::Image last_;
+  FollowedMap::Image last_;
   std::string failure_;
   BranchTrace trace_;
 };

@@ -29,6 +29,14 @@ class BeamRun {
 
   std::variant<SampledMotion, Refusal> motion();
 
+  /// The motion from modal displacements and velocities (a, b) of flight at t = 0 to the end of the grid, where they
+  /// are left in a, b. `tangent`: columns over (a, b) that follow it, the instants of switches moving with them.
+  /// A state at a stop or in contact at the end is refused.
+  std::variant<SampledMotion, Refusal> motion_from(Eigen::ArrayXd& a, Eigen::ArrayXd& b, Eigen::MatrixXd* tangent);
+  /// ⟨w, φ⟩ and ⟨w_t, φ⟩ of the initial formulas.
+  void project_start(Eigen::ArrayXd& a, Eigen::ArrayXd& b) const;
+  const Beam& beam() const { return beam_; }
+
   /// Share of the initial energy that the modes do not hold: large where the initial displacement is bent at the tip.
   double initial_energy_left_out() const { return initial_energy_ > 0 ? left_out_ / initial_energy_ : 0; }
 
@@ -47,6 +55,15 @@ class BeamRun {
   double lift_rate(double t) const { return -beam_.support.rate(t); }
 
   Failure begin();
+  void set_scales(double displacement, double velocity);  // largest initial ones
+  void move_tangent(const ModalPhase& phase, double t);
+  /// How far the instant of a switch moves with each column: δt = −∇g·δ / g'.
+  void set_instants(const ModalPhase& phase, double slope);
+  /// The tangent columns in the modes of the next phase, which has begun: δ⁺ = R δ⁻ + (R f⁻ + ∂R/∂t − f⁺) δt, R the
+  /// change of modes and of the lift, f the rates on either side.
+  template <class Basis>
+  void switch_tangent(const ModalPhase& phase, const ModalPhase& next_phase, const ModalState& before,
+                      const Basis& basis, const Eigen::ArrayXd& lifted);
   bool held() const { return upper_ - lower_ <= 1e-12 * scale_; }
   double tolerance() const { return settings_.tolerance * scale_; }
   double force_tolerance() const { return 3 * tolerance() / std::pow(beam_.length, 3); }
@@ -60,7 +77,7 @@ class BeamRun {
   /// With ⟨w,p⟩, ⟨w_t,p⟩ and all ⟨w,ψ_n⟩, ⟨w_t,ψ_n⟩.
   void enter_contact(int side, double velocity, double on_lift, double rate_on_lift, const Eigen::ArrayXd& on_modes,
                      const Eigen::ArrayXd& rate_on_modes);
-  void release();
+  void release(bool at_once = false);
 
   /// Σ⟨·, p⟩ of the equation of motion, integrated over time, per ρS: its change over a contact phase is the impulse.
   ///
@@ -101,6 +118,10 @@ class BeamRun {
   ModalState state_, ahead_;
   std::array<Guard, 2> guards_;
   Eigen::ArrayXd a_, b_;  // modal displacements and velocities, whole
+  Eigen::MatrixXd* tangent_ = nullptr;
+  Eigen::RowVectorXd instants_;
+  double tangent_time_ = 0;
+  bool mapped_ = false;  // by motion_from
   double impulse_ = 0, momentum_ = 0;
   int level_ = 0;
   long long looks_ = 0;

@@ -2,7 +2,7 @@
 
 #include <ricochet/contract/plugin.hpp>
 
-#include "beam_run.hpp"
+#include "beam_map.hpp"
 
 namespace {
 
@@ -32,6 +32,11 @@ class EventDriven final : public ReferenceSolver {
         settings_.modes, settings_.tolerance, half.modes);
     result.notes = notes(problem, result, run.initial_energy_left_out(), grid.times.empty() ? 0 : grid.times.back());
     return result;
+  }
+
+  ReferenceMapOrRefusal map(const ReferenceProblem& problem) const override {
+    if (auto refusal = does_not_apply(problem)) return *refusal;
+    return std::make_unique<BeamMap>(problem, settings_);
   }
 
  private:

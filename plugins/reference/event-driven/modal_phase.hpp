@@ -274,6 +274,12 @@ class ModalPhase {
     a = scratch_.y + still_ + (swing_ * turned).imag();
     b = scratch_.v + (swing_ * (Complex(0, pulsation_) * turned)).imag();
   }
+  /// a'' at the time of a state.
+  Eigen::ArrayXd acceleration(const ModalState& state) const {
+    return (swing_ * (-pulsation_ * pulsation_ * turn(state.time))).imag() - oscillators_.stiffness() * state.y -
+           oscillators_.damping() * state.v;
+  }
+  const Watched& watched() const { return watched_; }
   void move(ModalState& state, double t) {
     oscillators_.flow(t - state.time, state.count, flow_);
     oscillators_.advance(flow_, state.count, state.y, state.v);

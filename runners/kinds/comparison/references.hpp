@@ -9,6 +9,7 @@
 #include <ricochet/contract/registry.hpp>
 #include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "runners/march/case_context.hpp"
@@ -109,6 +110,9 @@ SampleGrid comparison_grid(const SceneSpec& scene, double duration, int samples)
 /// What a reference may read of a case. `discrete` is filled, and `problem.discrete` points to it, when the case has
 /// been discretised.
 ReferenceProblem reference_problem(const StudyCase& study_case, const Registry& registry);
+
+/// The same for a reference of the scene, which sees rigid stops; or why no such reference knows the scene.
+std::variant<ReferenceProblem, Refusal> continuum_problem(const StudyCase& study_case, const Registry& registry);
 
 /// A reference motion as bytes, bit for bit.
 std::string to_bytes(const ReferenceMotion& motion);

@@ -5,6 +5,7 @@
 #include "runners/kinds/continuation/continuation_tables.hpp"
 #include "runners/kinds/continuation/page/page.hpp"
 #include "runners/kinds/continuation/point_tables.hpp"
+#include "runners/kinds/continuation/reference_case.hpp"
 #include "runners/kinds/continuation/run_continuation.hpp"
 #include "runners/kinds/stored_study.hpp"
 #include "runners/kinds/sweep/sweep_study.hpp"
@@ -25,6 +26,7 @@ StudyKind continuation_format() {
   format.marches_another = some_orbit_possible;
   format.complete = mark_sweep;
   format.check_cases = check_continued_cases;
+  format.add_references = add_reference_cases;
   return format;
 }
 
@@ -63,7 +65,7 @@ class ContinuationKind final : public Kind {
   }
   report::KindPage page() const override { return report::continuation_page(); }
   nlohmann::ordered_json alone(const StudyResults& results, const CaseRecord& record) const override {
-    return single_study(results, record);
+    return is_reference(record) ? nlohmann::ordered_json(nullptr) : single_study(results, record);
   }
 };
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "runners/json/json_text.hpp"
+#include "runners/kinds/continuation/points_beneath.hpp"
 #include "runners/kinds/sweep/sweep.hpp"
 #include "runners/kinds/sweep/sweep_study.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
@@ -99,6 +100,13 @@ std::vector<Field> continuation_keys() {
   ObjectForm at_most;
   at_most.fields = {integer("pieces", {1, 1000000000, false, false}, 200000, "Pieces or steps of a branch."),
                     single(real("arc", "m", positive, 1.0, "Length of a branch."))};
+  Field reference = methods("reference", Role::reference,
+                            "A reference whose orbits are followed too, or a list, whose first counts; null: none.");
+  reference.fallback = Json(nullptr);
+  reference.nullable = reference.quiet = true;
+  Field beneath = of_form(Field::Form::text, "beneath", Json(""),
+                          "Folder of results of a bifurcation study of the scene, whose points are drawn beneath.");
+  beneath.quiet = true;
   return {
       object("parameter", std::nullopt, "What branches are followed along.", std::move(parameter)),
       steps_per_period(),
@@ -114,6 +122,8 @@ std::vector<Field> continuation_keys() {
       integer("multipliers", {1, 64, false, false}, 4, "Number of multipliers told, largest first."),
       kinds_of_points("stop_at", special_kinds(), std::nullopt, "Kinds of points at which a branch ends; null: none."),
       std::move(marks),
+      std::move(reference),
+      std::move(beneath),
       object("at_most", Json::object(), "Where a branch ends at the latest.", std::move(at_most)),
       budget()};
 }
@@ -148,6 +158,7 @@ void check_continuation(const Json& resolved) {
       if (const auto at = mark["parameter"][i].get<double>(); at < from || at > to)
         throw InputError(pointer_to("/mark/parameter", i),
                          fmt::format("the mark at {} is outside the range from {} to {}", at, from, to));
+  check_beneath(resolved);
 }
 
 void check_followed(const Json& resolved, const Json& settings, const Registry& registry, double, int) {

@@ -29,12 +29,6 @@ double gap_of(const LaneSpec& lane) {
   return lane.amplitude != 0 ? std::abs(lane.amplitude) : 1;
 }
 
-// Whether a number of the scene is a length.
-bool is_length(const std::string& pointer) {
-  return pointer.ends_with("/support/amplitude") || pointer.ends_with("/stops/lower") ||
-         pointer.ends_with("/stops/upper");
-}
-
 // A load that is not its own image half a period later, with the sign changed: where it is seen, in words.
 std::string not_odd(const SemiDiscrete& problem, double period) {
   const bool loaded = problem.load && !problem.load->absent();
@@ -63,6 +57,11 @@ std::string not_odd(const SemiDiscrete& problem, double period) {
 }
 
 }  // namespace
+
+bool is_length(const std::string& pointer) {
+  return pointer.ends_with("/support/amplitude") || pointer.ends_with("/stops/lower") ||
+         pointer.ends_with("/stops/upper");
+}
 
 ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry, const ContinuationPlan& plan)
     : case_(study_case), plan_(plan), scenes_(study_case, registry) {

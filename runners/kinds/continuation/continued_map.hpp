@@ -10,6 +10,9 @@
 
 namespace ricochet {
 
+/// Whether the pointer names a length of the scene.
+bool is_length(const std::string& pointer);
+
 /// What a case of kind `continuation` maps: its scenes along the parameter, and what can be done with them.
 class ContinuedMap {
  public:

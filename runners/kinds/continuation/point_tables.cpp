@@ -10,9 +10,6 @@ namespace {
 
 const Column name_column{"name", "", "Name of the special point, as in special_points."};
 
-/// A case of this id holds what a reference without a mesh and steps gives.
-constexpr const char* reference_id = "reference";
-
 /// The column of a value of the parameter.
 Column of_parameter(const SweptColumns& swept, const char* name, const char* text) {
   return {name, swept.parameter.unit, text};
@@ -174,11 +171,16 @@ std::vector<PointShiftRow> shift_rows(const StudyPoints& study) {
   return rows;
 }
 
-/// The parameter at the point of the reference solution.
-std::optional<double> value_of_reference(const StudyPoints& study, int name) {
-  for (std::size_t c = 0; c < study.cases().size(); ++c)
-    if (study.cases()[c]->id == reference_id)
-      if (const StudyPoint* point = study.find(c, name)) return point->value;
+/// The parameter at the point of the first reference of the case's scene.
+std::optional<double> value_of_reference(const StudyPoints& study, const CaseRecord& of, int name) {
+  for (std::size_t c = 0; c < study.cases().size(); ++c) {
+    const CaseRecord& one = *study.cases()[c];
+    if (!is_reference(one) || std::any_of(one.axes.begin(), one.axes.end(), [&](const auto& place) {
+          return axis(of, place.first).text() != axis(one, place.first).text();
+        }))
+      continue;
+    if (const StudyPoint* point = study.find(c, name)) return point->value;
+  }
   return std::nullopt;
 }
 
@@ -187,7 +189,7 @@ void convergence_rows(const StudyPoints& study, std::vector<PointOrderRow>& orde
   for (std::size_t name = 0; name < study.names().size(); ++name)
     for (const std::size_t head : study.heads()) {
       const std::string &id = study.cases()[head]->id, &text = study.names()[name].text;
-      if (id == reference_id) continue;
+      if (is_reference(*study.cases()[head])) continue;
       const PointConvergence found = study.convergence(head, static_cast<int>(name));
       for (const PointConvergence::Along& one : found.along) {
         PointOrderRow row{study.cases()[one.finest]->id, text, id, study.axes()[one.axis].column};
@@ -210,7 +212,7 @@ void convergence_rows(const StudyPoints& study, std::vector<PointOrderRow>& orde
         const std::string words = study.axes()[one.axis].words;
         (words == "step" ? row.step_open : words == "mesh" ? row.mesh_open : row.law_open) = one.limit.open;
       }
-      row.reference = value_of_reference(study, static_cast<int>(name));
+      row.reference = value_of_reference(study, *study.cases()[head], static_cast<int>(name));
       if (row.reference) row.reference_gap = *row.limit - *row.reference;
       limits.push_back(std::move(row));
     }

@@ -14,6 +14,7 @@
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continued_map.hpp"
 #include "runners/kinds/continuation/first_orbit.hpp"
+#include "runners/kinds/continuation/reference_case.hpp"
 #include "runners/kinds/continuation/run_steps.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"
@@ -248,6 +249,7 @@ class ContinuationRun {
 }  // namespace
 
 CasePlan plan_continuation(const StudyCase& study_case, const Registry& registry) {
+  if (study_case.of_reference) return plan_reference(study_case, registry);
   CasePlan out;
   const ContinuationPlan plan = continuation_plan(study_case.settings);
   ContinuedMap continued(study_case, registry, plan);
@@ -279,6 +281,7 @@ CasePlan plan_continuation(const StudyCase& study_case, const Registry& registry
 
 CaseRecord run_continuation(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                             const std::atomic<bool>& stop) {
+  if (study_case.of_reference) return run_reference(study_case, registry, stop);
   return ContinuationRun(study_case, registry, context, stop).run();
 }
 

@@ -17,6 +17,9 @@
   const numberOf = (one, column) => (one.values[column] ? one.values[column].number : null);
   const measureOf = (one, name) => (name in one.measures ? one.measures[name] : null);
 
+  // Whether a reference solved the case, and none of the study's methods.
+  const solved = (one) => one.id.startsWith("reference");
+
   class Cases {
     constructor(data) {
       this.data = data;
@@ -24,7 +27,7 @@
       this.axes = new Map(data.page.axes.map((axis) => [axis.name, axis]));
       this.columns = data.page.axes.map((axis) => axis.name);
       // A case without a value differs from one that has it.
-      this.varying = data.page.axes.filter((axis) => axis.texts.length + (axis.at.includes(-1) ? 1 : 0) > 1).map((axis) => axis.name);
+      this.varying = data.page.axes.filter((axis) => axis.texts.length + (axis.at.some((at, k) => at < 0 && !solved(this.all[k])) ? 1 : 0) > 1).map((axis) => axis.name);
       this.masses = distinct(this.all.map((one) => this.massLabel(one)));
     }
     varies(column) { return this.varying.includes(column); }
@@ -34,6 +37,7 @@
 
     // "singular, velocity P1 · beta 0.25": only what varies is said.
     label(one, columns = this.varying) {
+      if (solved(one)) return one.id;
       let out = "", previous = "";
       for (const column of columns) {
         const value = textOf(one, column), role = roleOf(column), unit = this.unit(column);
@@ -55,7 +59,7 @@
       // The place of a value among those of its column tells as much as its text, and costs less.
       const places = columns.filter((column) => this.axes.has(column)).map((column) => this.axes.get(column).at), groups = new Map();
       for (const one of cases) {
-        let key = "";
+        let key = solved(one) ? one.id : "";
         for (const at of places) key += at[one.index] + ",";
         const known = groups.get(key);
         if (known) known.push(one); else groups.set(key, [one]);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "runners/kinds/continuation/continuation_tables.hpp"
+#include "runners/kinds/continuation/points_beneath.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/table/table_reader.hpp"
 
@@ -83,6 +84,26 @@ nlohmann::ordered_json put_case(const CaseRecord& record, const std::vector<Bran
 
 }  // namespace
 
+namespace {
+
+/// Writes the points of a bifurcation study; what is said of them, "" where the study names none.
+std::string put_beneath(const nlohmann::ordered_json& study, CurveData& curves) {
+  const auto found = study.find("beneath");
+  if (found == study.end()) return "";
+  constexpr size_t most_points = 40'000;
+  const std::string folder = found->get<std::string>();
+  try {
+    const PointsBeneath points = points_beneath(study, most_points);
+    curves.put_floats("beneath/parameter", points.parameter);
+    curves.put_floats("beneath/tip", points.tip);
+    return fmt::format("Grey: {} of {} points of the section of {}.", points.tip.size(), points.stored, folder);
+  } catch (const InputError& error) {
+    return fmt::format("Points of {} are not drawn: {}.", folder, error.what());
+  }
+}
+
+}  // namespace
+
 nlohmann::ordered_json branch_data(const CaseView& view, CurveData& curves) {
   std::vector<std::pair<const CaseRecord*, std::vector<BranchRow>>> all;
   size_t stored = 0, drawn = 0;
@@ -103,7 +124,9 @@ nlohmann::ordered_json branch_data(const CaseView& view, CurveData& curves) {
     cases[record->id] = put_case(*record, rows, kept, curves);
   }
   out["cases"] = std::move(cases);
+  const std::string beneath = put_beneath(view.results().study, curves);
   out["said"] = drawn < stored ? fmt::format("{} of {} orbits are drawn; all are in branches.csv.", drawn, stored) : "";
+  if (!beneath.empty()) out["beneath"] = beneath;
   return out;
 }
 

@@ -23,6 +23,10 @@
       this.branches = branches;
       this.xs = branches.range(branches.cases, "parameter");
       this.ys = branches.range(branches.cases, "tip");
+      // Points of a bifurcation study.
+      const parameter = branches.data.block("beneath/parameter") || [], tips = branches.data.block("beneath/tip") || [];
+      this.beneath = { parameter: Array.from(parameter), tip: Array.from(tips) };
+      this.beneath.tip.forEach((tip) => this.ys.include(tip));
     }
     figure() {
       const { branches } = this, methods = branches.methods(), refined = methods.filter((one) => one.cases.length > 1), charts = [], views = [], legend = [];
@@ -46,7 +50,7 @@
       for (const kind of this.kinds()) { const [words, symbol] = branches.kindWords(kind); legend.push(ricochet.swatch(words, "#555555", symbol, "Point")); }
       return {
         id: "branches", title: "Branches of periodic orbits", views, charts, legend: ricochet.firstOfName(legend), linked: false,
-        caption: ["Tip displacement at the strobe, absolute, against " + branches.parameter[0] + "; " + both + ". Large marks: points that the two finest cases of a refinement share, with bars where they may be; small ones: points of one case. Click a branch for its orbit.", branches.said].filter(Boolean).join(" "),
+        caption: ["Tip displacement at the strobe, absolute, against " + branches.parameter[0] + "; " + both + ". Large marks: points that the two finest cases of a refinement share, with bars where they may be; small ones: points of one case. Click a branch for its orbit.", branches.said, branches.beneath].filter(Boolean).join(" "),
       };
     }
     kinds() { return ricochet.distinct(this.branches.cases.flatMap((one) => this.branches.points(one).map((row) => this.branches.kind(row)))); }
@@ -55,6 +59,7 @@
       const { branches } = this, { parameter } = branches, wide = (range) => ricochet.roundOutwards(range.empty ? new Interval(0, 1) : range, 1e-9);
       const xAxis = ricochet.valueAxis(parameter, this.xs.empty ? wide(this.xs) : this.xs, false), out = ricochet.view(parameter, tip, xAxis, ricochet.valueAxis(tip, wide(this.ys), true));
       ricochet.withoutEnds(xAxis);
+      if (this.beneath.tip.length) ricochet.draw(out, () => this.beneath, { x: "parameter", y: "tip" }, { ...ricochet.dot("bifurcation", "#b3b3b3", "circle", 2, 0), silent: true });
       for (const { one, name, colour } of curves) {
         for (const unstable of [false, true])
           ricochet.draw(out, () => branches.curve(one.id, unstable), { x: "parameter", y: "tip" }, { ...ricochet.line(name, colour, unstable ? 1.3 : 2, unstable ? [5, 4] : "solid"), case: one.id, showSymbol: false, z: 2 });

@@ -9,7 +9,7 @@
   class Branches {
     constructor(data) {
       const { page, view } = data;
-      Object.assign(this, { data, view, parameter: page.branches.parameter, said: page.branches.said });
+      Object.assign(this, { data, view, parameter: page.branches.parameter, said: page.branches.said, beneath: page.branches.beneath });
       this.cases = view.all.filter((one) => page.branches.cases[one.id]);
       this.methodColumns = view.varyingWithout(refinements);
       this.refined = view.varying.filter((column) => refinements.includes(column));

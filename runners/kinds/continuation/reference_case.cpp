@@ -1,0 +1,232 @@
+#include "runners/kinds/continuation/reference_case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <ricochet/measure/orbits/reference_orbits.hpp>
+#include <ricochet/measure/orbits/special_points.hpp>
+
+#include "runners/kinds/comparison/references.hpp"
+#include "runners/kinds/continuation/branch_tables.hpp"
+#include "runners/kinds/continuation/continuation_study.hpp"
+#include "runners/kinds/continuation/continued_map.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
+#include "runners/march/seconds.hpp"
+#include "runners/store/fingerprint.hpp"
+#include "runners/store/record_values.hpp"
+#include "runners/study/axis_meaning.hpp"
+#include "runners/study/fields.hpp"
+
+namespace ricochet {
+namespace {
+
+// Of the gap: to which residuals an orbit is solved, and within which it is its own image.
+constexpr double solved = 1e-11, image_tolerance = 1e-6;
+
+class ReferenceRun {
+ public:
+  ReferenceRun(const StudyCase& study_case, const Registry& registry)
+      : case_(study_case),
+        registry_(registry),
+        plan_(continuation_plan(study_case.settings)),
+        solver_(registry.reference(case_.references.front().name)->make(case_.references.front().parameters)) {
+    const ReferenceProblem problem = problem_at(plan_.orbits.front().at, false);
+    const auto place = [&](const std::function<double(double)>& of) { return of ? of(problem.length) : HUGE_VAL; };
+    const double lower = place(problem.lower), upper = place(problem.upper);
+    const bool both = std::isfinite(lower) && std::isfinite(upper);
+    gap_ = both ? 0.5 * std::abs(upper - lower) : std::min(std::abs(lower), std::abs(upper));
+    if (!std::isfinite(gap_) || gap_ <= 0)
+      gap_ = problem.support_amplitude != 0 ? std::abs(problem.support_amplitude) : 1;
+    const double largest = std::max(std::abs(plan_.from), std::abs(plan_.to));
+    metres_ = is_length(plan_.pointer) || largest == 0 ? 1 : gap_ / largest;
+    for (const double value : {plan_.from, plan_.to, plan_.orbits.front().at}) {
+      const ReferenceProblem one = problem_at(value, false);
+      const double apart = std::abs(one.lower(one.length) + one.upper(one.length));
+      image_ = image_ && one.load_zero && apart <= solved * gap_;
+    }
+  }
+
+  int size() { return orbits_at(plan_.orbits.front(), plan_.orbits.front().at).size(); }
+
+  CaseRecord run(const std::atomic<bool>& stop) {
+    stop_ = &stop;
+    record_.id = case_.id;
+    record_.axes = case_.axes;
+    record_.notes.push_back(fmt::format("the reference {}", content_of(case_.references.front()).dump()));
+    for (const WantedOrbit& orbit : plan_.orbits) try {
+        follow(orbit);
+      } catch (const Refusal& refusal) {
+        results_.add_missing(orbit.name, orbit.at, refusal.sentence);
+      }
+    results_.put(record_, plan_, steps_, over_budget_ ? std::optional(budget_of(case_)) : std::nullopt);
+    record_.run_seconds = thread_seconds() - begun_;
+    return std::move(record_);
+  }
+
+ private:
+  ReferenceProblem problem_at(double value, bool own_state) const {
+    const StudyCase at = with_parameter(own_state ? case_ : at_rest(case_), plan_.pointer, value);
+    auto problem = continuum_problem(at, registry_);
+    if (auto* refusal = std::get_if<Refusal>(&problem)) throw std::move(*refusal);
+    return std::get<ReferenceProblem>(std::move(problem));
+  }
+
+  ReferenceOrbits orbits_at(const WantedOrbit& orbit, double value) const {
+    const bool own = orbit.from == OrbitSource::state;
+    return {[this, own](double at) {
+              const ReferenceProblem problem = problem_at(at, own);
+              auto made = solver_->map(problem);
+              if (auto* refusal = std::get_if<Refusal>(&made)) throw std::move(*refusal);
+              return ReferenceOrbits::Scene{std::get<std::unique_ptr<ReferenceMap>>(std::move(made)),
+                                            2 * std::numbers::pi / problem.support_pulsation};
+            },
+            value, metres_};
+  }
+
+  void follow(const WantedOrbit& orbit) {
+    if (orbit.from != OrbitSource::rest && orbit.from != OrbitSource::state)
+      throw Refusal{"a reference begins from rest or from the scene's own state"};
+    if (orbit.symmetric == HalfMap::yes && !image_)
+      throw Refusal{"the scene is not its own image: stops of other distances, or a load"};
+    ReferenceOrbits map = orbits_at(orbit, orbit.at);
+    MapClock clock{0, orbit.period, orbit.symmetric == HalfMap::yes};
+    const Eigen::VectorXd x = map.settle(orbit.at, std::max(1, orbit.periods));
+    const bool may_be_image = orbit.symmetric == HalfMap::automatic && image_ && orbit.period % 2 != 0;
+    ShotOrbit shot = shoot(map, x, orbit.at, clock, solved * gap_);
+    if (may_be_image) {
+      MapClock half = clock;
+      half.half = true;
+      const Eigen::VectorXd& from = shot.found ? shot.x : x;
+      const double apart = map.metric().size(map.march(from, orbit.at, half).image - from);
+      if (!shot.found || apart <= image_tolerance * gap_)
+        if (ShotOrbit image = shoot(map, from, orbit.at, half, solved * gap_); image.found) {
+          shot = std::move(image);
+          clock = half;
+        }
+    }
+    if (!shot.found)
+      throw Refusal{
+          fmt::format("no orbit of period {} within {} iterations at {:g}; nearest return {:.3g} m after {} "
+                      "periods",
+                      orbit.period, shot.iterations, orbit.at, shot.nearest, orbit.periods)};
+    for (const int way : {1, -1}) {
+      if (way < 0 && (!plan_.both_ways || plan_.follow == Follow::none)) break;
+      FollowedBranch branch{orbit.name, clock, {}, {}, shot.iterations, {}};
+      if (plan_.follow != Follow::none) branch.name += way > 0 ? "+" : "-";
+      follow_branch(map, branch, shot, way);
+    }
+  }
+
+  void follow_branch(ReferenceOrbits& map, FollowedBranch& branch, const ShotOrbit& shot, int way) {
+    ArcSteps limits;
+    limits.branch = {plan_.from, plan_.to, plan_.most_pieces, plan_.longest, {}, plan_.multipliers};
+    limits.tolerance = solved * gap_;
+    constexpr double located = 2.5e-5;
+    limits.located = located;
+    limits.smooth = true;
+    StepFollower follower(map, branch.clock, shot.x, shot.parameter, way, limits);
+    while (plan_.follow != Follow::none && follower.advance(1)) {
+      if (*stop_) throw Interrupted{};
+      if (thread_seconds() - begun_ > budget_of(case_)) over_budget_ = true;
+      if (over_budget_) break;
+    }
+    branch.trace = follower.trace();
+    if (over_budget_) branch.trace.end = fmt::format("the budget of {:g} s was spent", budget_of(case_));
+    const double scale = gap_ / metres_;
+    PointSearch search;
+    search.half = branch.clock.half;
+    search.prominence = plan_.prominence.value_or(least_fold * scale);
+    search.by_steps = true;
+    constexpr double contacts = 1e-9;  // of the range
+    search.contacts = contacts * plan_.range();
+    branch.points = special_points(branch.trace, search);
+    steps_ += static_cast<long long>(branch.trace.corners.size());
+    std::vector<BranchRow> rows = corner_rows_of(branch, plan_.multipliers);
+    for (BranchRow& row : rows) {
+      row.tip_velocity = map.tip(branch.trace.states.at(row.row), *row.parameter).second;
+      row.penetration = 0;
+    }
+    results_.add(branch, std::move(rows), {}, scale);
+  }
+
+  const StudyCase& case_;
+  const Registry& registry_;
+  ContinuationPlan plan_;
+  std::unique_ptr<ReferenceSolver> solver_;
+  const std::atomic<bool>* stop_ = nullptr;
+  double gap_ = 1, metres_ = 1, begun_ = thread_seconds();
+  bool image_ = true, over_budget_ = false;
+  CaseRecord record_;
+  BranchResults results_;
+  long long steps_ = 0;
+};
+
+// Axes of the scene: no role, no mesh, no step.
+bool of_scene(const std::string& column) {
+  static const std::vector<std::string> others = {"mass",  "contact",     "time", "elements",
+                                                  "modes", residual_axis, "step", "steps_per_period"};
+  return std::find(others.begin(), others.end(), axis_role(column)) == others.end();
+}
+
+}  // namespace
+
+void add_reference_cases(const std::vector<MethodChoice>& references, Study& study) {
+  if (references.empty() || study.cases.empty()) return;
+  const auto pointer = study.cases.front().settings.at("parameter").at("pointer").get<std::string>();
+  if (!pointer.starts_with("/scene/"))
+    throw InputError("/reference", "a reference has no " + pointer + "; expected a parameter of the scene");
+  std::vector<StudyCase> added;
+  for (std::size_t r = 0; r < references.size(); ++r) {
+    if (references[r].name == marched_reference)
+      throw InputError(pointer_to("/reference", r),
+                       "it marches the methods themselves and has no orbits of its own; expected a reference that is "
+                       "exact between events");
+    std::vector<std::vector<std::pair<std::string, Json>>> scenes;
+    for (const StudyCase& one : study.cases) {
+      std::vector<std::pair<std::string, Json>> axes;
+      std::copy_if(one.axes.begin(), one.axes.end(), std::back_inserter(axes),
+                   [](const auto& axis) { return of_scene(axis.first); });
+      if (std::find(scenes.begin(), scenes.end(), axes) != scenes.end()) continue;
+      scenes.push_back(axes);
+      StudyCase& of_reference = added.emplace_back(one);
+      of_reference.id = reference_id + (added.size() > 1 ? fmt::format("-{}", added.size()) : "");
+      of_reference.axes = std::move(axes);
+      of_reference.references = {references[r]};
+      of_reference.of_reference = true;
+      of_reference.excluded.reset();
+      of_reference.settings["reference"] = content_of(references[r]);
+    }
+  }
+  std::move(added.begin(), added.end(), std::back_inserter(study.cases));
+}
+
+CasePlan plan_reference(const StudyCase& study_case, const Registry& registry) {
+  CasePlan out;
+  const ContinuationPlan plan = continuation_plan(study_case.settings);
+  try {
+    // Measured on the shaken tube with stops at its tip.
+    constexpr double seconds_per_number = 0.15;
+    const double branches = static_cast<double>(plan.orbits.size()) * (plan.both_ways ? 2 : 1);
+    out.predicted_seconds = seconds_per_number * ReferenceRun(study_case, registry).size() * branches;
+  } catch (const Refusal& refusal) {
+    out.refusal = refusal.sentence;
+  }
+  return out;
+}
+
+CaseRecord run_reference(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) {
+  try {
+    return ReferenceRun(study_case, registry).run(stop);
+  } catch (const Refusal& refusal) {
+    CaseRecord record;
+    record.id = study_case.id;
+    record.axes = study_case.axes;
+    record.status = "refused";
+    record.reason = refusal.sentence;
+    return record;
+  }
+}
+
+}  // namespace ricochet
