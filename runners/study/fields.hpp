@@ -56,6 +56,7 @@ struct Field {
   std::vector<ObjectForm> nested;         ///< one entry for Form::object, objects, starts and such formulas
   std::size_t count = 0;                  ///< for Form::objects; 3 for Form::numbers: a direction
   std::vector<ObjectForm> listed = {};    ///< of Form::object: a list of such objects is possible as well, one value
+  bool or_flag = false;                   ///< of a word: true and false as well
   bool per_body = false;                  ///< of Form::scalar: an object of such numbers by body as well
   bool plain = false;                     ///< of Form::place: a number is x
   bool node_alone = false;                ///< of Form::place: a node may stand without component

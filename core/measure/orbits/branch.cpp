@@ -131,7 +131,7 @@ void BranchRun::finish(const Piece& piece) {
   if (piece.end == BranchEnd::range)
     trace_.end = fmt::format("the range ends at {:.10g}", state.parameter);
   else if (piece.end == BranchEnd::unresolved)
-    trace_.end = fmt::format("the branch was left at {:.10g}: {}", state.parameter, piece.why);
+    trace_.end = fmt::format("the branch was left at λ = {:.10g}: {}", state.parameter, piece.why);
 }
 
 bool BranchRun::advance(long long pieces) {

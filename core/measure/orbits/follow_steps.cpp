@@ -127,12 +127,11 @@ bool StepFollower::advance(long long steps) {
       if (step_ < smallest_step * range) {
         const bool graze = rebounds_ > 0 && last_.runs != trace_.corners.back().runs;
         if (graze)
-          trace_.end = fmt::format(
-              "the derivative is infinite at a graze with e > 0; ended at a speed of {:.3g} m/s, at "
-              "{:.10g}",
-              last_.slowest, now_.parameter);
+          trace_.end =
+              fmt::format("the derivative is infinite at a graze with e > 0; ended at speed {:.3g} m/s, λ = {:.10g}",
+                          last_.slowest, now_.parameter);
         else
-          trace_.end = fmt::format("the branch was left at {:.10g}: step below {:.3g} m; {}", now_.parameter,
+          trace_.end = fmt::format("the branch was left at λ = {:.10g}: step below {:.3g} m; {}", now_.parameter,
                                    smallest_step * range, failure_);
         return false;
       }

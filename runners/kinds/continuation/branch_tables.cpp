@@ -192,7 +192,8 @@ void BranchResults::add_missing(const std::string& name, double at, std::string 
   row.kind = "end";
   row.label = "EP";
   row.parameter = at;
-  row.note = std::move(why);
+  row.note = why;
+  if (missing_.empty()) missing_ = std::move(why);
 }
 
 void BranchResults::put(CaseRecord& record, const ContinuationPlan& plan, long long pieces,
@@ -203,8 +204,8 @@ void BranchResults::put(CaseRecord& record, const ContinuationPlan& plan, long l
   put_measure(record, "branches", branches_);
   put_measure(record, "pieces", static_cast<double>(pieces));
   put_measure(record, "special_points", found_);
-  record.status = spent ? "failed" : "done";
-  if (spent) record.reason = fmt::format("the budget of {:g} s was spent", *spent);
+  record.reason = spent ? fmt::format("the budget of {:g} s was spent", *spent) : missing_;
+  record.status = record.reason.empty() ? "done" : "failed";
 }
 
 }  // namespace ricochet

@@ -44,9 +44,9 @@ class BranchResults {
   /// A branch with its rows. `scale`: that of the parameter.
   void add(const FollowedBranch& branch, std::vector<BranchRow> rows, const std::vector<double>& x_of_rows,
            double scale);
-  /// An orbit that was not found is a row that says so.
+  /// An orbit that was not found is a row that says so, and fails its case.
   void add_missing(const std::string& name, double at, std::string why);
-  /// Tables, measures and status. `spent`: the budget, s, that was not enough.
+  /// Tables, measures, status and reason. `spent`: the budget, s, that was not enough.
   void put(CaseRecord& record, const ContinuationPlan& plan, long long pieces, std::optional<double> spent) const;
 
  private:
@@ -54,6 +54,7 @@ class BranchResults {
   std::vector<SpecialRow> special_;
   std::vector<TurnRow> turns_;
   int branches_ = 0, found_ = 0;
+  std::string missing_;  // why the first orbit that was not found was not
 };
 
 }  // namespace ricochet

@@ -76,6 +76,9 @@ ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry
   check_class(reference_);
   if (refusal_.empty()) check_ends();
   check_image(reference_);
+  const bool images = std::any_of(plan.orbits.begin(), plan.orbits.end(),
+                                  [](const WantedOrbit& one) { return one.symmetric == HalfMap::yes; });
+  if (refusal_.empty() && images) refusal_ = no_image_;
   if (refusal_.empty() && plan.follow == Follow::pieces && !no_pieces_.empty())
     refusal_ = no_pieces_ + ": follow with steps";
 }
@@ -175,7 +178,8 @@ bool ContinuedMap::affine_loads(int low, int middle, int high) {
 void ContinuedMap::check_image(int scene) {
   const ForcedScene& one = scenes_[scene];
   if (case_.steps_per_period % 2 != 0) {
-    no_image_ = fmt::format("{} steps per period are an odd number", case_.steps_per_period);
+    no_image_ =
+        fmt::format("the scene is not its own image: {} steps per period are an odd number", case_.steps_per_period);
     return;
   }
   for (const double at : {plan_.from, plan_.to, plan_.orbits.front().at}) {

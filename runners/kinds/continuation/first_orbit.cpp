@@ -26,8 +26,6 @@ class OrbitSearch {
     const int scene = continued_.scene_at(orbit_.at, orbit_.from == OrbitSource::state, reason);
     if (scene < 0) {
       found.why = reason;
-    } else if (orbit_.symmetric == HalfMap::yes && !continued_.no_image().empty()) {
-      found.why = continued_.no_image();
     } else if (orbit_.from == OrbitSource::free) {
       if (const auto x = free_orbit(map_, orbit_.at, found.clock)) found.shot = solve(*x, found.clock);
     } else if (orbit_.from == OrbitSource::stored) {
@@ -102,9 +100,9 @@ class OrbitSearch {
                        : orbit_.from == OrbitSource::rest ? "rest"
                                                           : "the stored orbit";
     std::string why = fmt::format(
-        "no orbit of period {} within {} iterations from {} at {:g}; nearest return {:.3g} m "
-        "after {} periods",
-        orbit_.period, shot.iterations, from, orbit_.at, shot.nearest, orbit_.periods);
+        "no orbit of period {} within {} iterations from {} at λ = {:g}; nearest return {:.3g} m "
+        "after {} period{}",
+        orbit_.period, shot.iterations, from, orbit_.at, shot.nearest, orbit_.periods, orbit_.periods == 1 ? "" : "s");
     if (shot.end) why += "; " + text(shot.end);
     if (shot.step >= 0)
       why += fmt::format("; residuals alternate between two contact sets (step {} of {}, point {})", shot.step + 1,

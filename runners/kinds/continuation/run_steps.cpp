@@ -39,7 +39,6 @@ class StepsRun {
     std::string reason;
     const int scene = continued_.scene_at(orbit.at, orbit.from == OrbitSource::state, reason);
     if (scene < 0) return missing(orbit, reason);
-    if (orbit.symmetric == HalfMap::yes && !continued_.no_image().empty()) return missing(orbit, continued_.no_image());
     if (orbit.from == OrbitSource::stored || orbit.from == OrbitSource::free)
       return missing(orbit, "steps begin from rest or from the scene's own state");
     SteppedMap map = continued_.stepped_map(orbit.at);
