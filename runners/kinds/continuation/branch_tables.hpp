@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <ricochet/measure/orbits/special_points.hpp>
+#include <ricochet/measure/orbits/stepped_map.hpp>
 #include <string>
 #include <vector>
 
@@ -21,20 +22,21 @@ struct FollowedBranch {
 
 /// The row of one orbit, marched once more: tip, residual, penetration.
 BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter);
+BranchRow orbit_row(SteppedMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter);
 
 /// Folds below this share of the parameter's scale are not listed where the study names no prominence.
 inline constexpr double least_fold = 1e-4;
 
-/// Rows at the corners whose states were kept, as the trace has them.
-std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipliers);
 /// The multipliers of an orbit, largest first, the first `most` of them, and how many are outside the circle.
 void put_multipliers(const std::vector<std::complex<double>>& multipliers, const Outside& outside, int most,
                      BranchRow& row);
 /// The rows of a branch at corners whose states were kept, special points among them.
-std::vector<BranchRow> rows_of(PeriodicMap& map, const FollowedBranch& branch, int multipliers);
+template <class Map>
+std::vector<BranchRow> rows_of(Map& map, const FollowedBranch& branch, int multipliers);
 /// `x_of_rows`: where the point of each row of v stands, m.
 std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std::vector<double>& x_of_rows);
 std::vector<double> x_of_rows(const PeriodicMap& map);
+std::vector<double> x_of_rows(const SteppedMap& map);
 
 /// What the branches of a case come to, whichever way they are followed.
 class BranchResults {

@@ -98,10 +98,28 @@ TEST_CASE("an orbit that is asked to be its own image is refused on another scen
   check_says(refusal_of(odd), {"the scene is not its own image: 201 steps per period are an odd number"});
 }
 
-TEST_CASE("an end of the range at which the scene is impossible refuses the case") {
+TEST_CASE("a branch ends where the scene becomes impossible, and says why") {
   Json study = with("/scene/stops/at", "nodes");
-  study["parameter"]["to"] = 0.12;
-  check_says(refusal_of(study), {"at 0.12: ", "expected a range in which the scene is possible"});
+  study["parameter"] = Json::parse(R"({"pointer": "/scene/support/amplitude", "from": 0.06, "to": 0.12})");
+  study["orbits"] = Json::parse(R"([{"at": 0.07, "from": "free"}])");
+  study["both_ways"] = false;
+  for (const char* follow : {"pieces", "steps"}) {
+    study["follow"] = follow;
+    study["at_most"] = {{"pieces", 3}};
+    CHECK(refusal_of(study).empty());
+    study["parameter"]["from"] = 0.11;
+    study["orbits"][0]["at"] = 0.11;
+    check_says(refusal_of(study), {"at 0.11: "});
+    study["parameter"]["from"] = 0.06;
+    study["orbits"][0]["at"] = 0.07;
+  }
+  // Without contact up to there: one piece.
+  study["scene"]["support"]["pulsation"] = 0.5;
+  study["orbits"][0]["at"] = 0.09;
+  study["follow"] = "pieces";
+  const auto points = points_of(continued(study));
+  REQUIRE_FALSE(points.empty());
+  check_says(points.back().note, {"the range ends at 0.", "at 0.12: "});
 }
 
 TEST_CASE("a root of the step on displacements without mass refuses the case") {
