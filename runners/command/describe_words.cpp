@@ -60,7 +60,8 @@ std::string type_of(const Field& field) {
   const std::string list = field.axis ? ", or a list" : "";
   switch (field.form) {
     case Field::Form::scalar:
-      return std::string(type_word(field.spec)) + (field.per_body ? ", or by body" : "") + list;
+      return (field.or_flag ? "true, false or " : "") + std::string(type_word(field.spec)) +
+             (field.per_body ? ", or by body" : "") + list;
     case Field::Form::text:
       return "text";
     case Field::Form::formula:

@@ -43,11 +43,11 @@ std::string expectation(const Field& field) {
     case ParameterSpec::Type::word:
       break;
   }
-  return "expected one of " + quoted_list(spec.words);
+  return (field.or_flag ? "expected true, false or one of " : "expected one of ") + quoted_list(spec.words);
 }
 
 Json check_scalar(const Field& field, const Json& value, const std::string& pointer) {
-  if (field.nullable && value.is_null()) return value;
+  if ((field.nullable && value.is_null()) || (field.or_flag && value.is_boolean())) return value;
   const ParameterValue given = to_parameter(value, field.spec.type, pointer, expectation(field));
   if (check_parameter(field.spec, given)) {
     std::string hint;

@@ -132,6 +132,7 @@ class SchemaWriter {
       case Field::Form::scalar:
         if (field.per_body)
           return either("object", {{"additionalProperties", scalar(field.spec)}}, or_null(field, scalar(field.spec)));
+        if (field.or_flag) return either("boolean", Json::object(), scalar(field.spec));
         return or_null(field, scalar(field.spec));
       case Field::Form::text:
         if (!field.given.empty()) return either("object", object(field.given.front()), {{"type", "string"}});

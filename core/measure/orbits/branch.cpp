@@ -29,39 +29,11 @@ CornerRoots roots_at(const std::vector<std::complex<double>>& multipliers) {
 
 ContactRuns contact_runs(const SetSteps& sets, const SetSequence& sequence, bool half) {
   ContactRuns runs;
-  const auto n = static_cast<long long>(sequence.size());
-  const auto side = [&](long long k, std::size_t row) {
-    const bool before = k < 0;
-    const int closed = sets[sequence[static_cast<std::size_t>(before ? k + n : k)]].side[row];
-    return before && half ? -closed : closed;
-  };
-  const int rows = sets.measure_rows();
-  for (int row = 0; row < rows; ++row) {
-    const auto r = static_cast<std::size_t>(row);
-    long long begun = -1, first = -1;
-    int count = 0;
-    const auto end = [&](long long length) {
-      runs.shortest = runs.shortest == 0 ? static_cast<int>(length) : std::min(runs.shortest, static_cast<int>(length));
-    };
-    bool closed_at_end = false;
-    for (long long k = 0; k < n; ++k) {
-      if (k > 0 && sequence[static_cast<std::size_t>(k)] == sequence[static_cast<std::size_t>(k - 1)]) continue;
-      const int now = side(k, r), was = side(k - 1, r);
-      if (now == was) continue;
-      if (was != 0 && begun >= 0) end(k - begun);
-      if (was != 0 && begun < 0) first = k;  // a run that goes round the end
-      begun = now != 0 ? k : -1;
-      count += now != 0;
-      closed_at_end = now != 0;
-    }
-    if (closed_at_end && begun >= 0) end(n - begun + std::max(0LL, first));
-    // Closed all the time, or over the end with a change of neither.
-    if (count == 0 && n > 0 && side(0, r) != 0) {
-      count = 1;
-      end(n);
-    }
-    runs.count += count;
-  }
+  for (std::size_t row = 0; row < static_cast<std::size_t>(sets.measure_rows()); ++row)
+    each_run(
+        static_cast<long long>(sequence.size()), half,
+        [&](long long k) { return sets[sequence[static_cast<std::size_t>(k)]].side[row]; },
+        [&](long long, long long length) { runs.add(length); });
   return runs;
 }
 
@@ -131,26 +103,34 @@ void BranchRun::finish(const Piece& piece) {
   if (piece.end == BranchEnd::range)
     trace_.end = fmt::format("the range ends at {:.10g}", state.parameter);
   else if (piece.end == BranchEnd::unresolved)
-    trace_.end = fmt::format("the branch was left at {:.10g}: {}", state.parameter, piece.why);
+    trace_.end = fmt::format("the branch was left at λ = {:.10g}: {}", state.parameter, piece.why);
 }
 
 bool BranchRun::advance(long long pieces) {
   // Of the affine steps against the map that is marched: beyond it the sets are not those of an orbit any more.
   constexpr double largest_residual = 1e-8;  // m
+  constexpr int most_standing = 100;
+  const double at_once = met_at_once * map_->metric().parameter_metres() * (limits_.largest - limits_.least);
   for (; pieces > 0 && !trace_.ended(); --pieces) {
     const Piece piece = follower_.end_of_piece(limits_.least, limits_.largest);
     trace_.corners.back().residual = piece.residual;
     const BranchState before = follower_.state();
-    if (piece.end == BranchEnd::unresolved || piece.residual > largest_residual) {
+    trace_.ties += piece.tie;
+    standing_ = piece.length > at_once || piece.end == BranchEnd::range ? 0 : standing_ + 1;
+    if (piece.end == BranchEnd::unresolved || piece.residual > largest_residual || standing_ > most_standing) {
       Piece last = piece;
       last.end = BranchEnd::unresolved;
+      if (standing_ > most_standing)
+        last.why = fmt::format("bounds that are met at once change in a circle (step {} of {}, point {})",
+                               piece.change.step + 1, clock_.steps(), map_->sets().place(piece.change.row).point + 1);
       if (last.why.empty()) last.why = fmt::format("the residual is {:.3g} m", piece.residual);
       finish(last);
       break;
     }
     for (const double mark : limits_.marks) {
       const double s = (mark - before.parameter) / before.parameter_along;
-      if (!(s >= 0) || s >= piece.length) continue;
+      // A mark at the end of the range is on its last piece.
+      if (!(s >= 0) || s > piece.length || (s == piece.length && piece.end != BranchEnd::range)) continue;
       BranchState there = follower_.at(s);
       const double tip = map_->tip(there.x, mark);
       trace_.marks.push_back(

@@ -1,6 +1,7 @@
 #pragma once
 #include <complex>
 #include <map>
+#include <ricochet/measure/orbits/contact_runs.hpp>
 #include <ricochet/measure/orbits/follow_pieces.hpp>
 #include <string>
 #include <vector>
@@ -29,10 +30,7 @@ struct BranchCorner {
   double residual = 0;                        ///< m
 };
 
-/// Runs of steps in which a point is closed by one stop, over the steps of a map, round its end.
-struct ContactRuns {
-  int count = 0, shortest = 0;
-};
+/// Over all points, those of each stage on their own.
 ContactRuns contact_runs(const SetSteps& sets, const SetSequence& sequence, bool half);
 
 /// Whether the second half of the steps has the sets of the first one with the sides exchanged: an orbit that stands
@@ -52,7 +50,9 @@ struct BranchTrace {
   std::map<long long, Eigen::VectorXd> states;  ///< x at some corners: evenly spaced ones, turns and changes
   long long stride = 1;                         ///< of those that are evenly spaced
   std::vector<MarkedOrbit> marks;
-  std::string end;  ///< why it ended; "" while it goes on
+  long long ties = 0;   ///< corners at which two bounds were met at once
+  double rebounds = 0;  ///< largest u of orbits that give back speed, m (stepped_map.hpp); 0: none does
+  std::string end;      ///< why it ended; "" while it goes on
   bool ended() const { return !end.empty(); }
 };
 
@@ -80,6 +80,7 @@ class BranchRun {
   const BranchTrace& trace() const { return trace_; }
   const BranchState& state() const { return follower_.state(); }
   const BranchState& entry() const { return follower_.entry(); }
+  long long pieces() const { return follower_.state().pieces; }
   const SetSequence& first_sets() const { return first_; }
   const MapClock& clock() const { return clock_; }
 
@@ -94,6 +95,7 @@ class BranchRun {
   BranchLimits limits_;
   BranchTrace trace_;
   SetSequence first_;
+  int standing_ = 0;  // pieces without length in a row
 };
 
 }  // namespace ricochet

@@ -106,11 +106,16 @@ Piece PieceFollower::end_of_piece(double least, double largest) {
     upper_slope.push_back(map_->bound(row, true, state_.parameter_along, true));
   }
   const SetChange& last = state_.change;
+  const double at_once = met_at_once * map_->metric().parameter_metres() * (largest - least);
   const auto meet = [&](double margin, double slope, long long step, int row, bool closes, bool is_upper) {
     // What changed last has a margin of 0 that grows.
     if (!(slope < 0) || (step == last.step && row == last.row && is_upper == last.upper)) return;
     const double s = std::max(0.0, -margin / slope);
-    if (s >= piece.length) return;
+    if (s >= piece.length - at_once) {
+      piece.tie = piece.tie || s <= piece.length + at_once;
+      return;
+    }
+    piece.tie = false;
     piece.length = s;
     piece.change = {step, row, closes, is_upper};
   };
@@ -131,6 +136,7 @@ Piece PieceFollower::end_of_piece(double least, double largest) {
   const double along = state_.parameter_along, limit = along > 0 ? largest : least;
   const double s = along == 0 ? std::numeric_limits<double>::infinity() : (limit - state_.parameter) / along;
   if (s <= piece.length && s >= 0) {
+    piece.tie = false;
     piece.length = s;
     piece.change = {};
     piece.end = BranchEnd::range;

@@ -8,6 +8,9 @@
 
 namespace ricochet {
 
+/// Arclength, of that of the range, within which bounds count as met at once.
+inline constexpr double met_at_once = 1e-12;
+
 /// A change of a contact set: in which step, of which row of v.
 struct SetChange {
   long long step = -1;
@@ -16,7 +19,7 @@ struct SetChange {
   bool upper = false;   ///< which stop
 };
 
-/// Where a branch of a piecewise affine map stands: at the beginning of a piece.
+/// Where a branch stands: at the beginning of a piece, or of a step along it.
 struct BranchState {
   Eigen::VectorXd x;
   double parameter = 0;
@@ -26,6 +29,8 @@ struct BranchState {
   SetChange change;            ///< what ended the piece before; none at first
   double arc = 0;              ///< m
   long long pieces = 0;
+  double step = 0;      ///< of a branch that goes by steps, m
+  int orientation = 0;  ///< of such a branch: the sign of the determinant of its bordered matrix
 };
 
 /// Why following stopped.
@@ -37,6 +42,7 @@ struct Piece {
   double length = 0;    ///< m
   double residual = 0;  ///< |P(x) − x| at its beginning, by the affine steps, m
   SetChange change;     ///< what ended it
+  bool tie = false;     ///< another bound is met there as well, to 1e-12 of the range
   std::string why;      ///< of an unresolved one
 };
 
@@ -46,7 +52,8 @@ BranchState branch_start(Eigen::VectorXd x, double parameter, SetSequence sets, 
 /// Follows a branch of −P½(x, λ) = x or P^p(x, λ) = x, P piecewise affine and continuous, piece by piece. On a piece
 /// the contact sets stay and the branch is a line, x + s t with [P' − 1, P_λ] t = 0. The piece ends at the least s > 0
 /// at which an effort or the distance to a bound vanishes; there the point changes its set in that step, and the new
-/// line leaves so that the new margin grows. No step size, no tolerance: any fold is passed.
+/// line leaves so that the new margin grows. No step size, no tolerance: any fold is passed. Bounds that are met at
+/// once change one after the other, the earlier step and the lower row first, on pieces of no length between them.
 class PieceFollower {
  public:
   /// From an orbit (branch_start()), or from the entry of another follower: both then go on alike, bit for bit.

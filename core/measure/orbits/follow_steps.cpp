@@ -33,7 +33,9 @@ StepFollower::StepFollower(FollowedMap& map, const MapClock& clock, VectorXd x, 
     trace_.end = "the first orbit cannot be marched: " + text(last_.end);
     return;
   }
-  if (set_tangent(way)) keep(now_, last_, multipliers_of(last_.derivative));
+  if (!set_tangent(way)) return;
+  keep(now_, last_, multipliers_of(last_.derivative));
+  if (limits_.branch.ends_at_image) apart_ = asymmetry(now_);
 }
 
 // The direction of the branch at an orbit, λ growing: (1 − P') dx = P_λ dλ.
@@ -55,12 +57,61 @@ bool StepFollower::set_tangent(int way) {
   return found.has_value();
 }
 
+StepFollower::StepFollower(FollowedMap& map, const MapClock& clock, const BranchState& state, const ArcSteps& limits,
+                           BranchTrace trace)
+    : map_(&map), clock_(clock), limits_(limits), step_(state.step), trace_(std::move(trace)) {
+  now_ = {state.x, state.parameter};
+  along_ = {state.along, state.parameter_along};
+  orientation_ = state.orientation;
+  if (limits_.branch.ends_at_image) apart_ = asymmetry(now_);
+}
+
+BranchState StepFollower::state() const {
+  BranchState state;
+  state.x = now_.x;
+  state.parameter = now_.parameter;
+  state.along = along_.x;
+  state.parameter_along = along_.parameter;
+  state.step = step_;
+  state.orientation = orientation_;
+  return state;
+}
+
+// By a difference over both sides, or over one where the scene is impossible on the other.
 VectorXd StepFollower::by_parameter(const Point& point) {
-  const double range = limits_.branch.largest - limits_.branch.least, by = parameter_difference * range;
-  const auto low = map_->march(point.x, point.parameter - by, clock_),
-             high = map_->march(point.x, point.parameter + by, clock_);
-  if (low.end || high.end) return VectorXd::Constant(map_->size(), NAN);
-  return (high.image - low.image) / (2 * by);
+  const double by = parameter_difference * (limits_.branch.largest - limits_.branch.least);
+  const auto image = [&](double parameter) -> std::optional<VectorXd> {
+    try {
+      const FollowedMap::Image made = map_->march(point.x, parameter, clock_);
+      if (!made.end) return made.image;
+      failure_ = text(made.end);
+    } catch (const Refusal& refusal) {
+      failure_ = refusal.sentence;
+    }
+    return std::nullopt;
+  };
+  double width = 2 * by;
+  auto low = image(point.parameter - by), high = image(point.parameter + by);
+  for (auto* side : {&low, &high}) {
+    if (*side) continue;
+    *side = image(point.parameter);
+    width -= by;
+  }
+  if (!low || !high || width <= 0) return VectorXd::Constant(map_->size(), NAN);
+  return (*high - *low) / width;
+}
+
+double StepFollower::overlap(const Point& a, const Point& b) const {
+  const StateMetric& metric = map_->metric();
+  const double metres = metric.parameter_metres();
+  return (metric.rows() * a.x).dot(metric.rows() * b.x) + metres * metres * a.parameter * b.parameter;
+}
+
+// x less what the other half of the period makes of it, the sides exchanged.
+VectorXd StepFollower::asymmetry(const Point& point) {
+  MapClock half = clock_;
+  half.half = true;
+  return point.x - map_->march(point.x, point.parameter, half).image;
 }
 
 // Newton's method on P(x, λ) = x, normal to the secant.
@@ -71,6 +122,7 @@ bool StepFollower::correct(Point& point, const Point& along, int& iterations) {
   const double metres = map_->metric().parameter_metres();
   VectorXd slope;
   double nearest = std::numeric_limits<double>::infinity();
+  turned_ = 0;
   for (iterations = 0; iterations <= most; ++iterations) {
     last_ = map_->march(point.x, point.parameter, clock_, true);
     if (last_.end) {
@@ -79,7 +131,9 @@ bool StepFollower::correct(Point& point, const Point& along, int& iterations) {
     }
     const VectorXd left = last_.image - point.x;
     const double residual = map_->metric().size(left);
-    if (residual <= limits_.tolerance) return true;
+    // Where an iteration gains nothing any more the rest is round-off.
+    if (residual <= limits_.tolerance || (iterations > 1 && residual < largest_round_off && residual > 0.1 * nearest))
+      return true;
     // Impacts that rebound are placed to within a step: an orbit is known to that.
     if (residual <= last_.rebounds && residual > 0.5 * nearest) return true;
     nearest = std::min(nearest, residual);
@@ -93,6 +147,8 @@ bool StepFollower::correct(Point& point, const Point& along, int& iterations) {
     VectorXd right = VectorXd::Zero(D + 1);
     right.head(D) = left;
     const VectorXd correction = DenseLu(system).solve(right);
+    const double size = determinant(system);
+    turned_ = (size > 0) - (size < 0);
     if (!correction.allFinite()) {
       failure_ = "a multiplier is 1 and the branch has no direction";
       return false;
@@ -120,17 +176,14 @@ void StepFollower::keep(const Point& point, const FollowedMap::Image& image,
   multipliers.resize(std::min(multipliers.size(), static_cast<std::size_t>(limits_.branch.multipliers)));
   corner.leading = std::move(multipliers);
   corner.residual = map_->metric().size(image.image - point.x);
-  rebounds_ = std::max(rebounds_, image.rebounds);
+  trace_.rebounds = std::max(trace_.rebounds, image.rebounds);
   trace_.corners.push_back(std::move(corner));
   trace_.states.emplace(static_cast<long long>(trace_.corners.size()) - 1, point.x);
 }
 
 // The cosine between two directions.
 double StepFollower::cosine(const Point& a, const Point& b) const {
-  const StateMetric& metric = map_->metric();
-  const double dot = (metric.rows() * a.x).dot(metric.rows() * b.x) +
-                     metric.parameter_metres() * metric.parameter_metres() * a.parameter * b.parameter;
-  return dot / (metric.size(a.x, a.parameter) * metric.size(b.x, b.parameter));
+  return overlap(a, b) / std::sqrt(overlap(a, a) * overlap(b, b));
 }
 
 // Of a map without steps of time, where no shorter step finds an orbit: a contact comes or goes. The orbit beyond is
@@ -201,12 +254,54 @@ void StepFollower::place_contact(const Point& beyond, const Point& along, bool t
   now_ = std::move(found);
 }
 
+// Marks between the last orbit and the next one, solved from between them.
+void StepFollower::mark_up_to(const Point& next) {
+  for (const double mark : limits_.branch.marks) {
+    const double share = (mark - now_.parameter) / (next.parameter - now_.parameter);
+    if (!(share >= 0) || share > 1) continue;
+    const VectorXd by = next.x - now_.x;
+    const ShotOrbit at = shoot(*map_, now_.x + share * by, mark, clock_, limits_.tolerance);
+    if (!at.found) continue;
+    const FollowedMap::Image image = map_->march(at.x, mark, clock_);
+    const BranchCorner& corner = trace_.corners.back();
+    const double arc = corner.arc + map_->metric().size(at.x - now_.x, mark - now_.parameter);
+    const bool known = !trace_.marks.empty() && trace_.marks.back().parameter == mark &&
+                       std::abs(trace_.marks.back().arc - arc) <= smallest_step * arc;
+    if (!known) trace_.marks.push_back({mark, arc, image.tip, pieces() - 1, at.x});
+  }
+}
+
+// Ends the branch at an end of the range, from a point beyond it.
+void StepFollower::leave(const Point& next) {
+  const BranchLimits& limits = limits_.branch;
+  const double limit = next.parameter < limits.least ? limits.least : limits.largest;
+  const double share = (limit - now_.parameter) / (next.parameter - now_.parameter);
+  const ShotOrbit at = shoot(*map_, now_.x + share * (next.x - now_.x), limit, clock_, limits_.tolerance);
+  if (at.found) {
+    const Point end{at.x, limit};
+    mark_up_to(end);
+    const FollowedMap::Image image = map_->march(at.x, limit, clock_, true);
+    keep(end, image, multipliers_of(image.derivative));
+  }
+  trace_.end = fmt::format("the range ends at {:.10g}", limit);
+}
+
+// Whether the first orbit lies on the step to the next one, which goes the same way.
+bool StepFollower::comes_back(double far) const {
+  constexpr std::size_t fewest = 8;
+  constexpr double aside = 0.05;  // of the step
+  if (trace_.corners.size() < fewest || trace_.corners.front().way != trace_.corners.back().way) return false;
+  const Point back{trace_.states.at(0) - now_.x, trace_.corners.front().parameter - now_.parameter};
+  const double along = overlap(back, along_), length = std::sqrt(overlap(back, back));
+  return along >= 0 && along <= far && std::sqrt(std::max(0.0, length * length - along * along)) < aside * far;
+}
+
 bool StepFollower::advance(long long steps) {
   const StateMetric& metric = map_->metric();
   const BranchLimits& limits = limits_.branch;
   const double range = metric.parameter_metres() * (limits.largest - limits.least);
   for (; steps > 0 && !trace_.ended(); --steps) {
-    Point next;
+    Point next, by;
     std::vector<std::complex<double>> multipliers;
     int iterations = 0;
     const Point before = along_;
@@ -215,6 +310,7 @@ bool StepFollower::advance(long long steps) {
     // come or go that the map does not resolve.
     std::optional<std::pair<Point, FollowedMap::Image>> across;
     bool jumps = false;
+    double far = 0;
     for (;; step_ *= 0.5) {
       jumps = limits_.smooth && step_ < 0.01 * limits_.located * range;
       if (jumps && across) std::tie(next, last_) = std::move(*across);
@@ -224,14 +320,13 @@ bool StepFollower::advance(long long steps) {
         break;
       }
       if (step_ < smallest_step * range) {
-        const bool graze = rebounds_ > 0 && last_.runs != trace_.corners.back().runs;
+        const bool graze = trace_.rebounds > 0 && last_.runs != trace_.corners.back().runs;
         if (graze)
-          trace_.end = fmt::format(
-              "the derivative is infinite at a graze with e > 0; ended at a speed of {:.3g} m/s, at "
-              "{:.10g}",
-              last_.slowest, now_.parameter);
+          trace_.end =
+              fmt::format("the derivative is infinite at a graze with e > 0; ended at speed {:.3g} m/s, λ = {:.10g}",
+                          last_.slowest, now_.parameter);
         else
-          trace_.end = fmt::format("the branch was left at {:.10g}: step below {:.3g} m; {}", now_.parameter,
+          trace_.end = fmt::format("the branch was left at λ = {:.10g}: step below {:.3g} m; {}", now_.parameter,
                                    smallest_step * range, failure_);
         return false;
       }
@@ -242,9 +337,9 @@ bool StepFollower::advance(long long steps) {
         failure_ = refusal.sentence;
         continue;
       }
-      const VectorXd by = next.x - now_.x;
-      const double far = metric.size(by, next.parameter - now_.parameter);
-      const double cosine = this->cosine({by, next.parameter - now_.parameter}, along_);
+      by = {next.x - now_.x, next.parameter - now_.parameter};
+      far = metric.size(by.x, by.parameter);
+      const double cosine = overlap(by, along_) / far;
       multipliers = multipliers_of(last_.derivative);
       bool crosses = outside(multipliers).total != trace_.corners.back().raw.outside.total;
       if (limits_.smooth) crosses |= last_.runs != runs;
@@ -256,6 +351,10 @@ bool StepFollower::advance(long long steps) {
       // Nearer than impacts are placed neither directions nor multipliers say anything.
       const double told = 5 * last_.rebounds;
       const bool straight = cosine >= sharpest || (far < told && cosine > 0);
+      if (!limits_.smooth && last_.rebounds == 0 && turned_ * orientation_ < 0) {
+        failure_ = "the next orbit goes back along the branch";
+        continue;
+      }
       if (straight && crosses && step_ > std::max(limits_.located * range, told)) {
         if (limits_.smooth) across = {next, last_};
         continue;
@@ -263,19 +362,25 @@ bool StepFollower::advance(long long steps) {
       if (straight) break;
       failure_ = "the branch turns by more than 45 degrees within a step";
     }
-    const VectorXd by = next.x - now_.x;
-    const double far = metric.size(by, next.parameter - now_.parameter);
-    along_ = {by / far, (next.parameter - now_.parameter) / far};
+    by = {next.x - now_.x, next.parameter - now_.parameter};
+    far = metric.size(by.x, by.parameter);
+    if (orientation_ == 0) orientation_ = turned_;
+    along_ = {by.x / far, by.parameter / far};
     if (next.parameter < limits.least || next.parameter > limits.largest) {
-      const double limit = next.parameter < limits.least ? limits.least : limits.largest;
-      const double share = (limit - now_.parameter) / (next.parameter - now_.parameter);
-      const ShotOrbit at = shoot(*map_, now_.x + share * by, limit, clock_, limits_.tolerance);
-      if (at.found) {
-        const Point end{at.x, limit};
-        const FollowedMap::Image image = map_->march(at.x, limit, clock_, true);
-        keep(end, image, multipliers_of(image.derivative));
+      leave(next);
+      return false;
+    }
+    if (apart_.size() > 0) {
+      const VectorXd there = asymmetry(next);
+      if (there.dot(apart_) < 0) {
+        trace_.end = fmt::format("its orbits become their own images at {:.10g}", next.parameter);
+        return false;
       }
-      trace_.end = fmt::format("the range ends at {:.10g}", limit);
+      apart_ = there;
+    }
+    mark_up_to(next);
+    if (comes_back(far)) {
+      trace_.end = "closed: the branch came back to its first orbit";
       return false;
     }
     const bool turns = (outside(multipliers).above - above) % 2 != 0, contact = last_.runs != runs;
@@ -288,7 +393,7 @@ bool StepFollower::advance(long long steps) {
     if (limits_.smooth && (jumps || turns || contact) && !set_tangent(turns == (before.parameter > 0) ? -1 : 1)) break;
     if (iterations <= easy) step_ = std::min(growth * step_, largest_step * range);
     if (iterations > hard) step_ /= growth;
-    if (static_cast<long long>(trace_.corners.size()) > limits.pieces)
+    if (pieces() > limits.pieces)
       trace_.end = fmt::format("{} steps, the most that the study allows", limits.pieces);
     else if (trace_.corners.back().arc >= limits.arc)
       trace_.end = fmt::format("an arc of {:g} m, the longest that the study allows", limits.arc);

@@ -49,25 +49,33 @@ double margin(const PeriodicMap& map, const SetStep& step, int row, double value
 
 MatrixXd half_step_derivative(PeriodicMap& map, const SetSequence& sets, const MapClock& clock, double parameter,
                               const PeriodicMap::Measures& measures) {
-  const int rows = map.sets().measure_rows();
+  const auto rows = static_cast<std::size_t>(map.sets().measure_rows()), n = sets.size();
   std::vector<SetBlend> blends;
-  for (std::size_t k = 1; k < sets.size(); ++k) {
-    if (sets[k] == sets[k - 1]) continue;
-    const SetStep &before = map.sets()[sets[k - 1]], &after = map.sets()[sets[k]];
-    const auto row =
-        std::mismatch(before.side.begin(), before.side.end(), after.side.begin()).first - before.side.begin();
-    const auto r = static_cast<std::size_t>(row), n = static_cast<std::size_t>(rows);
-    const bool upper = before.side[r] + after.side[r] > 0;
-    const double m0 = margin(map, before, static_cast<int>(row), measures.value[(k - 1) * n + r], upper, parameter);
-    const double m1 = margin(map, after, static_cast<int>(row), measures.value[k * n + r], upper, parameter);
-    if (!(m0 + m1 > 0)) continue;
-    const double theta = m0 / (m0 + m1);
-    const SetBlend blend = theta < 0.5 ? SetBlend{k - 1, sets[k], 0.5 - theta} : SetBlend{k, sets[k - 1], theta - 0.5};
-    if (!blends.empty() && blends.back().step == blend.step)
-      blends.back() = blend;
-    else
-      blends.push_back(blend);
+  // Step 0 follows the last one, of a half map with the sides exchanged: A is that of the same points.
+  for (std::size_t last = 0; last < n; ++last) {
+    const std::size_t k = last + 1 < n ? last + 1 : 0;
+    const bool turned = k == 0 && clock.half;
+    if (sets[k] == sets[last] && !turned) continue;
+    const SetStep &before = map.sets()[sets[last]], &after = map.sets()[sets[k]];
+    for (std::size_t r = 0; r < rows; ++r) {
+      const int was = before.side[r], is = after.side[r];
+      if (was == (turned ? -is : is) || (was != 0 && is != 0)) continue;
+      const int row = static_cast<int>(r);
+      const bool upper = is != 0 ? is > 0 : (turned ? was < 0 : was > 0);
+      const double m0 = margin(map, before, row, measures.value[last * rows + r], upper != turned, parameter);
+      const double m1 = margin(map, after, row, measures.value[k * rows + r], upper, parameter);
+      if (!(m0 + m1 > 0)) continue;
+      const double theta = m0 / (m0 + m1);
+      const std::size_t step = theta < 0.5 ? last : k;
+      // A run of one step is blended by its later end.
+      const auto same = [&](const SetBlend& one) { return one.step == step && one.row == row; };
+      if (step == 0 && k == 0 && std::any_of(blends.begin(), blends.end(), same)) continue;
+      std::erase_if(blends, same);
+      blends.push_back(
+          {step, map.sets().toggled(sets[step], row, upper != (turned && step == last)), std::abs(theta - 0.5), row});
+    }
   }
+  std::stable_sort(blends.begin(), blends.end(), [](const SetBlend& a, const SetBlend& b) { return a.step < b.step; });
   return map.derivative(sets, clock, blends);
 }
 

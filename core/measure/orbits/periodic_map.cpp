@@ -230,10 +230,13 @@ MatrixXd PeriodicMap::derivative(const SetSequence& sets, const MapClock& clock,
   auto blend = blends.begin();
   for (std::size_t begin = 0; begin < sets.size();) {
     if (blend != blends.end() && blend->step == begin) {
-      product = ((1 - blend->weight) * sets_[sets[begin]].state.topRows(size()) +
-                 blend->weight * sets_[blend->other].state.topRows(size())) *
-                product;
-      ++blend;
+      double own = 1;
+      for (auto one = blend; one != blends.end() && one->step == begin; ++one) own -= one->weight;
+      MatrixXd step =
+          own * sets_[sets[begin]].state.topRows(size()) + blend->weight * sets_[blend->other].state.topRows(size());
+      for (++blend; blend != blends.end() && blend->step == begin; ++blend)
+        step += blend->weight * sets_[blend->other].state.topRows(size());
+      product = step * product;
       ++begin;
       continue;
     }

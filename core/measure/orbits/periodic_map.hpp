@@ -39,11 +39,13 @@ struct MapClock {
 /// The contact set of each step, by its number in SetSteps.
 using SetSequence = std::vector<int>;
 
-/// A step whose derivative is (1 − weight) times that of its set, and weight times that of another one.
+/// A step whose derivative is (1 − weight) times that of its set, and weight times that of another one, in which one
+/// row has changed. A step may have several: their weights add up.
 struct SetBlend {
   std::size_t step;
   int other;
   double weight;
+  int row = 0;
 };
 
 /// What one march of the map shows.

@@ -13,7 +13,6 @@ ShotOrbit shoot(PeriodicMap& map, VectorXd x, double parameter, const MapClock& 
   ShotOrbit orbit;
   orbit.parameter = parameter;
   orbit.nearest = std::numeric_limits<double>::infinity();
-  constexpr double largest_round_off = 1e-9;  // m
   SetSequence before;
   const MatrixXd one = MatrixXd::Identity(map.size(), map.size());
   for (;; ++orbit.iterations) {

@@ -37,5 +37,7 @@ double round_off_of_map(PeriodicMap& map, const Eigen::VectorXd& x, double param
 
 /// How many units of round-off count as none.
 inline constexpr double round_offs = 30;
+/// Above it a residual that falls no more is no round-off, m.
+inline constexpr double largest_round_off = 1e-9;
 
 }  // namespace ricochet

@@ -93,9 +93,8 @@ std::vector<Crossing> crossings_of(const Corners& corners, const Circle& circle,
     const int counted = now.raw.outside.*circle.count - was.raw.outside.*circle.count;
     if (!by_steps && counted * (now.raw.outside.total - was.raw.outside.total) > 0)
       all.push_back({i, true, counted > 0 ? 1 : -1, now.parameter, now.arc, now.tip, {}});
-    const int smoothly = now.smooth.outside.*circle.count - was.smooth.outside.*circle.count;
-    if (smoothly == 0) continue;
-    if (by_steps && smoothly * (now.smooth.outside.total - was.smooth.outside.total) <= 0) continue;
+    const int smooth = now.smooth.outside.*circle.count - was.smooth.outside.*circle.count;
+    if (smooth * (now.smooth.outside.total - was.smooth.outside.total) <= 0) continue;
     const double before = distance(was.smooth, circle.pair), after = distance(now.smooth, circle.pair);
     if (!(before * after <= 0) || before == after) continue;
     const double share = before / (before - after);
@@ -128,6 +127,9 @@ void add_group(const Corners& corners, const Circle& circle, const std::vector<C
   } else {
     point.low = point.high = raw.front()->value;
     for (const Crossing* one : raw) widen(point, one->value);
+    if (raw.size() == 1)  // known to the pieces on both sides
+      for (const std::size_t i : {first - 1, std::min(first + 1, corners.size() - 1)})
+        widen(point, corners[i].parameter);
     point.crossings = static_cast<int>(raw.size());
   }
   if (!smooth.empty()) {
@@ -175,6 +177,22 @@ void add_crossings(const Corners& corners, const Circle& circle, const PointSear
     group.push_back(one);
   }
   flush();
+}
+
+// A count outside that changes with a contact that comes or goes: where multipliers jump over −1.
+void add_jumps(const Corners& corners, const Circle& circle, std::vector<SpecialPoint>& points) {
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    const BranchCorner &was = corners[i - 1], &now = corners[i];
+    const int counted = now.raw.outside.*circle.count - was.raw.outside.*circle.count;
+    if (was.runs == now.runs || counted * (now.raw.outside.total - was.raw.outside.total) <= 0) continue;
+    SpecialPoint point = at_corner(corners, i, circle.kind, circle.label);
+    point.low = point.high = was.parameter;
+    widen(point, now.parameter);
+    widen(point, corners[std::min(i + 1, corners.size() - 1)].parameter);
+    point.crossings = 1;
+    point.note = "at a change of contact, where multipliers jump";
+    points.push_back(std::move(point));
+  }
 }
 
 // λ at the vertex of the parabola through a corner at which it turns and its neighbours.
@@ -270,6 +288,7 @@ std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSe
   const Circle minus =
       search.half ? Circle{"symmetry", "BP", &Outside::below, false} : Circle{"flip", "PD", &Outside::below, false};
   add_crossings(corners, minus, search, points);
+  add_jumps(corners, minus, points);
   add_crossings(corners, {"torus", "TR", &Outside::pairs, true}, search, points);
   add_contacts(corners, search, points);
   if (search.placed > 0)

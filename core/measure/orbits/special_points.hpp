@@ -51,7 +51,8 @@ std::vector<Turn> turns_of(const BranchTrace& trace);
 ///   torus     a pair through the circle
 ///   contact   a run of contact that appears or vanishes
 /// Raw crossings near to each other are one group. It is a point where the count of multipliers outside differs before
-/// and after it; its value is where the multiplier by the half-step rule crosses, its interval all of the group.
+/// and after it; its value is where the multiplier by the half-step rule crosses, its interval all of the group. Where
+/// the count changes with a contact that comes or goes, the corner is the point, and no multiplier is told.
 std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSearch& search);
 
 }  // namespace ricochet

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ricochet/measure/orbits/contact_runs.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 #include <ricochet/measure/orbits/section_march.hpp>
 #include <ricochet/measure/orbits/shoot.hpp>
@@ -42,29 +43,27 @@ class ContactWatch final : public StepObserver {
   }
   /// Of the whole march.
   void sum(double h, bool half, SteppedMap::Image& out) const {
-    const auto n = static_cast<std::ptrdiff_t>(sides_.size());
-    for (std::size_t point = 0; point < closed_.size(); ++point)
-      for (std::ptrdiff_t k = 0; k < n; ++k) {
-        const auto side = [&](std::ptrdiff_t at) {
-          const int found = sides_[static_cast<std::size_t>((at + n) % n)][point];
-          return at < 0 && half ? -found : found;
-        };
-        if (side(k) == 0 || side(k) == side(k - 1)) continue;
-        std::ptrdiff_t end = k;
-        while (end < n && side(end) == side(k)) ++end;
-        ++out.runs;
-        const int length = static_cast<int>(end - k);
-        out.shortest = out.shortest == 0 ? length : std::min(out.shortest, length);
-        if (k < 2 || end + 1 >= n || length > briefest_contact) continue;
-        const auto place = [&](std::ptrdiff_t at) {
+    const auto n = static_cast<long long>(sides_.size());
+    ContactRuns runs;
+    for (std::size_t point = 0; point < closed_.size(); ++point) {
+      const auto run = [&](long long begin, long long length) {
+        runs.add(length);
+        const long long end = begin + length;
+        if (begin < 2 || end + 1 >= n || length > briefest_contact) return;
+        const auto place = [&](long long at) {
           return places_[static_cast<std::size_t>(at)][static_cast<Index>(point)];
         };
-        const double before = place(k - 1) - place(k - 2), after = place(end + 1) - place(end);
-        if (!(before * after < 0)) continue;
+        const double before = place(begin - 1) - place(begin - 2), after = place(end + 1) - place(end);
+        if (!(before * after < 0)) return;
         out.rebounds += std::abs(after - before);  // h |v⁺ − v⁻|
         const double speed = std::abs(before) / h;
         out.slowest = out.slowest == 0 ? speed : std::min(out.slowest, speed);
-      }
+      };
+      each_run(
+          n, half, [&](long long k) { return sides_[static_cast<std::size_t>(k)][point]; }, run);
+    }
+    out.runs = runs.count;
+    out.shortest = runs.shortest;
     out.penetration = deepest;
   }
   double deepest = 0;
@@ -78,8 +77,8 @@ class ContactWatch final : public StepObserver {
 
 }  // namespace
 
-SteppedMap::SteppedMap(Make make, Carry carry, double at, double parameter_metres)
-    : make_(std::move(make)), carry_(std::move(carry)) {
+SteppedMap::SteppedMap(Make make, Carry carry, double at, double parameter_metres, bool rebounds)
+    : make_(std::move(make)), carry_(std::move(carry)), rebounds_(rebounds) {
   Scene scene = make_(at, 0);
   if (scene.program.contact && scene.program.law->memory_per_point() > 0)
     throw Refusal{"a law that keeps a memory has no derivative of it"};
@@ -114,13 +113,19 @@ SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const M
     LaneState state = template_;
     vector_->write(x, state);
     marcher.set_clock(0);
-    marcher.set_lane(0, LaneSpec(marcher.program().lanes[0]), carry_(state, group_, group));
+    LaneSpec lane = marcher.program().lanes[0];
+    if (open_) {
+      lane.lower.setConstant(-std::numeric_limits<double>::infinity());
+      lane.upper.setConstant(std::numeric_limits<double>::infinity());
+    }
+    marcher.set_lane(0, std::move(lane), carry_(state, group_, group));
     for (int k = 0; k < columns; ++k) marcher.set_tangent(0, k, carry_(unit(first + k), group_, group));
-    ImpactJump jump(marcher);
+    std::optional<ImpactJump> jump;
+    if (rebounds_ && columns > 0) jump.emplace(marcher);
     ContactWatch watch(marcher);
     Observers observers;
     if (first == 0) observers.add(&watch);
-    if (columns > 0 && jump.needed()) observers.add(&jump);
+    if (jump && jump->needed()) observers.add(&*jump);
     const StrobeTip tip = march_over(marcher, clock, observers);
     out.tip = tip.displacement;
     out.tip_velocity = tip.velocity;
@@ -129,9 +134,10 @@ SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const M
     if (first == 0) {
       out.image = clock.sign() * read(marcher.lane_state(0), group);
       watch.sum(marcher.program().h, clock.half, out);
+      if (!rebounds_) out.rebounds = out.slowest = 0;
     }
     for (int k = 0; k < columns; ++k) out.derivative.col(first + k) = clock.sign() * read(marcher.tangent(0, k), group);
-    out.untold = out.untold || (columns > 0 && jump.untold(0) > 0);
+    out.untold = out.untold || (jump && jump->untold(0) > 0);
   }
   return out;
 }
@@ -147,13 +153,15 @@ ShotOrbit shoot(FollowedMap& map, VectorXd x, double parameter, const MapClock& 
     orbit.end = made.end;
     if (made.end) break;
     const VectorXd left = made.image - x;
-    orbit.residual = map.metric().size(left);
+    const double last = std::exchange(orbit.residual, map.metric().size(left));
     if (orbit.residual < orbit.nearest) {
       orbit.nearest = orbit.residual;
       best = x;
     }
-    orbit.found = orbit.residual <= std::max(tolerance, made.rebounds);
-    if (orbit.residual <= tolerance || orbit.iterations == most || !std::isfinite(orbit.residual)) break;
+    // Where an iteration gains nothing any more the rest is round-off.
+    const bool settled = orbit.iterations > 1 && orbit.residual < largest_round_off && orbit.residual > 0.1 * last;
+    orbit.found = settled || orbit.residual <= std::max(tolerance, made.rebounds);
+    if (settled || orbit.residual <= tolerance || orbit.iterations == most || !std::isfinite(orbit.residual)) break;
     // What gives back speed is not solved more nearly than its impacts are placed: two more iterations are tried.
     if (orbit.found && orbit.iterations > 2 && orbit.residual > 0.5 * orbit.nearest) break;
     const VectorXd correction = DenseLu(one - made.derivative).solve(left);
@@ -163,6 +171,24 @@ ShotOrbit shoot(FollowedMap& map, VectorXd x, double parameter, const MapClock& 
   orbit.x = orbit.found ? best : x;
   orbit.residual = orbit.nearest;
   return orbit;
+}
+
+std::optional<VectorXd> free_orbit(SteppedMap& map, double parameter, const MapClock& clock) {
+  map.without_stops(true);
+  const VectorXd rest = VectorXd::Zero(map.size());
+  const SteppedMap::Image made = map.march(rest, parameter, clock, true);
+  map.without_stops(false);
+  if (made.end) return std::nullopt;
+  const VectorXd x = DenseLu(MatrixXd::Identity(map.size(), map.size()) - made.derivative).solve(made.image);
+  if (!x.allFinite()) return std::nullopt;
+  return x;
+}
+
+double round_off_of_map(SteppedMap& map, const VectorXd& x, double parameter, const MapClock& clock) {
+  const double apart =
+      map.metric().size(map.march(x, parameter, clock).image - map.march(one_unit_on(x), parameter, clock).image);
+  const double steps = std::sqrt(static_cast<double>(clock.steps()));
+  return std::max(apart, steps * std::numeric_limits<double>::epsilon() * map.metric().size(x));
 }
 
 }  // namespace ricochet

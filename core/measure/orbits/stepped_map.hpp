@@ -42,8 +42,9 @@ class SteppedMap final : public FollowedMap {
   using Make = std::function<Scene(double parameter, int tangents)>;
   using Carry = std::function<LaneState(const LaneState& state, int from, int to)>;
 
-  /// `at`: the value whose coordinates x has. Throws Refusal of a law that keeps a memory.
-  SteppedMap(Make make, Carry carry, double at, double parameter_metres);
+  /// `at`: the value whose coordinates x has. `rebounds`: whether stops give back speed to masses, or are met at whole
+  /// steps; without, derivatives are those of the steps. Throws Refusal of a law that keeps a memory.
+  SteppedMap(Make make, Carry carry, double at, double parameter_metres, bool rebounds = true);
 
   int size() const override { return vector_->size(); }
   const StateMetric& metric() const override { return *metric_; }
@@ -52,6 +53,8 @@ class SteppedMap final : public FollowedMap {
   Image march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool derivative = false) override;
   /// A state of a program at this value, as x.
   Eigen::VectorXd read(const LaneState& state, int group) const;
+  /// Whether stops are left out from here on.
+  void without_stops(bool open) { open_ = open; }
 
  private:
   LaneState unit(int k) const;
@@ -63,12 +66,19 @@ class SteppedMap final : public FollowedMap {
   std::unique_ptr<StateVector> vector_;
   std::unique_ptr<StateMetric> metric_;
   LaneState template_;
+  bool open_ = false, rebounds_;
 };
 
 /// P(x, λ) = x at a given λ by Newton's method. Converged where the residual is at most `tolerance`, or at most the
 /// rebounds of the orbit where stops give back speed.
 ShotOrbit shoot(FollowedMap& map, Eigen::VectorXd x, double parameter, const MapClock& clock, double tolerance,
                 int most = 30);
+
+/// The orbit without stops by Newton's method, exact at once; nothing where 1 is a multiplier of it.
+std::optional<Eigen::VectorXd> free_orbit(SteppedMap& map, double parameter, const MapClock& clock);
+
+/// What round-off makes of a period, m: as for a PeriodicMap, and at least that of tangent columns over as many steps.
+double round_off_of_map(SteppedMap& map, const Eigen::VectorXd& x, double parameter, const MapClock& clock);
 
 /// How a branch is followed by steps.
 struct ArcSteps {
@@ -84,18 +94,22 @@ struct ArcSteps {
 /// Follows a branch of P(x, λ) = x by steps of arclength: secant predictor, Newton's method bordered by the secant,
 /// ∂P/∂λ by a difference over 1e-6 of the range. A step grows by half after at most four iterations, shrinks by as much
 /// after more than seven, is halved where none is found, the branch turns by more than 45 degrees, or the count of
-/// multipliers outside changes within more than `located` of the range. Below 1e-9 of the range's length the branch
-/// ends.
+/// multipliers outside changes within more than `located` of the range. So is one whose bordered matrix changes the
+/// sign of its determinant: it goes back along the branch. Below 1e-9 of the range's length the branch ends.
 class StepFollower {
  public:
   StepFollower(FollowedMap& map, const MapClock& clock, Eigen::VectorXd x, double parameter, int way,
                const ArcSteps& limits);
+  /// From where another one stopped.
+  StepFollower(FollowedMap& map, const MapClock& clock, const BranchState& state, const ArcSteps& limits,
+               BranchTrace trace);
 
   /// Makes up to so many steps; false where the branch has ended.
   bool advance(long long steps);
   const BranchTrace& trace() const { return trace_; }
-  /// The largest u of its orbits, m; 0 where no stop gives back speed.
-  double rebounds() const { return rebounds_; }
+  long long pieces() const { return static_cast<long long>(trace_.corners.size()); }
+  /// The last orbit, the unit secant and the step.
+  BranchState state() const;
 
  private:
   struct Point {
@@ -110,12 +124,20 @@ class StepFollower {
   void place_contact(const Point& beyond, const Point& along, bool turns);
   void keep(const Point& point, const FollowedMap::Image& image, std::vector<std::complex<double>> multipliers);
   Eigen::VectorXd by_parameter(const Point& point);
+  double overlap(const Point& a, const Point& b) const;
+  Eigen::VectorXd asymmetry(const Point& point);
+  void mark_up_to(const Point& next);
+  void leave(const Point& next);
+  bool comes_back(double far) const;
 
   FollowedMap* map_;
   MapClock clock_;
   ArcSteps limits_;
   Point now_, along_;  // the last orbit, the unit secant
-  double step_ = 0, rebounds_ = 0;
+  double step_ = 0;
+  int orientation_ = 0;    // sign of the determinant of the bordered matrix; 0: not known yet
+  int turned_ = 0;         // that of the last correction
+  Eigen::VectorXd apart_;  // x − its image, where branches end at images
   FollowedMap::Image last_;
   std::string failure_;
   BranchTrace trace_;

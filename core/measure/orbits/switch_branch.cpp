@@ -24,13 +24,17 @@ std::optional<VectorXd> critical_vector(const Eigen::MatrixXd& derivative) {
 
 }  // namespace
 
-VectorXd mirrored(PeriodicMap& map, const VectorXd& x, double parameter, int steps_per_period) {
-  return map.march(x, parameter, {steps_per_period, 1, true}).image;
+Eigen::MatrixXd derivative_at(PeriodicMap& map, const ShotOrbit& orbit, const MapClock& clock) {
+  return map.derivative(orbit.sets, clock);
 }
 
-std::optional<SwitchedOrbit> switch_branch(PeriodicMap& map, const MapClock& clock, const SpecialPoint& point,
-                                           double scale, double tolerance,
-                                           const std::function<ShotOrbit(double parameter)>& x_at) {
+Eigen::MatrixXd derivative_at(SteppedMap& map, const ShotOrbit& orbit, const MapClock& clock) {
+  return map.march(orbit.x, orbit.parameter, clock, true).derivative;
+}
+
+template <class Map>
+std::optional<SwitchedOrbit> switch_branch(Map& map, const MapClock& clock, const SpecialPoint& point, double scale,
+                                           double tolerance, const std::function<ShotOrbit(double parameter)>& x_at) {
   constexpr double least_width = 1e-5, same_orbit = 1e-6;  // of the scale
   MapClock doubled = clock;
   if (clock.half)
@@ -43,19 +47,24 @@ std::optional<SwitchedOrbit> switch_branch(PeriodicMap& map, const MapClock& clo
       const double parameter = point.parameter + side * widths * width;
       const ShotOrbit own = x_at(parameter);
       if (!own.found) continue;
-      auto v = critical_vector(map.derivative(own.sets, clock));
+      auto v = critical_vector(derivative_at(map, own, clock));
       if (!v) continue;
       *v /= map.metric().size(*v);
       for (const double amplitude : {1e-3, 3e-3, 1e-2})
         for (const double way : {1.0, -1.0}) {
           ShotOrbit other = shoot(map, own.x + way * amplitude * scale * *v, parameter, doubled, tolerance);
           if (!other.found) continue;
-          const MapMarch once = map.march(other.x, parameter, clock);
+          const auto once = map.march(other.x, parameter, clock);
           if (once.end || map.metric().size(once.image - other.x) < same_orbit * scale) continue;
           return SwitchedOrbit{std::move(other), doubled};
         }
     }
   return std::nullopt;
 }
+
+template std::optional<SwitchedOrbit> switch_branch(PeriodicMap&, const MapClock&, const SpecialPoint&, double, double,
+                                                    const std::function<ShotOrbit(double)>&);
+template std::optional<SwitchedOrbit> switch_branch(SteppedMap&, const MapClock&, const SpecialPoint&, double, double,
+                                                    const std::function<ShotOrbit(double)>&);
 
 }  // namespace ricochet

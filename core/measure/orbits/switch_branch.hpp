@@ -3,6 +3,7 @@
 #include <optional>
 #include <ricochet/measure/orbits/shoot.hpp>
 #include <ricochet/measure/orbits/special_points.hpp>
+#include <ricochet/measure/orbits/stepped_map.hpp>
 
 namespace ricochet {
 
@@ -16,11 +17,12 @@ struct SwitchedOrbit {
 /// doubled map from x ± a v, a of a thousandth, three thousandths and a hundredth of `scale` (m), at one, two and four
 /// widths of the point on either side of it. `x_at` solves the orbit of the branch itself near to a value. An orbit is
 /// taken that the map itself does not return to within a millionth of the scale. Nothing where there is none.
-std::optional<SwitchedOrbit> switch_branch(PeriodicMap& map, const MapClock& clock, const SpecialPoint& point,
-                                           double scale, double tolerance,
-                                           const std::function<ShotOrbit(double parameter)>& x_at);
+template <class Map>  // PeriodicMap or SteppedMap
+std::optional<SwitchedOrbit> switch_branch(Map& map, const MapClock& clock, const SpecialPoint& point, double scale,
+                                           double tolerance, const std::function<ShotOrbit(double parameter)>& x_at);
 
-/// The orbit's image under x → −x, t → t + T/2, of a scene that is its own image.
-Eigen::VectorXd mirrored(PeriodicMap& map, const Eigen::VectorXd& x, double parameter, int steps_per_period);
+/// The derivative of a map at an orbit that was solved.
+Eigen::MatrixXd derivative_at(PeriodicMap& map, const ShotOrbit& orbit, const MapClock& clock);
+Eigen::MatrixXd derivative_at(SteppedMap& map, const ShotOrbit& orbit, const MapClock& clock);
 
 }  // namespace ricochet

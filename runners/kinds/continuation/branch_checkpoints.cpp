@@ -59,13 +59,13 @@ void serialize(Archive& archive, MarkedOrbit& mark) {
 
 template <class Archive>
 void serialize(Archive& archive, BranchTrace& trace) {
-  archive(trace.corners, trace.states, trace.stride, trace.marks, trace.end);
+  archive(trace.corners, trace.states, trace.stride, trace.marks, trace.ties, trace.rebounds, trace.end);
 }
 
 template <class Archive>
 void serialize(Archive& archive, BranchState& state) {
   archive(state.x, state.parameter, state.sets, state.along, state.parameter_along, state.change, state.arc,
-          state.pieces);
+          state.pieces, state.step, state.orientation);
 }
 
 template <class Archive>
@@ -75,7 +75,7 @@ void serialize(Archive& archive, KeptBranch& kept) {
 
 namespace {
 
-constexpr int branches_version = 3;
+constexpr int branches_version = 4;
 constexpr double keep_interval = 2;  // s
 
 struct KeptWithSets {
@@ -96,30 +96,37 @@ KeptWithSets kept_branch(const std::string& bytes) {
 
 }  // namespace
 
-std::optional<KeptBranch> BranchCheckpoints::find(const std::string& name, SetSteps& sets) {
+std::optional<KeptBranch> BranchCheckpoints::find(const std::string& name, SetSteps* sets) {
   auto kept = recall(store_, key_of(name), kept_branch);
   if (!kept) return std::nullopt;
   names_.insert(name);
   std::vector<int> numbers;
-  for (const ContactSet& set : kept->sets) numbers.push_back(sets.number(set));
+  for (const ContactSet& set : kept->sets) numbers.push_back(sets->number(set));
   for (SetSequence* sequence : {&kept->branch.entry.sets, &kept->branch.first})
     for (int& number : *sequence) number = numbers.at(static_cast<std::size_t>(number));
   return std::move(kept->branch);
 }
 
-void BranchCheckpoints::keep_sometimes(const std::string& name, const BranchRun& run, const SetSteps& sets) {
-  if (seconds_since(saved_) >= keep_interval) keep(name, run, sets);
+KeptBranch kept(const BranchRun& run) {
+  return {run.trace(), run.entry(), run.first_sets()};
 }
 
-void BranchCheckpoints::keep(const std::string& name, const BranchRun& run, const SetSteps& sets) {
+KeptBranch kept(const StepFollower& run) {
+  return {run.trace(), run.state(), {}};
+}
+
+bool BranchCheckpoints::due() const {
+  return seconds_since(saved_) >= keep_interval;
+}
+
+void BranchCheckpoints::keep(const std::string& name, const KeptBranch& branch, const SetSteps* sets) {
   if (!store_.keep) return;
   std::vector<ContactSet> known;
-  for (int number = 0; number < sets.count(); ++number) known.push_back(sets[number].closed);
-  const KeptBranch kept{run.trace(), run.entry(), run.first_sets()};
+  for (int number = 0; sets && number < sets->count(); ++number) known.push_back((*sets)[number].closed);
   std::ostringstream out;
   {
     cereal::BinaryOutputArchive archive(out);
-    archive(branches_version, known, kept);
+    archive(branches_version, known, branch);
   }
   store_.keep(key_of(name), out.str());
   names_.insert(name);

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <optional>
 #include <ricochet/measure/orbits/branch.hpp>
+#include <ricochet/measure/orbits/stepped_map.hpp>
 #include <set>
 #include <string>
 
@@ -12,9 +13,11 @@ namespace ricochet {
 /// A branch that is under way or ended, as it is kept.
 struct KeptBranch {
   BranchTrace trace;
-  BranchState entry;  ///< of the piece under way
-  SetSequence first;
+  BranchState entry;  ///< of the piece under way, or the last orbit of a branch by steps
+  SetSequence first;  ///< sets of its first piece
 };
+KeptBranch kept(const BranchRun& run);
+KeptBranch kept(const StepFollower& run);
 
 /// What a case keeps of its branches, each under its own key: every two seconds, and when it ends. Contact sets are
 /// kept as what they are, because their numbers are those of one run.
@@ -22,12 +25,12 @@ class BranchCheckpoints {
  public:
   BranchCheckpoints(CheckpointStore store, std::string key) : store_(std::move(store)), key_(std::move(key)) {}
 
-  /// What an earlier run of the case kept of the branch of this name; nothing where it kept none.
-  std::optional<KeptBranch> find(const std::string& name, SetSteps& sets);
-  /// Keeps a branch that goes on, where the last time is long enough ago.
-  void keep_sometimes(const std::string& name, const BranchRun& run, const SetSteps& sets);
-  /// Keeps one that ended.
-  void keep(const std::string& name, const BranchRun& run, const SetSteps& sets);
+  /// What an earlier run of the case kept of the branch of this name; nothing where it kept none. `sets`: null of
+  /// branches by steps.
+  std::optional<KeptBranch> find(const std::string& name, SetSteps* sets);
+  /// Whether a branch that goes on is to be kept: the last time is long enough ago.
+  bool due() const;
+  void keep(const std::string& name, const KeptBranch& branch, const SetSteps* sets);
   /// Forgets all of them.
   void forget();
 

@@ -12,9 +12,18 @@
 
 namespace ricochet {
 
-BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter) {
+namespace {
+
+int runs_of(const PeriodicMap& map, const MapMarch& made, bool half) {
+  return contact_runs(map.sets(), made.sets, half).count;
+}
+int runs_of(const SteppedMap&, const SteppedMap::Image& made, bool) {
+  return made.runs;
+}
+
+template <class Map, class March>
+BranchRow row_of(const Map& map, const March& made, const MapClock& clock, const Eigen::VectorXd& x, double parameter) {
   BranchRow row;
-  const MapMarch made = map.march(x, parameter, clock, true);
   row.parameter = parameter;
   row.tip_displacement = made.tip;
   row.period = clock.period;
@@ -23,10 +32,19 @@ BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::Vector
   row.tip_velocity = made.tip_velocity;
   row.penetration = made.penetration;
   row.residual = map.metric().size(made.image - x);
-  const int runs = contact_runs(map.sets(), made.sets, clock.half).count;
-  row.contact_runs = runs * (clock.half ? 2 : 1);
+  row.contact_runs = runs_of(map, made, clock.half) * (clock.half ? 2 : 1);
   row.impacts_per_period = static_cast<double>(*row.contact_runs) / clock.period;
   return row;
+}
+
+}  // namespace
+
+BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter) {
+  return row_of(map, map.march(x, parameter, clock, true), clock, x, parameter);
+}
+
+BranchRow orbit_row(SteppedMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter) {
+  return row_of(map, map.march(x, parameter, clock), clock, x, parameter);
 }
 
 void put_multipliers(const std::vector<std::complex<double>>& multipliers, const Outside& outside, int most,
@@ -70,7 +88,8 @@ std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipli
 namespace {
 
 // The row of an orbit between two corners, where it belongs.
-void add_mark(PeriodicMap& map, const FollowedBranch& branch, const MarkedOrbit& mark, int multipliers,
+template <class Map>
+void add_mark(Map& map, const FollowedBranch& branch, const MarkedOrbit& mark, int multipliers,
               std::vector<BranchRow>& rows) {
   const BranchCorner& corner = branch.trace.corners[static_cast<std::size_t>(mark.corner)];
   BranchRow row = orbit_row(map, branch.clock, mark.x, mark.parameter);
@@ -90,7 +109,8 @@ void add_mark(PeriodicMap& map, const FollowedBranch& branch, const MarkedOrbit&
 
 }  // namespace
 
-std::vector<BranchRow> rows_of(PeriodicMap& map, const FollowedBranch& branch, int multipliers) {
+template <class Map>
+std::vector<BranchRow> rows_of(Map& map, const FollowedBranch& branch, int multipliers) {
   std::vector<BranchRow> rows = corner_rows_of(branch, multipliers);
   auto row = rows.begin();
   for (const auto& [number, x] : branch.trace.states) {
@@ -103,6 +123,13 @@ std::vector<BranchRow> rows_of(PeriodicMap& map, const FollowedBranch& branch, i
   }
   for (const MarkedOrbit& mark : branch.trace.marks) add_mark(map, branch, mark, multipliers, rows);
   return rows;
+}
+
+template std::vector<BranchRow> rows_of(PeriodicMap&, const FollowedBranch&, int);
+template std::vector<BranchRow> rows_of(SteppedMap&, const FollowedBranch&, int);
+
+std::vector<double> x_of_rows(const SteppedMap&) {
+  return {};
 }
 
 std::vector<double> x_of_rows(const PeriodicMap& map) {
@@ -192,7 +219,8 @@ void BranchResults::add_missing(const std::string& name, double at, std::string 
   row.kind = "end";
   row.label = "EP";
   row.parameter = at;
-  row.note = std::move(why);
+  row.note = why;
+  if (missing_.empty()) missing_ = std::move(why);
 }
 
 void BranchResults::put(CaseRecord& record, const ContinuationPlan& plan, long long pieces,
@@ -203,8 +231,8 @@ void BranchResults::put(CaseRecord& record, const ContinuationPlan& plan, long l
   put_measure(record, "branches", branches_);
   put_measure(record, "pieces", static_cast<double>(pieces));
   put_measure(record, "special_points", found_);
-  record.status = spent ? "failed" : "done";
-  if (spent) record.reason = fmt::format("the budget of {:g} s was spent", *spent);
+  record.reason = spent ? fmt::format("the budget of {:g} s was spent", *spent) : missing_;
+  record.status = record.reason.empty() ? "done" : "failed";
 }
 
 }  // namespace ricochet

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <ricochet/measure/orbits/special_points.hpp>
+#include <ricochet/measure/orbits/stepped_map.hpp>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct FollowedBranch {
 
 /// The row of one orbit, marched once more: tip, residual, penetration.
 BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter);
+BranchRow orbit_row(SteppedMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter);
 
 /// Folds below this share of the parameter's scale are not listed where the study names no prominence.
 inline constexpr double least_fold = 1e-4;
@@ -31,10 +33,12 @@ std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipli
 void put_multipliers(const std::vector<std::complex<double>>& multipliers, const Outside& outside, int most,
                      BranchRow& row);
 /// The rows of a branch at corners whose states were kept, special points among them.
-std::vector<BranchRow> rows_of(PeriodicMap& map, const FollowedBranch& branch, int multipliers);
+template <class Map>
+std::vector<BranchRow> rows_of(Map& map, const FollowedBranch& branch, int multipliers);
 /// `x_of_rows`: where the point of each row of v stands, m.
 std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std::vector<double>& x_of_rows);
 std::vector<double> x_of_rows(const PeriodicMap& map);
+std::vector<double> x_of_rows(const SteppedMap& map);
 
 /// What the branches of a case come to, whichever way they are followed.
 class BranchResults {
@@ -44,9 +48,9 @@ class BranchResults {
   /// A branch with its rows. `scale`: that of the parameter.
   void add(const FollowedBranch& branch, std::vector<BranchRow> rows, const std::vector<double>& x_of_rows,
            double scale);
-  /// An orbit that was not found is a row that says so.
+  /// An orbit that was not found is a row that says so, and fails its case.
   void add_missing(const std::string& name, double at, std::string why);
-  /// Tables, measures and status. `spent`: the budget, s, that was not enough.
+  /// Tables, measures, status and reason. `spent`: the budget, s, that was not enough.
   void put(CaseRecord& record, const ContinuationPlan& plan, long long pieces, std::optional<double> spent) const;
 
  private:
@@ -54,6 +58,7 @@ class BranchResults {
   std::vector<SpecialRow> special_;
   std::vector<TurnRow> turns_;
   int branches_ = 0, found_ = 0;
+  std::string missing_;  // why the first orbit that was not found was not
 };
 
 }  // namespace ricochet

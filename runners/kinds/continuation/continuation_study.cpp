@@ -32,7 +32,9 @@ std::vector<std::string> words_of(const Words& words) {
 }
 
 template <class Words>
-auto value_of(const Words& words, const std::string& word) {
+auto value_of(const Words& words, const Json& given) {
+  // A flag stands for its word.
+  const std::string word = given.is_boolean() ? (given.get<bool>() ? "yes" : "no") : given.get<std::string>();
   for (const auto& [known, value] : words)
     if (word == known) return value;
   return words.front().second;
@@ -79,13 +81,15 @@ std::vector<Field> continuation_keys() {
               "or an orbit of a bifurcation study.");
   from.spec = word_parameter("from", words_of(sources), std::nullopt, from.spec.text);
   from.nested.push_back(std::move(stored));
+  Field symmetric = word("symmetric", words_of(halves), "auto",
+                         "Half a period and the change of sign: auto where the scene and the orbit allow it.");
+  symmetric.or_flag = true;
   ObjectForm orbit;
   orbit.fields = {
       single(real("at", "as the parameter", any, std::nullopt, "Value at which the orbit is solved.")), std::move(from),
       integer("periods", {0, 100000000, false, false}, 300, "Forcing periods marched before the first solve."),
       integer("period", {1, 1000, false, false}, 1, "Forcing periods after which the orbit repeats."),
-      word("symmetric", words_of(halves), "auto",
-           "Half a period and the change of sign: auto where the scene and the orbit allow it, yes or no.")};
+      std::move(symmetric)};
   Field orbits = of_form(Field::Form::objects, "orbits", std::nullopt, "The orbits that branches begin with.");
   orbits.nested.push_back(std::move(orbit));
 
@@ -117,8 +121,10 @@ std::vector<Field> continuation_keys() {
       kinds_of_points("switch", {"symmetry", "flip"}, Json::array({"symmetry", "flip"}),
                       "Kinds of points at which other branches begin that are followed too; null: none."),
       integer("switch_depth", {0, 8, false, false}, 1, "Branches on branches, at most so deep."),
-      optional(real("prominence", "as the parameter", positive, std::nullopt,
-                    "Least way that the parameter goes back by at a fold; null: 1e-4 of the gap, or of the value.")),
+      optional(real(
+          "prominence", "as the parameter", positive, std::nullopt,
+          "Least way that the parameter goes back by at a fold; null: 1e-4 of the gap, or of the value, and of folds "
+          "that no other case has 25 times what the two finest steps disagree about.")),
       integer("multipliers", {1, 64, false, false}, 4, "Number of multipliers told, largest first."),
       kinds_of_points("stop_at", special_kinds(), std::nullopt, "Kinds of points at which a branch ends; null: none."),
       std::move(marks),
@@ -147,7 +153,7 @@ void check_continuation(const Json& resolved) {
     if (at < from || at > to)
       throw InputError(pointer_to(here, "at"),
                        fmt::format("the orbit at {} is outside the range from {} to {}", at, from, to));
-    if (orbits[i].at("symmetric") == "yes" && orbits[i].at("period").get<int>() % 2 == 0)
+    if (value_of(halves, orbits[i].at("symmetric")) == HalfMap::yes && orbits[i].at("period").get<int>() % 2 == 0)
       throw InputError(pointer_to(here, "symmetric"),
                        fmt::format("an orbit of {} periods is not its own image after half of them; expected an odd "
                                    "period",
@@ -237,7 +243,7 @@ ContinuationPlan continuation_plan(const Json& settings) {
       one.at = orbit.at("at").get<double>();
       one.periods = orbit.at("periods").get<int>();
       one.period = orbit.at("period").get<int>();
-      one.symmetric = value_of(halves, orbit.at("symmetric").get<std::string>());
+      one.symmetric = value_of(halves, orbit.at("symmetric"));
       if (from.is_object()) {
         one.from = OrbitSource::stored;
         one.study = from.at("study").get<std::string>();
@@ -245,11 +251,11 @@ ContinuationPlan continuation_plan(const Json& settings) {
         one.start = from.at("start").get<std::string>();
         one.parameter = from.at("parameter").get<double>();
       } else {
-        one.from = value_of(sources, from.get<std::string>());
+        one.from = value_of(sources, from);
       }
       plan.orbits.push_back(std::move(one));
     }
-  plan.follow = value_of(follows, settings.at("follow").get<std::string>());
+  plan.follow = value_of(follows, settings.at("follow"));
   plan.both_ways = settings.at("both_ways").get<bool>();
   if (const auto given = settings.find("switch"); given != settings.end())
     plan.branch_at = given->get<std::vector<std::string>>();

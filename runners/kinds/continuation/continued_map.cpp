@@ -70,6 +70,7 @@ ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry
     const int scene = scene_at(orbit.at, orbit.from == OrbitSource::state, reason);
     if (scene >= 0) {
       reference_ = scene;
+      reference_at_ = orbit.at;
       break;
     }
     if (refusal_.empty()) refusal_ = fmt::format("at {:g}: {}", orbit.at, reason);
@@ -83,7 +84,14 @@ ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry
   }
   check_class(reference_);
   if (refusal_.empty()) check_ends();
+  std::string reason;
+  for (const double end : {from_, to_})
+    if (refusal_.empty()) check_class(scene_at(end, false, reason));
+  if (refusal_.empty()) check_kernel(reference_);
   check_image(reference_);
+  const bool images = std::any_of(plan.orbits.begin(), plan.orbits.end(),
+                                  [](const WantedOrbit& one) { return one.symmetric == HalfMap::yes; });
+  if (refusal_.empty() && images) refusal_ = no_image_;
   if (refusal_.empty() && plan.follow == Follow::pieces && !no_pieces_.empty())
     refusal_ = no_pieces_ + ": follow with steps";
 }
@@ -118,11 +126,16 @@ void ContinuedMap::check_class(int scene) {
         program.h);
     return;
   }
+  rebounds_ = rebounds_ || (rigid && (e > rebounds_above || stops_met_at_steps(program)));
   if (rigid && e > rebounds_above)
     no_pieces_ =
         fmt::format("the stops give back {:.3g} of the speed: the map jumps where the step of an impact changes", e);
   else if (const auto reason = SetSteps::refusal(program))
     no_pieces_ = "a step is not affine between changes of contact: " + *reason;
+}
+
+void ContinuedMap::check_kernel(int scene) {
+  const Program program = this->program(scene);
   if (SetSteps::refusal(program) || program.problem->inertia.kernel_dimension == 0) return;
   // A root ±1 of the step is a multiplier 1 of a period: P(x) = x has no orbit that stands alone.
   const SetSteps sets(program);
@@ -134,28 +147,40 @@ void ContinuedMap::check_class(int scene) {
           "with damping, or a regular mass";
 }
 
+// An end of the range, or the last value on the way to it from the first orbit at which the scene is possible.
+double ContinuedMap::possible_end(double end) {
+  std::string reason;
+  if (scene_at(end, false, reason) >= 0) return end;
+  impossible_ = fmt::format("at {:g}: {}", end, reason);
+  double possible = reference_at_;
+  constexpr int halvings = 30;
+  for (int k = 0; k < halvings; ++k) {
+    const double between = 0.5 * (possible + end);
+    (scene_at(between, false, reason) >= 0 ? possible : end) = between;
+  }
+  return possible;
+}
+
 // Whether the parameter enters by amplitude and stops alone, and affinely.
 void ContinuedMap::check_ends() {
-  std::vector<int> known = {reference_};
-  std::vector<double> values = {plan_.orbits.front().at};
-  for (const double value : {plan_.from, plan_.to, 0.5 * (plan_.from + plan_.to)}) {
-    std::string reason;
-    const int scene = scene_at(value, false, reason);
-    if (scene < 0) {
-      refusal_ = fmt::format("at {:g}: {}; expected a range in which the scene is possible", value, reason);
-      return;
-    }
-    known.push_back(scene);
-    values.push_back(value);
+  from_ = possible_end(plan_.from);
+  to_ = possible_end(plan_.to);
+  std::string reason;
+  const double between = 0.5 * (from_ + to_);
+  const int low = scene_at(from_, false, reason), high = scene_at(to_, false, reason),
+            middle = scene_at(between, false, reason);
+  if (low < 0 || high < 0 || !(from_ < to_)) {
+    refusal_ = impossible_ + "; expected a range in which the scene is possible";
+    return;
   }
-  const ForcedScene &first = scenes_[known[1]], &last = scenes_[known[2]];
-  const bool one_group = first.group == last.group && scenes_[known[3]].group == first.group;
-  bool affine = one_group || affine_loads(known[1], known[3], known[2]);
-  if (affine) lanes_ = affine_lane(first.lane, values[1], last.lane, values[2]);
-  affine = affine && lanes_ && passes_through(*lanes_, scenes_[known[3]].lane, values[3]);
+  const bool one_group =
+      middle >= 0 && scenes_[low].group == scenes_[high].group && scenes_[middle].group == scenes_[low].group;
+  bool affine = one_group || (middle >= 0 && affine_loads(low, middle, high));
+  if (affine) lanes_ = affine_lane(scenes_[low].lane, from_, scenes_[high].lane, to_);
+  affine = affine && lanes_ && passes_through(*lanes_, scenes_[middle].lane, between);
   if (!affine && no_pieces_.empty()) no_pieces_ = plan_.pointer + " does not enter linearly";
   if (!affine) lanes_.reset();
-  origin_ = known[1];
+  origin_ = low;
   moves_loads_ = !one_group;
 }
 
@@ -183,10 +208,11 @@ bool ContinuedMap::affine_loads(int low, int middle, int high) {
 void ContinuedMap::check_image(int scene) {
   const ForcedScene& one = scenes_[scene];
   if (case_.steps_per_period % 2 != 0) {
-    no_image_ = fmt::format("{} steps per period are an odd number", case_.steps_per_period);
+    no_image_ =
+        fmt::format("the scene is not its own image: {} steps per period are an odd number", case_.steps_per_period);
     return;
   }
-  for (const double at : {plan_.from, plan_.to, plan_.orbits.front().at}) {
+  for (const double at : {from_, to_, reference_at_}) {
     const LaneSpec lane = lanes_ ? lanes_->lane(at) : one.lane;
     for (Eigen::Index i = 0; i < lane.lower.size(); ++i) {
       const double differ = std::abs(lane.lower[i] + lane.upper[i]);
@@ -205,7 +231,7 @@ void ContinuedMap::check_image(int scene) {
 std::unique_ptr<PeriodicMap> ContinuedMap::map() {
   AffineLoad load;
   if (moves_loads_) {
-    load.other = plan_.to;
+    load.other = to_;
     load.program = [this](double value) {
       std::string reason;
       const int scene = scene_at(value, false, reason);
@@ -216,7 +242,7 @@ std::unique_ptr<PeriodicMap> ContinuedMap::map() {
   return std::make_unique<PeriodicMap>(program(origin_), *lanes_, metres_, std::move(load));
 }
 
-SteppedMap ContinuedMap::stepped_map(double at) {
+std::unique_ptr<SteppedMap> ContinuedMap::stepped_map() {
   const auto make = [this](double value, int tangents) {
     const auto [place, added] = marched_.try_emplace(value, -1);
     if (added) {
@@ -228,7 +254,7 @@ SteppedMap ContinuedMap::stepped_map(double at) {
     return SteppedMap::Scene{scenes_.program(scene.group, {scene.lane}, tangents), scene.group};
   };
   const auto carry = [this](const LaneState& state, int from, int to) { return scenes_.carry(state, from, to); };
-  return {make, carry, at, metres_};
+  return std::make_unique<SteppedMap>(make, carry, reference_at_, metres_, rebounds_);
 }
 
 }  // namespace ricochet

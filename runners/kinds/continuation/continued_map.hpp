@@ -25,6 +25,11 @@ class ContinuedMap {
   /// Why orbits are not their own images; "" where they may be.
   const std::string& no_image() const { return no_image_; }
 
+  /// The part of the range in which the scene is possible, and why not all of it; "" where it is.
+  double from() const { return from_; }
+  double to() const { return to_; }
+  const std::string& impossible() const { return impossible_; }
+
   const ForcedScenes& scenes() const { return scenes_; }
   /// A scene at this value; −1 where it is refused, with the reason.
   int scene_at(double value, bool own_state, std::string& reason);
@@ -38,11 +43,13 @@ class ContinuedMap {
   double parameter_scale() const { return gap_ / metres_; }
   /// The map, which this outlives; only where no_pieces() is "".
   std::unique_ptr<PeriodicMap> map();
-  /// The map at any value, in the coordinates of one; this outlives it.
-  SteppedMap stepped_map(double at);
+  /// The map at any value, in the coordinates of the first possible orbit; this outlives it.
+  std::unique_ptr<SteppedMap> stepped_map();
 
  private:
   void check_class(int scene);
+  void check_kernel(int scene);
+  double possible_end(double end);
   void check_ends();
   bool affine_loads(int low, int middle, int high);
   void check_image(int scene);
@@ -52,10 +59,11 @@ class ContinuedMap {
   ForcedScenes scenes_;
   std::string refusal_, no_pieces_, no_image_;
   int reference_ = -1, origin_ = -1;  // scenes: that of an orbit, and the one that lanes begin with
-  bool moves_loads_ = false;
+  bool moves_loads_ = false, rebounds_ = false;
   std::map<double, int> marched_;  // scenes by value
   std::optional<AffineLane> lanes_;
-  double gap_ = 1, metres_ = 1;
+  double gap_ = 1, metres_ = 1, reference_at_ = 0, from_ = 0, to_ = 0;
+  std::string impossible_;
 };
 
 }  // namespace ricochet

@@ -129,6 +129,19 @@ void put_names(StudyResults& results, const StudyPoints& study) {
       row[*place] = found->second;
 }
 
+/// Takes out folds that no other case confirms and that steps may have invented.
+void leave_out_folds(StudyResults& results, double least) {
+  Table* table = find_table(results.derived, special_points_type().name);
+  if (!table) return;
+  const auto kind = find_column(table->columns, "kind"), name = find_column(table->columns, "name"),
+             prominence = find_column(table->columns, "prominence");
+  if (!kind || !name || !prominence) return;
+  std::erase_if(table->rows, [&](const Row& row) {
+    return row[*kind].text() == "fold" && row[*name].text().empty() &&
+           row[*prominence].number().value_or(least) < least;
+  });
+}
+
 std::vector<PointPresenceRow> presence_rows(const StudyPoints& study) {
   std::vector<PointPresenceRow> rows;
   for (std::size_t name = 0; name < study.names().size(); ++name) {
@@ -226,6 +239,7 @@ void derive_points(StudyResults& results) {
   if (study.cases().empty()) return;
   const SweptColumns swept = swept_columns(results);
   put_names(results, study);
+  if (const auto least = study.least_fold()) leave_out_folds(results, *least);
   std::vector<PointOrderRow> orders;
   std::vector<PointLimitRow> limits;
   convergence_rows(study, orders, limits);

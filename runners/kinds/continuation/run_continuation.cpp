@@ -8,6 +8,7 @@
 #include <limits>
 #include <ricochet/measure/orbits/shoot.hpp>
 #include <ricochet/measure/orbits/switch_branch.hpp>
+#include <type_traits>
 
 #include "runners/kinds/continuation/branch_checkpoints.hpp"
 #include "runners/kinds/continuation/branch_tables.hpp"
@@ -15,56 +16,108 @@
 #include "runners/kinds/continuation/continued_map.hpp"
 #include "runners/kinds/continuation/first_orbit.hpp"
 #include "runners/kinds/continuation/reference_case.hpp"
-#include "runners/kinds/continuation/run_steps.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
 namespace {
 
-// Pieces between two readings of the clock.
-constexpr long long breath = 64;
+// Pieces, and steps, between two readings of the clock.
+constexpr long long breath_of(const PeriodicMap&) {
+  return 64;
+}
+constexpr long long breath_of(const SteppedMap&) {
+  return 1;
+}
 
+double tip_of(PeriodicMap& map, const Eigen::VectorXd& x, double parameter) {
+  return map.tip(x, parameter);
+}
+double tip_of(SteppedMap& map, const Eigen::VectorXd& x, double parameter) {
+  return map.march(x, parameter, {8, 1, false}).tip;
+}
+
+SetSteps* sets_of(PeriodicMap& map) {
+  return &map.sets();
+}
+SetSteps* sets_of(SteppedMap&) {
+  return nullptr;
+}
+
+// The branch of an orbit, or of one that was stopped.
+BranchRun begin_branch(PeriodicMap& map, const MapClock& clock, const ShotOrbit& shot, int way, BranchLimits limits,
+                       double round_off, std::optional<KeptBranch> kept) {
+  limits.ends_at_image = limits.ends_at_image && !is_image(map.sets(), shot.sets);
+  // A residual that several steps of Newton's method leave.
+  const double drift = std::max(100 * round_off, 1e-15);
+  if (kept) return {map, clock, PieceFollower(map, clock, kept->entry, drift), limits, kept->trace, kept->first};
+  return {map, clock, PieceFollower(map, clock, branch_start(shot.x, shot.parameter, shot.sets, way), drift), limits};
+}
+StepFollower begin_branch(SteppedMap& map, const MapClock& clock, const ShotOrbit& shot, int way,
+                          const BranchLimits& limits, double round_off, std::optional<KeptBranch> kept) {
+  ArcSteps steps;
+  steps.branch = limits;
+  steps.tolerance = round_offs * round_off;
+  if (kept) return {map, clock, kept->entry, steps, std::move(kept->trace)};
+  return {map, clock, shot.x, shot.parameter, way, steps};
+}
+
+// How far a twin of an orbit, a millionth of the gap and less away, is from where the derivative has it after a period:
+// the least share. The derivative holds as far as no contact changes.
+template <class Map>
+double twin_error(Map& map, const ShotOrbit& shot, const MapClock& clock, double gap) {
+  const Eigen::MatrixXd derivative = derivative_at(map, shot, clock);
+  const Eigen::VectorXd own = map.march(shot.x, shot.parameter, clock).image;
+  Eigen::VectorXd by = derivative * Eigen::VectorXd::Ones(shot.x.size());
+  by *= gap / map.metric().size(by);
+  const Eigen::VectorXd expected = derivative * by;
+  double least = 1;
+  for (const double share : {1e-6, 1e-7, 1e-8}) {
+    const auto twin = map.march(shot.x + share * by, shot.parameter, clock);
+    if (twin.end) continue;
+    const double error = map.metric().size((twin.image - own) / share - expected) / map.metric().size(expected);
+    if (error < least) least = error;
+  }
+  return least;
+}
+
+template <class Map>
 class ContinuationRun {
+  static constexpr bool by_steps = std::is_same_v<Map, SteppedMap>;
+
  public:
-  ContinuationRun(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
-                  const std::atomic<bool>& stop)
+  ContinuationRun(ContinuedMap& continued, Map& map, const StudyCase& study_case, const ContinuationPlan& plan,
+                  const CaseContext& context, const std::atomic<bool>& stop)
       : case_(study_case),
         stop_(stop),
         checkpoints_(context.checkpoints, context.key),
-        plan_(continuation_plan(study_case.settings)),
-        continued_(study_case, registry, plan_) {}
+        plan_(plan),
+        continued_(continued),
+        map_(map) {}
 
-  CaseRecord run() {
-    const double begun = thread_seconds();
-    record_.id = case_.id;
-    record_.axes = case_.axes;
-    if (!continued_.refusal().empty()) return refused(continued_.refusal());
-    describe_march(record_, continued_.scenes(), case_);
-    if (!continued_.no_pieces().empty() || plan_.follow == Follow::steps) {
-      if (!continued_.no_pieces().empty()) record_.notes.push_back("followed by steps: " + continued_.no_pieces());
-      run_by_steps(continued_, case_, plan_, stop_, record_);
-      record_.run_seconds = thread_seconds() - begun;
-      return std::move(record_);
-    }
-    map_ = continued_.map();
-    record_.setup_seconds = thread_seconds() - begun;
+  void run(CaseRecord& record) {
     for (const WantedOrbit& orbit : plan_.orbits) follow(orbit);
-    finish();
+    for (const FollowedBranch& branch : followed_)
+      results_.add(branch, rows_of(map_, branch, plan_.multipliers), x_of_rows(map_), continued_.parameter_scale());
+    results_.put(record, plan_, pieces_, over_budget_ ? std::optional(budget_of(case_)) : std::nullopt);
+    record.steps = pieces_ * case_.steps_per_period;
+    if (twins_ > 0)
+      record.notes.push_back(fmt::format("multipliers agree with twins of the first orbits to {:.1g}", twins_));
+    if (ties_ > 0)
+      record.notes.push_back(
+          fmt::format("two bounds were met at once, to 1e-12 of the range, {} time{}: they change one after the other",
+                      ties_, ties_ == 1 ? "" : "s"));
+    if (rebounds_ > 0)
+      record.notes.push_back(fmt::format(
+          "stops give back speed: orbits are known to {:.3g} m, what a step places their impacts to", rebounds_));
     checkpoints_.forget();
-    record_.run_seconds = thread_seconds() - begun - record_.setup_seconds;
-    return std::move(record_);
   }
 
  private:
-  CaseRecord refused(std::string reason) {
-    record_.status = "refused";
-    record_.reason = std::move(reason);
-    return std::move(record_);
-  }
+  double tolerance() const { return round_offs * round_off_; }
 
   void follow(const WantedOrbit& orbit) {
-    const FirstOrbit found = first_orbit(continued_, *map_, case_.steps_per_period, orbit, round_off_);
+    const FirstOrbit found = first_orbit(continued_, map_, case_.steps_per_period, orbit, round_off_);
     if (!found.why.empty()) return results_.add_missing(orbit.name, orbit.at, found.why);
     const ShotOrbit& shot = found.shot;
     FollowedBranch first{orbit.name, found.clock, {}, {}, shot.iterations, {}};
@@ -77,12 +130,14 @@ class ContinuationRun {
       FollowedBranch branch = first;
       branch.name += way > 0 ? "+" : "-";
       run_branch(branch, shot, way, 0);
+      // A branch that closes has been followed both ways.
+      if (followed_.back().trace.end.starts_with("closed") && by_steps) break;
     }
   }
 
   void add_orbit(FollowedBranch& branch, const ShotOrbit& shot) {
-    BranchRow row = orbit_row(*map_, branch.clock, shot.x, shot.parameter);
-    const auto all = multipliers_of(map_->derivative(shot.sets, branch.clock));
+    BranchRow row = orbit_row(map_, branch.clock, shot.x, shot.parameter);
+    const auto all = multipliers_of(derivative_at(map_, shot, branch.clock));
     row.branch = branch.name;
     row.arc = 0;
     put_multipliers(all, outside(all), plan_.multipliers, row);
@@ -91,33 +146,30 @@ class ContinuationRun {
     results_.add(std::move(row));
   }
 
-  BranchRun begin(const FollowedBranch& branch, const ShotOrbit& shot, int way) {
-    BranchLimits limits{plan_.from, plan_.to, plan_.most_pieces, plan_.longest, plan_.marks, plan_.multipliers};
-    limits.ends_at_image = !branch.clock.half && branch.clock.period % 2 != 0 && continued_.no_image().empty() &&
-                           !is_image(map_->sets(), shot.sets);
-    // A residual that several steps of Newton's method leave.
-    const double drift = std::max(100 * round_off_, 1e-15);
-    if (const auto kept = checkpoints_.find(branch.name, map_->sets()))
-      return {*map_,  branch.clock, PieceFollower(*map_, branch.clock, kept->entry, drift),
-              limits, kept->trace,  kept->first};
-    return {*map_, branch.clock,
-            PieceFollower(*map_, branch.clock, branch_start(shot.x, shot.parameter, shot.sets, way), drift), limits};
+  auto begin(const FollowedBranch& branch, const ShotOrbit& shot, int way) {
+    BranchLimits limits{continued_.from(), continued_.to(), plan_.most_pieces,
+                        plan_.longest,     plan_.marks,     plan_.multipliers};
+    limits.ends_at_image = !branch.clock.half && branch.clock.period % 2 != 0 && continued_.no_image().empty();
+    return begin_branch(map_, branch.clock, shot, way, std::move(limits), round_off_,
+                        checkpoints_.find(branch.name, sets_of(map_)));
   }
 
-  PointSearch search(const FollowedBranch& branch) const {
-    return {branch.clock.half, plan_.prominence.value_or(least_fold * continued_.parameter_scale())};
+  PointSearch search(const FollowedBranch& branch, const BranchTrace& trace) const {
+    return {branch.clock.half, plan_.prominence.value_or(least_fold * continued_.parameter_scale()), by_steps,
+            trace.rebounds};
   }
 
   // The first point of a kind at which branches stop, once nothing that follows can change it.
   std::optional<SpecialPoint> stopping_point(const FollowedBranch& branch, const BranchTrace& trace) const {
     if (plan_.stop_at.empty()) return std::nullopt;
-    for (SpecialPoint& point : special_points(trace, search(branch))) {
+    for (SpecialPoint& point : special_points(trace, search(branch, trace))) {
       if (point.kind == "end" ||
           std::find(plan_.stop_at.begin(), plan_.stop_at.end(), point.kind) == plan_.stop_at.end())
         continue;
       const auto last = static_cast<long long>(trace.corners.size()) - 1;
-      const bool settled = trace.ended() || (last - point.corner > 2 * group_pieces &&
-                                             trace.corners.back().arc - point.arc > 2 * group_arc);
+      const bool settled = trace.ended() || (by_steps ? last > point.corner + 1
+                                                      : last - point.corner > 2 * group_pieces &&
+                                                            trace.corners.back().arc - point.arc > 2 * group_arc);
       return settled ? std::optional(std::move(point)) : std::nullopt;
     }
     return std::nullopt;
@@ -132,16 +184,14 @@ class ContinuationRun {
   }
 
   void run_branch(FollowedBranch& branch, const ShotOrbit& shot, int way, int depth) {
-    BranchRun run = begin(branch, shot, way);
+    auto run = begin(branch, shot, way);
+    if (depth == 0 && way > 0) twins_ = std::max(twins_, twin_error(map_, shot, branch.clock, continued_.gap()));
     std::optional<SpecialPoint> stopping;
     bool more = !run.trace().ended();
     for (long long round = 0; more; ++round) {
-      more = run.advance(breath);
-      checkpoints_.keep_sometimes(branch.name, run, map_->sets());
-      if (stop_) {
-        checkpoints_.keep(branch.name, run, map_->sets());
-        throw Interrupted{};
-      }
+      more = run.advance(breath_of(map_));
+      if (stop_ || checkpoints_.due()) checkpoints_.keep(branch.name, kept(run), sets_of(map_));
+      if (stop_) throw Interrupted{};
       if (thread_seconds() - begun_ > budget_of(case_)) over_budget_ = true;
       if (over_budget_) break;
       if (round % 8 == 7) stopping = stopping_point(branch, run.trace());
@@ -150,10 +200,14 @@ class ContinuationRun {
     branch.trace = run.trace();
     if (!stopping && !over_budget_) stopping = stopping_point(branch, branch.trace);
     if (stopping) cut(branch.trace, *stopping);
+    if (branch.trace.end.starts_with("the range ends") && !continued_.impossible().empty())
+      branch.trace.end += "; " + continued_.impossible();
     if (over_budget_) branch.trace.end = fmt::format("the budget of {:g} s was spent", budget_of(case_));
-    checkpoints_.keep(branch.name, run, map_->sets());
-    pieces_ += run.state().pieces;
-    branch.points = special_points(branch.trace, search(branch));
+    checkpoints_.keep(branch.name, kept(run), sets_of(map_));
+    pieces_ += run.pieces();
+    ties_ += branch.trace.ties;
+    rebounds_ = std::max(rebounds_, branch.trace.rebounds);
+    branch.points = special_points(branch.trace, search(branch, branch.trace));
     const std::size_t number = followed_.size();
     followed_.push_back(branch);
     if (depth < plan_.depth && !over_budget_) switch_at(number, depth);
@@ -166,9 +220,8 @@ class ContinuationRun {
       if (std::find(plan_.branch_at.begin(), plan_.branch_at.end(), point.kind) == plan_.branch_at.end()) continue;
       const std::string name = fmt::format("{}.{}", followed_[number].name, i + 1);
       const MapClock clock = followed_[number].clock;
-      const double tolerance = round_offs * round_off_;
-      const auto switched = switch_branch(*map_, clock, point, continued_.gap(), tolerance, [&](double parameter) {
-        return shoot(*map_, near(followed_[number].trace, point.corner, parameter), parameter, clock, tolerance);
+      const auto switched = switch_branch(map_, clock, point, continued_.gap(), tolerance(), [&](double parameter) {
+        return shoot(map_, near(followed_[number].trace, point.corner, parameter), parameter, clock, tolerance());
       });
       if (!switched) {
         SpecialPoint& failed = followed_[number].points[i];
@@ -196,7 +249,8 @@ class ContinuationRun {
     auto best = trace.states.begin();
     double least = std::numeric_limits<double>::infinity();
     for (auto state = trace.states.begin(); state != trace.states.end(); ++state) {
-      if (std::abs(at(state->first).arc - at(corner).arc) > 10 * group_arc) continue;
+      const bool beside = by_steps && std::abs(state->first - corner) <= 2;
+      if (!beside && std::abs(at(state->first).arc - at(corner).arc) > 10 * group_arc) continue;
       if (const double far = std::abs(at(state->first).parameter - parameter); far < least) least = far, best = state;
     }
     return best->second;
@@ -207,9 +261,11 @@ class ContinuationRun {
   std::string branch_through(const SwitchedOrbit& switched) {
     constexpr double same_tip = 1e-7;  // of the gap
     const ShotOrbit& orbit = switched.orbit;
-    std::vector<double> tips = {map_->tip(orbit.x, orbit.parameter)};
-    if (continued_.no_image().empty())
-      tips.push_back(map_->tip(mirrored(*map_, orbit.x, orbit.parameter, case_.steps_per_period), orbit.parameter));
+    std::vector<double> tips = {tip_of(map_, orbit.x, orbit.parameter)};
+    if (continued_.no_image().empty()) {
+      const auto image = map_.march(orbit.x, orbit.parameter, {case_.steps_per_period, 1, true});
+      if (!image.end) tips.push_back(tip_of(map_, image.image, orbit.parameter));
+    }
     for (const FollowedBranch& branch : followed_) {
       if (!(branch.clock == switched.clock)) continue;
       const auto& corners = branch.trace.corners;
@@ -217,7 +273,15 @@ class ContinuationRun {
         const BranchCorner &a = corners[i - 1], &b = corners[i];
         if ((a.parameter - orbit.parameter) * (b.parameter - orbit.parameter) > 0 || a.parameter == b.parameter)
           continue;
-        const double tip = a.tip + (b.tip - a.tip) * (orbit.parameter - a.parameter) / (b.parameter - a.parameter);
+        const double share = (orbit.parameter - a.parameter) / (b.parameter - a.parameter);
+        double tip = a.tip + share * (b.tip - a.tip);
+        if constexpr (by_steps) {  // a curve between two orbits: the one of this value is solved
+          const Eigen::VectorXd &xa = branch.trace.states.at(static_cast<long long>(i) - 1),
+                                &xb = branch.trace.states.at(static_cast<long long>(i));
+          const ShotOrbit there = shoot(map_, xa + share * (xb - xa), orbit.parameter, branch.clock, tolerance());
+          if (!there.found) continue;
+          tip = tip_of(map_, there.x, orbit.parameter);
+        }
         for (const double own : tips)
           if (std::abs(tip - own) < same_tip * continued_.gap()) return branch.name;
       }
@@ -225,24 +289,16 @@ class ContinuationRun {
     return "";
   }
 
-  void finish() {
-    for (const FollowedBranch& branch : followed_)
-      results_.add(branch, rows_of(*map_, branch, plan_.multipliers), x_of_rows(*map_), continued_.parameter_scale());
-    results_.put(record_, plan_, pieces_, over_budget_ ? std::optional(budget_of(case_)) : std::nullopt);
-    record_.steps = pieces_ * case_.steps_per_period;
-  }
-
   const StudyCase& case_;
   const std::atomic<bool>& stop_;
   BranchCheckpoints checkpoints_;
-  ContinuationPlan plan_;
-  ContinuedMap continued_;
-  std::unique_ptr<PeriodicMap> map_;
-  CaseRecord record_;
-  double round_off_ = 0, begun_ = thread_seconds();
+  const ContinuationPlan& plan_;
+  ContinuedMap& continued_;
+  Map& map_;
+  double round_off_ = 0, rebounds_ = 0, twins_ = 0, begun_ = thread_seconds();
   std::deque<FollowedBranch> followed_;
   BranchResults results_;
-  long long pieces_ = 0;
+  long long pieces_ = 0, ties_ = 0;
   bool over_budget_ = false;
 };
 
@@ -282,7 +338,29 @@ CasePlan plan_continuation(const StudyCase& study_case, const Registry& registry
 CaseRecord run_continuation(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                             const std::atomic<bool>& stop) {
   if (study_case.of_reference) return run_reference(study_case, registry, stop);
-  return ContinuationRun(study_case, registry, context, stop).run();
+  const double begun = thread_seconds();
+  CaseRecord record;
+  record.id = study_case.id;
+  record.axes = study_case.axes;
+  const ContinuationPlan plan = continuation_plan(study_case.settings);
+  ContinuedMap continued(study_case, registry, plan);
+  if (!continued.refusal().empty()) {
+    record.status = "refused";
+    record.reason = continued.refusal();
+    return record;
+  }
+  describe_march(record, continued.scenes(), study_case);
+  const auto run = [&](auto map) {
+    record.setup_seconds = thread_seconds() - begun;
+    ContinuationRun(continued, *map, study_case, plan, context, stop).run(record);
+    record.run_seconds = thread_seconds() - begun - record.setup_seconds;
+  };
+  if (!continued.no_pieces().empty()) record.notes.push_back("followed by steps: " + continued.no_pieces());
+  if (!continued.no_pieces().empty() || plan.follow == Follow::steps)
+    run(continued.stepped_map());
+  else
+    run(continued.map());
+  return record;
 }
 
 }  // namespace ricochet

@@ -9,8 +9,8 @@ namespace ricochet {
 /// What would run for a case of kind `continuation`.
 CasePlan plan_continuation(const StudyCase& study_case, const Registry& registry);
 
-/// Solves the orbits of one case and follows their branches. Tables `branches`, `special_points`, `turns`. A case none
-/// of whose orbits is found is done, and its rows say so.
+/// Solves the orbits of one case and follows their branches. Tables `branches`, `special_points`, `turns`. A case one
+/// of whose orbits is not found is failed; the branches of the others are there.
 CaseRecord run_continuation(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                             const std::atomic<bool>& stop);
 

@@ -294,6 +294,34 @@ PointConvergence StudyPoints::convergence(std::size_t head, int name) const {
   return out;
 }
 
+std::optional<double> StudyPoints::least_fold() const {
+  constexpr double times = 25;
+  const auto step =
+      std::find_if(axes_.begin(), axes_.end(), [](const RefinedAxis& one) { return one.words == std::string("step"); });
+  const auto given = study_.results().study.find("prominence");
+  if (step == axes_.end() || (given != study_.results().study.end() && !given->is_null())) return std::nullopt;
+  const auto axis = static_cast<std::size_t>(step - axes_.begin());
+  std::vector<std::size_t> steps = along(root_, axis);
+  std::sort(steps.begin(), steps.end(), [&](std::size_t a, std::size_t b) { return size(a, axis) < size(b, axis); });
+  if (steps.size() < 2) return std::nullopt;
+  std::map<double, int> counts[2];
+  for (const std::size_t k : {0, 1})
+    for (const TurnRow& row : turns_type().read(cases_[steps[k]]->tables)) counts[k][row.prominence] += row.folds;
+  std::optional<double> largest;
+  // A turn on the other side of a prominence is not lost: one case has more than the other has at the next smaller one.
+  const auto extra = [&](const std::map<double, int>& one, const std::map<double, int>& other) {
+    for (const auto& [prominence, folds] : one) {
+      const auto same = other.find(prominence);
+      if (same == other.end() || same == other.begin() || folds <= std::prev(same)->second) continue;
+      largest = std::max(largest.value_or(0), prominence);
+    }
+  };
+  extra(counts[0], counts[1]);
+  extra(counts[1], counts[0]);
+  if (largest) *largest *= times;
+  return largest;
+}
+
 std::vector<std::string> StudyPoints::differences(std::size_t a, std::size_t b) const {
   std::vector<std::string> out;
   for (const std::string& choice : study_.choices())

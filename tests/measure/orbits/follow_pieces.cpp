@@ -160,3 +160,38 @@ TEST_CASE("the half-step rule is continuous where a change moves from step to st
   }
   CHECK(smooth < raw);
 }
+
+TEST_CASE("multipliers by the half-step rule do not depend on where the period begins") {
+  for (const bool half : {false, true}) {
+    Started from(500, half, 0.08);
+    std::vector<PeriodicMap::Column> column = {{from.orbit.x, 0.08, false}};
+    PeriodicMap::Measures measures;
+    SetSequence sets = from.orbit.sets;
+    from.map.sweep(sets, from.clock, column, &measures);
+    const auto rows = static_cast<std::ptrdiff_t>(from.map.sets().measure_rows());
+    const auto mirrored = [&](int number) {
+      ContactSet closed = from.map.sets()[number].closed;
+      for (SetPoint& one : closed) one.upper = !one.upper;
+      return from.map.sets().number(closed);
+    };
+    const auto multiplier = [&] {
+      return multipliers_of(half_step_derivative(from.map, sets, from.clock, 0.08, measures)).front();
+    };
+    const std::complex<double> expected = multiplier();
+    int changes = 0;
+    for (std::size_t k = 0; k < from.orbit.sets.size(); ++k) {
+      // One step later: what was the first step is the last one, of a half map with the sides exchanged.
+      std::rotate(sets.begin(), sets.begin() + 1, sets.end());
+      std::rotate(measures.value.begin(), measures.value.begin() + rows, measures.value.end());
+      if (half) {
+        sets.back() = mirrored(sets.back());
+        for (auto value = measures.value.end() - rows; value != measures.value.end(); ++value) *value = -*value;
+      }
+      const bool same = sets.front() == (half ? mirrored(sets.back()) : sets.back());
+      if (same) continue;
+      ++changes;
+      CHECK(std::abs(multiplier() - expected) < 1e-8 * std::abs(expected));
+    }
+    CHECK(changes > 1);
+  }
+}

@@ -40,6 +40,10 @@ TEST_CASE("keys of continuation are refused by pointer, with what was found and 
   Json twice = with("/orbits/0/symmetric", "yes");
   twice["orbits"][0]["period"] = 2;
   check_says(error_of(twice), {"/orbits/0/symmetric: an orbit of 2 periods", "odd"});
+  twice["orbits"][0]["symmetric"] = true;
+  check_says(error_of(twice), {"/orbits/0/symmetric: an orbit of 2 periods", "odd"});
+  check_says(error_of(with("/orbits/0/symmetric", 1)),
+             {"/orbits/0/symmetric: expected true, false or one of \"auto\"", "found 1"});
 }
 
 TEST_CASE("continuation follows real numbers of the scene or of a method alone") {
@@ -84,16 +88,39 @@ TEST_CASE("pieces are refused of a parameter that is not affine, and of a law th
 TEST_CASE("an orbit that is asked to be its own image is refused on another scene") {
   Json study = with("/scene/stops/lower", -0.09);
   study["orbits"][0]["symmetric"] = "yes";
-  const auto points = points_of(continued(study));
-  REQUIRE(points.size() == 1);
-  CHECK(points[0].kind == "end");
-  check_says(points[0].note, {"the scene is not its own image: lower and upper stops differ by 0.01 m"});
+  check_says(refusal_of(study), {"the scene is not its own image: lower and upper stops differ by 0.01 m"});
+  study["orbits"][0]["symmetric"] = true;
+  check_says(refusal_of(study), {"the scene is not its own image: lower and upper stops differ by 0.01 m"});
+  study["orbits"][0]["symmetric"] = false;
+  CHECK(refusal_of(study).empty());
+  Json odd = with("/steps_per_period", 201);
+  CHECK(refusal_of(odd).empty());
+  odd["orbits"][0]["symmetric"] = true;
+  check_says(refusal_of(odd), {"the scene is not its own image: 201 steps per period are an odd number"});
 }
 
-TEST_CASE("an end of the range at which the scene is impossible refuses the case") {
+TEST_CASE("a branch ends where the scene becomes impossible, and says why") {
   Json study = with("/scene/stops/at", "nodes");
-  study["parameter"]["to"] = 0.12;
-  check_says(refusal_of(study), {"at 0.12: ", "expected a range in which the scene is possible"});
+  study["parameter"] = Json::parse(R"({"pointer": "/scene/support/amplitude", "from": 0.06, "to": 0.12})");
+  study["orbits"] = Json::parse(R"([{"at": 0.07, "from": "free"}])");
+  study["both_ways"] = false;
+  for (const char* follow : {"pieces", "steps"}) {
+    study["follow"] = follow;
+    study["at_most"] = {{"pieces", 3}};
+    CHECK(refusal_of(study).empty());
+    study["parameter"]["from"] = 0.11;
+    study["orbits"][0]["at"] = 0.11;
+    check_says(refusal_of(study), {"at 0.11: "});
+    study["parameter"]["from"] = 0.06;
+    study["orbits"][0]["at"] = 0.07;
+  }
+  // Without contact up to there: one piece.
+  study["scene"]["support"]["pulsation"] = 0.5;
+  study["orbits"][0]["at"] = 0.09;
+  study["follow"] = "pieces";
+  const auto points = points_of(continued(study));
+  REQUIRE_FALSE(points.empty());
+  check_says(points.back().note, {"the range ends at 0.", "at 0.12: "});
 }
 
 TEST_CASE("a root of the step on displacements without mass refuses the case") {

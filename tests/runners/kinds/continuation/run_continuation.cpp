@@ -1,4 +1,5 @@
 // Branches of a case, their rows, and what becomes of a case that is stopped.
+#include <algorithm>
 #include <map>
 #include <ricochet/measure/orbits/branch.hpp>
 
@@ -78,7 +79,9 @@ TEST_CASE("marks are solved where they are asked for, and a branch stops where t
 }
 
 TEST_CASE("a branch that was stopped and goes on has the rows of one that was not") {
-  const Json study = tube_continuation();
+  Json study = tube_continuation();
+  study["follow"] = GENERATE("pieces", "steps");
+  if (study["follow"] == "steps") study["at_most"] = {{"pieces", 12}};
   const CaseRecord whole = continued(study);
   const OpenedContinuation opened = opened_continuation(study);
   std::map<std::string, std::string> kept;
@@ -94,7 +97,7 @@ TEST_CASE("a branch that was stopped and goes on has the rows of one that was no
     else
       kept[key] = content;
   };
-  // Stopped at once: one batch of pieces is made, and kept; one of each branch.
+  // Stopped at once: one batch of pieces, or one step, is made, and kept; one of each branch.
   const std::atomic<bool> stop{true};
   for (int times = 0; times < 2; ++times) {
     CHECK_THROWS_AS(run_continuation(opened.study.cases.front(), *opened.registry, context, stop), Interrupted);
@@ -148,6 +151,32 @@ TEST_CASE("the bilinear oscillator folds where event-driven shooting says") {
   CHECK(points[1].kind == "fold");
   // Second order in h: 5e-5 N at 500 steps, 2.7e-6 N here.
   CHECK(std::abs(*points[1].parameter - 0.6921345) < 4e-6);
+}
+
+TEST_CASE("steps and pieces follow one branch: the same marks, folds and first contact") {
+  Json study = oscillator_continuation(R"({"name": "newmark-dumont-paoli", "beta": 0.25})");
+  study["steps_per_period"] = 500;
+  study["mark"] = {{"parameter", {0.66, 0.7, 0.8, 1.0}}};
+  std::map<std::string, std::vector<SpecialRow>> found;
+  for (const char* follow : {"pieces", "steps"}) {
+    study["follow"] = follow;
+    const CaseRecord record = continued(study);
+    REQUIRE(record.status == "done");
+    for (const SpecialRow& point : points_of(record))
+      if (point.kind != "end") found[follow].push_back(point);
+  }
+  REQUIRE(found["pieces"].size() == found["steps"].size());
+  for (std::size_t i = 0; i < found["pieces"].size(); ++i) {
+    const SpecialRow &piece = found["pieces"][i], &step = found["steps"][i];
+    INFO(piece.kind << " at " << *piece.parameter);
+    CHECK(step.kind == piece.kind);
+    if (piece.kind == "mark") {
+      CHECK(*step.parameter == *piece.parameter);
+      CHECK(*step.tip_displacement == Approx(*piece.tip_displacement).margin(1e-9));
+    } else {  // between two orbits of the curve
+      CHECK(*step.parameter == Approx(*piece.parameter).margin(2e-3));
+    }
+  }
 }
 
 TEST_CASE("an oscillator that rebounds flips near to where Shaw and Holmes found it, and the interval says how near") {
@@ -205,6 +234,24 @@ TEST_CASE("where symmetry is lost a branch of other orbits begins, and it ends w
   for (const SpecialRow& point : points_of(record))
     met = met || point.note.starts_with("its orbits become their own images");
   CHECK(met);
+}
+
+TEST_CASE("an orbit that is not found fails its case, whose other orbits are followed") {
+  Json study = tube_continuation();
+  study["orbits"] = Json::parse(R"([{"at": 0.085, "periods": 100}, {"at": 0.085, "periods": 100, "period": 2}])");
+  for (const char* follow : {"pieces", "steps"}) {
+    study["follow"] = follow;
+    study["at_most"] = {{"pieces", 3}};
+    const CaseRecord record = continued(study);
+    const auto points = points_of(record);
+    const auto missing =
+        std::find_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.branch == "orbit-2"; });
+    REQUIRE(missing != points.end());
+    CHECK(record.status == "failed");
+    CHECK(record.reason == missing->note);
+    CHECK(record.reason == "the orbit found from rest at λ = 0.085 repeats after 1 period; expected period 2");
+    CHECK_FALSE(rows_of(record).empty());
+  }
 }
 
 TEST_CASE("an orbit of a bifurcation study that is not there is a row that says so") {
