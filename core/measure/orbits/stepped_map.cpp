@@ -102,18 +102,22 @@ LaneState SteppedMap::unit(int k) const {
   return state;
 }
 
+std::pair<Marcher, int> SteppedMap::begin(const VectorXd& x, double parameter, int tangents) const {
+  Scene scene = make_(parameter, tangents);
+  Marcher marcher(std::move(scene.program));
+  LaneState state = template_;
+  vector_->write(x, state);
+  marcher.set_clock(0);
+  marcher.set_lane(0, LaneSpec(marcher.program().lanes[0]), carry_(state, group_, scene.group));
+  return {std::move(marcher), scene.group};
+}
+
 SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const MapClock& clock, bool derivative) {
   Image out;
   if (derivative) out.derivative.resize(size(), size());
   for (int first = 0; first == 0 || (derivative && first < size()); first += most_tangents) {
     const int columns = derivative ? std::min(most_tangents, size() - first) : 0;
-    Scene scene = make_(parameter, columns);
-    const int group = scene.group;
-    Marcher marcher(std::move(scene.program));
-    LaneState state = template_;
-    vector_->write(x, state);
-    marcher.set_clock(0);
-    marcher.set_lane(0, LaneSpec(marcher.program().lanes[0]), carry_(state, group_, group));
+    auto [marcher, group] = begin(x, parameter, columns);
     for (int k = 0; k < columns; ++k) marcher.set_tangent(0, k, carry_(unit(first + k), group_, group));
     ImpactJump jump(marcher);
     ContactWatch watch(marcher);
@@ -133,6 +137,14 @@ SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const M
     out.untold = out.untold || (columns > 0 && jump.untold(0) > 0);
   }
   return out;
+}
+
+double round_off_of_map(SteppedMap& map, const VectorXd& x, double parameter, const MapClock& clock) {
+  const double apart =
+      map.metric().size(map.march(x, parameter, clock).image - map.march(one_unit_on(x), parameter, clock).image);
+  // Tangent columns are exact to round-off of as many steps.
+  const double steps = std::sqrt(static_cast<double>(clock.steps()));
+  return std::max(apart, steps * std::numeric_limits<double>::epsilon() * map.metric().size(x));
 }
 
 ShotOrbit shoot(SteppedMap& map, VectorXd x, double parameter, const MapClock& clock, double tolerance, int most) {

@@ -40,6 +40,8 @@ class SteppedMap {
     bool untold = false;  ///< an impact had no jump
   };
   Image march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool derivative = false);
+  /// A marcher of this value with its lane at x, at the strobe, and so many tangents; the group of its scene.
+  std::pair<Marcher, int> begin(const Eigen::VectorXd& x, double parameter, int tangents = 0) const;
   /// A state of a program at this value, as x.
   Eigen::VectorXd read(const LaneState& state, int group) const;
 
@@ -54,6 +56,9 @@ class SteppedMap {
   std::unique_ptr<StateMetric> metric_;
   LaneState template_;
 };
+
+/// What round-off makes of a period, m: that of one unit in the last place, and that of tangent columns.
+double round_off_of_map(SteppedMap& map, const Eigen::VectorXd& x, double parameter, const MapClock& clock);
 
 /// P(x, λ) = x at a given λ by Newton's method. Converged where the residual is at most `tolerance`, or at most the
 /// rebounds of the orbit where stops give back speed.
@@ -80,6 +85,9 @@ class StepFollower {
   /// Makes up to so many steps; false where the branch has ended.
   bool advance(long long steps);
   const BranchTrace& trace() const { return trace_; }
+  /// The orbit of the branch in the plane normal to the way from its first orbit to another one, so far along; not
+  /// found where Newton's method did not come to it.
+  ShotOrbit towards(const Eigen::VectorXd& x, double parameter, double arc);
   /// The largest u of its orbits, m; 0 where no stop gives back speed.
   double rebounds() const { return rebounds_; }
 

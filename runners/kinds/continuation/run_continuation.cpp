@@ -40,7 +40,7 @@ class ContinuationRun {
     record_.axes = case_.axes;
     if (!continued_.refusal().empty()) return refused(continued_.refusal());
     describe_march(record_, continued_.scenes(), case_);
-    if (!continued_.no_pieces().empty() || plan_.follow == Follow::steps) {
+    if (!continued_.by_pieces()) {
       if (!continued_.no_pieces().empty()) record_.notes.push_back("followed by steps: " + continued_.no_pieces());
       run_by_steps(continued_, case_, plan_, stop_, record_);
       record_.run_seconds = thread_seconds() - begun;
@@ -87,6 +87,10 @@ class ContinuationRun {
     put_multipliers(all, outside(all), plan_.multipliers, row);
     row.iterations = shot.iterations;
     row.pieces = 0;
+    branch.trace.corners.resize(1);
+    branch.trace.corners.front().parameter = shot.parameter;
+    branch.trace.states = {{0, shot.x}};
+    results_.keep_orbits(branch, {row}, marches_of(*map_), most_branch_states);
     results_.add(std::move(row));
   }
 
@@ -225,8 +229,11 @@ class ContinuationRun {
   }
 
   void finish() {
-    for (const FollowedBranch& branch : followed_)
-      results_.add(branch, rows_of(*map_, branch, plan_.multipliers), x_of_rows(*map_), continued_.parameter_scale());
+    for (const FollowedBranch& branch : followed_) {
+      std::vector<BranchRow> rows = rows_of(*map_, branch, plan_.multipliers);
+      results_.keep_orbits(branch, rows, marches_of(*map_), most_branch_states);
+      results_.add(branch, std::move(rows), x_of_rows(*map_), continued_.parameter_scale());
+    }
     results_.put(record_, plan_, pieces_, over_budget_ ? std::optional(budget_of(case_)) : std::nullopt);
     record_.steps = pieces_ * case_.steps_per_period;
   }

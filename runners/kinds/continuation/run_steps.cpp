@@ -48,7 +48,7 @@ class StepsRun {
     if (!state) return missing(orbit, fmt::format("the transient stopped: {}", text(end)));
     const Eigen::VectorXd x = map.read(*state, continued_.scenes()[scene].group);
     MapClock clock{case_.steps_per_period, orbit.period, orbit.symmetric == HalfMap::yes};
-    const double tolerance = round_offs * round_off(map, x, orbit.at, clock);
+    const double tolerance = round_offs * round_off_of_map(map, x, orbit.at, clock);
     ShotOrbit shot = shoot(map, x, orbit.at, clock, tolerance);
     if (orbit.symmetric == HalfMap::automatic && shot.found && continued_.no_image().empty() && clock.period % 2 != 0) {
       MapClock half = clock;
@@ -79,14 +79,6 @@ class StepsRun {
     }
   }
 
-  static double round_off(SteppedMap& map, const Eigen::VectorXd& x, double parameter, const MapClock& clock) {
-    const double apart =
-        map.metric().size(map.march(x, parameter, clock).image - map.march(one_unit_on(x), parameter, clock).image);
-    // Tangent columns are exact to round-off of as many steps.
-    const double steps = std::sqrt(static_cast<double>(clock.steps()));
-    return std::max(apart, steps * std::numeric_limits<double>::epsilon() * map.metric().size(x));
-  }
-
   void run_branch(SteppedMap& map, FollowedBranch& branch, const ShotOrbit& shot, int way, const ArcSteps& limits) {
     StepFollower follower(map, branch.clock, shot.x, shot.parameter, way, limits);
     while (limits.branch.pieces > 0 && follower.advance(1)) {
@@ -114,6 +106,7 @@ class StepsRun {
         row.penetration = made.penetration;
       }
     }
+    results_.keep_orbits(branch, rows, marches_of(map), all_branch_states);
     results_.add(branch, std::move(rows), {}, continued_.parameter_scale());
   }
 
