@@ -7,7 +7,7 @@ namespace {
 // What lane 0 does in each step: its tip, and the impulses of its points.
 class MotionWatch final : public StepObserver {
  public:
-  explicit MotionWatch(OrbitMotion& motion) : motion_(motion) {}
+  MotionWatch(const Marcher& marcher, OrbitMotion& motion) : motion_(motion), before_(marcher.step()) {}
 
   void stage_solved(const Marcher& marcher, const StageView& view) override {
     if (!view.effort || !view.effort[0] || (view.contact_lanes & 1u) == 0) return;
@@ -19,7 +19,7 @@ class MotionWatch final : public StepObserver {
     double sum = 0;
     for (const ContactRun& one : pushed_) {
       sum += one.impulse;
-      add(one, marcher.step());
+      add(one, marcher.step() - before_);
     }
     if (!pushed_.empty()) motion_.penetration = std::max(motion_.penetration, marcher.penetration(0));
     pushed_.clear();
@@ -43,6 +43,7 @@ class MotionWatch final : public StepObserver {
   }
 
   OrbitMotion& motion_;
+  long long before_;
   std::vector<ContactRun> pushed_;
 };
 
@@ -52,7 +53,8 @@ void join_ends(std::vector<ContactRun>& runs, long long steps) {
     ContactRun& first = runs[i];
     if (first.begin != 1 || first.steps >= steps) continue;
     const auto last = std::find_if(runs.begin(), runs.end(), [&](const ContactRun& run) {
-      return &run != &first && run.point == first.point && run.upper == first.upper && run.begin + run.steps == steps + 1;
+      return &run != &first && run.point == first.point && run.upper == first.upper &&
+             run.begin + run.steps == steps + 1;
     });
     if (last == runs.end()) continue;
     last->steps += first.steps;
@@ -71,7 +73,7 @@ OrbitMotion march_orbit(Marcher& marcher, long long steps, StepObserver* beside)
   motion.time.push_back(marcher.time());
   motion.displacement.push_back(marcher.tip(0));
   motion.force.push_back(0);
-  MotionWatch watch(motion);
+  MotionWatch watch(marcher, motion);
   Observers observers(&watch);
   observers.add(beside);
   marcher.march(steps, observers);

@@ -7,10 +7,10 @@ namespace ricochet {
 /// Steps over which a stop pushes a point.
 struct ContactRun {
   int point = 0;
-  bool upper = false;    ///< which stop
-  long long begin = 0;   ///< first step, from 1; of a run over the strobe the one before it
-  long long steps = 0;   ///< how many
-  double impulse = 0;    ///< N s, positive upwards
+  bool upper = false;   ///< which stop
+  long long begin = 0;  ///< first step, from 1; of a run over the strobe the one before it
+  long long steps = 0;  ///< how many
+  double impulse = 0;   ///< N s, positive upwards
 };
 
 /// One period of an orbit, at the strobe and after each of its steps. Of equal length, the first row and the last are

@@ -18,14 +18,15 @@ constexpr char states_name[] = "branch_states";
 constexpr std::size_t state_heads = 8;
 
 NumberTable states_head() {
-  NumberTable table = number_table(states_name, {branch_number,
-                                                 {"arc", "m", "Length of the branch up to the orbit."},
-                                                 {"parameter", "", "Its parameter."},
-                                                 {"way", "1", "Sign of the parameter's change behind it."},
-                                                 {"change_step", "1", "Step whose contact set changed there; −1: none."},
-                                                 {"change_row", "1", "The measure that changed."},
-                                                 {"closes", "1", "Whether the point closes."},
-                                                 {"upper", "1", "Whether by its upper stop."}});
+  NumberTable table =
+      number_table(states_name, {branch_number,
+                                 {"arc", "m", "Length of the branch up to the orbit."},
+                                 {"parameter", "", "Its parameter."},
+                                 {"way", "1", "Sign of the parameter's change behind it."},
+                                 {"change_step", "1", "Step whose contact set changed there; −1: none."},
+                                 {"change_row", "1", "The measure that changed."},
+                                 {"closes", "1", "Whether the point closes."},
+                                 {"upper", "1", "Whether by its upper stop."}});
   table.exported = false;
   return table;
 }
@@ -51,7 +52,8 @@ std::vector<std::size_t> evenly(const std::vector<std::size_t>& of, const std::v
   const auto arc = [&](std::size_t k) { return rows[k].arc.value_or(0); };
   const double first = arc(of.front()), length = arc(of.back()) - first;
   for (std::size_t i = 0; i < most; ++i) {
-    const double wanted = first + length * static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(1, most - 1));
+    const double wanted =
+        first + length * static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(1, most - 1));
     chosen.insert(*std::min_element(of.begin(), of.end(), [&](std::size_t a, std::size_t b) {
       return std::abs(arc(a) - wanted) < std::abs(arc(b) - wanted);
     }));
@@ -130,8 +132,8 @@ NumberType<BranchRunColumns> branch_runs_type() {
       .add({"x", "m", "Place of the point."}, &BranchRunColumns::x)
       .add({"upper", "1", "Whether it is pushed by its upper stop."}, &BranchRunColumns::upper)
       .add({"bound", "m", "Where that stop is."}, &BranchRunColumns::bound)
-      .add({"begin", "1", "First step of the run, from 1."}, &BranchRunColumns::begin)
-      .add({"steps", "1", "Steps of the run."}, &BranchRunColumns::steps);
+      .add({"begin", "1", "Where the run begins, in forcing periods from the strobe."}, &BranchRunColumns::begin)
+      .add({"length", "1", "How long it lasts, in forcing periods."}, &BranchRunColumns::length);
   return type;
 }
 
@@ -148,9 +150,9 @@ void BranchOrbits::keep(double branch, const BranchStart& start) {
   }
   const SetChange& change = start.change;
   std::size_t column = 0;
-  for (const double value : {branch, start.arc, start.parameter, static_cast<double>(start.way),
-                             static_cast<double>(change.step), static_cast<double>(change.row),
-                             change.closes ? 1.0 : 0.0, change.upper ? 1.0 : 0.0})
+  for (const double value :
+       {branch, start.arc, start.parameter, static_cast<double>(start.way), static_cast<double>(change.step),
+        static_cast<double>(change.row), change.closes ? 1.0 : 0.0, change.upper ? 1.0 : 0.0})
     states_.values[column++].push_back(value);
   for (const double value : start.x) states_.values[column++].push_back(value);
 }
@@ -161,7 +163,8 @@ void BranchOrbits::draw(double branch, const FollowedBranch& of, const BranchRow
   const BranchMotion made = march(x, *row.parameter, steps);
   const OrbitMotion& motion = made.motion;
   if (motion.end) return;
-  const long long part = of.clock.steps(), samples = std::min<long long>(part, branch_samples / (of.clock.half ? 2 : 1));
+  const long long part = of.clock.steps(),
+                  samples = std::min<long long>(part, branch_samples / (of.clock.half ? 2 : 1));
   const auto number = static_cast<double>(row.row);
   for (long long i = 0; i < samples; ++i) {
     const auto k = static_cast<std::size_t>(i * part / samples);
@@ -170,11 +173,12 @@ void BranchOrbits::draw(double branch, const FollowedBranch& of, const BranchRow
   const int tip = made.tip_point;
   portraits_.add({branch, number, static_cast<double>(samples), tip < 0 ? NAN : or_none(made.lower[tip]),
                   tip < 0 ? NAN : or_none(made.upper[tip])});
+  const double turn = of.clock.steps_per_period;
   for (const ContactRun& run : motion.runs) {
     const auto point = static_cast<std::size_t>(run.point);
     runs_.add({branch, number, point < made.x.size() ? made.x[point] : NAN, run.upper ? 1.0 : 0.0,
-               (run.upper ? made.upper : made.lower)[run.point], static_cast<double>(run.begin),
-               static_cast<double>(run.steps)});
+               (run.upper ? made.upper : made.lower)[run.point], static_cast<double>(run.begin - 1) / turn,
+               static_cast<double>(run.steps) / turn});
   }
 }
 
@@ -240,8 +244,10 @@ KeptStarts kept_starts(const CaseRecord& record, const std::string& branch, doub
   std::optional<std::size_t> at, next;
   for (std::size_t row = 0; row < branches.size(); ++row) {
     if (branches[row] != number) continue;
-    if (arcs[row] <= arc) at = row;
-    else if (!next) next = row;
+    if (arcs[row] <= arc)
+      at = row;
+    else if (!next)
+      next = row;
   }
   if (at) found.at = start(*at);
   if (next) found.next = start(*next);

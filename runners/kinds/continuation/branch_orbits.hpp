@@ -55,10 +55,10 @@ struct BranchSampleColumns {
   const Series *displacement = nullptr, *velocity = nullptr;
 };
 NumberType<BranchSampleColumns> branch_samples_type();
-/// `branch_runs`: a run of contact of an orbit that is drawn; steps from 1.
+/// `branch_runs`: a run of contact of an orbit that is drawn, in forcing periods from the strobe.
 struct BranchRunColumns {
   const Series *branch = nullptr, *row = nullptr, *x = nullptr, *upper = nullptr, *bound = nullptr, *begin = nullptr,
-               *steps = nullptr;
+               *length = nullptr;
 };
 NumberType<BranchRunColumns> branch_runs_type();
 

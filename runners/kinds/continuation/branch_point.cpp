@@ -272,7 +272,8 @@ int solve_branch_point(const StudyResults& results, const PointRequest& asked, s
   const BranchMotion made = branch_motion(*marcher, lane, steps, film.taken() ? &film : nullptr);
   if (made.motion.end) throw PointRefused("the orbit cannot be marched: " + text(made.motion.end));
 
-  const BranchRow& row = *std::find_if(rows.rbegin(), rows.rend(), [&](const BranchRow& one) { return *one.arc <= arc; });
+  const BranchRow& row =
+      *std::find_if(rows.rbegin(), rows.rend(), [&](const BranchRow& one) { return *one.arc <= arc; });
   const double omega = 2 * std::numbers::pi / (marcher->program().h * clock.steps_per_period);
   const PointWriter writer(row, point, made, clock.steps_per_period, omega);
   out << fmt::format("orbit of the branch {}, case {} of {}: {}\n", asked.branch, record.id, results.name, point.way)
@@ -285,8 +286,8 @@ int solve_branch_point(const StudyResults& results, const PointRequest& asked, s
     Snapshots shots = film.finish();
     shots.of = fmt::format("{} at an arc of {} m", asked.branch, csv_number(arc));
     keep_numbers(asked.folder, record.id, table_of(shots));
-    out << fmt::format("its film is kept beside the case: {} instants; `ricochet report {}` shows it\n",
-                       shots.t.size(), asked.folder.string());
+    out << fmt::format("its film is kept beside the case: {} instants; `ricochet report {}` shows it\n", shots.t.size(),
+                       asked.folder.string());
   }
   return 0;
 }
