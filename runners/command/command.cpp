@@ -68,6 +68,10 @@ std::vector<Subcommand> all_commands() {
   const Option cell{"cell", "X,Y", "cell of a study of basins, as in cells.csv", &Args::cell};
   const Option branch{"branch", "NAME", "branch of a continuation study, as in branches.csv", &Args::branch};
   const Option arc{"arc", "S", "length of the branch up to the orbit, m: any, not only those of rows", &Args::arc};
+  const Option film{
+      "snapshots", "N",
+      "also keep N instants of an orbit of a branch beside its case: the next report shows them as a film",
+      Option::Count{&Args::snapshots, most_snapshots}};
   const Option period_file{"out", "FILE", "its period as CSV (default: DIR/points/CASE_BRANCH_ARC.csv)", &Args::out};
   const Option periods{"periods", "N", "forcing periods that are marched (default: 8)",
                        Option::Count{&Args::periods, most_samples}};
@@ -172,7 +176,7 @@ std::vector<Subcommand> all_commands() {
        "branch again.",
        2,
        2,
-       {parameter, start, cell, periods, samples_of_period, branch, arc, snapshots, period_file, plugin},
+       {parameter, start, cell, periods, samples_of_period, branch, arc, film, period_file, plugin},
        command_point},
       {"case",
        "DIR ID [--samples N | --snapshots N | --study]",

@@ -76,6 +76,7 @@ BranchPoint by_pieces(PeriodicMap& map, const ContinuationPlan& plan, const MapC
     along = arc - follower.state().arc;
     there = follower.at(std::min(along, piece.length));
     if (along <= piece.length || piece.end != BranchEnd::none) break;
+    if (follower.state().pieces > plan.most_pieces) throw PointRefused("the arc is not come to on this branch");
     follower.go(piece);
   }
   BranchPoint point;

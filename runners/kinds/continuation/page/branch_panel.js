@@ -1,6 +1,6 @@
 // An orbit of a branch beside the page: what was found of it, its motion, its multipliers, and the special point that it is.
 {
-  const circle = { x: [], y: [] }, stopColour = "#777777", pushColour = "#111111", mostRuns = 40;
+  const circle = { x: [], y: [] }, stopColour = "#777777", pushColour = "#111111", mostRuns = 40, aspect = 4 / 3;
   for (let k = 0; k <= 120; ++k) { circle.x.push(Math.cos((2 * Math.PI * k) / 120)); circle.y.push(Math.sin((2 * Math.PI * k) / 120)); }
 
   function neighbour(branches, id, row, step) {
@@ -49,7 +49,7 @@
     if (motion.runs.length > mostRuns) sidePanel.say("The first " + mostRuns + " of " + motion.runs.length + " runs.");
   }
 
-  // Multipliers beside the unit circle, in a square frame.
+  // Multipliers beside the unit circle, which is round in the panel.
   function showMultipliers(branches, id, row, colour) {
     const { sidePanel } = ricochet, own = branches.multipliers(id, row), smooth = branches.smooth(id, row);
     if (!own.length) return;
@@ -57,7 +57,7 @@
     const dots = (list, more) => ({ source: { re: list.map(({ re }) => re), im: list.map(({ im }) => im) }, encode: { x: "re", y: "im" }, type: "scatter", ...more });
     sidePanel.plot("real part", "imaginary part", [
       { source: circle, encode: { x: "x", y: "y" }, type: "line", symbol: "none", silent: true, color: ricochet.faint, lineStyle: { width: 1 } },
-      dots([{ re: -reach, im: -reach }, { re: reach, im: reach }], { silent: true, symbolSize: 0 }),
+      dots([{ re: -aspect * reach, im: -reach }, { re: aspect * reach, im: reach }], { silent: true, symbolSize: 0 }),
       dots(own, { symbolSize: 8, color: colour }),
       ...(smooth.length ? [dots(smooth, { symbol: "emptyCircle", symbolSize: 12, color: "#111" })] : []),
     ], "portrait");

@@ -1,6 +1,6 @@
 // Multipliers along the branches in the complex plane, a chart per method at its finest: raw ones as dots, those of the half-step rule as a line.
 {
-  const { Interval } = ricochet, frame = 1.6, farthest = 0.2, lineName = "half-step rule", lineColour = "#000000", looks = { "stable orbit": "#0072B2", "unstable orbit": "#D55E00" };
+  const { Interval } = ricochet, frame = 1.6, side = 320, farthest = 0.2, lineName = "half-step rule", lineColour = "#000000", looks = { "stable orbit": "#0072B2", "unstable orbit": "#D55E00" };
   const circle = Array.from({ length: 181 }, (_, k) => ({ re: Math.cos((2 * Math.PI * k) / 180), im: Math.sin((2 * Math.PI * k) / 180) }));
 
   // The real multiplier nearest −1 and the pair nearest the circle along each branch, by the half-step rule. A line is broken where a run of contact comes
@@ -39,7 +39,9 @@
     const line = halfStep(branches, one.id);
     if (line.length) ricochet.draw(out, line, { x: "re", y: "im" }, { ...ricochet.line(lineName, lineColour, 1), silent: true, z: 3 });
     if (outside) out.notes.push(count(outside, "multiplier lies", "multipliers lie") + " outside this frame.");
-    return { title: label || "all cases", cases: [one], height: 380, views: [out], notes: [] };
+    // A square frame: the circle is round.
+    Object.assign(out.option.grid, { right: undefined, width: side, height: side });
+    return { title: label || "all cases", cases: [one], height: side + 58, views: [out], notes: [] };
   }
 
   ricochet.figure("multipliers", (data) => {
