@@ -90,6 +90,7 @@ BranchMotion branch_motion(Marcher& marcher, const LaneSpec& lane, long long ste
   out.lower = lane.lower;
   out.upper = lane.upper;
   out.x = problem.contact_x;
+  out.stops = problem.stops;
   out.tip_point = point_at_tip(problem);
   out.motion = march_orbit(marcher, steps, beside);
   return out;

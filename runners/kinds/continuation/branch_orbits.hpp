@@ -19,9 +19,10 @@ struct FollowedBranch;
 /// One period of an orbit, and the stops that it meets.
 struct BranchMotion {
   OrbitMotion motion;
-  std::vector<double> x;         ///< place of each contact point, m
-  Eigen::VectorXd lower, upper;  ///< its stops, m; infinite where there is none
-  int tip_point = -1;            ///< the contact point that is the tip; −1: none is
+  std::vector<double> x;           ///< place of each contact point, m
+  std::vector<std::string> stops;  ///< their names; empty where they have none
+  Eigen::VectorXd lower, upper;    ///< its stops, m; infinite where there is none
+  int tip_point = -1;              ///< the contact point that is the tip; −1: none is
 };
 /// Marches an orbit that a marcher begins over so many steps. `lane`: whose stops they are.
 BranchMotion branch_motion(Marcher& marcher, const LaneSpec& lane, long long steps, StepObserver* beside = nullptr);

@@ -165,8 +165,8 @@ class PointWriter {
 
   std::string runs() const {
     if (made_.motion.runs.empty()) return "  no contact\n";
-    TextTable table({"stop", "x (m)", "begin (step)", "end (step)", "begin (rad)", "end (rad)", "length (steps)",
-                     "length (s)", "impulse (N s)"});
+    TextTable table({"stop", "name", "x (m)", "begin (step)", "end (step)", "begin (rad)", "end (rad)",
+                     "length (steps)", "length (s)", "impulse (N s)"});
     const double h = 2 * std::numbers::pi / (pulsation_ * steps_), turn = 2 * std::numbers::pi * row_.period;
     const auto steps = static_cast<long long>(row_.period) * steps_;
     for (const ContactRun& run : made_.motion.runs) {
@@ -176,10 +176,10 @@ class PointWriter {
         return fmt::format("{:.6f}", turn * static_cast<double>(step) / static_cast<double>(steps));
       };
       const long long last = (run.begin + run.steps - 2) % steps + 1;
-      table.add({run.upper ? "upper" : "lower", at < made_.x.size() ? csv_number(made_.x[at]) : "",
-                 fmt::format("{}", run.begin), fmt::format("{}", last), phase(run.begin - 1), phase(last),
-                 fmt::format("{}", run.steps), fmt::format("{:.6g}", h * static_cast<double>(run.steps)),
-                 fmt::format("{:.6g}", run.impulse)});
+      table.add({run.upper ? "upper" : "lower", at < made_.stops.size() ? made_.stops[at] : "",
+                 at < made_.x.size() ? csv_number(made_.x[at]) : "", fmt::format("{}", run.begin),
+                 fmt::format("{}", last), phase(run.begin - 1), phase(last), fmt::format("{}", run.steps),
+                 fmt::format("{:.6g}", h * static_cast<double>(run.steps)), fmt::format("{:.6g}", run.impulse)});
     }
     return table.text(2);
   }
