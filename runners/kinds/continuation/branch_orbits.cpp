@@ -188,7 +188,7 @@ void BranchOrbits::add(const FollowedBranch& branch, const std::vector<BranchRow
   const auto name = static_cast<double>(names_.size());
   names_.push_back(branch.name);
   const std::set<std::size_t> drawn = drawn_rows(branch, rows);
-  const std::size_t stride = (branch.trace.states.size() + most_states - 1) / most_states;
+  const std::size_t stride = 1 + branch.trace.states.size() / most_states;
   auto state = branch.trace.states.begin();
   std::size_t passed = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {

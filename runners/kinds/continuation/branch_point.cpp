@@ -86,7 +86,9 @@ BranchPoint by_pieces(PeriodicMap& map, const ContinuationPlan& plan, const MapC
   for (std::size_t k = 0; k < measures.value.size(); ++k) measures.value[k] += along * measures.slope[k];
   point.half_step = roots_at(multipliers_of(half_step_derivative(map, sets, clock, there.parameter, measures)));
   const long long pieces = follower.state().pieces;
-  point.way = fmt::format("on piece {} behind the kept orbit at an arc of {} m", pieces + 1, csv_number(start.arc));
+  point.way = pieces == 0 && along == 0 ? "a kept orbit"
+                                        : fmt::format("on piece {} behind the kept orbit at an arc of {} m", pieces + 1,
+                                                      csv_number(start.arc));
   point.residual = map.metric().size(map.march(there.x, there.parameter, clock).image - there.x);
   point.x = std::move(there.x);
   point.parameter = there.parameter;
@@ -146,7 +148,7 @@ class PointWriter {
     put("period", fmt::format("{}", row_.period), row_.period == 1 ? "forcing period" : "forcing periods");
     put("symmetric", row_.symmetric.value_or(false) ? "yes" : "no");
     const int outside = ricochet::outside(point_.multipliers).total;
-    put("stability", outside == 0 ? "stable" : "unstable", fmt::format("{} multipliers outside the circle", outside));
+    put("stability", outside == 0 ? "stable" : "unstable", fmt::format("{} outside the unit circle", outside));
     const char* of = row_.symmetric.value_or(false) ? "of half a period" : "";
     for (std::size_t k = 0; k < point_.multipliers.size() && k < static_cast<std::size_t>(most); ++k)
       put(fmt::format("multiplier {}", k + 1), complex_text(point_.multipliers[k]),

@@ -1,6 +1,7 @@
 // An orbit of a branch that is solved again: its row, its neighbours, its motion.
 #include "runners/kinds/continuation/branch_point.hpp"
 
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
@@ -36,13 +37,13 @@ struct Kept {
   StudyResults results;
 
   explicit Kept(const Json& text) : opened(opened_continuation(text)), results(results_header(opened.study)) {
+    ::setenv("RICOCHET_PLUGIN_PATH", RICOCHET_PLUGIN_DIR, 1);
     const std::atomic<bool> stop{false};
     results.cases = {run_continuation(opened.study.cases.front(), *opened.registry, {}, stop)};
   }
   PointRequest asked(const std::string& branch, double arc) const {
     PointRequest asked;
     asked.case_id = results.cases.front().id;
-    asked.plugins = {RICOCHET_PLUGIN_DIR};
     asked.branch = branch;
     asked.arc = arc;
     asked.out = here / "period.csv";

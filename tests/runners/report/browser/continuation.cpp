@@ -33,7 +33,7 @@ void check_branches(const browser::Json& page) {
 }
 
 /// The portrait over a whole period between the stops, what pushes over the phase, multipliers, and two commands.
-void check_orbit(const browser::Json& panel) {
+void check_branch_orbit(const browser::Json& panel) {
   REQUIRE(panel.is_object());
   CHECK(panel.at("opened") == true);
   CHECK(panel.at("has") == true);
@@ -85,7 +85,7 @@ TEST_CASE("figures of continuation draw branches, points, multipliers and turns"
   const browser::Json& page = pages.at("continuation");
   check_branches(page);
   check_points(page);
-  check_orbit(figure(page, "branches").at("branch"));
+  check_branch_orbit(figure(page, "branches").at("branch"));
   CHECK(figure(page, "multipliers").at("charts").size() == 8);
   CHECK(figure(page, "turns").at("charts").size() == 8);
   require_works(page, results.cases.size());
