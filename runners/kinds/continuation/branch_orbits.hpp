@@ -41,7 +41,7 @@ struct BranchStart {
 };
 
 /// Orbits that are drawn of one branch, samples of one period, and states kept of one that is followed by pieces.
-inline constexpr std::size_t most_branch_portraits = 60, branch_samples = 200, most_branch_states = 200;
+inline constexpr std::size_t most_branch_portraits = 60, branch_samples = 320, most_branch_states = 200;
 /// Of a branch that is followed by steps: those between two rows are interpolated.
 inline constexpr std::size_t all_branch_states = std::numeric_limits<std::size_t>::max();
 

@@ -61,7 +61,7 @@
       dots(own, { symbolSize: 8, color: colour }),
       ...(smooth.length ? [dots(smooth, { symbol: "emptyCircle", symbolSize: 12, color: "#111" })] : []),
     ], "portrait");
-    sidePanel.say("Multipliers of " + (branches.branch(id, row).symmetric ? "half a period" : "the period") + ", and the unit circle." + (smooth.length ? " Rings: those nearest it by the half-step rule." : ""));
+    sidePanel.say("Multipliers of " + (branches.branch(id, row).symmetric ? "half a period" : "the period") + ", and the unit circle." + (smooth.length ? " Rings: by the half-step rule, the real one nearest −1 and the pair nearest the circle." : ""));
   }
 
   function show(branches, id, row, colour) {

@@ -1,6 +1,6 @@
 // Multipliers along the branches in the complex plane, a chart per method at its finest: raw ones as dots, those of the half-step rule as a line.
 {
-  const { Interval } = ricochet, frame = 1.6, side = 320, farthest = 0.2, lineName = "half-step rule", lineColour = "#000000", looks = { "stable orbit": "#0072B2", "unstable orbit": "#D55E00" };
+  const { Interval } = ricochet, frame = 1.6, side = 320, least = 0.5, farthest = 0.2, lineName = "half-step rule", lineColour = "#000000", looks = { "stable orbit": "#0072B2", "unstable orbit": "#D55E00" };
   const circle = Array.from({ length: 181 }, (_, k) => ({ re: Math.cos((2 * Math.PI * k) / 180), im: Math.sin((2 * Math.PI * k) / 180) }));
 
   // The real multiplier nearest −1 and the pair nearest the circle along each branch, by the half-step rule. A line is broken where a run of contact comes
@@ -10,7 +10,7 @@
     const follow = (re, im) => {
       let last = null;
       for (let i = 0; i < of.length; ++i) {
-        const here = { re: re(i), im: im(i) }, shown = within(here.re) && within(here.im), joined = last && of[i] === of[i - 1] && runs[i] === runs[i - 1] && Math.hypot(here.re - last.re, here.im - last.im) < farthest;
+        const here = { re: re(i), im: im(i) }, size = Math.hypot(here.re, here.im), shown = within(here.re) && within(here.im) && size >= least, joined = last && of[i] === of[i - 1] && runs[i] === runs[i - 1] && Math.hypot(here.re - last.re, here.im - last.im) < farthest;
         if (last && !(shown && joined)) out.push({ re: null, im: null });
         if (shown) out.push(here);
         last = shown ? here : null;
@@ -52,7 +52,7 @@
     return [{
       id: "multipliers", title: "Multipliers of the orbits", views: ["plane"], charts: methods.map(({ label, one }) => chart(branches, label, one)),
       legend: [{ name: "unit circle", colour: ricochet.faint, dash: "", symbol: "" }].concat(Object.entries(looks).map(([name, colour]) => ricochet.swatch(name, colour, "circle")), lined ? [{ name: lineName, colour: lineColour, dash: "", symbol: "" }] : []),
-      caption: "Multipliers of the step's own map, as its contact sets are, along the branches of each method at its finest; of half a period where the orbit is symmetric. They jump where a contact set changes, and flicker across the circle." + (lined ? " Line: the real one nearest −1 and the pair nearest the circle by the half-step rule." : ""),
+      caption: "Multipliers of the step's own map, as its contact sets are, along the branches of each method at its finest; of half a period where the orbit is symmetric. They jump where a contact set changes, and flicker across the circle." + (lined ? " Line: the real one nearest −1 and the pair nearest the circle by the half-step rule, from a modulus of ½ on." : ""),
     }];
   });
 }
