@@ -168,7 +168,7 @@ int show_case(const Arguments& arguments, std::ostream& out) {
     throw PointRefused(fmt::format("{} holds a study of kind {}, which this program does not have",
                                    arguments.operands[0], open.results.kind));
   if (arguments.study) return print_study(open, out);
-  if (open.kind->has_points())
+  if (open.kind->only_points())
     throw PointRefused(
         fmt::format("a case of kind {} is many orbits: `ricochet point {} {}` marches one of them again; "
                     "with --study this prints the study of the case alone",

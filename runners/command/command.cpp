@@ -66,6 +66,13 @@ std::vector<Subcommand> all_commands() {
   const Option parameter{"parameter", "VALUE", "value of a bifurcation study's parameter", &Args::parameter};
   const Option start{"start", "NAME", "start of the orbit, as in values.csv", &Args::start};
   const Option cell{"cell", "X,Y", "cell of a study of basins, as in cells.csv", &Args::cell};
+  const Option branch{"branch", "NAME", "branch of a continuation study, as in branches.csv", &Args::branch};
+  const Option arc{"arc", "S", "length of the branch up to the orbit, m: any, not only those of rows", &Args::arc};
+  const Option film{
+      "snapshots", "N",
+      "also keep N instants of an orbit of a branch beside its case: the next report shows them as a film",
+      Option::Count{&Args::snapshots, most_snapshots}};
+  const Option period_file{"out", "FILE", "its period as CSV (default: DIR/points/CASE_BRANCH_ARC.csv)", &Args::out};
   const Option periods{"periods", "N", "forcing periods that are marched (default: 8)",
                        Option::Count{&Args::periods, most_samples}};
   const Option samples_of_period{"samples", "N", "samples per period (default: 200)",
@@ -164,11 +171,12 @@ std::vector<Subcommand> all_commands() {
        {},
        command_league},
       {"point",
-       "DIR CASE (--parameter VALUE --start NAME | --cell X,Y)",
-       "March one orbit of a bifurcation study, or one cell of basins, again; print it as CSV.",
+       "DIR CASE (--parameter VALUE --start NAME | --cell X,Y | --branch NAME --arc S)",
+       "March one orbit of a bifurcation study, or one cell of basins, again and print it as CSV; solve one orbit of a "
+       "branch again.",
        2,
        2,
-       {parameter, start, cell, periods, samples_of_period, plugin},
+       {parameter, start, cell, periods, samples_of_period, branch, arc, film, period_file, plugin},
        command_point},
       {"case",
        "DIR ID [--samples N | --snapshots N | --study]",

@@ -182,8 +182,9 @@ int command_point(const Arguments& arguments, std::ostream& out) {
   if (!kind || !kind->has_points())
     throw UsageError(fmt::format("{} holds a study of kind {}; a point is one of kind {}", arguments.operands[0],
                                  results.kind, kinds_with_points()));
-  const PointRequest asked{arguments.operands[1], arguments.plugins, arguments.parameter, arguments.start,
-                           arguments.cell,        arguments.periods, arguments.samples};
+  const PointRequest asked{arguments.operands[1], arguments.plugins,   arguments.parameter,   arguments.start,
+                           arguments.cell,        arguments.periods,   arguments.samples,     arguments.branch,
+                           arguments.arc,         arguments.snapshots, arguments.operands[0], arguments.out};
   try {
     return kind->point(results, asked, out);
   } catch (const PointRefused& refused) {

@@ -63,7 +63,8 @@ po::variables_map parse(const Subcommand& command, const po::options_description
     throw UsageError(command.name + " has no option " + name +
                      (nearest.empty() ? "" : "; did you mean " + nearest + "?") + see_help(command));
   } catch (const po::invalid_option_value& error) {
-    const char* wanted = error.get_option_name() == "--parameter" ? "; expected a number" : "; expected a whole number";
+    const bool real = error.get_option_name() == "--parameter" || error.get_option_name() == "--arc";
+    const char* wanted = real ? "; expected a number" : "; expected a whole number";
     throw UsageError(error.what() + std::string(wanted) + see_help(command));
   } catch (const po::error& error) {
     throw UsageError(error.what() + see_help(command));

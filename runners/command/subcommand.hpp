@@ -41,6 +41,8 @@ struct Arguments {
   std::optional<double> parameter;               ///< --parameter
   std::string start;                             ///< --start; "": none given
   std::string cell;                              ///< --cell; "": none given
+  std::string branch;                            ///< --branch; "": none given
+  std::optional<double> arc;                     ///< --arc
   int periods = 0, samples = 0;                  ///< --periods, --samples; 0: none given
   int snapshots = 0;                             ///< --snapshots; 0: none given
   int workers = 0;                               ///< --workers; 0: none given

@@ -59,6 +59,14 @@ struct PointRequest {
   std::optional<double> parameter;
   std::string start, cell;       ///< "" where none is given
   int periods = 0, samples = 0;  ///< 0 where none is given
+  std::string branch;            ///< of a study of branches
+  std::optional<double> arc;
+  int snapshots = 0;                         ///< 0 where none is given
+  std::filesystem::path folder;              ///< of the results
+  std::optional<std::filesystem::path> out;  ///< file of its own
+  /// Whether there are words that a branch has no use for, or words of branches alone.
+  bool marches() const { return parameter || !start.empty() || !cell.empty() || periods > 0 || samples > 0; }
+  bool solves() const { return !branch.empty() || arc || snapshots > 0 || out; }
 };
 
 /// Why a point cannot be marched again: the message is complete.
@@ -123,6 +131,8 @@ class Kind {
 
   /// Whether a stored study has points that can be marched again.
   virtual bool has_points() const { return false; }
+  /// Whether a case is so many that `case` never computes all of them again.
+  virtual bool only_points() const { return has_points(); }
   /// Marches one of them, samples to `out`; returns the exit code. Throws PointRefused.
   virtual int point(const StudyResults& results, const PointRequest& asked, std::ostream& out) const;
 

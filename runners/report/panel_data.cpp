@@ -180,6 +180,7 @@ PageJson one_case(const std::string& id, const Snapshots& shots, CurveData& bloc
                   {"metres", shots.metres},
                   {"newtons", shots.newtons}};
   add_drawing(shots, out);
+  if (!shots.of.empty()) out["of"] = shots.of;
   return out;
 }
 

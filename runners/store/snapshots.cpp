@@ -118,6 +118,11 @@ NumberTable table_of(const Snapshots& snapshots) {
       packed(snapshots.pushed),
       packed(snapshots.force)};
   add_drawing(snapshots, table);
+  if (!snapshots.of.empty()) {
+    table.columns.push_back({"of", "", ""});
+    table.values.emplace_back(std::vector<double>{0});
+    table.words.emplace_back("of", std::vector<std::string>{snapshots.of});
+  }
   return table;
 }
 
@@ -140,6 +145,7 @@ std::optional<Snapshots> snapshots_of(const NumberTable& table) {
   out.lower = column("lower");
   out.upper = column("upper");
   take_drawing(table, out);
+  if (const auto* of = table.words_of("of"); of && !of->empty()) out.of = of->front();
   const auto forces = static_cast<std::size_t>(shape[3]);
   const bool whole = out.clamp.size() == out.t.size() && out.lower.size() == out.point.size() &&
                      out.upper.size() == out.point.size() && (out.y.empty() || out.y.size() == out.x.size()) &&

@@ -14,6 +14,7 @@ namespace ricochet {
 /// kept as 16-bit counts of a unit of their own, so that the largest is 32767 of them: what is drawn, not what is
 /// measured.
 struct Snapshots {
+  std::string of;                          ///< the orbit that it is of, in words; "": the motion of the case
   bool along = false;                      ///< displacements are along the structure (a bar), not across it
   std::vector<double> t;                   ///< s, whole steps, the first is 0
   std::vector<double> clamp;               ///< φ at these times, m

@@ -159,6 +159,21 @@ bool StepFollower::correct(Point& point, const Point& along, int& iterations) {
   return false;
 }
 
+ShotOrbit StepFollower::towards(const VectorXd& x, double parameter, double arc) {
+  const StateMetric& metric = map_->metric();
+  const VectorXd by = x - now_.x;
+  const double far = metric.size(by, parameter - now_.parameter);
+  const Point along{by / far, (parameter - now_.parameter) / far};
+  Point point{now_.x + arc * along.x, now_.parameter + arc * along.parameter};
+  ShotOrbit orbit;
+  orbit.found = correct(point, along, orbit.iterations);
+  orbit.end = last_.end;
+  if (!last_.end) orbit.residual = metric.size(last_.image - point.x);
+  orbit.x = std::move(point.x);
+  orbit.parameter = point.parameter;
+  return orbit;
+}
+
 void StepFollower::keep(const Point& point, const FollowedMap::Image& image,
                         std::vector<std::complex<double>> multipliers) {
   BranchCorner corner;

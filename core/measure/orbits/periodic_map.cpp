@@ -201,13 +201,18 @@ Marcher& PeriodicMap::marcher_at(double parameter) {
   return *other_;
 }
 
-MapMarch PeriodicMap::march(const VectorXd& x, double parameter, const MapClock& clock, bool read) {
-  MapMarch made;
+Marcher& PeriodicMap::begin(const VectorXd& x, double parameter) {
   Marcher& marcher = marcher_at(parameter);
   LaneState state = template_;
   vector_.write(x, state);
   marcher.set_clock(0);
   marcher.set_lane(0, lanes_.lane(parameter), state);
+  return marcher;
+}
+
+MapMarch PeriodicMap::march(const VectorXd& x, double parameter, const MapClock& clock, bool read) {
+  MapMarch made;
+  Marcher& marcher = begin(x, parameter);
   Recorder recorder(sets_, read);
   const long long steps = clock.steps();
   recorder.found.reserve(static_cast<std::size_t>(steps));

@@ -112,6 +112,8 @@ class PeriodicMap {
   const AffineLane& lanes() const { return lanes_; }
   const StateVector& vector() const { return vector_; }
 
+  /// The marcher of this value with its lane at x, at the strobe; until the map is asked again.
+  Marcher& begin(const Eigen::VectorXd& x, double parameter);
   /// Marches from x. `read`: tip and penetration are wanted too.
   MapMarch march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool read = false);
   /// ∂(sign·P)/∂x with these sets, of which `blends` changes some, in the order of steps.

@@ -102,23 +102,27 @@ LaneState SteppedMap::unit(int k) const {
   return state;
 }
 
+std::pair<Marcher, int> SteppedMap::begin(const VectorXd& x, double parameter, int tangents) const {
+  Scene scene = make_(parameter, tangents);
+  Marcher marcher(std::move(scene.program));
+  LaneState state = template_;
+  vector_->write(x, state);
+  marcher.set_clock(0);
+  LaneSpec lane = marcher.program().lanes[0];
+  if (open_) {
+    lane.lower.setConstant(-std::numeric_limits<double>::infinity());
+    lane.upper.setConstant(std::numeric_limits<double>::infinity());
+  }
+  marcher.set_lane(0, std::move(lane), carry_(state, group_, scene.group));
+  return {std::move(marcher), scene.group};
+}
+
 SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const MapClock& clock, bool derivative) {
   Image out;
   if (derivative) out.derivative.resize(size(), size());
   for (int first = 0; first == 0 || (derivative && first < size()); first += most_tangents) {
     const int columns = derivative ? std::min(most_tangents, size() - first) : 0;
-    Scene scene = make_(parameter, columns);
-    const int group = scene.group;
-    Marcher marcher(std::move(scene.program));
-    LaneState state = template_;
-    vector_->write(x, state);
-    marcher.set_clock(0);
-    LaneSpec lane = marcher.program().lanes[0];
-    if (open_) {
-      lane.lower.setConstant(-std::numeric_limits<double>::infinity());
-      lane.upper.setConstant(std::numeric_limits<double>::infinity());
-    }
-    marcher.set_lane(0, std::move(lane), carry_(state, group_, group));
+    auto [marcher, group] = begin(x, parameter, columns);
     for (int k = 0; k < columns; ++k) marcher.set_tangent(0, k, carry_(unit(first + k), group_, group));
     std::optional<ImpactJump> jump;
     if (rebounds_ && columns > 0) jump.emplace(marcher);

@@ -51,6 +51,8 @@ class SteppedMap final : public FollowedMap {
   const Program& reference() const { return *reference_; }
 
   Image march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool derivative = false) override;
+  /// A marcher of this value with its lane at x, at the strobe, and so many tangents; the group of its scene.
+  std::pair<Marcher, int> begin(const Eigen::VectorXd& x, double parameter, int tangents = 0) const;
   /// A state of a program at this value, as x.
   Eigen::VectorXd read(const LaneState& state, int group) const;
   /// Whether stops are left out from here on.
@@ -110,6 +112,9 @@ class StepFollower {
   long long pieces() const { return static_cast<long long>(trace_.corners.size()); }
   /// The last orbit, the unit secant and the step.
   BranchState state() const;
+  /// The orbit of the branch in the plane normal to the way from its first orbit to another one, so far along; not
+  /// found where Newton's method did not come to it.
+  ShotOrbit towards(const Eigen::VectorXd& x, double parameter, double arc);
 
  private:
   struct Point {

@@ -201,7 +201,7 @@ std::string description(const OrbitRow& orbit) {
 }  // namespace
 
 int march_orbit_again(const StudyResults& results, const PointRequest& asked, std::ostream& out) {
-  if (!asked.parameter || asked.start.empty() || !asked.cell.empty())
+  if (!asked.parameter || asked.start.empty() || !asked.cell.empty() || asked.solves())
     throw PointRefused(
         "ricochet point: this is a study of kind bifurcation; expected --parameter VALUE and --start NAME, as in "
         "values.csv");

@@ -55,6 +55,11 @@ void put_multipliers(const std::vector<std::complex<double>>& multipliers, const
   row.multipliers.resize(static_cast<std::size_t>(most));
 }
 
+void put_half_step(const CornerRoots& roots, BranchRow& row) {
+  if (roots.real != 0) row.half_step_real = roots.real;
+  if (roots.modulus != 0) row.half_step_pair = std::polar(roots.modulus, roots.angle);
+}
+
 std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipliers) {
   std::map<long long, int> numbers;  // of special points, by corner
   for (std::size_t i = 0; i < branch.points.size(); ++i)
@@ -119,6 +124,7 @@ std::vector<BranchRow> rows_of(Map& map, const FollowedBranch& branch, int multi
     row->tip_velocity = marched.tip_velocity;
     row->penetration = marched.penetration;
     row->residual = marched.residual;
+    put_half_step(branch.trace.corners[static_cast<std::size_t>(number)].smooth, *row);
     ++row;
   }
   for (const MarkedOrbit& mark : branch.trace.marks) add_mark(map, branch, mark, multipliers, rows);
@@ -228,6 +234,7 @@ void BranchResults::put(CaseRecord& record, const ContinuationPlan& plan, long l
   record.tables.push_back(branches_table(plan.multipliers, rows_));
   record.tables.push_back(special_points_type().with(special_));
   record.tables.push_back(turns_type().with(turns_));
+  orbits_.put(record);
   put_measure(record, "branches", branches_);
   put_measure(record, "pieces", static_cast<double>(pieces));
   put_measure(record, "special_points", found_);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "runners/kinds/continuation/branch_orbits.hpp"
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continuation_tables.hpp"
 
@@ -32,6 +33,8 @@ std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipli
 /// The multipliers of an orbit, largest first, the first `most` of them, and how many are outside the circle.
 void put_multipliers(const std::vector<std::complex<double>>& multipliers, const Outside& outside, int most,
                      BranchRow& row);
+/// The multipliers nearest the circle by the half-step rule.
+void put_half_step(const CornerRoots& roots, BranchRow& row);
 /// The rows of a branch at corners whose states were kept, special points among them.
 template <class Map>
 std::vector<BranchRow> rows_of(Map& map, const FollowedBranch& branch, int multipliers);
@@ -48,6 +51,11 @@ class BranchResults {
   /// A branch with its rows. `scale`: that of the parameter.
   void add(const FollowedBranch& branch, std::vector<BranchRow> rows, const std::vector<double>& x_of_rows,
            double scale);
+  /// What is kept of its orbits beside: states and portraits (BranchOrbits).
+  void keep_orbits(const FollowedBranch& branch, const std::vector<BranchRow>& rows, const MarchBranchOrbit& march,
+                   std::size_t most_states) {
+    orbits_.add(branch, rows, march, most_states);
+  }
   /// An orbit that was not found is a row that says so, and fails its case.
   void add_missing(const std::string& name, double at, std::string why);
   /// Tables, measures, status and reason. `spent`: the budget, s, that was not enough.
@@ -57,6 +65,7 @@ class BranchResults {
   std::vector<BranchRow> rows_;
   std::vector<SpecialRow> special_;
   std::vector<TurnRow> turns_;
+  BranchOrbits orbits_;
   int branches_ = 0, found_ = 0;
   std::string missing_;  // why the first orbit that was not found was not
 };

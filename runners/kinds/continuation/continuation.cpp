@@ -1,5 +1,6 @@
 #include "runners/kinds/continuation/continuation.hpp"
 
+#include "runners/kinds/continuation/branch_point.hpp"
 #include "runners/kinds/continuation/continuation_answers.hpp"
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continuation_tables.hpp"
@@ -64,6 +65,11 @@ class ContinuationKind final : public Kind {
     return continuation_answer(answers::Compared(results));
   }
   report::KindPage page() const override { return report::continuation_page(); }
+  bool has_points() const override { return true; }
+  bool only_points() const override { return false; }
+  int point(const StudyResults& results, const PointRequest& asked, std::ostream& out) const override {
+    return solve_branch_point(results, asked, out);
+  }
   nlohmann::ordered_json alone(const StudyResults& results, const CaseRecord& record) const override {
     return is_reference(record) ? nlohmann::ordered_json(nullptr) : single_study(results, record);
   }

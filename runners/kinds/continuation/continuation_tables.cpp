@@ -63,6 +63,20 @@ RowType<BranchRow> branch_row_type(int multipliers, const SweptColumns& swept) {
     add_multiplier(type, number, "im", "Its imaginary part.", imaginary_part,
                    [](std::complex<double>& of, double value) { of.imag(value); });
   }
+  type.add({"half_step_real", "1", "Real multiplier nearest −1 by the half-step rule; empty: none."},
+           &BranchRow::half_step_real)
+      .add(
+          {"half_step_pair_re", "1", "Real part of the pair nearest the unit circle by that rule; empty: none."},
+          [](const BranchRow& row) { return row.half_step_pair ? Cell(row.half_step_pair->real()) : Cell(); },
+          [](BranchRow& row, const Cell& cell) {
+            if (const auto number = cell.number()) row.half_step_pair = {*number, 0};
+          })
+      .add(
+          {"half_step_pair_im", "1", "Its imaginary part."},
+          [](const BranchRow& row) { return row.half_step_pair ? Cell(row.half_step_pair->imag()) : Cell(); },
+          [](BranchRow& row, const Cell& cell) {
+            if (const auto number = cell.number(); number && row.half_step_pair) row.half_step_pair->imag(*number);
+          });
   type.add({"impacts_per_period", "1", "Runs of contact that begin in one forcing period, both sides."},
            &BranchRow::impacts_per_period)
       .add({"contact_runs", "1", "Runs of steps with an effort, over the period of the orbit, summed over the points."},

@@ -21,6 +21,8 @@ struct BranchRow {
   std::optional<bool> symmetric, stable;
   std::optional<int> unstable;
   std::vector<std::optional<std::complex<double>>> multipliers;  ///< largest modulus first
+  std::optional<double> half_step_real;
+  std::optional<std::complex<double>> half_step_pair;  ///< that with a positive imaginary part
   std::optional<double> impacts_per_period;
   std::optional<int> contact_runs;
   std::optional<double> penetration;

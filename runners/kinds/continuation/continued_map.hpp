@@ -22,6 +22,8 @@ class ContinuedMap {
   const std::string& refusal() const { return refusal_; }
   /// Why the map is not followed by pieces; "" where it is.
   const std::string& no_pieces() const { return no_pieces_; }
+  /// Whether it is followed so.
+  bool by_pieces() const { return no_pieces_.empty() && plan_.follow != Follow::steps; }
   /// Why orbits are not their own images; "" where they may be.
   const std::string& no_image() const { return no_image_; }
 

@@ -84,6 +84,7 @@ double twin_error(Map& map, const ShotOrbit& shot, const MapClock& clock, double
 template <class Map>
 class ContinuationRun {
   static constexpr bool by_steps = std::is_same_v<Map, SteppedMap>;
+  static constexpr std::size_t most_states = by_steps ? all_branch_states : most_branch_states;
 
  public:
   ContinuationRun(ContinuedMap& continued, Map& map, const StudyCase& study_case, const ContinuationPlan& plan,
@@ -97,8 +98,11 @@ class ContinuationRun {
 
   void run(CaseRecord& record) {
     for (const WantedOrbit& orbit : plan_.orbits) follow(orbit);
-    for (const FollowedBranch& branch : followed_)
-      results_.add(branch, rows_of(map_, branch, plan_.multipliers), x_of_rows(map_), continued_.parameter_scale());
+    for (const FollowedBranch& branch : followed_) {
+      std::vector<BranchRow> rows = rows_of(map_, branch, plan_.multipliers);
+      results_.keep_orbits(branch, rows, marches_of(map_), most_states);
+      results_.add(branch, std::move(rows), x_of_rows(map_), continued_.parameter_scale());
+    }
     results_.put(record, plan_, pieces_, over_budget_ ? std::optional(budget_of(case_)) : std::nullopt);
     record.steps = pieces_ * case_.steps_per_period;
     if (twins_ > 0)
@@ -143,6 +147,10 @@ class ContinuationRun {
     put_multipliers(all, outside(all), plan_.multipliers, row);
     row.iterations = shot.iterations;
     row.pieces = 0;
+    branch.trace.corners.resize(1);
+    branch.trace.corners.front().parameter = shot.parameter;
+    branch.trace.states = {{0, shot.x}};
+    results_.keep_orbits(branch, {row}, marches_of(map_), most_states);
     results_.add(std::move(row));
   }
 

@@ -34,6 +34,11 @@ int snapshots_asked(const Json& settings) {
 }
 
 SnapshotTaker::SnapshotTaker(const SceneSpec& scene, const Marcher& marcher, long long steps, int count)
+    : SnapshotTaker(scene, marcher, LaneSpec(marcher.program().lanes[0]), marcher.program().problem->position, steps,
+                    count) {}
+
+SnapshotTaker::SnapshotTaker(const SceneSpec& scene, const Marcher& marcher, const LaneSpec& lane,
+                             const Eigen::VectorXd& position, long long steps, int count)
     : steps_(steps), count_(std::min<long long>(count, steps)) {
   if (count_ <= 0) return;
   const SemiDiscrete& problem = *marcher.program().problem;
@@ -51,8 +56,8 @@ SnapshotTaker::SnapshotTaker(const SceneSpec& scene, const Marcher& marcher, lon
     const auto middle = static_cast<std::size_t>((first + last) / 2);
     shape_.point.push_back(problem.contact_x[middle]);
     if (middle < stops.size()) shape_.stops.push_back(stops[middle]);
-    shape_.lower.push_back(problem.lower.segment(first, last - first + 1).maxCoeff());
-    shape_.upper.push_back(problem.upper.segment(first, last - first + 1).minCoeff());
+    shape_.lower.push_back(lane.lower.segment(first, last - first + 1).maxCoeff());
+    shape_.upper.push_back(lane.upper.segment(first, last - first + 1).minCoeff());
   }
   given_.assign(static_cast<std::size_t>(points), 0);
   // Displacements are drawn as the stops see them.
@@ -65,7 +70,7 @@ SnapshotTaker::SnapshotTaker(const SceneSpec& scene, const Marcher& marcher, lon
       shares_.bottomRows(1)(0, static_cast<Eigen::Index>(k)) =
           std::count(moved[k].begin(), moved[k].end(), 0U) > 0 ? 1 : 0;
   }
-  take(problem, problem.position, marcher.support(0, 0), 0);
+  take(problem, position, marcher.support(0, 0), 0);
   asks_.next_shown = step_of(next_);
 }
 

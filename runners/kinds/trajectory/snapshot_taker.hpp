@@ -15,6 +15,9 @@ int snapshots_asked(const Json& settings);
 class SnapshotTaker final : public StepObserver {
  public:
   SnapshotTaker(const SceneSpec& scene, const Marcher& marcher, long long steps, int count);
+  /// Of a lane that begins elsewhere than its scene says, between other stops.
+  SnapshotTaker(const SceneSpec& scene, const Marcher& marcher, const LaneSpec& lane, const Eigen::VectorXd& position,
+                long long steps, int count);
 
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;

@@ -5,7 +5,7 @@
   const calmInstant = 0.5;   // s, where motion is to be reduced
 
   const { escape } = ricochet.format;
-  const nameOf = (data, one) => (data.view.label(one) || "the one case") + " · " + one.id;
+  const nameOf = (data, one) => [data.view.label(one) || "the one case", one.id, data.page.snapshots.cases[one.id].of].filter(Boolean).join(" · ");
 
   // The case that differs from the first in a method, and in as little else as there is.
   function otherMethod(view, [first, ...others]) {

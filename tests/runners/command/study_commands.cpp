@@ -218,3 +218,54 @@ TEST_CASE("slurm: bad times, no program of ranks and studies that are none are t
   CHECK(say(here, "slurm none.json --time 10").code == 2);
   CHECK(say(here, "slurm study.json --time 10 --nodes 0").code == 2);
 }
+
+TEST_CASE("An orbit of a branch is solved again, or what the branch has is told") {
+  const ScratchFolder here;
+  std::ofstream(here / "branch.json") << R"({
+    "name": "branch", "kind": "continuation",
+    "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.04,
+                            "force": {"amplitude": 0.5, "pulsation": 1.3}},
+              "stops": {"upper": 1, "at": "tip"}},
+    "methods": {"mass": "consistent", "contact": {"name": "penalty", "stiffness": 30},
+                "time": {"name": "newmark-dumont-paoli", "beta": 0.25}},
+    "steps_per_period": 200, "parameter": {"pointer": "/scene/structure/force/amplitude", "from": 0.3, "to": 1.0},
+    "orbits": [{"at": 0.5, "from": "free"}], "both_ways": false, "switch": null, "at_most": {"arc": 10}
+  })";
+  const Said run = say(here, "run branch.json --out there --jobs 1");
+  INFO(run.out << run.err);
+  REQUIRE(run.code == 0);
+  std::ifstream branches(here / "there" / "branches.csv");
+  std::string line, last, id;
+  std::getline(branches, line);
+  const int arc = place(line, "arc"), tip = place(line, "tip_displacement");
+  while (std::getline(branches, line)) last = line;
+  id = field(last, 0);
+  const Said point =
+      say(here, "point there " + id.substr(0, 4) + " --branch orbit-1+ --arc " + field(last, arc) + " --snapshots 20");
+  INFO(point.out << point.err);
+  REQUIRE(point.code == 0);
+  CHECK_THAT(point.out, Contains("contact runs:") && Contains("residual") && Contains("21 instants"));
+  std::ifstream period(here / "there" / "points" / (id + "_orbit-1+_" + field(last, arc) + ".csv"));
+  REQUIRE(period);
+  std::getline(period, line);
+  std::getline(period, line);
+  CHECK(std::stod(field(line, 1)) == Approx(std::stod(field(last, tip))).margin(1e-12));
+  // The next report shows the film, and says of which orbit it is.
+  REQUIRE(say(here, "report there").code == 0);
+  CHECK_THAT(read_text(here / "there" / "report.html"), Contains("orbit-1+ at an arc of " + field(last, arc) + " m"));
+  const Said elsewhere = say(here, "point there " + id + " --branch orbit-1+ --arc 0.1 --out one.csv");
+  CHECK(elsewhere.code == 0);
+  CHECK_FALSE(read_text(here / "one.csv").empty());
+
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"there " + id + " --branch orbit-1 --arc 0.1", "did you mean \"orbit-1+\"?"},
+      {"there " + id + " --branch orbit-1+ --arc 99", "the branch orbit-1+ goes from 0 to "},
+      {"there " + id + " --branch orbit-1+ --arc=-1", "the branch orbit-1+ goes from 0 to "},
+      {"there " + id + " --branch orbit-1+ --arc one", "expected a number"},
+      {"there " + id + " --branch orbit-1+", "expected --branch NAME and --arc S"},
+      {"there " + id + "0 --branch orbit-1+ --arc 0", "did you mean \"" + id + "\"?"},
+      {"there " + id + " --parameter 0.5 --start rest", "kind continuation; expected --branch NAME"},
+      {"there " + id + " --branch orbit-1+ --arc 0 --periods 3", "kind continuation; expected --branch NAME"},
+  };
+  check_refused(here, wrong);
+}

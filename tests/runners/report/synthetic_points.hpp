@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/kinds/continuation/continuation_tables.hpp"
+#include "runners/kinds/continuation/branch_orbits.hpp"
 #include "runners/store/record.hpp"
 
 /// \file
@@ -16,6 +16,28 @@ struct PointLaw {
   double of_step = 279.2, of_mesh = 0.1, mesh_order = 3.8, of_compliance = 11;  ///< of the fold
   double noise = 1e-7;  ///< half intervals of fold and first contact
 };
+
+/// Portraits of every fifth orbit: a circle of the tip over half a period, between stops that push at its ends.
+inline void add_portraits(CaseRecord& record, const std::vector<BranchRow>& rows) {
+  NumberTable portraits = branch_portraits_type().head(), samples = branch_samples_type().head(),
+              runs = branch_runs_type().head();
+  std::vector<std::string> names;
+  constexpr int count = 20;
+  for (const BranchRow& row : rows) {
+    if (names.empty() || names.back() != row.branch) names.push_back(row.branch);
+    if (row.row % 5 != 0 && !row.point) continue;
+    const double branch = static_cast<double>(names.size()) - 1, at = static_cast<double>(row.row);
+    portraits.add({branch, at, count, -0.1, 0.1});
+    for (int k = 0; k < count; ++k) {
+      const double phase = 3.14159265358979323846 * k / count;
+      samples.add({*row.tip_displacement + 0.1 * std::sin(phase), std::cos(phase)});
+    }
+    runs.add({branch, at, 1.501, 1, 0.1, 0.2, 0.05});
+    runs.add({branch, at, 1.501, 0, -0.1, 0.7, 0.05});
+  }
+  for (NumberTable* table : {&portraits, &runs}) table->words = {{"branch", names}};
+  record.numbers = {std::move(portraits), std::move(samples), std::move(runs)};
+}
 
 /// A case with one branch both ways from λ = 0.08: up to the fold and back, down through the first contact.
 inline CaseRecord points_case(const std::string& mass, double stiffness, int elements, int steps,
@@ -51,6 +73,7 @@ inline CaseRecord points_case(const std::string& mass, double stiffness, int ele
     row.stable = unstable == 0;
     row.unstable = unstable;
     const double size = unstable > 0 ? 1.05 + 8 * std::abs(parameter - torus) : 1 - 12 * std::abs(parameter - torus);
+    row.half_step_pair = std::complex<double>(-0.6 * size, 0.8 * size);
     row.multipliers = {std::complex<double>(-0.6 * size, 0.8 * size), std::complex<double>(-0.6 * size, -0.8 * size),
                        std::complex<double>(0.3, 0), std::complex<double>(-0.1, 0.05)};
     row.impacts_per_period = parameter > contact ? 2 : 0;
@@ -124,6 +147,7 @@ inline CaseRecord points_case(const std::string& mass, double stiffness, int ele
                      (folds ? 1 : 0) + static_cast<int>(prominence < 2e-4 ? invented * 1e-2 : 0)});
   }
   record.tables = {branches_table(4, rows), special_points_type().with(points), turns_type().with(turns)};
+  add_portraits(record, rows);
   return record;
 }
 

@@ -8,6 +8,7 @@ namespace ricochet::report {
 /// ID/branch/… of equal length the number of the branch, parameter, tip displacement (m) and velocity (m/s), arc (m),
 /// count of unstable multipliers, special point (0: none) and real and imaginary parts of the multipliers. Of more than
 /// `rows` rows an even choice of each branch is kept, with special points and changes of stability; `said` tells so.
+/// Portraits are blocks ID/orbit/…: place of the row, first sample, stops of the tip; samples u and v; runs of contact.
 nlohmann::ordered_json branch_data(const CaseView& view, CurveData& curves);
 
 }  // namespace ricochet::report

@@ -4,14 +4,16 @@
   const tip = ["tip displacement", "m"], colourOf = (k) => methodColours[k % methodColours.length];
   const both = "stable (solid), unstable (dashed)";
 
-  // The row of a case that lies nearest to a place of the chart.
+  // The row of a case that lies nearest to a place of the chart; one whose portrait is carried before another.
   function nearest(branches, drawn, chart, at) {
     const a = chart.convertFromPixel({ xAxisIndex: 0, yAxisIndex: 0 }, at), b = chart.convertFromPixel({ xAxisIndex: 0, yAxisIndex: 0 }, [at[0] + 1, at[1] + 1]);
-    let found = null, best = reach;
+    let found = null, best = 2 * reach;
     for (const curve of drawn) {
-      const parameter = branches.column(curve.one.id, "parameter"), tips = branches.column(curve.one.id, "tip");
+      const portrayed = branches.portrayed(curve.one.id), parameter = branches.column(curve.one.id, "parameter"), tips = branches.column(curve.one.id, "tip");
       for (let i = 0; i < parameter.length; ++i) {
-        const far = Math.hypot((parameter[i] - a[0]) / (b[0] - a[0]), (tips[i] - a[1]) / (b[1] - a[1]));
+        const away = Math.hypot((parameter[i] - a[0]) / (b[0] - a[0]), (tips[i] - a[1]) / (b[1] - a[1]));
+        if (away > reach) continue;
+        const far = away + (portrayed.has(i) ? 0 : reach);
         if (far < best) { best = far; found = { curve, id: curve.one.id, row: i }; }
       }
     }
@@ -50,7 +52,7 @@
       for (const kind of this.kinds()) { const [words, symbol] = branches.kindWords(kind); legend.push(ricochet.swatch(words, "#555555", symbol, "Point")); }
       return {
         id: "branches", title: "Branches of periodic orbits", views, charts, legend: ricochet.firstOfName(legend), linked: false,
-        caption: ["Tip displacement at the strobe, absolute, against " + branches.parameter[0] + "; " + both + ". Large marks: points that the two finest cases of a refinement share, with bars where they may be; small ones: points of one case. Click a branch for its orbit.", branches.said, branches.beneath].filter(Boolean).join(" "),
+        caption: ["Tip displacement at the strobe, absolute, against " + branches.parameter[0] + "; " + both + ", thin where a point's multipliers cross the circle several times. Large marks: points that the two finest cases of a refinement share, with bars where they may be; small ones: points of one case. Click a branch for its orbit.", branches.said, branches.beneath].filter(Boolean).join(" "),
       };
     }
     kinds() { return ricochet.distinct(this.branches.cases.flatMap((one) => this.branches.points(one).map((row) => this.branches.kind(row)))); }
@@ -61,8 +63,9 @@
       ricochet.withoutEnds(xAxis);
       if (this.beneath.tip.length) ricochet.draw(out, () => this.beneath, { x: "parameter", y: "tip" }, { ...ricochet.dot("bifurcation", "#b3b3b3", "circle", 2, 0), silent: true });
       for (const { one, name, colour } of curves) {
-        for (const unstable of [false, true])
-          ricochet.draw(out, () => branches.curve(one.id, unstable), { x: "parameter", y: "tip" }, { ...ricochet.line(name, colour, unstable ? 1.3 : 2, unstable ? [5, 4] : "solid"), case: one.id, showSymbol: false, z: 2 });
+        for (const [unstable, flickers, width] of [[false, false, 2.2], [true, false, 1.4], [false, true, 0.8], [true, true, 0.6]])
+          if (!flickers || branches.flickering(one.id).includes(1))
+            ricochet.draw(out, () => branches.curve(one.id, unstable, flickers), { x: "parameter", y: "tip" }, { ...ricochet.line(name, colour, width, unstable ? [5, 4] : "solid"), case: one.id, showSymbol: false, z: 2 });
         for (const rows of ricochet.groupBy(branches.points(one), (row) => [branches.kind(row), Boolean(row.name)]).values()) this.mark(out, name, colour, rows);
       }
       out.pick = (chart, option, hidden, at) => nearest(branches, curves.filter(({ name }) => !hidden.has(name)), chart, at);

@@ -9,7 +9,9 @@
   class Branches {
     constructor(data) {
       const { page, view } = data;
-      Object.assign(this, { data, view, parameter: page.branches.parameter, said: page.branches.said, beneath: page.branches.beneath });
+      Object.assign(this, { data, view, parameter: page.branches.parameter, said: [page.branches.said, page.branches.portraits].filter(Boolean).join(" "), beneath: page.branches.beneath });
+      this.known = new Map();
+      this.shaky = new Map();
       this.cases = view.all.filter((one) => page.branches.cases[one.id]);
       this.methodColumns = view.varyingWithout(refinements);
       this.refined = view.varying.filter((column) => refinements.includes(column));
@@ -30,10 +32,10 @@
     kind(row) { return row.kind === "contact" && (row.runs_before === 0 || row.runs_after === 0) ? "first contact" : row.kind; }
     kindWords(kind) { return kinds[kind] || [kind, "circle", 7]; }
     points(one) { return this.special(one.id).filter((row) => row.parameter !== null && row.tip_displacement !== null); }
-    // Columns of the stable or of the unstable rows: where that changes both have the row, and where they end is a gap.
-    curve(id, unstable) {
+    // Columns of the stable or of the unstable rows, those that flicker apart: where that changes both have the row, and where they end is a gap.
+    curve(id, unstable, flickers = false) {
       const of = this.column(id, "of"), counts = this.column(id, "unstable"), parameter = this.column(id, "parameter"), tip = this.column(id, "tip"), out = { parameter: [], tip: [] };
-      const is = (i) => Number.isFinite(counts[i]) && (counts[i] > 0) === unstable, put = (x, y) => { out.parameter.push(x); out.tip.push(y); };
+      const shaky = this.flickering(id), is = (i) => Number.isFinite(counts[i]) && (counts[i] > 0) === unstable && Boolean(shaky[i]) === flickers, put = (x, y) => { out.parameter.push(x); out.tip.push(y); };
       for (let i = 0; i + 1 < of.length; ++i) {
         // Between two rows the curve looks as the second does, so that it changes at a point.
         if (of[i] !== of[i + 1] || !is(i + 1)) continue;
@@ -51,6 +53,40 @@
     }
     multipliers(id, row) {
       return Array.from({ length: this.of(id).multipliers }, (_, m) => ({ re: this.column(id, "re" + (m + 1))[row], im: this.column(id, "im" + (m + 1))[row] })).filter(({ re, im }) => Number.isFinite(re) && Number.isFinite(im));
+    }
+    // Those nearest the circle by the half-step rule: the real one, and the pair.
+    smooth(id, row) {
+      const half = this.column(id, "half")[row], re = this.column(id, "half_re")[row], im = this.column(id, "half_im")[row];
+      return [...(Number.isFinite(half) ? [{ re: half, im: 0 }] : []), ...(Number.isFinite(re) ? [{ re, im }, { re, im: -im }] : [])];
+    }
+    // Whether the film that a case keeps is of this orbit.
+    filmed(id, name, arc) { return ((this.data.page.snapshots || {}).cases || {})[id]?.of === name + " at an arc of " + arc + " m"; }
+    block(id, name) { return this.data.block(id + "/orbit/" + name) || []; }
+    // Whether the page carries the portrait of a row.
+    portrayed(id) {
+      if (!this.known.has(id)) this.known.set(id, new Map(Array.from(this.block(id, "row"), (row, k) => [row, k])));
+      return this.known.get(id);
+    }
+    // One period of an orbit, closed, over its phase in forcing periods; of one that is its own image the second half is minus the first.
+    portrait(id, row) {
+      const k = this.portrayed(id).get(row);
+      if (k === undefined) return null;
+      const first = this.block(id, "first"), all = this.block(id, "u"), { period, symmetric } = this.branch(id, row), part = (name) => Array.from(this.block(id, name).slice(first[k], k + 1 < first.length ? first[k + 1] : all.length));
+      const whole = (values) => { const out = symmetric ? values.concat(values.map((value) => -value)) : values; return out.concat(out.slice(0, 1)); }, u = whole(part("u")), v = whole(part("v"));
+      const runs = Array.from(this.block(id, "run/row")).map((of, i) => ({ of, i })).filter(({ of }) => of === row).map(({ i }) => Object.fromEntries(["x", "upper", "bound", "begin", "length"].map((name) => [name, this.block(id, "run/" + name)[i]])));
+      return { u, v, phase: u.map((_, i) => (period * i) / (u.length - 1)), period, lower: this.block(id, "lower")[k], upper: this.block(id, "upper")[k], runs };
+    }
+    // Rows of the branch of a row that lie within the interval of a special point around it: there its multipliers cross the circle again and again.
+    flickering(id) {
+      if (this.shaky.has(id)) return this.shaky.get(id);
+      const of = this.column(id, "of"), parameter = this.column(id, "parameter"), out = new Uint8Array(of.length);
+      for (const point of this.special(id)) {
+        if (!["symmetry", "flip", "torus"].includes(point.kind) || !(point.crossings > 1)) continue;
+        const at = this.rowOf(id, point), inside = (i) => of[i] === of[at] && parameter[i] >= point.low && parameter[i] <= point.high;
+        for (const step of [-1, 1]) for (let i = at; at >= 0 && inside(i); i += step) out[i] = 1;
+      }
+      this.shaky.set(id, out);
+      return out;
     }
     // The row that a special point is; −1 where it is not drawn.
     rowOf(id, { branch, point }) {

@@ -1,7 +1,7 @@
 // Special points over the step, the mesh and the compliance: their distance from the limit with intervals and the fitted order.
 {
   const { Interval, methodColours } = ricochet, axes = { steps_per_period: ["step", "of a period"], elements: ["1 / elements", "1"], modes: ["1 / modes", "1"], "contact.stiffness": ["1 / stiffness", "m/N"] };
-  const mostCharts = 12, colourOf = (k) => methodColours[k % methodColours.length];
+  const mostCharts = 12, roundOff = 1e-12, colourOf = (k) => methodColours[k % methodColours.length];
 
   class PointFigure {
     constructor(data) {
@@ -18,8 +18,9 @@
     }
     methodName(id) { const one = this.data.byId.get(id); return one ? this.branches.methodLabel(one) : id; }
     figure() {
-      // Charts that show something, at most so many.
-      const shows = (rows) => rows.some((row) => row.distance > 0 || row.presence === "absent");
+      // Charts that show something, at most so many: two distances of a method, or one and a case that lacks the point. What round-off explains is none.
+      for (const row of this.levels) if (row.distance !== null && row.distance <= roundOff * Math.abs(row.value)) row.distance = 0;
+      const far = (rows) => rows.filter((row) => row.distance > 0).length, most = (rows) => Math.max(...Array.from(ricochet.groupBy(rows, (row) => [row.method]).values(), far)), shows = (rows) => most(rows) > 1 || (most(rows) > 0 && rows.some((row) => row.presence === "absent"));
       const all = Array.from(ricochet.groupBy(this.levels, (row) => [row.name, row.refined]).values()).filter(shows).sort((a, b) => this.rank(a) - this.rank(b)), groups = all.slice(0, mostCharts), several = ricochet.distinct(groups.map(([first]) => first.refined)).length > 1;
       const charts = groups.map((rows) => this.chart(rows, several)).filter(Boolean);
       if (!charts.length) return null;

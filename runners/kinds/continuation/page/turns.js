@@ -6,8 +6,9 @@
     const rows = data.rows("turns");
     if (!data.page.branches || !rows.some((row) => row.folds > 0)) return [];
     const branches = new ricochet.Branches(data), byCase = data.rowsBy("turns", ["case"]), names = ricochet.distinct(branches.cases.map((one) => branches.refinedLabel(one)));
-    const x = ["prominence", branches.parameter[1]], y = ["folds with at least that prominence", "1"], xs = new Interval().include(...rows.map((row) => row.prominence)), ys = new Interval().include(1, ...rows.map((row) => row.folds));
+    const x = ["prominence", branches.parameter[1]], y = ["folds with at least that prominence", "1"], xs = new Interval().include(...rows.map((row) => row.prominence)), ys = new Interval(1, 1);
     const counted = (one) => Array.from(ricochet.groupBy(byCase(one.id), (row) => [row.prominence]).values(), (own) => ({ case: one.id, prominence: own[0].prominence, folds: own.reduce((sum, row) => sum + row.folds, 0) })).sort((a, b) => a.prominence - b.prominence);
+    for (const one of branches.cases) ys.include(...counted(one).filter((row) => row.folds > 0).map((row) => row.folds));
     const charts = branches.methods().map(({ label, cases }) => {
       const out = ricochet.view(x, y, ricochet.logAxis(x, xs, false), ricochet.logAxis(y, ys, true));
       for (const one of cases) {

@@ -16,16 +16,47 @@ void check_branches(const browser::Json& page) {
   const browser::Json& branches = figure(page, "branches");
   CHECK(branches.at("views") == browser::Json({"finest of each method", "refined"}));
   REQUIRE(branches.at("charts").size() == 9);
-  size_t lines = 0, folds = 0;
+  size_t lines = 0, thin = 0, folds = 0;
   for (const browser::Json& one : branches.at("charts")[0].at("views")[0].at("series")) {
     const auto name = one.at("name").get<std::string>();
-    lines += one.at("type") == "line" && name.find("smooth") == 0;
+    const bool line = one.at("type") == "line" && name.find("smooth") == 0;
+    lines += line && one.at("lineStyle").at("width") > 1;
+    thin += line && one.at("lineStyle").at("width") < 1;
     folds += one.at("type") == "scatter" && name.starts_with("fold");
   }
   // Of each of four methods a stable and an unstable part.
   CHECK(lines == 8);
+  // Its torus has several raw crossings: there the branch is thin.
+  CHECK(thin == 8);
   // Of two the fold has no name, or there is none.
   CHECK(folds >= 7);
+}
+
+/// The portrait over a whole period between the stops, what pushes over the phase, multipliers, and two commands.
+void check_branch_orbit(const browser::Json& panel) {
+  REQUIRE(panel.is_object());
+  CHECK(panel.at("opened") == true);
+  CHECK(panel.at("has") == true);
+  REQUIRE(panel.at("charts").size() == 3);
+  const browser::Json &portrait = panel["charts"][0], &in_time = panel["charts"][1], &plane = panel["charts"][2];
+  // The curve, the strobe, two stops. Half a period is stored: the other half is minus it, and the curve is closed.
+  REQUIRE(portrait.size() == 4);
+  const browser::Json& curve = portrait[0].at("data");
+  REQUIRE(curve.size() == 41);
+  for (const size_t part : {0, 1}) {
+    CHECK(curve[0]["value"][part] == curve[40]["value"][part]);
+    for (size_t k = 0; k < 20; ++k)
+      CHECK(curve[k]["value"][part].get<double>() == -curve[k + 20]["value"][part].get<double>());
+  }
+  CHECK(in_time.size() == 3);
+  CHECK(plane.size() == 4);
+  CHECK(panel.at("tables") == browser::Json({3}));
+  REQUIRE(panel.at("commands").size() == 2);
+  const std::string words =
+      " --branch " + panel.at("name").get<std::string>() + " --arc " + panel.at("arc").get<std::string>();
+  CHECK_THAT(panel["commands"][0].get<std::string>(),
+             Catch::Matchers::StartsWith("ricochet point ") && Catch::Matchers::EndsWith(words));
+  CHECK_THAT(panel["commands"][1].get<std::string>(), Catch::Matchers::EndsWith(words + " --snapshots 200"));
 }
 
 /// The fold of the smooth mass over the step falls on a line of slope 2.
@@ -54,6 +85,7 @@ TEST_CASE("figures of continuation draw branches, points, multipliers and turns"
   const browser::Json& page = pages.at("continuation");
   check_branches(page);
   check_points(page);
+  check_branch_orbit(figure(page, "branches").at("branch"));
   CHECK(figure(page, "multipliers").at("charts").size() == 8);
   CHECK(figure(page, "turns").at("charts").size() == 8);
   require_works(page, results.cases.size());

@@ -126,6 +126,18 @@
     ricochet.sidePanel.close();
     return Object.assign(out, { closed: !ricochet.sidePanel.panel() });
   }
+  // A click on a branch opens its orbit, one whose portrait the page carries.
+  function checkBranch(figure, slot) {
+    const { page } = ricochet.data, [id] = Object.keys(page.branches.cases), branches = new ricochet.Branches(ricochet.data), rows = Array.from(branches.portrayed(id).keys()), row = rows[rows.length >> 1];
+    if (row === undefined) return null;
+    const column = (name) => branches.column(id, name)[row];
+    figure.pick(slot, slot.chart.convertToPixel({ xAxisIndex: 0, yAxisIndex: 0 }, [column("parameter"), column("tip")]));
+    const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown() || {}, charts = panel ? ricochet.sidePanel.charts() : [];
+    const out = { opened: Boolean(panel), has: branches.portrayed(shown.id).has(shown.orbit), charts: charts.map(seriesIn), commands: panel ? all("pre", panel).map((pre) => pre.textContent) : [], text: panel ? panel.textContent : "",
+      tables: panel ? all("table", panel).map((table) => table.rows.length) : [], arc: String(branches.column(shown.id, "arc")[shown.orbit]), name: branches.branch(shown.id, shown.orbit).name };
+    ricochet.sidePanel.close();
+    return out;
+  }
   // A click in an image of basins opens the cell that lies there.
   function checkCell(figure, slot) {
     const { xs, ys } = ricochet.data.page.basins, column = xs.length >> 1, row = ys.length >> 2;
@@ -263,6 +275,7 @@
     const apart = figure.viewOf(first).pick;   // has a panel of its own
     out.door = apart ? null : seen.map((slot) => checkDoor(figure, slot)).find(Boolean) || null;
     if (description.id === "diagram") out.panel = checkPanel(figure, first, figure.viewOf(first));
+    if (description.id === "branches") out.branch = checkBranch(figure, first);
     if (description.id === "basins") out.cell = checkCell(figure, first);
     if ((description.choices || []).some((choice) => choice.name === "Overlay")) out.overlay = checkOverlay(figure);
     return out;
