@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -114,6 +115,10 @@ void only_one(const Compared& study, MeasureSaid& said) {
                      said.limits.words.words, text.substr(begins.size()));
 }
 
+bool of_stop(const std::string& name) {
+  return name.ends_with("]");
+}
+
 /// One sentence on the measures after the first that share a verdict.
 void say_others(const std::vector<MeasureSaid>& others, const MeasureSaid& first, std::vector<Sentence>& out) {
   const std::string& first_kind = first.kind;
@@ -131,7 +136,19 @@ void say_others(const std::vector<MeasureSaid>& others, const MeasureSaid& first
   };
   InOrderMet<std::string, std::vector<const MeasureSaid*>> kinds;
   for (const MeasureSaid& one : others) kinds[one.kind].push_back(&one);
+  const auto value_of = [&](const MeasureSaid& one, Sentence& said) {
+    std::vector<double> values;
+    for (const Method* method : one.limits.with_limit()) values.push_back(method->limit->value);
+    const double middle = median(values);
+    Clause value{.form = "value", .measure = one.limits.words.measure};
+    value.value = middle * one.limits.words.factor;
+    value.unit = one.limits.words.unit;
+    said.clauses.push_back(std::move(value));
+    return value_text(one.limits.words, middle, std::max(spread(one), moved(one)) * one.scale);
+  };
   for (const auto& [kind, all] : kinds.list()) {
+    // Of one alone the value is told as well, and of stops.
+    const bool alone = kind == alike && all.size() == 1 && first_kind == alike;
     std::vector<std::string> names;
     Sentence said;
     for (const MeasureSaid* one : all) {
@@ -139,22 +156,16 @@ void say_others(const std::vector<MeasureSaid>& others, const MeasureSaid& first
       clause.value = 100 * (kind == alike ? spread(*one) : moved(*one));
       clause.unit = "%";
       said.clauses.push_back(clause);
-      const bool some = kind == alike && by_percent(spread(*one)) != by_percent(0);
-      names.push_back(one->limits.words.words + (some ? " (" + by_percent(spread(*one)) + ")" : ""));
+      std::vector<std::string> told;
+      if (kind == alike && !alone && of_stop(one->limits.words.measure)) told.push_back(value_of(*one, said));
+      if (kind == alike && by_percent(spread(*one)) != by_percent(0)) told.push_back(by_percent(spread(*one)));
+      names.push_back(one->limits.words.words + (told.empty() ? "" : fmt::format(" ({})", fmt::join(told, ", "))));
     }
-    // Of one alone the value is told as well.
-    if (kind == alike && all.size() == 1 && first_kind == alike) {
+    if (alone) {
       const MeasureSaid& one = *all.front();
-      std::vector<double> values;
-      for (const Method* method : one.limits.with_limit()) values.push_back(method->limit->value);
-      const double middle = median(values), apart = spread(one);
-      Clause value{.form = "value", .measure = one.limits.words.measure};
-      value.value = middle * one.limits.words.factor;
-      value.unit = one.limits.words.unit;
-      said.clauses.push_back(std::move(value));
-      said.text =
-          fmt::format("{} agrees as well: {}, {} apart.", capitalised(one.limits.words.words),
-                      value_text(one.limits.words, middle, std::max(apart, moved(one)) * one.scale), by_percent(apart));
+      const std::string value = value_of(one, said);
+      said.text = fmt::format("{} agrees as well: {}, {} apart.", capitalised(one.limits.words.words), value,
+                              by_percent(spread(one)));
       out.push_back(std::move(said));
       continue;
     }
@@ -209,10 +220,6 @@ bool has_interval(const StudyResults& results, const std::string& name) {
   return std::any_of(results.cases.begin(), results.cases.end(), [&](const CaseRecord& one) {
     return one.status == "done" && measure(one, "confidence." + name).has_value();
   });
-}
-
-bool of_stop(const std::string& name) {
-  return name.ends_with("]");
 }
 
 // The mean over the window that knows its interval, in the place of what the whole run adds up to.

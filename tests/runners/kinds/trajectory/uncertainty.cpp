@@ -181,6 +181,16 @@ TEST_CASE("where a window has parts, a stop's total is told by its mean over the
   CHECK_THAT(said("energy_left"), Catch::Contains("is not compared: the motion is chaotic"));
 }
 
+TEST_CASE("measures of stops that agree are told with their values") {
+  StudyResults results = two_forces();
+  for (CaseRecord& record : results.cases)
+    record.measures = {{"impulse[bar]", 3.0}, {"rms_force[bar]", 10.0}, {"contact_time[bar]", 0.25}};
+  const answers::Answer answer = answers::measure_answer(
+      answers::Compared(results), {"impulse[bar]", "rms_force[bar]", "contact_time[bar]"}, false);
+  REQUIRE(answer.sentences.size() == 2);
+  CHECK(answer.sentences.back().text == "Rms force at bar (10 N) and time in contact at bar (0.25 s) agree as well.");
+}
+
 TEST_CASE("measures of a whole case, and studies without stops with names, have no row") {
   StudyResults results = two_forces();
   for (CaseRecord& record : results.cases) record.measures.pop_back();
