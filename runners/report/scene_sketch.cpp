@@ -96,11 +96,11 @@ class SceneDrawing {
   explicit SceneDrawing(const Json& study)
       : scene_(study), bodies_(scene_.bodies()), loads_(loads_of(scene_)), layout_(scene_.at("/files/layout")) {
     for (const auto& [name, body] : bodies_) {
-      const Json* layout = name.empty() ? layout_ : body.at("/files/layout/bodies/" + name);
+      const Json* layout = bodies_.size() == 1 ? layout_ : body.at("/files/layout/bodies/" + name);
       layouts_.push_back(layout);
       sizes_.push_back(piece_size(body, layout));
     }
-    stops_ = scene_.stops(scene_.number("/scene/structure/length").value_or(1));
+    stops_ = bodies_.front().second.stops(bodies_.front().second.number("/scene/structure/length").value_or(1));
   }
 
   std::string svg(const std::string& said) {
@@ -141,10 +141,11 @@ class SceneDrawing {
 
   std::vector<PieceFrame> alone() {
     const PieceSize& size = sizes_.front();
-    const std::string type = scene_.word("/scene/structure/type");
+    const auto& [name, body] = bodies_.front();
+    const std::string type = body.word("/scene/structure/type");
     PieceFrame frame{sketch_left, sketch_span, 84};
-    frame.shaken = support_words(scene_);
-    frame.loaded = loads_.on("");
+    frame.shaken = support_words(body);
+    frame.loaded = loads_.on("") || loads_.on(name);
     height_ = sketch_height;
     if (type == "beam") frame.measure = height_ - 14;
     if (type == "oscillator") frame.rest = 128;

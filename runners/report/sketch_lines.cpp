@@ -41,12 +41,12 @@ std::string face(double x, double y, double dx, double dy) {
 
 std::string Labels::operator()(double x, double y, const std::string& text, const char* anchor, double away) {
   if (text.empty()) return "";
-  constexpr double letter = 6.4, height = 13, most = 8;
+  constexpr double letter = 6.7, space = 3, height = 13, most = 8;
   const auto letters = std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
   const double wide = letter * static_cast<double>(letters);
   const double left = x - (*anchor == 'm' ? wide / 2 : *anchor == 'e' ? wide : 0);
   const auto covers = [&](const Box& one) {
-    return left < one.right && one.left < left + wide && std::abs(y - one.low) < height;
+    return left - space < one.right && one.left < left + wide + space && std::abs(y - one.low) < height;
   };
   for (double tried = 0; tried < most && std::any_of(boxes_.begin(), boxes_.end(), covers); ++tried) y += away * height;
   boxes_.push_back({left, left + wide, y});

@@ -67,7 +67,7 @@ Json structure_layout(const SceneSpec& scene) {
   if (std::none_of(drawn.begin(), drawn.end(), [](const auto& one) { return one.second.layout.has_value(); }))
     return out;
   const auto of = [&](const Place& place) { return drawn[place.body].of(place); };
-  out["stops"] = out["loads"] = Json::array();
+  for (const char* key : {"stops", "loads"}) out[key] = Json::array();
   for (const NamedStop& stop : scene.stops.named) {
     if (stop.entry < out["stops"].size()) continue;  // another side of a clearance
     const DrawnPlace at = of(stop.at);

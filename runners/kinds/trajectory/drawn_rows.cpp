@@ -21,7 +21,7 @@ using Direction = std::array<double, 2>;
 
 constexpr std::array<const char*, 3> components = {"ux", "uy", "uz"};
 // Of several bodies, their rows are so much of the longest apart.
-constexpr double apart = 0.3;
+constexpr double apart = 0.16;
 
 // A structure, alone or a body, and its places among those of the film.
 struct FilmPart {
@@ -163,7 +163,7 @@ class FilmShape {
     const BodyPlace body = bodies_[static_cast<std::size_t>(&part - parts_.data())];
     if (joined_) shape_.bodies.emplace_back(part.name, static_cast<int>(part.first));
     const double low = joined_ && !columns_ ? apart * longest_ * body.row : 0;
-    const double left = columns_ ? (1 + apart) * longest_ * body.row : joined_ ? body.shift : 0;
+    const double left = columns_ ? (1 + apart / 2) * longest_ * body.row : joined_ ? body.shift : 0;
     const std::string prefix = joined_ ? part.name + " " : "";
     if (const AssembledStructure* files = part.files()) return add_files(part, *files, left, low, prefix);
     const double length = part.x.back();

@@ -189,6 +189,8 @@
         stroke(context, ink, 0.6, [2, 3], (c) => { for (const [a, b] of shots.links) { c.moveTo(...this.rested(a)); c.lineTo(...this.rested(b)); } });
         stroke(context, colour, 2.4, dash, (c) => {
           for (const link of shots.links) line(c, link);
+          // What moves along its line shows by its nodes.
+          if (!shots.oblique && shots.bodies && shots.y.every((y) => y === shots.y[0])) for (const p of all) { const [x, y] = this.moved(p); c.moveTo(x, y - 9); c.lineTo(x, y + 9); }
           for (const p of all) if (!joined.has(p)) { const [x, y] = this.moved(p); c.rect(x - 6, y - 6, 12, 12); }
         });
         context.fillStyle = ink;

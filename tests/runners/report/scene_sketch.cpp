@@ -194,6 +194,16 @@ TEST_CASE("bodies are drawn by name, above what goes upwards to them, with the s
   CHECK(value_of(study, "stop dimple") == "rod x = 0.25 m less strap x = 0.1 m, upper 0.0001 m");
 }
 
+TEST_CASE("a scene of one body is drawn as that structure", "[report]") {
+  Scene study = beam(), body = beam();
+  const std::string alone = report::scene_svg(study);
+  body["scene"]["bodies"]["tube"] = body["scene"]["structure"];
+  body["scene"].erase("structure");
+  // What differs is the name in its description.
+  const std::string svg = report::scene_svg(body);
+  CHECK(svg.substr(svg.find('>')) == alone.substr(alone.find('>')));
+}
+
 TEST_CASE("a stop between two places of a beam, a direction and a clearance are drawn", "[report]") {
   Scene study = beam();
   study["scene"]["structure"]["planes"] = 2;

@@ -41,7 +41,9 @@
     }
 
     chart(value, facet, frame) {
-      const { quantity, logarithmic } = value, y = logarithmic ? ricochet.logAxis(quantity, frame.range, true) : ricochet.heightAxis(quantity, ricochet.roundOutwards(frame.range, 2e-3));
+      // Counts that are all the same stand among counts.
+      const { quantity, logarithmic } = value, counts = facet.curves.every((curve) => this.rows(curve.cases, value).every((row) => Number.isInteger(row.height)));
+      const y = logarithmic ? ricochet.logAxis(quantity, frame.range, true) : ricochet.heightAxis(quantity, ricochet.roundOutwards(frame.range, counts ? 4 : 2e-3));
       const whole = ricochet.logarithmicAxis(this.xRange), x = ricochet.axisOf(whole, this.x, whole ? this.xRange : ricochet.roundOutwards(this.xRange, 1e-12), false);
       const out = ricochet.view(this.x, quantity, x, [y, ricochet.gutterAxis()]), mark = ricochet.outcomeMarks(), zeros = [];
       if (!logarithmic && frame.own) out.notes.push(ricochet.ownScale);

@@ -5,7 +5,7 @@ ricochet.figure("shocks", (data) => {
   const stops = ricochet.distinct(found.map((row) => row.stop)), cases = ricochet.distinct(found.map((row) => data.byId.get(row.case)));
   const x = ["time t", "s"], y = ["peak force", "N"], times = new ricochet.Interval().include(0, ...found.map((row) => row.t)), peaks = new ricochet.Interval().include(0, ...found.map((row) => row.peak));
   // Methods of one colour are told apart by their marks.
-  const symbols = ["circle", "diamond", "triangle", "rect", "pin"], symbolOf = new Map(), used = {};
+  const symbols = ["circle", "diamond", "triangle", "rect", "arrow"], symbolOf = new Map(), used = {};
   for (const one of cases) symbolOf.set(one.id, symbols[(used[view.colour(one)] = (used[view.colour(one)] || 0) + 1) % symbols.length]);
   const legend = [], charts = stops.map((stop) => {
     const out = ricochet.view(x, y, ricochet.axisOf(false, x, ricochet.roundOutwards(times, 1e-12), false), [ricochet.heightAxis(y, ricochet.roundOutwards(peaks, 2e-3)), ricochet.gutterAxis()]);
