@@ -30,7 +30,7 @@ struct Scalar {
 };
 
 void collect(const ObjectForm& form, Json value, const std::string& pointer, std::vector<Scalar>& scalars) {
-  value.erase("digest");  // no key of a study: what its files hold
+  if (value.is_object()) value.erase("digest");  // no key of a study: what its files hold
   for (const Field* field : fields_of(form, value, pointer)) {
     const std::string here = pointer_to(pointer, field->key());
     const auto found = value.find(field->key());

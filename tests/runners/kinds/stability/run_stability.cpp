@@ -343,3 +343,32 @@ TEST_CASE("a plan of a stability case counts its marches") {
   CHECK(plan.steps == 9000 + 10000 + 1000 + 200);
   CHECK(plan.predicted_seconds > 0);
 }
+
+TEST_CASE("a clearance that is closed holds what two stops across each other hold") {
+  // A round beam: a side alone is a stop alone, and a corner holds both displacements.
+  Json across = study_text("consistent", "signorini", dumont_paoli(0), 1e-4, 1e-2, 5);
+  across["scene"]["structure"]["planes"] = 2;
+  across["scene"].erase("initial");
+  Json round = across;
+  across["scene"]["stops"] = Json::parse(R"([{"name": "y", "at": {"x": 1}, "lower": -0.1, "upper": 0.1},
+                      {"name": "z", "at": {"x": 1, "component": "uz"}, "lower": -0.1, "upper": 0.1}])");
+  round["scene"]["stops"] =
+      Json::parse(R"([{"name": "hole", "at": {"x": 1}, "clearance": {"radius": 0.1, "sides": 16}}])");
+  const Result a = run(across), b = run(round);
+  REQUIRE(b.record.status == "done");
+  const std::vector<Cell> stops = a.column("radius", "closed"), hole = b.column("radius", "closed");
+  REQUIRE(stops.size() == 5);
+  REQUIRE(hole.size() == 5);
+  for (std::size_t i = 0; i < 5; ++i)
+    CHECK(hole[i].number().value() == Approx(stops[i].number().value()).epsilon(1e-6));  // roots of a double mode
+  CHECK(b.column("limit_predicted", "closed").front().number().value() ==
+        Approx(a.column("limit_predicted", "closed").front().number().value()).epsilon(1e-5));
+  // Springs of two sides beside each other add up in part: the corner is the stiffest set, and is told.
+  round["methods"]["contact"] = {{"name", "penalty"}, {"stiffness", 1e6}};
+  const Result soft = run(round);
+  CHECK(soft.record.status == "done");
+  bool told = false;
+  for (const Cell& reason : soft.column("reason", "closed"))
+    told = told || reason.text().find("a corner") != std::string::npos;
+  CHECK(told);
+}

@@ -58,6 +58,9 @@ TEST_CASE("a clearance has one row, one name, and the resultant of its sides as 
     CHECK(*impacts.words_of("stop") == std::vector<std::string>{"plate", "end"});
     CHECK(static_cast<double>(impacts.rows()) == reading(record, "impacts"));
     CHECK(reading(record, "impacts[plate]") >= 1);
+    // To pass from side to side changes no set of closed stops, of which there are two.
+    CHECK(reading(record, "active_set_changes") <=
+          2 * (reading(record, "impacts[plate]") + reading(record, "impacts[end]")));
     // Impulse = mean force times the time in contact, of the same instants.
     CHECK(reading(record, "mean_force[plate]") * reading(record, "contact_time[plate]") ==
           Approx(reading(record, "impulse[plate]")).epsilon(1e-12));
@@ -95,8 +98,9 @@ TEST_CASE("a motion that stays on one side of a clearance is that of a stop ther
   Json flat = round;
   flat["scene"]["stops"][0] = Json::parse(R"({"name": "plate", "at": {"x": 0.8}, "lower": -2e-3, "upper": 2e-3})");
   const CaseRecord a = runs.first_of(round), b = runs.first_of(flat);
-  for (const char* name :
-       {"impulse[plate]", "impacts[plate]", "rms_force[plate]", "window_rms_force[plate]", "impacts", "energy_end"})
+  for (const char* name : {"impulse[plate]", "impacts[plate]", "rms_force[plate]", "window_rms_force[plate]", "impacts",
+                           "energy_end", "drift_per_impact", "contact_instants", "active_set_changes",
+                           "contact_force_mean", "contact_force_deviation", "first_impact", "first_release"})
     CHECK(reading(a, name) == Approx(reading(b, name)).epsilon(1e-9));
 }
 
