@@ -20,7 +20,7 @@ Json with_reference(Json reference) {
   return study;
 }
 
-std::string error_of(const Json& text) {
+std::string error_in(const Json& text) {
   try {
     opened_continuation(text);
   } catch (const InputError& error) {
@@ -74,13 +74,13 @@ TEST_CASE("each scene of a continuation study has its reference") {
 }
 
 TEST_CASE("references without orbits of their own are refused") {
-  CHECK(error_of(with_reference("self")).starts_with("/reference/0: it marches the methods themselves"));
-  CHECK(error_of(with_reference("event-drivn")).find("did you mean \"event-driven\"") != std::string::npos);
+  CHECK(error_in(with_reference("self")).starts_with("/reference/0: it marches the methods themselves"));
+  CHECK(error_in(with_reference("event-drivn")).find("did you mean \"event-driven\"") != std::string::npos);
   Json study = with_reference("event-driven");
   study["methods"]["contact"] = {{"name", "penalty"}, {"stiffness", 1e5}};
   study["parameter"] = {{"pointer", "/methods/contact/stiffness"}, {"from", 1e4}, {"to", 1e6}};
   study["orbits"][0]["at"] = 1e5;
-  CHECK(error_of(study).starts_with("/reference: a reference has no /methods/contact/stiffness"));
+  CHECK(error_in(study).starts_with("/reference: a reference has no /methods/contact/stiffness"));
   // A scene without a map is told by its case.
   const OpenedContinuation opened = opened_continuation(with_reference("exact"));
   const CasePlan plan = plan_continuation(*case_of(opened.study, "reference"), *opened.registry);
