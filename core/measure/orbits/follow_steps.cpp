@@ -231,7 +231,8 @@ bool StepFollower::advance(long long steps) {
               "{:.10g}",
               last_.slowest, now_.parameter);
         else
-          trace_.end = fmt::format("the branch was left at {:.10g}: step below {:.3g} m; {}", now_.parameter,
+          trace_.end = fmt::format("the branch was left at {:.10g}: {}step below {:.3g} m; {}", now_.parameter,
+                                   jumps ? "no orbit was found beyond a contact that comes or goes; " : "",
                                    smallest_step * range, failure_);
         return false;
       }
