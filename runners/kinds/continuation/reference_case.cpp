@@ -127,12 +127,18 @@ class ReferenceRun {
     limits.located = located;
     limits.smooth = true;
     StepFollower follower(map, branch.clock, shot.x, shot.parameter, way, limits);
-    while (plan_.follow != Follow::none && follower.advance(1)) {
-      if (*stop_) throw Interrupted{};
-      if (thread_seconds() - begun_ > budget_of(case_)) over_budget_ = true;
-      if (over_budget_) break;
+    std::string failure;
+    try {
+      while (plan_.follow != Follow::none && follower.advance(1)) {
+        if (*stop_) throw Interrupted{};
+        if (thread_seconds() - begun_ > budget_of(case_)) over_budget_ = true;
+        if (over_budget_) break;
+      }
+    } catch (const Refusal& refusal) {  // no state where the branch would go on
+      failure = refusal.sentence;
     }
     branch.trace = follower.trace();
+    if (!failure.empty()) branch.trace.end = failure;
     if (over_budget_) branch.trace.end = fmt::format("the budget of {:g} s was spent", budget_of(case_));
     const double scale = gap_ / metres_;
     PointSearch search;
