@@ -87,15 +87,11 @@ TEST_CASE("first contact of the continuous beam is its gap over its response, an
 }
 
 TEST_CASE("the upper fold of the continuous beam lies at 0.1005653 m") {
-  const auto fold = [](int modes, double finer) {
-    double value = 0;
-    for (const SpecialPoint& point : of_kind(orbit_points(modes, 0.08, 300, 1, largest, finer), "fold"))
-      if (point.parameter > 0.1) value = point.parameter;
-    return value;
-  };
-  const double coarse = fold(20, 1);
-  CHECK(coarse == Approx(0.1005653229).epsilon(0).margin(1e-9));
-  CHECK(fold(16, 1) == Approx(coarse).epsilon(0).margin(1e-8));
+  double fold = 0;
+  for (const SpecialPoint& point : of_kind(orbit_points(16, 0.08, 300, 1, largest), "fold"))
+    if (point.parameter > 0.1) fold = point.parameter;
+  // With 12, 20 and 40 modes 0.10056532194, …286 and …292.
+  CHECK(fold == Approx(0.10056532292).epsilon(0).margin(1e-9));
 }
 
 TEST_CASE("the torus of the continuous beam is the same with twice the modes and steps four times finer") {

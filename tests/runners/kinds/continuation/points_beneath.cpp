@@ -28,7 +28,7 @@ void march_tube(const std::filesystem::path& folder, const Json& change = Json::
   study["kind"] = "bifurcation";
   study["parameter"] = {{"pointer", "/scene/support/amplitude"}, {"values", {0.02, 0.085}}};
   study["transient"] = {{"periods", 5}};
-  study["keep"] = 4;
+  study["keep"] = 16;
   study["exponents"] = 0;
   study.merge_patch(change);
   static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
