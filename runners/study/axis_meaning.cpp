@@ -183,6 +183,7 @@ std::map<std::string, std::string> method_words(const Study& study, const Regist
     add("mass", Role::mass, one.mass);
     add("contact", Role::contact, one.contact);
     add("time", Role::time, one.time);
+    if (one.of_reference) add("reference", Role::reference, one.references.front());
   }
   return words;
 }

@@ -27,6 +27,26 @@ struct Reference : ReferenceSolver {
   std::function<ReferenceOrRefusal()> act;
   ReferenceOrRefusal solve(const ReferenceProblem&, const SampleGrid&) const override { return act(); }
 };
+// A map of two numbers whose answers have as many as a test says.
+struct Map : ReferenceMap {
+  explicit Map(int count_) : count(count_) {}
+  int count;
+  int size() const override { return 2; }
+  Eigen::VectorXd start() const override { return Eigen::VectorXd::Zero(count); }
+  Eigen::VectorXd weights() const override { throw 42; }
+  std::pair<double, double> tip(const Eigen::VectorXd&) const override { return {1, 2}; }
+  Image march(const Eigen::VectorXd& x, double, bool derivative) override {
+    return {x, derivative ? Eigen::MatrixXd::Zero(count, 2) : Eigen::MatrixXd(), x[0] < 0 ? "below" : "", 3};
+  }
+};
+struct Mapped : Reference {
+  explicit Mapped(int count_) : Reference([]() -> ReferenceOrRefusal { return Refusal{"no"}; }), count(count_) {}
+  int count;
+  ReferenceMapOrRefusal map(const ReferenceProblem&) const override {
+    if (count == 0) return std::unique_ptr<ReferenceMap>();
+    return std::make_unique<Map>(count);
+  }
+};
 struct Law : ContactLaw {
   explicit Law(std::function<void()> act_) : act(std::move(act_)) {}
   std::function<void()> act;
@@ -109,6 +129,31 @@ TEST_CASE("what a plugin throws arrives as a fault that names plugin, file and f
 TEST_CASE("an error that already says what to do passes as it is") {
   CHECK_THROWS_AS(plan_of([]() -> PlanOrRefusal { throw InputError("/methods/time/beta", "no"); }), InputError);
   CHECK_THROWS_AS(plan_of([]() -> PlanOrRefusal { throw PluginError("no"); }), PluginError);
+}
+
+TEST_CASE("maps of references are guarded, and their answers have the size of a state") {
+  const auto map_of = [](int count) {
+    Registry registry;
+    registry.add_reference(manual(), [count](const Parameters&) { return std::make_unique<Mapped>(count); });
+    return std::get<std::unique_ptr<ReferenceMap>>(registry.reference("mine")->make({})->map({}));
+  };
+  const std::string place = "plugin reference 'mine', ";
+  CHECK_THROWS_WITH(map_of(0), place + "map(): returned no object");
+  const auto map = map_of(2), wrong = map_of(3);
+  CHECK(map->start().size() == 2);
+  CHECK(map->tip(map->start()) == std::pair(1.0, 2.0));
+  CHECK(map->march(map->start(), 1, true).impacts == 3);
+  CHECK(map->march(Eigen::Vector2d(-1, 0), 1, true).stopped == "below");
+  CHECK_THROWS_WITH(map->weights(), place + "weights(): an exception that says nothing");
+  CHECK_THROWS_WITH(wrong->start(), place + "start(): gives 3 numbers; its states have 2");
+  CHECK_THROWS_WITH(wrong->march(map->start(), 1, true),
+                    place + "march(): gives a derivative of 3 × 2; expected 2 × 2");
+  // A reference that has none says so.
+  Registry registry;
+  registry.add_reference(manual(), [](const Parameters&) {
+    return std::make_unique<Reference>([]() -> ReferenceOrRefusal { return Refusal{"no"}; });
+  });
+  CHECK(std::holds_alternative<Refusal>(registry.reference("mine")->make({})->map({})));
 }
 
 TEST_CASE("every function of a law is guarded and forwarded") {

@@ -341,7 +341,8 @@ bool StepFollower::advance(long long steps) {
               fmt::format("the derivative is infinite at a graze with e > 0; ended at speed {:.3g} m/s, λ = {:.10g}",
                           last_.slowest, now_.parameter);
         else
-          trace_.end = fmt::format("the branch was left at λ = {:.10g}: step below {:.3g} m; {}", now_.parameter,
+          trace_.end = fmt::format("the branch was left at λ = {:.10g}: {}step below {:.3g} m; {}", now_.parameter,
+                                   jumps ? "no orbit was found beyond a contact that comes or goes; " : "",
                                    smallest_step * range, failure_);
         return false;
       }

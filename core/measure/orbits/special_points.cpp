@@ -252,7 +252,8 @@ void add_contacts(const Corners& corners, const PointSearch& search, std::vector
       widen(point, now.parameter);
       if (search.contacts > 0) {
         // On the side with fewer contacts.
-        const BranchCorner& placed = was.runs < now.runs ? was : now;
+        if (was.runs < now.runs) --point.corner;
+        const BranchCorner& placed = corners[static_cast<std::size_t>(point.corner)];
         point.parameter = placed.parameter;
         point.arc = placed.arc;
         point.tip = placed.tip;

@@ -156,7 +156,8 @@ void register_event_driven(Registry& registry) {
                       integer_parameter(
                           "events", 2000, {.low = 1, .high = 1e9},
                           R"(impacts and releases allowed per period of the first mode before the motion is refused as
-          chatter)")}},
+          chatter)")},
+       .words = "the continuous beam"},
       [](const Parameters& p) {
         return std::make_unique<EventDriven>(Settings{static_cast<int>(p.integer("modes")), p.real("tolerance"),
                                                       static_cast<double>(p.integer("events"))});

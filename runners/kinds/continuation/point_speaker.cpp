@@ -163,7 +163,11 @@ void PointSpeaker::say_points(say::Answer& answer) const {
     }
     std::string more = orders.empty() ? "" : "order " + and_list(orders);
     if (limit.reference) {
-      more += fmt::format("{}the reference: {}", more.empty() ? "" : "; ", short_number(*limit.reference, 7));
+      const auto given = study_.results().study.find("reference");
+      const std::string words = given == study_.results().study.end()
+                                    ? "the reference"
+                                    : study_.method_words("reference", given->at(0).at("name").get<std::string>());
+      more += fmt::format("{}{}: {}", more.empty() ? "" : "; ", words, short_number(*limit.reference, 7));
       Clause standard{.form = "value", .measure = "reference", .who = name.text, .methods = reference.id};
       standard.value = limit.reference;
       standard.unit = unit_;
@@ -275,7 +279,9 @@ void PointSpeaker::say_absent(say::Answer& answer) const {
   Sentence said;
   for (const PointPresenceRow& row : point_presence_type().read(study_.results().derived)) {
     const CaseRecord* one = record(row.id);
-    if (row.name != told_.front()->text || !one || row.presence == word(PointPresence::not_reached)) continue;
+    if (row.name != told_.front()->text || !one || is_reference(*one) ||
+        row.presence == word(PointPresence::not_reached))
+      continue;
     if (row.presence == word(PointPresence::absent)) {
       absent.push_back(reached.size());
       if (row.passed_to) least = std::min(*row.passed_to, least.value_or(*row.passed_to));
@@ -289,7 +295,8 @@ void PointSpeaker::say_absent(say::Answer& answer) const {
     }
     reached.push_back(one);
   }
-  const std::size_t cases = points_.cases().size();
+  const auto cases = static_cast<std::size_t>(std::count_if(points_.cases().begin(), points_.cases().end(),
+                                                            [](const CaseRecord* one) { return !is_reference(*one); }));
   if (absent.empty() && shared == 0) {
     if (cases < 2) return;
     Clause part{.form = "status", .measure = thing, .who = told_.front()->text};
@@ -341,7 +348,7 @@ void PointSpeaker::say_turns(say::Answer& answer) const {
   int most = 0;
   for (std::size_t c = 0; c < points_.cases().size(); ++c) {
     const std::vector<std::string> differs = points_.differences(c, points_.root());
-    if (differs.size() != 1 || !say::is_refinement(differs.front())) continue;
+    if (differs.size() != 1 || !say::is_refinement(differs.front()) || is_reference(*points_.cases()[c])) continue;
     for (const auto& [prominence, count] : folds[points_.cases()[c]->id]) {
       const auto same = finest->second.find(prominence);
       if (same == finest->second.end() || count <= same->second) continue;

@@ -172,7 +172,7 @@ std::vector<PointShiftRow> shift_rows(const StudyPoints& study) {
     for (std::size_t c = 0; c < study.cases().size(); ++c) {
       const StudyPoint* point = c == study.root() ? nullptr : study.find(c, static_cast<int>(name));
       const std::vector<std::string> differs = study.differences(c, study.root());
-      if (!point || differs.size() != 1) continue;
+      if (!point || differs.size() != 1 || is_reference(*study.cases()[c])) continue;
       PointShiftRow row{study.cases()[c]->id, study.names()[name].text, differs.front(),
                         study.level(c, differs.front()), study.level(study.root(), differs.front())};
       row.shift = point->value - standard->value;

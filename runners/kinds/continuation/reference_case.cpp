@@ -23,7 +23,7 @@ namespace ricochet {
 namespace {
 
 // Of the gap: to which residuals an orbit is solved, and within which it is its own image.
-constexpr double solved = 1e-11, image_tolerance = 1e-6;
+constexpr double solved = 1e-11, near_image = 1e-6;
 
 class ReferenceRun {
  public:
@@ -100,7 +100,7 @@ class ReferenceRun {
       half.half = true;
       const Eigen::VectorXd& from = shot.found ? shot.x : x;
       const double apart = map.metric().size(map.march(from, orbit.at, half).image - from);
-      if (!shot.found || apart <= image_tolerance * gap_)
+      if (!shot.found || apart <= near_image * gap_)
         if (ShotOrbit image = shoot(map, from, orbit.at, half, solved * gap_); image.found) {
           shot = std::move(image);
           clock = half;
@@ -127,12 +127,18 @@ class ReferenceRun {
     limits.located = located;
     limits.smooth = true;
     StepFollower follower(map, branch.clock, shot.x, shot.parameter, way, limits);
-    while (plan_.follow != Follow::none && follower.advance(1)) {
-      if (*stop_) throw Interrupted{};
-      if (thread_seconds() - begun_ > budget_of(case_)) over_budget_ = true;
-      if (over_budget_) break;
+    std::string failure;
+    try {
+      while (plan_.follow != Follow::none && follower.advance(1)) {
+        if (*stop_) throw Interrupted{};
+        if (thread_seconds() - begun_ > budget_of(case_)) over_budget_ = true;
+        if (over_budget_) break;
+      }
+    } catch (const Refusal& refusal) {  // no state where the branch would go on
+      failure = refusal.sentence;
     }
     branch.trace = follower.trace();
+    if (!failure.empty()) branch.trace.end = failure;
     if (over_budget_) branch.trace.end = fmt::format("the budget of {:g} s was spent", budget_of(case_));
     const double scale = gap_ / metres_;
     PointSearch search;

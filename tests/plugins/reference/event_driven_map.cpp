@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "tests/plugins/reference/shaken_beam.hpp"
+#include "tests/plugins/reference/continuous_beam.hpp"
 
 using namespace ricochet;
 using namespace ricochet::testing;
@@ -27,11 +27,11 @@ double size(const ReferenceMap& map, const Eigen::VectorXd& x) {
 }  // namespace
 
 TEST_CASE("the derivative of the beam's map is that of central differences, impacts and releases included") {
-  const auto map = beam_map(shaken_beam(0.09), 12);
+  const auto map = beam_map(continuous_beam(0.09), 12);
   const Eigen::VectorXd x = settled(*map, 20), weights = map->weights();
   for (const double span : {0.5 * period, period}) {
     const ReferenceMap::Image image = map->march(x, span, true);
-    REQUIRE(image.impacts > 2);
+    REQUIRE(image.impacts >= 2);
     double worst = 0, largest = 0;
     for (int k = 0; k < map->size(); ++k) {
       // Steps of 1e-8 m in the metric: impact times are exact to round-off, and P curves.
@@ -47,7 +47,7 @@ TEST_CASE("the derivative of the beam's map is that of central differences, impa
 }
 
 TEST_CASE("two half periods of the beam's map with the sign changed are one period of a symmetric scene") {
-  const auto map = beam_map(shaken_beam(0.085), 12);
+  const auto map = beam_map(continuous_beam(0.085), 12);
   const Eigen::VectorXd x = settled(*map, 10);
   const Eigen::VectorXd half = -map->march(x, 0.5 * period, false).state;
   const Eigen::VectorXd twice = -map->march(half, 0.5 * period, false).state;
@@ -56,7 +56,7 @@ TEST_CASE("two half periods of the beam's map with the sign changed are one peri
 }
 
 TEST_CASE("the beam's map leads along the motion that the reference samples") {
-  const ReferenceProblem problem = shaken_beam(0.085);
+  const ReferenceProblem problem = continuous_beam(0.085);
   const auto map = beam_map(problem, 16);
   const SampleGrid grid{{0, period, 2 * period, 3 * period}, {}, {}};
   const auto solved = beam_solver(16)->solve(problem, grid);
@@ -73,7 +73,7 @@ TEST_CASE("the beam's map leads along the motion that the reference samples") {
 }
 
 TEST_CASE("the beam's map has no state beyond a stop") {
-  const auto map = beam_map(shaken_beam(0.085), 8);
+  const auto map = beam_map(continuous_beam(0.085), 8);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(map->size());
   x[0] = 1;
   CHECK(map->march(x, period, false).stopped.find("shift the phase") != std::string::npos);
@@ -82,7 +82,7 @@ TEST_CASE("the beam's map has no state beyond a stop") {
 }
 
 TEST_CASE("a reference without a map says so") {
-  const ReferenceProblem problem = shaken_beam(0.085);
+  const ReferenceProblem problem = continuous_beam(0.085);
   auto refused = problem;
   refused.load_zero = refused.load_constant = false;
   const auto answer = beam_solver(8)->map(refused);

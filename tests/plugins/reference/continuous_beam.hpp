@@ -12,7 +12,7 @@ namespace ricochet::testing {
 inline constexpr double beam_length = 1.501, beam_pulsation = 10, beam_gap = 0.1;
 
 /// Clamp A sin 10t, stops ±0.1 m, α = 1e-4 s; at rest in the laboratory.
-inline ReferenceProblem shaken_beam(double amplitude) {
+inline ReferenceProblem continuous_beam(double amplitude) {
   constexpr double outer = 0.01, inner = 0.009, young = 2e11, density = 8000;
   const double second = std::numbers::pi / 64 * (std::pow(outer, 4) - std::pow(inner, 4));
   ReferenceProblem problem;
