@@ -5,15 +5,7 @@
 #include <cstdlib>
 
 // A program's own malloc stands before the C library's for every library that it loads. It hands on to the allocator
-// that glibc keeps under these names; memory is freed as ever. Sanitizers bring an allocator of their own: clang names
-// them as features.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define RICOCHET_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define RICOCHET_SANITIZED 1
-#endif
-#endif
+// that glibc keeps under these names; memory is freed as ever. Sanitizers bring an allocator of their own.
 #if defined(__GLIBC__) && !defined(RICOCHET_SANITIZED)
 #define RICOCHET_COUNTS_ALLOCATIONS 1
 #endif

@@ -49,7 +49,7 @@ void out_of_memory() {
 
 void limit_memory(double bytes) {
   // A sanitizer takes far more of them than it uses.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef RICOCHET_SANITIZED
   return;
 #endif
   if (bytes <= 0) return;

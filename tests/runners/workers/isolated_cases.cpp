@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef RICOCHET_SANITIZED
 constexpr bool sanitized = true;
 #else
 constexpr bool sanitized = false;
