@@ -113,17 +113,21 @@ std::vector<std::pair<std::string, std::string>> SceneValues::named_stops() cons
   std::vector<std::pair<std::string, std::string>> out;
   const SceneJson* list = at("/scene/stops");
   if (!list || !list->is_array()) return out;
-  for (const SceneJson& stop : *list) {
-    std::string text = place_words(stop.at("at"));
-    if (stop.contains("to") && !stop["to"].is_null()) text += " less " + place_words(stop["to"]);
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const SceneJson& stop = (*list)[i];
+    std::string shown = place_words(stop.at("at"));
+    if (stop.contains("to") && !stop["to"].is_null()) shown += " less " + place_words(stop["to"]);
+    // A value, the values of an axis, or those of a sweep.
+    const auto said = [&](const char* key, const char* unit) {
+      const std::string value = text(fmt::format("/scene/stops/{}/{}", i, key), unit);
+      return value.empty() ? with("0", unit) : value;
+    };
     for (const char* side : {"lower", "upper"})
-      if (stop.contains(side) && !stop[side].is_null())
-        text += fmt::format(", {} {} m", side, number_text(stop[side].get<double>(), scene_digits));
+      if (stop.contains(side) && !stop[side].is_null()) shown += fmt::format(", {} {}", side, said(side, "m"));
     if (stop.contains("clearance"))
-      text += fmt::format(", within {} m in a polygon of {} sides",
-                          number_text(stop["clearance"].at("radius").get<double>(), scene_digits),
-                          number_text(first_number(&stop["clearance"].at("sides")).value_or(0), scene_digits));
-    out.emplace_back(stop.value("name", ""), text);
+      shown += fmt::format(", within {} in a polygon of {} sides", said("clearance/radius", "m"),
+                           said("clearance/sides", ""));
+    out.emplace_back(stop.value("name", ""), shown);
   }
   return out;
 }

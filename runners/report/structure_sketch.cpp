@@ -24,7 +24,9 @@ std::vector<Json> list_at(const SceneValues& scene, const std::string& pointer) 
 
 std::optional<double> bound(const Json& stop, const char* side) {
   const auto found = stop.find(side);
-  return found != stop.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
+  if (found == stop.end()) return std::nullopt;
+  const Json& value = found->is_array() && !found->empty() ? found->front() : *found;  // the first of an axis
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
 }
 
 std::string sketched_metres(double value) {
