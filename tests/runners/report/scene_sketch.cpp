@@ -136,6 +136,14 @@ TEST_CASE("matrices with places are drawn as nodes, links, stops with their name
   CHECK(count(svg, "stop link") == 2);             // of both, a line to the other node
   CHECK(value_of(study, "damping ratio") == "0.02");
   CHECK(value_of(study, "load") == "F(t) at A ux = sin(t)");
+  // A bound may be an axis of the study, or swept.
+  Scene varied = study;
+  varied["scene"]["stops"][0]["upper"] = {0.002, 0.004};
+  varied["scene"]["stops"][1]["lower"] = 0;
+  varied["parameter"] = {{"pointer", "/scene/stops/1/upper"}, {"from", 0.001}, {"to", 0.003}};
+  CHECK(value_of(varied, "stop wall") == "B ux, upper 0.002 and 0.004 m");
+  CHECK(value_of(varied, "stop pair") == "A uz less C uz, lower 0 m, upper from 0.001 to 0.003 m, swept");
+  CHECK_THAT(report::scene_svg(varied), Contains("wall 0.002 m"));
 }
 
 TEST_CASE("points without places are drawn in a row, each with its stops", "[report]") {
