@@ -280,9 +280,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   if (resolved.contains("reference"))
     references = read_references(resolved["reference"], "/reference", catalogue, registry);
   const Json settings = kind.settings(resolved);
-  const auto& masses = methods[0].options;
-  const auto& contacts = methods[1].options;
-  const auto& times = methods[2].options;
+  const auto &masses = methods[0].options, &contacts = methods[1].options, &times = methods[2].options;
 
   axes.erase(
       std::remove_if(axes.begin(), axes.end(), [](const Axis& axis) { return !axis.pointer.starts_with("/scene/"); }),

@@ -10,6 +10,7 @@
 #include <ricochet/loader/child.hpp>
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/supports.hpp>
 #include <set>
 
 #include "runners/kinds/comparison/references.hpp"
@@ -203,6 +204,28 @@ ReferenceProblem reference_problem(const StudyCase& study_case, const Registry& 
     problem.contact_stiffness = stiffness.value_or(0);
   }
   problem.restitution = scheme_restitution(study_case, registry).value_or(0);
+  return problem;
+}
+
+std::variant<ReferenceProblem, Refusal> seen_by_reference(const StudyCase& study_case, const Registry& registry,
+                                                          bool of_the_mesh) {
+  if (!of_the_mesh && study_case.scene.load.has_point_forces())
+    return Refusal{
+        "the load has a force at a point, and this reference knows loads that are spread: use a reference of the mesh"};
+  if (damping_of(study_case.scene.structure).own())
+    return Refusal{"damping is not made of K and M, and references know C = αK + ηM: use the reference self"};
+  if (std::any_of(study_case.scene.stops.named.begin(), study_case.scene.stops.named.end(),
+                  [](const NamedStop& stop) { return stop.own.any(); }))
+    return Refusal{"stops have parameters of their own, and references know one set for all: use the reference self"};
+  if (moves_by_histories(study_case.scene) || support_bends(study_case.scene))
+    return Refusal{
+        "supports or stops move by motions, and references know the harmonic support: use the reference self"};
+  ReferenceProblem problem = reference_problem(study_case, registry);
+  if (of_the_mesh) return problem;
+  problem.contact_stiffness = 0;
+  problem.contact_nonlinear = false;
+  // A continuum's point of contact has no mass: no coefficient acts on it.
+  if (problem.structure != "oscillator") problem.restitution = 0;
   return problem;
 }
 

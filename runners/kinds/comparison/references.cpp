@@ -215,51 +215,19 @@ KnownReference References::march_finer(const StudyCase& study_case, const std::a
   return known;
 }
 
-namespace {
-
-// Why no reference knows the scene; "" where one may.
-std::string not_known(const StudyCase& study_case, bool of_the_mesh) {
-  if (!of_the_mesh && study_case.scene.load.has_point_forces())
-    return "the load has a force at a point, and this reference knows loads that are spread: use a reference of the "
-           "mesh";
-  if (damping_of(study_case.scene.structure).own())
-    return "damping is not made of K and M, and references know C = αK + ηM: use the reference self";
-  if (std::any_of(study_case.scene.stops.named.begin(), study_case.scene.stops.named.end(),
-                  [](const NamedStop& stop) { return stop.own.any(); }))
-    return "stops have parameters of their own, and references know one set for all: use the reference self";
-  if (moves_by_histories(study_case.scene) || support_bends(study_case.scene))
-    return "supports or stops move by motions, and references know the harmonic support: use the reference self";
-  return "";
-}
-
-void see_rigid_stops(ReferenceProblem& problem) {
-  problem.contact_stiffness = 0;
-  problem.contact_nonlinear = false;
-  // A continuum's point of contact has no mass: no coefficient acts on it.
-  if (problem.structure != "oscillator") problem.restitution = 0;
-}
-
-}  // namespace
-
-std::variant<ReferenceProblem, Refusal> continuum_problem(const StudyCase& study_case, const Registry& registry) {
-  if (std::string refusal = not_known(study_case, false); !refusal.empty()) return Refusal{std::move(refusal)};
-  ReferenceProblem problem = reference_problem(study_case, registry);
-  see_rigid_stops(problem);
-  return problem;
-}
-
 KnownReference References::compute(const StudyCase& study_case, const MethodChoice& choice,
                                    const std::atomic<bool>& stop) const {
   if (choice.name == marched_reference) return march_finer(study_case, stop);
   const auto solver = registry_.reference(choice.name)->make(choice.parameters);
   KnownReference known{choice.name, "", solver->of_the_mesh(), {}};
   const SampleGrid grid = comparison_grid(study_case.scene, study_case.duration, study_case.samples);
-  ReferenceProblem problem = reference_problem(study_case, registry_);
   DiscreteProblem discrete;
-  if (const std::string refusal = not_known(study_case, solver->of_the_mesh()); !refusal.empty()) {
-    known.refusal = refusal;
+  auto seen = seen_by_reference(study_case, registry_, solver->of_the_mesh());
+  if (const auto* refusal = std::get_if<Refusal>(&seen)) {
+    known.refusal = refusal->sentence;
     return known;
   }
+  auto& problem = std::get<ReferenceProblem>(seen);
   if (solver->of_the_mesh()) {
     const auto law = make_law(study_case, registry_);
     auto built = discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry_), law.get(),
@@ -276,8 +244,6 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
         problem.contact_nonlinear = false;
         problem.contact_stiffness = *stiffness;
       }
-  } else {
-    see_rigid_stops(problem);
   }
   auto solved = solver->solve(problem, grid);
   if (const auto* refusal = std::get_if<Refusal>(&solved))

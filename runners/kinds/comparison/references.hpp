@@ -111,8 +111,9 @@ SampleGrid comparison_grid(const SceneSpec& scene, double duration, int samples)
 /// been discretised.
 ReferenceProblem reference_problem(const StudyCase& study_case, const Registry& registry);
 
-/// The same for a reference of the scene, which sees rigid stops; or why no such reference knows the scene.
-std::variant<ReferenceProblem, Refusal> continuum_problem(const StudyCase& study_case, const Registry& registry);
+/// The same as one of the scene sees it, with rigid stops, or one of the mesh; or why no reference knows the scene.
+std::variant<ReferenceProblem, Refusal> seen_by_reference(const StudyCase& study_case, const Registry& registry,
+                                                          bool of_the_mesh);
 
 /// A reference motion as bytes, bit for bit.
 std::string to_bytes(const ReferenceMotion& motion);

@@ -68,7 +68,7 @@ class ReferenceRun {
  private:
   ReferenceProblem problem_at(double value, bool own_state) const {
     const StudyCase at = with_parameter(own_state ? case_ : at_rest(case_), plan_.pointer, value);
-    auto problem = continuum_problem(at, registry_);
+    auto problem = seen_by_reference(at, registry_, solver_->of_the_mesh());
     if (auto* refusal = std::get_if<Refusal>(&problem)) throw std::move(*refusal);
     return std::get<ReferenceProblem>(std::move(problem));
   }
