@@ -81,7 +81,8 @@ struct ArcSteps {
 /// ∂P/∂λ by a difference over 1e-6 of the range. A step grows by half after at most four iterations, shrinks by as much
 /// after more than seven, is halved where none is found, the branch turns by more than 45 degrees, or the count of
 /// multipliers outside changes within more than 1e-4 of the range. So is one whose bordered matrix changes the sign of
-/// its determinant: it goes back along the branch. Below 1e-9 of the range's length the branch ends.
+/// its determinant: it goes back along the branch. Below 1e-9 of the range's length the steps are at a corner of a map
+/// that is piecewise smooth: they go on along the null direction beyond it, or the branch ends.
 class StepFollower {
  public:
   StepFollower(SteppedMap& map, const MapClock& clock, Eigen::VectorXd x, double parameter, int way,
@@ -104,11 +105,13 @@ class StepFollower {
   };
   bool correct(Point& point, const Point& along, int& iterations);
   void keep(const Point& point, const SteppedMap::Image& image, std::vector<std::complex<double>> multipliers);
-  Eigen::VectorXd by_parameter(const Point& point);
+  Eigen::VectorXd by_parameter(const Point& point, double share);
+  Eigen::MatrixXd bordered(const Eigen::MatrixXd& derivative, const Eigen::VectorXd& slope, const Point& along) const;
   double overlap(const Point& a, const Point& b) const;
   Eigen::VectorXd asymmetry(const Point& point);
   void mark_up_to(const Point& next);
-  void leave(const Point& next);
+  bool leaves(const Point& next);
+  bool turn_corner();
   bool comes_back(double far) const;
 
   SteppedMap* map_;
@@ -118,6 +121,7 @@ class StepFollower {
   double step_ = 0;
   int orientation_ = 0;    // sign of the determinant of the bordered matrix; 0: not known yet
   int turned_ = 0;         // that of the last correction
+  double corner_ = -1;     // arc of the last corner that was turned
   Eigen::VectorXd apart_;  // x − its image, where branches end at images
   SteppedMap::Image last_;
   std::string failure_;

@@ -160,9 +160,12 @@ void check_continuation(const Json& resolved) {
     return found == of.end() || found->is_array() || (found->is_number() && found->get<double>() != 0);
   };
   const auto support = scene.find("support");
-  const auto force = scene.at("structure").find("force");
+  // A scene of several bodies is looked at case by case.
+  const auto structure = scene.find("structure");
+  if (structure == scene.end()) return;
+  const auto force = structure->find("force");
   const bool shaken = support != scene.end() && support->is_object() && pulsation(*support);
-  if (!shaken && !(force != scene.at("structure").end() && force->is_object() && pulsation(*force)))
+  if (!shaken && !(force != structure->end() && force->is_object() && pulsation(*force)))
     throw InputError("/scene/support",
                      "nothing is periodic: give support.pulsation or structure.force.pulsation, and loads with that "
                      "period");

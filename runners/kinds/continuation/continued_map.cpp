@@ -86,6 +86,7 @@ ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry
   if (refusal_.empty() && images) refusal_ = no_image_;
   if (refusal_.empty() && plan.follow == Follow::pieces && !no_pieces_.empty())
     refusal_ = no_pieces_ + ": follow with steps";
+  if (refusal_.empty() && (!no_pieces_.empty() || plan.follow == Follow::steps)) check_tangents();
 }
 
 int ContinuedMap::scene_at(double value, bool own_state, std::string& reason) {
@@ -104,11 +105,15 @@ void ContinuedMap::check_class(int scene) {
   const double e = std::abs(plan_restitution(program.plan, program.h).value_or(0));
   const bool rigid = program.contact && !program.law->reads();
   constexpr double rebounds_above = 1e-6;
-  bool unresolved = tangents_miss_impacts(program);
-  if (rigid && !unresolved && e > rebounds_above && !stops_met_at_steps(program)) {
+  // Only a point with mass is thrown back.
+  bool unresolved = tangents_miss_impacts(program), thrown = false;
+  if (rigid && e > rebounds_above) {
     const std::vector<bool> massive = points_with_mass(*program.problem),
                             resolved = resolved_points(*program.problem, program.h);
-    for (std::size_t i = 0; i < massive.size(); ++i) unresolved = unresolved || (massive[i] && !resolved[i]);
+    for (std::size_t i = 0; i < massive.size(); ++i) {
+      thrown = thrown || massive[i];
+      unresolved = unresolved || (massive[i] && !resolved[i]);
+    }
   }
   if (unresolved) {
     refusal_ = fmt::format(
@@ -118,12 +123,22 @@ void ContinuedMap::check_class(int scene) {
         program.h);
     return;
   }
-  rebounds_ = rebounds_ || (rigid && (e > rebounds_above || stops_met_at_steps(program)));
-  if (rigid && e > rebounds_above)
+  rebounds_ = rebounds_ || thrown || stops_met_at_steps(program);
+  if (thrown)
     no_pieces_ =
         fmt::format("the stops give back {:.3g} of the speed: the map jumps where the step of an impact changes", e);
   else if (const auto reason = SetSteps::refusal(program))
     no_pieces_ = "a step is not affine between changes of contact: " + *reason;
+}
+
+// Whether the steps have tangent columns.
+void ContinuedMap::check_tangents() {
+  try {
+    stepped_map();
+    scenes_.program(scenes_[reference_].group, {scenes_[reference_].lane}, 1);
+  } catch (const Refusal& refusal) {
+    refusal_ = refusal.sentence;
+  }
 }
 
 void ContinuedMap::check_kernel(int scene) {

@@ -46,6 +46,7 @@ class ContinuedMap {
  private:
   void check_class(int scene);
   void check_kernel(int scene);
+  void check_tangents();
   double possible_end(double end);
   void check_ends();
   bool affine_loads(int low, int middle, int high);

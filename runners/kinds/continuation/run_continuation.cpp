@@ -175,7 +175,9 @@ class ContinuationRun {
   }
 
   static void cut(BranchTrace& trace, const SpecialPoint& point) {
-    const auto left = static_cast<std::size_t>(std::max(point.corner, 1LL)) + 1;
+    // A mark lies behind its corner.
+    const long long last = point.corner + (point.kind == "mark");
+    const auto left = static_cast<std::size_t>(std::max(last, 1LL)) + 1;
     if (left < trace.corners.size()) trace.corners.resize(left);
     std::erase_if(trace.states, [&](const auto& one) { return one.first >= static_cast<long long>(left); });
     std::erase_if(trace.marks, [&](const MarkedOrbit& one) { return one.corner >= static_cast<long long>(left); });
