@@ -55,9 +55,6 @@ void put_multipliers(const std::vector<std::complex<double>>& multipliers, const
   row.multipliers.resize(static_cast<std::size_t>(most));
 }
 
-namespace {
-
-// Rows at the corners whose states were kept, as the trace has them.
 std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipliers) {
   std::map<long long, int> numbers;  // of special points, by corner
   for (std::size_t i = 0; i < branch.points.size(); ++i)
@@ -87,6 +84,8 @@ std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipli
   }
   return rows;
 }
+
+namespace {
 
 // The row of an orbit between two corners, where it belongs.
 template <class Map>

@@ -27,6 +27,8 @@ BranchRow orbit_row(SteppedMap& map, const MapClock& clock, const Eigen::VectorX
 /// Folds below this share of the parameter's scale are not listed where the study names no prominence.
 inline constexpr double least_fold = 1e-4;
 
+/// Rows at the corners whose states were kept, as the trace has them.
+std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipliers);
 /// The multipliers of an orbit, largest first, the first `most` of them, and how many are outside the circle.
 void put_multipliers(const std::vector<std::complex<double>>& multipliers, const Outside& outside, int most,
                      BranchRow& row);

@@ -86,7 +86,7 @@ ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry
   if (refusal_.empty() && images) refusal_ = no_image_;
   if (refusal_.empty() && plan.follow == Follow::pieces && !no_pieces_.empty())
     refusal_ = no_pieces_ + ": follow with steps";
-  if (refusal_.empty() && (!no_pieces_.empty() || plan.follow == Follow::steps)) check_tangents();
+  if (refusal_.empty() && !by_pieces()) check_tangents();
 }
 
 int ContinuedMap::scene_at(double value, bool own_state, std::string& reason) {
@@ -134,7 +134,7 @@ void ContinuedMap::check_class(int scene) {
 // Whether the steps have tangent columns.
 void ContinuedMap::check_tangents() {
   try {
-    stepped_map();
+    stepped_map(reference_at_);
     scenes_.program(scenes_[reference_].group, {scenes_[reference_].lane}, 1);
   } catch (const Refusal& refusal) {
     refusal_ = refusal.sentence;
@@ -249,7 +249,7 @@ std::unique_ptr<PeriodicMap> ContinuedMap::map() {
   return std::make_unique<PeriodicMap>(program(origin_), *lanes_, metres_, std::move(load));
 }
 
-std::unique_ptr<SteppedMap> ContinuedMap::stepped_map() {
+SteppedMap ContinuedMap::stepped_map(double at) {
   const auto make = [this](double value, int tangents) {
     const auto [place, added] = marched_.try_emplace(value, -1);
     if (added) {
@@ -261,7 +261,7 @@ std::unique_ptr<SteppedMap> ContinuedMap::stepped_map() {
     return SteppedMap::Scene{scenes_.program(scene.group, {scene.lane}, tangents), scene.group};
   };
   const auto carry = [this](const LaneState& state, int from, int to) { return scenes_.carry(state, from, to); };
-  return std::make_unique<SteppedMap>(make, carry, reference_at_, metres_, rebounds_);
+  return {make, carry, at, metres_, rebounds_};
 }
 
 }  // namespace ricochet

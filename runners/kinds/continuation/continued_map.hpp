@@ -19,6 +19,8 @@ class ContinuedMap {
   const std::string& refusal() const { return refusal_; }
   /// Why the map is not followed by pieces; "" where it is.
   const std::string& no_pieces() const { return no_pieces_; }
+  /// Whether it is followed so.
+  bool by_pieces() const { return no_pieces_.empty() && plan_.follow != Follow::steps; }
   /// Why orbits are not their own images; "" where they may be.
   const std::string& no_image() const { return no_image_; }
 
@@ -40,8 +42,9 @@ class ContinuedMap {
   double parameter_scale() const { return gap_ / metres_; }
   /// The map, which this outlives; only where no_pieces() is "".
   std::unique_ptr<PeriodicMap> map();
-  /// The map at any value, in the coordinates of the first possible orbit; this outlives it.
-  std::unique_ptr<SteppedMap> stepped_map();
+  /// The map at any value, in the coordinates of one; this outlives it. Branches have those of `reference_at`.
+  SteppedMap stepped_map(double at);
+  double reference_at() const { return reference_at_; }
 
  private:
   void check_class(int scene);

@@ -355,10 +355,10 @@ CaseRecord run_continuation(const StudyCase& study_case, const Registry& registr
     record.run_seconds = thread_seconds() - begun - record.setup_seconds;
   };
   if (!continued.no_pieces().empty()) record.notes.push_back("followed by steps: " + continued.no_pieces());
-  if (!continued.no_pieces().empty() || plan.follow == Follow::steps)
-    run(continued.stepped_map());
-  else
+  if (continued.by_pieces())
     run(continued.map());
+  else
+    run(std::make_unique<SteppedMap>(continued.stepped_map(continued.reference_at())));
   return record;
 }
 
