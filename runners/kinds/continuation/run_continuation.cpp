@@ -100,7 +100,11 @@ class ContinuationRun {
       results_.add(branch, rows_of(map_, branch, plan_.multipliers), x_of_rows(map_), continued_.parameter_scale());
     results_.put(record, plan_, pieces_, over_budget_ ? std::optional(budget_of(case_)) : std::nullopt);
     record.steps = pieces_ * case_.steps_per_period;
-    if (twins_ > 0)
+    constexpr double near = 0.01;
+    if (twins_ > near)
+      record.notes.push_back(fmt::format(
+          "multipliers differ from twins of the first orbits by {:.2g} of them: a contact changes beside", twins_));
+    else if (twins_ > 0)
       record.notes.push_back(fmt::format("multipliers agree with twins of the first orbits to {:.1g}", twins_));
     if (ties_ > 0)
       record.notes.push_back(
@@ -186,7 +190,8 @@ class ContinuationRun {
 
   void run_branch(FollowedBranch& branch, const ShotOrbit& shot, int way, int depth) {
     auto run = begin(branch, shot, way);
-    if (depth == 0 && way > 0) twins_ = std::max(twins_, twin_error(map_, shot, branch.clock, continued_.gap()));
+    if (depth == 0 && way > 0 && run.trace().rebounds == 0)
+      twins_ = std::max(twins_, twin_error(map_, shot, branch.clock, continued_.gap()));
     std::optional<SpecialPoint> stopping;
     bool more = !run.trace().ended();
     for (long long round = 0; more; ++round) {
