@@ -51,6 +51,7 @@ TEST_CASE("continuation follows real numbers of the scene or of a method alone")
              {"/parameter/pointer: continuation follows a real number", "/mesh/elements is part of the mesh"});
   check_says(error_of(with("/parameter/pointer", "/steps_per_period")), {"/parameter/pointer: ", "is a count"});
   check_says(error_of(with("/parameter/pointer", "/scene/structure/type")), {"is the word \"beam\""});
+  check_says(error_of(with("/parameter/pointer", "/methods/mass/velocity")), {"is the word \"P1\""});
   check_says(error_of(with("/parameter/pointer", "/scene/support/amplitde")),
              {"/parameter/pointer: ", "did you mean", "/scene/support/amplitude"});
 }
