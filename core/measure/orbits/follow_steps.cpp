@@ -41,7 +41,7 @@ StepFollower::StepFollower(FollowedMap& map, const MapClock& clock, VectorXd x, 
 // The direction of the branch at an orbit, λ growing: (1 − P') dx = P_λ dλ.
 std::optional<StepFollower::Point> StepFollower::tangent(const Point& at, const MatrixXd& derivative) {
   const MatrixXd one = MatrixXd::Identity(map_->size(), map_->size());
-  const VectorXd x = DenseLu(one - derivative).solve(by_parameter(at));
+  const VectorXd x = DenseLu(one - derivative).solve(by_parameter(at, parameter_difference));
   const double size = map_->metric().size(x, 1);
   if (!std::isfinite(size)) return std::nullopt;
   return Point{x / size, 1 / size};
@@ -78,8 +78,8 @@ BranchState StepFollower::state() const {
 }
 
 // By a difference over both sides, or over one where the scene is impossible on the other.
-VectorXd StepFollower::by_parameter(const Point& point) {
-  const double by = parameter_difference * (limits_.branch.largest - limits_.branch.least);
+VectorXd StepFollower::by_parameter(const Point& point, double share) {
+  const double by = share * (limits_.branch.largest - limits_.branch.least);
   const auto image = [&](double parameter) -> std::optional<VectorXd> {
     try {
       const FollowedMap::Image made = map_->march(point.x, parameter, clock_);
@@ -114,12 +114,22 @@ VectorXd StepFollower::asymmetry(const Point& point) {
   return point.x - map_->march(point.x, point.parameter, half).image;
 }
 
+// [1 − P', −P_λ], bordered by a direction.
+MatrixXd StepFollower::bordered(const MatrixXd& derivative, const VectorXd& slope, const Point& along) const {
+  const Index D = map_->size();
+  const MatrixXd& rows = map_->metric().rows();
+  const double metres = map_->metric().parameter_metres();
+  MatrixXd system(D + 1, D + 1);
+  system.topLeftCorner(D, D) = MatrixXd::Identity(D, D) - derivative;
+  system.topRightCorner(D, 1) = -slope;
+  system.bottomLeftCorner(1, D) = (rows.transpose() * (rows * along.x)).transpose();
+  system(D, D) = metres * metres * along.parameter;
+  return system;
+}
+
 // Newton's method on P(x, λ) = x, normal to the secant.
 bool StepFollower::correct(Point& point, const Point& along, int& iterations) {
   const Index D = map_->size();
-  const MatrixXd& rows = map_->metric().rows();
-  const VectorXd normal = rows.transpose() * (rows * along.x);
-  const double metres = map_->metric().parameter_metres();
   VectorXd slope;
   double nearest = std::numeric_limits<double>::infinity();
   turned_ = 0;
@@ -138,12 +148,8 @@ bool StepFollower::correct(Point& point, const Point& along, int& iterations) {
     if (residual <= last_.rebounds && residual > 0.5 * nearest) return true;
     nearest = std::min(nearest, residual);
     if (iterations == most) failure_ = fmt::format("the residual stays at {:.3g} m", residual);
-    if (slope.size() == 0 || iterations % 3 == 0) slope = by_parameter(point);
-    MatrixXd system(D + 1, D + 1);
-    system.topLeftCorner(D, D) = MatrixXd::Identity(D, D) - last_.derivative;
-    system.topRightCorner(D, 1) = -slope;
-    system.bottomLeftCorner(1, D) = normal.transpose();
-    system(D, D) = metres * metres * along.parameter;
+    if (slope.size() == 0 || iterations % 3 == 0) slope = by_parameter(point, parameter_difference);
+    const MatrixXd system = bordered(last_.derivative, slope, along);
     VectorXd right = VectorXd::Zero(D + 1);
     right.head(D) = left;
     const VectorXd correction = DenseLu(system).solve(right);
@@ -286,19 +292,50 @@ void StepFollower::mark_up_to(const Point& next) {
   }
 }
 
-// Ends the branch at an end of the range, from a point beyond it.
-void StepFollower::leave(const Point& next) {
+// Ends the branch at an end of the range, where a point is beyond it and the branch goes there.
+bool StepFollower::leaves(const Point& next) {
   const BranchLimits& limits = limits_.branch;
+  if (next.parameter >= limits.least && next.parameter <= limits.largest) return false;
   const double limit = next.parameter < limits.least ? limits.least : limits.largest;
   const double share = (limit - now_.parameter) / (next.parameter - now_.parameter);
   const ShotOrbit at = shoot(*map_, now_.x + share * (next.x - now_.x), limit, clock_, limits_.tolerance);
-  if (at.found) {
-    const Point end{at.x, limit};
-    mark_up_to(end);
-    const FollowedMap::Image image = map_->march(at.x, limit, clock_, true);
-    keep(end, image, multipliers_of(image.derivative));
-  }
+  if (!at.found) return false;
+  const Point end{at.x, limit}, by{at.x - now_.x, limit - now_.parameter};
+  const double far = map_->metric().size(by.x, by.parameter);
+  if (far > step_ * growth || overlap(by, along_) < sharpest * far) return false;
+  trace_.corners.back().way = along_.parameter < 0 ? -1 : 1;
+  mark_up_to(end);
+  const FollowedMap::Image image = map_->march(at.x, limit, clock_, true);
+  keep(end, image, multipliers_of(image.derivative));
   trace_.end = fmt::format("the range ends at {:.10g}", limit);
+  return true;
+}
+
+// Takes the null direction beyond a corner that the last orbit is next to. The determinant bordered by the direction
+// of the branch keeps its sign there.
+bool StepFollower::turn_corner() {
+  const double range = map_->metric().parameter_metres() * (limits_.branch.largest - limits_.branch.least);
+  constexpr double beyond = 1e-6, difference = 1e-7, step = 1e-5;  // of the range
+  if (trace_.rebounds > 0 || orientation_ == 0 || trace_.corners.back().arc == corner_) return false;
+  corner_ = trace_.corners.back().arc;
+  const Point there{now_.x + beyond * range * along_.x, now_.parameter + beyond * range * along_.parameter};
+  try {
+    last_ = map_->march(there.x, there.parameter, clock_, true);
+  } catch (const Refusal& refusal) {
+    failure_ = refusal.sentence;
+    return false;
+  }
+  if (last_.end) return false;
+  const Index D = map_->size();
+  const VectorXd slope = by_parameter(there, difference);
+  const VectorXd found = DenseLu(bordered(last_.derivative, slope, along_)).solve(VectorXd::Unit(D + 1, D));
+  Point along{found.head(D), found[D]};
+  const double size = map_->metric().size(along.x, along.parameter);
+  if (!std::isfinite(size) || size == 0) return false;
+  const double sign = determinant(bordered(last_.derivative, slope, along)) * orientation_ < 0 ? -1 : 1;
+  along_ = {sign / size * along.x, sign / size * along.parameter};
+  step_ = step * range;
+  return true;
 }
 
 // Whether the first orbit lies on the step to the next one, which goes the same way.
@@ -334,7 +371,7 @@ bool StepFollower::advance(long long steps) {
         step_ = limits_.located * range;
         break;
       }
-      if (step_ < smallest_step * range) {
+      if (step_ < smallest_step * range && (limits_.smooth || !turn_corner())) {
         const bool graze = trace_.rebounds > 0 && last_.runs != trace_.corners.back().runs;
         if (graze)
           trace_.end =
@@ -347,6 +384,7 @@ bool StepFollower::advance(long long steps) {
         return false;
       }
       next = {now_.x + step_ * along_.x, now_.parameter + step_ * along_.parameter};
+      if (leaves(next)) return false;
       try {
         if (!correct(next, along_, iterations)) continue;
       } catch (const Refusal& refusal) {  // of a value of the parameter
@@ -382,8 +420,10 @@ bool StepFollower::advance(long long steps) {
     far = metric.size(by.x, by.parameter);
     if (orientation_ == 0) orientation_ = turned_;
     along_ = {by.x / far, by.parameter / far};
+    if (leaves(next)) return false;
     if (next.parameter < limits.least || next.parameter > limits.largest) {
-      leave(next);
+      trace_.end =
+          fmt::format("the range ends at {:.10g}", next.parameter < limits.least ? limits.least : limits.largest);
       return false;
     }
     if (apart_.size() > 0) {

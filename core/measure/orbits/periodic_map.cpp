@@ -259,8 +259,7 @@ void PeriodicMap::set_period(int steps_per_period) {
   clocked_ = steps_per_period;
   const Program& own = program();
   const double omega = own.problem->support.pulsation, phase = lanes_.origin.phase;
-  sine_.clear();
-  cosine_.clear();
+  sine_ = cosine_ = std::vector<double>();
   for (int k = 0; k < steps_per_period; ++k) {
     const double angle = omega * (k * own.h);
     sine_.push_back(std::sin(angle) * std::cos(phase) + std::cos(angle) * std::sin(phase));

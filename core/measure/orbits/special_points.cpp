@@ -69,7 +69,7 @@ struct Crossing {
   bool raw = false;
   int sign = 0;                        // outwards or inwards
   double value = 0, arc = 0, tip = 0;  // of a smooth one: where it is by linear interpolation
-  std::complex<double> multiplier;
+  std::optional<std::complex<double>> multiplier;
 };
 
 // What of the multipliers is counted, and the function whose zero is the crossing.
@@ -96,12 +96,16 @@ std::vector<Crossing> crossings_of(const Corners& corners, const Circle& circle,
     const int smooth = now.smooth.outside.*circle.count - was.smooth.outside.*circle.count;
     if (smooth * (now.smooth.outside.total - was.smooth.outside.total) <= 0) continue;
     const double before = distance(was.smooth, circle.pair), after = distance(now.smooth, circle.pair);
-    if (!(before * after <= 0) || before == after) continue;
-    const double share = before / (before - after);
+    // Between two orbits by steps a multiplier may jump over the circle.
+    const bool passes = before * after <= 0 && before != after;
+    if (!passes && !by_steps) continue;
+    const double share = passes ? before / (before - after) : 0.5;
     const auto between = [&](double a, double b) { return a + share * (b - a); };
-    const std::complex<double> multiplier =
-        circle.pair ? std::polar(1.0, between(was.smooth.angle, now.smooth.angle)) : std::complex<double>(-1);
-    all.push_back({i, false, after > before ? 1 : -1, between(was.parameter, now.parameter), between(was.arc, now.arc),
+    std::optional<std::complex<double>> multiplier;
+    if (passes)
+      multiplier =
+          circle.pair ? std::polar(1.0, between(was.smooth.angle, now.smooth.angle)) : std::complex<double>(-1);
+    all.push_back({i, false, smooth > 0 ? 1 : -1, between(was.parameter, now.parameter), between(was.arc, now.arc),
                    between(was.tip, now.tip), multiplier});
   }
   return all;
@@ -139,6 +143,7 @@ void add_group(const Corners& corners, const Circle& circle, const std::vector<C
     point.arc = root.arc;
     point.tip = root.tip;
     point.multiplier = root.multiplier;
+    if (!root.multiplier) point.note = "a multiplier jumps over the circle";
     if (smooth.size() > 1)
       point.note = fmt::format("the half-step rule crosses {} times; the middle one stands for them", smooth.size());
   } else {
@@ -267,9 +272,17 @@ void add_contacts(const Corners& corners, const PointSearch& search, std::vector
     const bool appears = now.change.closes && now.runs > was.runs, vanishes = !now.change.closes && now.runs < was.runs;
     if (!appears && !vanishes) continue;  // a run is cut in two, or two become one
     SpecialPoint point = at_corner(corners, i, "contact", "GR");
-    // The shorter one of the two: a motion without contact is one piece, however long.
-    double piece = std::abs(now.parameter - was.parameter);
-    if (i + 1 < corners.size()) piece = std::min(piece, std::abs(corners[i + 1].parameter - now.parameter));
+    // The shorter one of the two: a motion without contact is one piece, however long. Between bounds that are met at
+    // once there is no length.
+    const auto away = [&](std::ptrdiff_t way) {
+      auto at = static_cast<std::ptrdiff_t>(i);
+      double far = 0;
+      while (far <= met_at_once * std::abs(now.parameter) && (at += way) >= 0 && at < std::ssize(corners))
+        far = std::abs(corners[static_cast<std::size_t>(at)].parameter - now.parameter);
+      return far;
+    };
+    double piece = away(-1);
+    if (const double after = away(1); after > 0) piece = std::min(piece, after);
     point.low = point.parameter - piece;
     point.high = point.parameter + piece;
     point.side = now.change.upper ? "upper" : "lower";

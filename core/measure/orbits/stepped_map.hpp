@@ -97,7 +97,8 @@ struct ArcSteps {
 /// ∂P/∂λ by a difference over 1e-6 of the range. A step grows by half after at most four iterations, shrinks by as much
 /// after more than seven, is halved where none is found, the branch turns by more than 45 degrees, or the count of
 /// multipliers outside changes within more than `located` of the range. So is one whose bordered matrix changes the
-/// sign of its determinant: it goes back along the branch. Below 1e-9 of the range's length the branch ends.
+/// sign of its determinant: it goes back along the branch. Below 1e-9 of the range's length the steps are at a corner
+/// of a map that is piecewise smooth: they go on along the null direction beyond it, or the branch ends.
 class StepFollower {
  public:
   StepFollower(FollowedMap& map, const MapClock& clock, Eigen::VectorXd x, double parameter, int way,
@@ -109,6 +110,8 @@ class StepFollower {
   /// Makes up to so many steps; false where the branch has ended.
   bool advance(long long steps);
   const BranchTrace& trace() const { return trace_; }
+  /// The largest u of its orbits, m; 0 where no stop gives back speed.
+  double rebounds() const { return trace_.rebounds; }
   long long pieces() const { return static_cast<long long>(trace_.corners.size()); }
   /// The last orbit, the unit secant and the step.
   BranchState state() const;
@@ -128,11 +131,13 @@ class StepFollower {
   bool set_tangent(int way);
   void place_contact(const Point& beyond, const Point& along, bool turns);
   void keep(const Point& point, const FollowedMap::Image& image, std::vector<std::complex<double>> multipliers);
-  Eigen::VectorXd by_parameter(const Point& point);
+  Eigen::VectorXd by_parameter(const Point& point, double share);
+  Eigen::MatrixXd bordered(const Eigen::MatrixXd& derivative, const Eigen::VectorXd& slope, const Point& along) const;
   double overlap(const Point& a, const Point& b) const;
   Eigen::VectorXd asymmetry(const Point& point);
   void mark_up_to(const Point& next);
-  void leave(const Point& next);
+  bool leaves(const Point& next);
+  bool turn_corner();
   bool comes_back(double far) const;
 
   FollowedMap* map_;
@@ -142,6 +147,7 @@ class StepFollower {
   double step_ = 0;
   int orientation_ = 0;    // sign of the determinant of the bordered matrix; 0: not known yet
   int turned_ = 0;         // that of the last correction
+  double corner_ = -1;     // arc of the last corner that was turned
   Eigen::VectorXd apart_;  // x − its image, where branches end at images
   FollowedMap::Image last_;
   std::string failure_;

@@ -262,7 +262,7 @@ int solve_branch_point(const StudyResults& results, const PointRequest& asked, s
     marcher = &map->begin(point.x, point.parameter);
     lane = map->lanes().lane(point.parameter);
   } else {
-    stepped = continued.stepped_map();
+    stepped = std::make_unique<SteppedMap>(continued.stepped_map(continued.reference_at()));
     check(stepped->size());
     point = by_steps(*stepped, plan, clock, kept, arc);
     own.emplace(stepped->begin(point.x, point.parameter).first);

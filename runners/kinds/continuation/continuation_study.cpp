@@ -179,7 +179,8 @@ void check_followed(const Json& resolved, const Json& settings, const Registry& 
       if (pointer.starts_with("/mesh")) what = "part of the mesh";
       if (named.is_boolean()) what = "true or false";
       if (pointer.starts_with("/scene/") && named.is_number()) what = "";
-      if (named.is_string() && pointer.ends_with("/type")) what = "the word " + named.dump();
+      if (named.is_string() && (pointer.ends_with("/type") || pointer.starts_with("/methods/")))
+        what = "the word " + named.dump();
       if (!what.empty())
         throw InputError(where, fmt::format("continuation follows a real number; {} is {}", pointer, what));
     }

@@ -94,6 +94,7 @@ ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry
   if (refusal_.empty() && images) refusal_ = no_image_;
   if (refusal_.empty() && plan.follow == Follow::pieces && !no_pieces_.empty())
     refusal_ = no_pieces_ + ": follow with steps";
+  if (refusal_.empty() && !by_pieces()) check_tangents();
 }
 
 int ContinuedMap::scene_at(double value, bool own_state, std::string& reason) {
@@ -112,11 +113,15 @@ void ContinuedMap::check_class(int scene) {
   const double e = std::abs(plan_restitution(program.plan, program.h).value_or(0));
   const bool rigid = program.contact && !program.law->reads();
   constexpr double rebounds_above = 1e-6;
-  bool unresolved = tangents_miss_impacts(program);
-  if (rigid && !unresolved && e > rebounds_above && !stops_met_at_steps(program)) {
+  // Only a point with mass is thrown back.
+  bool unresolved = tangents_miss_impacts(program), thrown = false;
+  if (rigid && e > rebounds_above) {
     const std::vector<bool> massive = points_with_mass(*program.problem),
                             resolved = resolved_points(*program.problem, program.h);
-    for (std::size_t i = 0; i < massive.size(); ++i) unresolved = unresolved || (massive[i] && !resolved[i]);
+    for (std::size_t i = 0; i < massive.size(); ++i) {
+      thrown = thrown || massive[i];
+      unresolved = unresolved || (massive[i] && !resolved[i]);
+    }
   }
   if (unresolved) {
     refusal_ = fmt::format(
@@ -126,12 +131,22 @@ void ContinuedMap::check_class(int scene) {
         program.h);
     return;
   }
-  rebounds_ = rebounds_ || (rigid && (e > rebounds_above || stops_met_at_steps(program)));
-  if (rigid && e > rebounds_above)
+  rebounds_ = rebounds_ || thrown || stops_met_at_steps(program);
+  if (thrown)
     no_pieces_ =
         fmt::format("the stops give back {:.3g} of the speed: the map jumps where the step of an impact changes", e);
   else if (const auto reason = SetSteps::refusal(program))
     no_pieces_ = "a step is not affine between changes of contact: " + *reason;
+}
+
+// Whether the steps have tangent columns.
+void ContinuedMap::check_tangents() {
+  try {
+    stepped_map(reference_at_);
+    scenes_.program(scenes_[reference_].group, {scenes_[reference_].lane}, 1);
+  } catch (const Refusal& refusal) {
+    refusal_ = refusal.sentence;
+  }
 }
 
 void ContinuedMap::check_kernel(int scene) {
@@ -242,7 +257,7 @@ std::unique_ptr<PeriodicMap> ContinuedMap::map() {
   return std::make_unique<PeriodicMap>(program(origin_), *lanes_, metres_, std::move(load));
 }
 
-std::unique_ptr<SteppedMap> ContinuedMap::stepped_map() {
+SteppedMap ContinuedMap::stepped_map(double at) {
   const auto make = [this](double value, int tangents) {
     const auto [place, added] = marched_.try_emplace(value, -1);
     if (added) {
@@ -254,7 +269,7 @@ std::unique_ptr<SteppedMap> ContinuedMap::stepped_map() {
     return SteppedMap::Scene{scenes_.program(scene.group, {scene.lane}, tangents), scene.group};
   };
   const auto carry = [this](const LaneState& state, int from, int to) { return scenes_.carry(state, from, to); };
-  return std::make_unique<SteppedMap>(make, carry, reference_at_, metres_, rebounds_);
+  return {make, carry, at, metres_, rebounds_};
 }
 
 }  // namespace ricochet

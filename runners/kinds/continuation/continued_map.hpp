@@ -45,12 +45,14 @@ class ContinuedMap {
   double parameter_scale() const { return gap_ / metres_; }
   /// The map, which this outlives; only where no_pieces() is "".
   std::unique_ptr<PeriodicMap> map();
-  /// The map at any value, in the coordinates of the first possible orbit; this outlives it.
-  std::unique_ptr<SteppedMap> stepped_map();
+  /// The map at any value, in the coordinates of one; this outlives it. Branches have those of `reference_at`.
+  SteppedMap stepped_map(double at);
+  double reference_at() const { return reference_at_; }
 
  private:
   void check_class(int scene);
   void check_kernel(int scene);
+  void check_tangents();
   double possible_end(double end);
   void check_ends();
   bool affine_loads(int low, int middle, int high);

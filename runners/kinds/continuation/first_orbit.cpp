@@ -61,6 +61,14 @@ class OrbitSearch {
       found.why = fmt::format("the orbit found from {} at λ = {:g} repeats after {} period{}; expected period {}",
                               from(), orbit_.at, sooner, sooner == 1 ? "" : "s", orbit_.period);
     if (!found.shot.found) found.why = not_found(found.shot);
+    // Where impacts are placed so badly every motion is near to an orbit.
+    constexpr double largest_rebounds = 0.01;  // of the gap
+    const double placed = found.why.empty() ? rebounds_of(map_.march(found.shot.x, orbit_.at, found.clock)) : 0;
+    if (placed > largest_rebounds * continued_.gap())
+      found.why = fmt::format(
+          "impacts that rebound are placed to {:.3g} m alone at λ = {:g}, more than a hundredth of the gap: give more "
+          "steps per period",
+          placed, orbit_.at);
     return found;
   }
 

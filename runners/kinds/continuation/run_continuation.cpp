@@ -105,7 +105,11 @@ class ContinuationRun {
     }
     results_.put(record, plan_, pieces_, over_budget_ ? std::optional(budget_of(case_)) : std::nullopt);
     record.steps = pieces_ * case_.steps_per_period;
-    if (twins_ > 0)
+    constexpr double near = 0.01;
+    if (twins_ > near)
+      record.notes.push_back(fmt::format(
+          "multipliers differ from twins of the first orbits by {:.2g} of them: a contact changes beside", twins_));
+    else if (twins_ > 0)
       record.notes.push_back(fmt::format("multipliers agree with twins of the first orbits to {:.1g}", twins_));
     if (ties_ > 0)
       record.notes.push_back(
@@ -184,7 +188,9 @@ class ContinuationRun {
   }
 
   static void cut(BranchTrace& trace, const SpecialPoint& point) {
-    const auto left = static_cast<std::size_t>(std::max(point.corner, 1LL)) + 1;
+    // A mark lies behind its corner.
+    const long long last = point.corner + (point.kind == "mark");
+    const auto left = static_cast<std::size_t>(std::max(last, 1LL)) + 1;
     if (left < trace.corners.size()) trace.corners.resize(left);
     std::erase_if(trace.states, [&](const auto& one) { return one.first >= static_cast<long long>(left); });
     std::erase_if(trace.marks, [&](const MarkedOrbit& one) { return one.corner >= static_cast<long long>(left); });
@@ -193,7 +199,8 @@ class ContinuationRun {
 
   void run_branch(FollowedBranch& branch, const ShotOrbit& shot, int way, int depth) {
     auto run = begin(branch, shot, way);
-    if (depth == 0 && way > 0) twins_ = std::max(twins_, twin_error(map_, shot, branch.clock, continued_.gap()));
+    if (depth == 0 && way > 0 && run.trace().rebounds == 0)
+      twins_ = std::max(twins_, twin_error(map_, shot, branch.clock, continued_.gap()));
     std::optional<SpecialPoint> stopping;
     bool more = !run.trace().ended();
     for (long long round = 0; more; ++round) {
@@ -364,10 +371,10 @@ CaseRecord run_continuation(const StudyCase& study_case, const Registry& registr
     record.run_seconds = thread_seconds() - begun - record.setup_seconds;
   };
   if (!continued.no_pieces().empty()) record.notes.push_back("followed by steps: " + continued.no_pieces());
-  if (!continued.no_pieces().empty() || plan.follow == Follow::steps)
-    run(continued.stepped_map());
-  else
+  if (continued.by_pieces())
     run(continued.map());
+  else
+    run(std::make_unique<SteppedMap>(continued.stepped_map(continued.reference_at())));
   return record;
 }
 

@@ -308,16 +308,9 @@ std::optional<double> StudyPoints::least_fold() const {
   for (const std::size_t k : {0, 1})
     for (const TurnRow& row : turns_type().read(cases_[steps[k]]->tables)) counts[k][row.prominence] += row.folds;
   std::optional<double> largest;
-  // A turn on the other side of a prominence is not lost: one case has more than the other has at the next smaller one.
-  const auto extra = [&](const std::map<double, int>& one, const std::map<double, int>& other) {
-    for (const auto& [prominence, folds] : one) {
-      const auto same = other.find(prominence);
-      if (same == other.end() || same == other.begin() || folds <= std::prev(same)->second) continue;
-      largest = std::max(largest.value_or(0), prominence);
-    }
-  };
-  extra(counts[0], counts[1]);
-  extra(counts[1], counts[0]);
+  for (const auto& [prominence, folds] : counts[0])
+    if (const auto same = counts[1].find(prominence); same != counts[1].end() && same->second != folds)
+      largest = prominence;
   if (largest) *largest *= times;
   return largest;
 }

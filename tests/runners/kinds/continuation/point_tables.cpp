@@ -204,3 +204,29 @@ TEST_CASE("values are said to the digits that their intervals bear") {
   CHECK(point_value(-2.64, 0.3) == "−2.6 ± 0.3");
   CHECK(point_value(0.1005653, std::nullopt) == "0.1005653");
 }
+
+TEST_CASE("folds of one case alone are listed from 25 times what the two finest steps disagree about") {
+  for (const bool given : {false, true}) {
+    StudyResults all = synthetic::points();
+    if (given) all.study["prominence"] = 1e-5;
+    for (CaseRecord& record : all.cases) {
+      if (record.id != "smooth0-20-8000") continue;
+      std::vector<SpecialRow> points = special_points_type().read(record.tables);
+      SpecialRow fold = points.front();
+      fold.kind = "fold";
+      // 4000 and 8000 steps differ in turns of 2.2e-5 m: 5.4e-4 m.
+      for (const double prominence : {1e-4, 1e-3}) {
+        fold.point = static_cast<int>(points.size()) + 1;
+        fold.parameter = fold.low = fold.high = 0.09 + prominence;
+        fold.prominence = prominence;
+        points.push_back(fold);
+      }
+      *find_table(record.tables, special_points_type().name) = special_points_type().with(points);
+    }
+    all = with_tables(std::move(all));
+    std::vector<double> alone;
+    for (const SpecialRow& row : special_points_type().read(all.derived))
+      if (row.id == "smooth0-20-8000" && row.kind == "fold" && row.name.empty()) alone.push_back(*row.prominence);
+    CHECK(alone == (given ? std::vector<double>{1e-4, 1e-3} : std::vector<double>{1e-3}));
+  }
+}
