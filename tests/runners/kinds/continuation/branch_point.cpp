@@ -155,7 +155,7 @@ TEST_CASE("a stable orbit that is solved is the one that a bifurcation study mar
     const CaseRecord marched = run_bifurcation(opened.first(), *opened.registry, {}, stop);
     const auto strobes = orbit_numbers(marched, points_type(), &SectionColumns::displacement, 0.085, "rest");
     REQUIRE_FALSE(strobes.empty());
-    if (orbits_of(marched).front().regime != "periodic") return;
+    REQUIRE(orbits_of(marched).front().regime == "periodic");
     CHECK(std::abs(strobes.back() - solved.period[static_cast<std::size_t>(step)][1]) < 1e-9);
   }
 }
