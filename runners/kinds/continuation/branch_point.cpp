@@ -68,14 +68,16 @@ BranchPoint by_pieces(PeriodicMap& map, const ContinuationPlan& plan, const MapC
   entry.arc = start.arc;
   PieceFollower follower(map, clock, std::move(entry), drift);
   BranchState there = follower.state();
-  double along = 0;  // on the piece that holds the arc
+  double along = 0;                   // on the piece that holds the arc
+  constexpr double same_arc = 1e-12;  // m, what round-off leaves of one over some pieces
   while (arc > start.arc) {
     const Piece piece = follower.end_of_piece(plan.from, plan.to);
     if (piece.end == BranchEnd::unresolved)
       throw PointRefused(fmt::format("the branch was lost at an arc of {} m: {}", follower.state().arc, piece.why));
-    along = arc - follower.state().arc;
-    there = follower.at(std::min(along, piece.length));
-    if (along <= piece.length || piece.end != BranchEnd::none) break;
+    along = std::clamp(arc - follower.state().arc, 0.0, piece.length);
+    there = follower.at(along);
+    // At a corner multipliers are those of the piece behind it, as rows have them.
+    if (arc - follower.state().arc < piece.length - same_arc || piece.end != BranchEnd::none) break;
     if (follower.state().pieces > plan.most_pieces) throw PointRefused("the arc is not come to on this branch");
     follower.go(piece);
   }

@@ -17,3 +17,21 @@ TEST_CASE("the page has branches, points, multipliers and turns", "[report]") {
   const std::string page = synthetic::rendered(all, "0;", "5");
   CHECK_THAT(page, Contains("point_levels") && Contains("smooth0-20-8000/branch/parameter:f64"));
 }
+
+TEST_CASE("cases that lack a point are marked where the finest of a method alone has it", "[report]") {
+  const StudyResults all = with_tables(synthetic::points());
+  const Table levels = report::point_levels(report::CaseView(all));
+  const auto column = [&](const char* name) { return find_column(levels.columns, name).value(); };
+  std::size_t absent = 0, found = 0;
+  for (const Row& row : levels.rows) {
+    if (row[column("refined")].text() != "elements" || row[column("name")].text().find("fold") != 0) continue;
+    if (row[column("method")].text().find("rough") != 0) continue;
+    const bool lacks = row[column("presence")].text() == "absent";
+    CHECK(row[column("distance")].text().empty() == lacks);
+    absent += lacks;
+    found += !lacks;
+  }
+  // The rough mass has its fold on 20 elements and not on 10.
+  CHECK(absent > 0);
+  CHECK(found == 0);
+}

@@ -52,7 +52,7 @@
       for (const kind of this.kinds()) { const [words, symbol] = branches.kindWords(kind); legend.push(ricochet.swatch(words, "#555555", symbol, "Point")); }
       return {
         id: "branches", title: "Branches of periodic orbits", views, charts, legend: ricochet.firstOfName(legend), linked: false,
-        caption: ["Tip displacement at the strobe, absolute, against " + branches.parameter[0] + "; " + both + ", thin where a point's multipliers cross the circle several times. Large marks: points that the two finest cases of a refinement share, with bars where they may be; small ones: points of one case. Click a branch for its orbit.", branches.said, branches.beneath].filter(Boolean).join(" "),
+        caption: ["Tip displacement at the strobe, absolute, against " + branches.parameter[0] + "; " + both + ", thin where that changes again within 3 mm of arc or within the interval of a point. Large marks: points that the two finest cases of a refinement share, with bars where they may be; small ones: points of one case. Click a branch for its orbit.", branches.said, branches.beneath].filter(Boolean).join(" "),
       };
     }
     kinds() { return ricochet.distinct(this.branches.cases.flatMap((one) => this.branches.points(one).map((row) => this.branches.kind(row)))); }
@@ -63,9 +63,9 @@
       ricochet.withoutEnds(xAxis);
       if (this.beneath.tip.length) ricochet.draw(out, () => this.beneath, { x: "parameter", y: "tip" }, { ...ricochet.dot("bifurcation", "#b3b3b3", "circle", 2, 0), silent: true });
       for (const { one, name, colour } of curves) {
-        for (const [unstable, flickers, width] of [[false, false, 2.2], [true, false, 1.4], [false, true, 0.8], [true, true, 0.6]])
-          if (!flickers || branches.flickering(one.id).includes(1))
-            ricochet.draw(out, () => branches.curve(one.id, unstable, flickers), { x: "parameter", y: "tip" }, { ...ricochet.line(name, colour, width, unstable ? [5, 4] : "solid"), case: one.id, showSymbol: false, z: 2 });
+        for (const [look, width, dash] of [["stable", 2.2, "solid"], ["unstable", 1.4, [5, 4]], ["flickering", 0.8, "solid"]])
+          if (look !== "flickering" || branches.flickering(one.id).includes(1))
+            ricochet.draw(out, () => branches.curve(one.id, look), { x: "parameter", y: "tip" }, { ...ricochet.line(name, colour, width, dash), case: one.id, showSymbol: false, z: 2 });
         for (const rows of ricochet.groupBy(branches.points(one), (row) => [branches.kind(row), Boolean(row.name)]).values()) this.mark(out, name, colour, rows);
       }
       out.pick = (chart, option, hidden, at) => nearest(branches, curves.filter(({ name }) => !hidden.has(name)), chart, at);

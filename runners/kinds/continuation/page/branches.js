@@ -1,5 +1,6 @@
 // The branches of each case as figures read them: columns of equal length, and which rows belong together.
 {
+  const flickerArc = 0.003;   // m: raw crossings this near are one group
   const refinements = ["elements", "modes", "steps_per_period", "step"];
   const kinds = {
     fold: ["fold", "diamond", 11], symmetry: ["loss of symmetry", "triangle", 11], flip: ["flip", "rect", 9], torus: ["torus", "roundRect", 10], "first contact": ["first contact", "circle", 10],
@@ -32,10 +33,10 @@
     kind(row) { return row.kind === "contact" && (row.runs_before === 0 || row.runs_after === 0) ? "first contact" : row.kind; }
     kindWords(kind) { return kinds[kind] || [kind, "circle", 7]; }
     points(one) { return this.special(one.id).filter((row) => row.parameter !== null && row.tip_displacement !== null); }
-    // Columns of the stable or of the unstable rows, those that flicker apart: where that changes both have the row, and where they end is a gap.
-    curve(id, unstable, flickers = false) {
+    // Columns of the rows of one look, "stable", "unstable" or "flickering": where that changes both have the row, and where they end is a gap.
+    curve(id, look) {
       const of = this.column(id, "of"), counts = this.column(id, "unstable"), parameter = this.column(id, "parameter"), tip = this.column(id, "tip"), out = { parameter: [], tip: [] };
-      const shaky = this.flickering(id), is = (i) => Number.isFinite(counts[i]) && (counts[i] > 0) === unstable && Boolean(shaky[i]) === flickers, put = (x, y) => { out.parameter.push(x); out.tip.push(y); };
+      const shaky = this.flickering(id), is = (i) => Number.isFinite(counts[i]) && (shaky[i] ? "flickering" : counts[i] > 0 ? "unstable" : "stable") === look, put = (x, y) => { out.parameter.push(x); out.tip.push(y); };
       for (let i = 0; i + 1 < of.length; ++i) {
         // Between two rows the curve looks as the second does, so that it changes at a point.
         if (of[i] !== of[i + 1] || !is(i + 1)) continue;
@@ -76,10 +77,19 @@
       const runs = Array.from(this.block(id, "run/row")).map((of, i) => ({ of, i })).filter(({ of }) => of === row).map(({ i }) => Object.fromEntries(["x", "upper", "bound", "begin", "length"].map((name) => [name, this.block(id, "run/" + name)[i]])));
       return { u, v, phase: u.map((_, i) => (period * i) / (u.length - 1)), period, lower: this.block(id, "lower")[k], upper: this.block(id, "upper")[k], runs };
     }
-    // Rows of the branch of a row that lie within the interval of a special point around it: there its multipliers cross the circle again and again.
+    // Rows at which multipliers cross the circle again and again: those between two changes of stability less than 3 mm of arc apart, and those around a special
+    // point that lie in its interval.
     flickering(id) {
       if (this.shaky.has(id)) return this.shaky.get(id);
-      const of = this.column(id, "of"), parameter = this.column(id, "parameter"), out = new Uint8Array(of.length);
+      const of = this.column(id, "of"), parameter = this.column(id, "parameter"), arc = this.column(id, "arc"), counts = this.column(id, "unstable"), out = new Uint8Array(of.length);
+      let last = -1;   // row behind the last change
+      for (let i = 1; i < of.length; ++i) {
+        if (of[i] !== of[i - 1]) last = -1;
+        else if ((counts[i] > 0) !== (counts[i - 1] > 0)) {
+          if (last > 0 && arc[i - 1] - arc[last - 1] < flickerArc) out.fill(1, last, i);
+          last = i;
+        }
+      }
       for (const point of this.special(id)) {
         if (!["symmetry", "flip", "torus"].includes(point.kind) || !(point.crossings > 1)) continue;
         const at = this.rowOf(id, point), inside = (i) => of[i] === of[at] && parameter[i] >= point.low && parameter[i] <= point.high;

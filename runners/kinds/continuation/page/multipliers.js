@@ -52,7 +52,7 @@
     return [{
       id: "multipliers", title: "Multipliers of the orbits", views: ["plane"], charts: methods.map(({ label, one }) => chart(branches, label, one)),
       legend: [{ name: "unit circle", colour: ricochet.faint, dash: "", symbol: "" }].concat(Object.entries(looks).map(([name, colour]) => ricochet.swatch(name, colour, "circle")), lined ? [{ name: lineName, colour: lineColour, dash: "", symbol: "" }] : []),
-      caption: "Multipliers of the step's own map, as its contact sets are, along the branches of each method at its finest; of half a period where the orbit is symmetric. They jump where a contact set changes, and flicker across the circle." + (lined ? " Line: the real one nearest −1 and the pair nearest the circle by the half-step rule, from a modulus of ½ on." : ""),
+      caption: "Multipliers of the step's own map, as its contact sets are, along the branches of each method at its finest; of half a period where the orbit is symmetric." + (lined ? " They jump where a contact set changes, and flicker across the circle. Line: the real one nearest −1 and the pair nearest the circle by the half-step rule, from a modulus of ½ on." : ""),
     }];
   });
 }

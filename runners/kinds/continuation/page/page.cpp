@@ -163,20 +163,27 @@ Table point_levels(const CaseView& view) {
   const StudyPoints study(compared);
   for (std::size_t name = 0; name < study.names().size(); ++name)
     for (const std::size_t head : study.heads()) {
-      const PointConvergence found = study.convergence(head, static_cast<int>(name));
+      const int number = static_cast<int>(name);
+      const PointConvergence found = study.convergence(head, number);
+      const auto add = [&](std::size_t axis, std::size_t c, const StudyPoint* point, const PointLimit& limit) {
+        Row row = {study.names()[name].text, study.axes()[axis].column, study.cases()[head]->id, study.cases()[c]->id,
+                   Cell(study.axes()[axis].size(*study.cases()[c]))};
+        row.push_back(point ? Cell(point->value) : Cell());
+        row.push_back(point ? Cell(std::abs(point->value - limit.value)) : Cell());
+        row.push_back(point ? Cell(point->half) : Cell());
+        row.push_back(word(study.presence(c, number, nullptr)));
+        out.rows.push_back(std::move(row));
+      };
+      std::vector<bool> told(study.axes().size(), false);
       for (const PointConvergence::Along& one : found.along) {
-        const PointLimit limit = study.limit(one, static_cast<int>(name));
-        for (const std::size_t c : study.along(one.finest, one.axis)) {
-          const StudyPoint* point = study.find(c, static_cast<int>(name));
-          Row row = {study.names()[name].text, study.axes()[one.axis].column, study.cases()[head]->id,
-                     study.cases()[c]->id, Cell(study.axes()[one.axis].size(*study.cases()[c]))};
-          row.push_back(point ? Cell(point->value) : Cell());
-          row.push_back(point ? Cell(std::abs(point->value - limit.value)) : Cell());
-          row.push_back(point ? Cell(point->half) : Cell());
-          row.push_back(word(study.presence(c, static_cast<int>(name), nullptr)));
-          out.rows.push_back(std::move(row));
-        }
+        told[one.axis] = true;
+        const PointLimit limit = study.limit(one, number);
+        for (const std::size_t c : study.along(one.finest, one.axis)) add(one.axis, c, study.find(c, number), limit);
       }
+      // Where the finest case alone has the point, those that lack it say so.
+      for (std::size_t axis = 0; found.point && axis < told.size(); ++axis)
+        for (const std::size_t c : study.along(head, axis))
+          if (!told[axis] && study.presence(c, number, nullptr) == PointPresence::absent) add(axis, c, nullptr, {});
     }
   return out;
 }

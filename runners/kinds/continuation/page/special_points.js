@@ -11,10 +11,10 @@
       this.lines = data.rows("point_lines");
       this.methods = ricochet.distinct(this.levels.map((row) => row.method));
     }
-    // Orders first, changes of contact last.
+    // Orders first, then other refinements of the same points, changes of contact last.
     rank([{ name, refined }]) {
-      const change = /contact at/.test(name) && !/first/.test(name);
-      return (change ? 2 : 0) + (this.lines.some((one) => one.name === name && one.refined === refined) ? 0 : 1);
+      const change = /contact at/.test(name) && !/first/.test(name), own = this.lines.filter((one) => one.name === name);
+      return (change ? 3 : 0) + (own.some((one) => one.refined === refined) ? 0 : own.length ? 1 : 2);
     }
     methodName(id) { const one = this.data.byId.get(id); return one ? this.branches.methodLabel(one) : id; }
     figure() {
@@ -32,7 +32,7 @@
     }
     chart(rows, several) {
       const [{ name, refined }] = rows, x = axes[refined] || [refined, "1"], y = ["distance from the limit", this.branches.parameter[1]];
-      const shown = rows.filter((row) => row.distance > 0), xs = new Interval().include(...rows.map((row) => row.size)), ys = new Interval().include(...shown.map((row) => row.distance));
+      const shown = rows.filter((row) => row.distance > 0), xs = new Interval().include(...rows.map((row) => row.size)), ys = new Interval().include(...shown.flatMap((row) => [row.distance, row.distance + row.half]));
       if (xs.empty) return null;
       if (ys.empty) ys.include(1e-9, 1e-6);
       const up = ricochet.logAxis(y, ys, true), out = ricochet.view(x, y, ricochet.logAxis(x, xs, false), [up, ricochet.gutterAxis()]);

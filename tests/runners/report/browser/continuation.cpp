@@ -27,7 +27,7 @@ void check_branches(const browser::Json& page) {
   // Of each of four methods a stable and an unstable part.
   CHECK(lines == 8);
   // Its torus has several raw crossings: there the branch is thin.
-  CHECK(thin == 8);
+  CHECK(thin == 4);
   // Of two the fold has no name, or there is none.
   CHECK(folds >= 7);
 }
