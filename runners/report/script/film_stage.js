@@ -176,7 +176,7 @@
           const far = (bound + away) * size + side * (this.half ?? 0), x = rest[0] + far * ex, y = rest[1] + far * ey, half = shots.mass || shots.along ? 20 : reach;
           stop(context, ink, [x - half * ey, y + half * ex], [x + half * ey, y - half * ex], [side * ex, side * ey]);
           if (to >= 0) stroke(context, ink, 0.8, [3, 3], (c) => { c.moveTo(x, y); c.lineTo(...this.moved(to)); });
-          if (named && name) this.label(x + side * 14 * ex, y + side * (half > 9 ? 30 : 15) * (half > 9 ? 1 : ey), (words + " " + text(bound, 3) + " m").trim());
+          if (named && name) this.label(x + side * 14 * ex, Math.abs(ex) > Math.abs(ey) ? y - half - 14 : y + side * 15 * ey, (words + " " + text(bound, 3) + " m").trim());
           words = "";
         }
       });
