@@ -82,7 +82,7 @@
     }
     if (names) {
       const along = (box.width - 52) / x.length, across = 0.36 * box.height / reach, aside = row === 0.5 ? 0 : 8 * (row - 0.5);
-      return { rest: (p) => [box.left + 26 + along * (p + 0.5) + aside, box.top + 0.47 * box.height], axes: [[0, -across]], wide: along };
+      return { rest: (p) => [box.left + 26 + along * (p + 0.5) + aside, box.top + 0.47 * box.height], axes: [[0, -across]] };
     }
     if (mass) return { rest: () => [box.left + 0.5 * box.width, rowY], axes: [[0.36 * box.width / reach, 0]], half: 11 };
     if (bar) { const larger = 0.12 * length / largest, along = box.width / (1.35 * length); return { rest: (p) => [box.left + 0.13 * box.width + along * x[p], rowY], axes: [[along * larger, 0]], larger }; }
