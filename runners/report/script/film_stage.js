@@ -185,17 +185,17 @@
     shape() {
       const { context, ink, shots, k, colour, dash } = this, line = (c, places) => places.forEach((p, n) => (n ? c.lineTo(...this.moved(p)) : c.moveTo(...this.moved(p)))), all = shots.x.map((_, p) => p);
       if (shots.y) {
-        const joined = new Set(shots.links.flat());
+        const joined = new Set(shots.links.flat()), inLine = !shots.oblique && shots.bodies && shots.y.every((y) => y === shots.y[0]);
         stroke(context, ink, 0.6, [2, 3], (c) => { for (const [a, b] of shots.links) { c.moveTo(...this.rested(a)); c.lineTo(...this.rested(b)); } });
         stroke(context, colour, 2.4, dash, (c) => {
           for (const link of shots.links) line(c, link);
           // What moves along its line shows by its nodes.
-          if (!shots.oblique && shots.bodies && shots.y.every((y) => y === shots.y[0])) for (const p of all) { const [x, y] = this.moved(p); c.moveTo(x, y - 9); c.lineTo(x, y + 9); }
+          if (inLine) for (const p of all) { const [x, y] = this.moved(p); c.moveTo(x, y - 9); c.lineTo(x, y + 9); }
           for (const p of all) if (!joined.has(p)) { const [x, y] = this.moved(p); c.rect(x - 6, y - 6, 12, 12); }
         });
         context.fillStyle = ink;
         for (const p of shots.held) { const [x, y] = this.moved(p); context.fillRect(x - 4, y - 4, 8, 8); }
-        for (const { name, first } of shots.bodies ?? []) { const [x, y] = this.rested(first); this.label(x - 8 - 0.5 * context.measureText(name).width, y, name); }
+        for (const { name, first } of shots.bodies ?? []) { const [x, y] = this.rested(first); this.label(x + (inLine ? 0.5 : -0.5) * (context.measureText(name).width + 16), inLine ? y + 24 : y, name); }
       } else if (shots.names) {
         const [[left, y], [right]] = [this.rest(-0.5), this.rest(shots.x.length - 0.5)];
         stroke(context, ink, 0.6, [], (c) => { c.moveTo(left, y); c.lineTo(right, y); });
