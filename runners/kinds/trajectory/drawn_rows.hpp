@@ -1,8 +1,4 @@
 #pragma once
-#include <Eigen/Core>
-#include <optional>
-#include <ricochet/scene/discrete_problem.hpp>
-#include <ricochet/scene/scene.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 
 #include "runners/store/snapshots.hpp"

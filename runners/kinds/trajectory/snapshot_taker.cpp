@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/engine/flight/step_interval.hpp>
-#include <ricochet/scene/assembly.hpp>
-#include <ricochet/scene/discrete_problem.hpp>
 #include <ricochet/scene/supports.hpp>
 
 #include "runners/kinds/trajectory/drawn_rows.hpp"

@@ -82,7 +82,7 @@
     }
     if (names) {
       const along = (box.width - 52) / x.length, across = 0.36 * box.height / reach, aside = row === 0.5 ? 0 : 8 * (row - 0.5);
-      return { rest: (p) => [box.left + 26 + along * (p + 0.5) + aside, box.top + 0.47 * box.height], axes: [[0, -across]], wide: along };
+      return { rest: (p) => [box.left + 26 + along * (p + 0.5) + aside, box.top + 0.47 * box.height], axes: [[0, -across]] };
     }
     if (mass) return { rest: () => [box.left + 0.5 * box.width, rowY], axes: [[0.36 * box.width / reach, 0]], half: 11 };
     if (bar) { const larger = 0.12 * length / largest, along = box.width / (1.35 * length); return { rest: (p) => [box.left + 0.13 * box.width + along * x[p], rowY], axes: [[along * larger, 0]], larger }; }
@@ -176,7 +176,7 @@
           const far = (bound + away) * size + side * (this.half ?? 0), x = rest[0] + far * ex, y = rest[1] + far * ey, half = shots.mass || shots.along ? 20 : reach;
           stop(context, ink, [x - half * ey, y + half * ex], [x + half * ey, y - half * ex], [side * ex, side * ey]);
           if (to >= 0) stroke(context, ink, 0.8, [3, 3], (c) => { c.moveTo(x, y); c.lineTo(...this.moved(to)); });
-          if (named && name) this.label(x + side * 14 * ex, y + side * (half > 9 ? 30 : 15) * (half > 9 ? 1 : ey), (words + " " + text(bound, 3) + " m").trim());
+          if (named && name) this.label(x + side * 14 * ex, Math.abs(ex) > Math.abs(ey) ? y - half - 14 : y + side * 15 * ey, (words + " " + text(bound, 3) + " m").trim());
           words = "";
         }
       });
@@ -185,17 +185,17 @@
     shape() {
       const { context, ink, shots, k, colour, dash } = this, line = (c, places) => places.forEach((p, n) => (n ? c.lineTo(...this.moved(p)) : c.moveTo(...this.moved(p)))), all = shots.x.map((_, p) => p);
       if (shots.y) {
-        const joined = new Set(shots.links.flat());
+        const joined = new Set(shots.links.flat()), inLine = !shots.oblique && shots.bodies && shots.y.every((y) => y === shots.y[0]);
         stroke(context, ink, 0.6, [2, 3], (c) => { for (const [a, b] of shots.links) { c.moveTo(...this.rested(a)); c.lineTo(...this.rested(b)); } });
         stroke(context, colour, 2.4, dash, (c) => {
           for (const link of shots.links) line(c, link);
           // What moves along its line shows by its nodes.
-          if (!shots.oblique && shots.bodies && shots.y.every((y) => y === shots.y[0])) for (const p of all) { const [x, y] = this.moved(p); c.moveTo(x, y - 9); c.lineTo(x, y + 9); }
+          if (inLine) for (const p of all) { const [x, y] = this.moved(p); c.moveTo(x, y - 9); c.lineTo(x, y + 9); }
           for (const p of all) if (!joined.has(p)) { const [x, y] = this.moved(p); c.rect(x - 6, y - 6, 12, 12); }
         });
         context.fillStyle = ink;
         for (const p of shots.held) { const [x, y] = this.moved(p); context.fillRect(x - 4, y - 4, 8, 8); }
-        for (const { name, first } of shots.bodies ?? []) { const [x, y] = this.rested(first); this.label(x - 8 - 0.5 * context.measureText(name).width, y, name); }
+        for (const { name, first } of shots.bodies ?? []) { const [x, y] = this.rested(first); this.label(x + (inLine ? 0.5 : -0.5) * (context.measureText(name).width + 16), inLine ? y + 24 : y, name); }
       } else if (shots.names) {
         const [[left, y], [right]] = [this.rest(-0.5), this.rest(shots.x.length - 0.5)];
         stroke(context, ink, 0.6, [], (c) => { c.moveTo(left, y); c.lineTo(right, y); });

@@ -8,7 +8,7 @@ ricochet.figure("clearances", (data) => {
   cases.forEach((one, k) => legend.push(ricochet.swatch(nameOf(one), ricochet.methodColours[k % ricochet.mostCurves], "circle")));
   const charts = ricochet.distinct(found.map((row) => row.stop)).map((stop) => {
     const rows = found.filter((row) => row.stop === stop), radius = rows[0].radius, reach = around * Math.max(radius, ...rows.map((row) => Math.max(Math.abs(row.first), Math.abs(row.second))));
-    const said = [].concat(data.page.study.resolved.scene.stops).find((one) => one.name === stop), [first, second] = said?.clearance?.components ?? ["first component", "second component"];
+    const said = [].concat(data.page.study.resolved?.scene?.stops ?? []).find((one) => one.name === stop), [first, second] = said?.clearance?.components ?? ["first component", "second component"];
     const x = [first, "m"], y = [second, "m"], frame = new ricochet.Interval(-reach, reach);
     const across = ricochet.valueAxis(x, frame, false), up = ricochet.valueAxis(y, frame, true), out = ricochet.view(x, y, across, [up, ricochet.gutterAxis()]);
     for (const axis of [across, up]) ricochet.withoutEnds(axis);

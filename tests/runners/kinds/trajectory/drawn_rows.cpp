@@ -70,8 +70,8 @@ TEST_CASE("nodes are filmed on their plane: each along two axes, joined as K joi
   REQUIRE(film.y.size() == 2);
   CHECK(film.links == std::vector<std::pair<int, int>>{{0, 1}});
   REQUIRE(film.stops.size() == 2);
-  CHECK(film.stops[0] == Snapshots::Stop{1, -1, {1, 0}});
-  CHECK(film.stops[1] == Snapshots::Stop{0, 1, {1, 0}});
+  CHECK(film.stops[0] == Snapshots::Stop{1, -1, {1, 0}, "wall"});
+  CHECK(film.stops[1] == Snapshots::Stop{0, 1, {1, 0}, "gap"});
   CHECK(film.upper == std::vector<double>{0.1, 0.5});
   REQUIRE(film.displacement.size() == film.t.size() * film.values());
   // Along x of B is the tip; nothing moves along the other axis.
