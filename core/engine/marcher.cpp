@@ -27,10 +27,12 @@ Marcher::Marcher(Program program)
   if (!model.inertia().factored()) stiffness_width_ = std::max(stiffness_width_, half_bandwidth(model.inertia().mass));
   stiffness_rows_ = band_storage(model.stiffness(), stiffness_width_, T == 1);
   blocks_.reserve(slot_count);
-  for (std::size_t j = 0; j < slot_count; ++j) blocks_.emplace_back(rows, T, stiffness_width_);
+  // A step by nodes reads three rows before the first, however narrow K is.
+  const int border = std::max(stiffness_width_, 3);
+  for (std::size_t j = 0; j < slot_count; ++j) blocks_.emplace_back(rows, T, border);
   for (Block& block : blocks_) slots_.push_back(block.data());
   slot_pointers_.assign(slots_.begin(), slots_.end());
-  combination_ = Block(rows, T, stiffness_width_);
+  combination_ = Block(rows, T, border);
   elastic_ = Block(rows, T);
   scale_ = Block(1, T);
   offset_ = Block(1, T);

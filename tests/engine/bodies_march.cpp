@@ -315,3 +315,34 @@ TEST_CASE("a body that refuses refuses with its name") {
   CHECK(input_error([&] { check_scene(single, 4); }) ==
         "/scene/stops/0/at/body: \"rod\" in a scene of one structure; expected no body");
 }
+
+TEST_CASE("a body begins where it would begin alone, and what nothing is said of begins at rest") {
+  BeamSpec rod = cantilever();
+  rod.planes = 2;
+  OscillatorSpec ball;
+  ball.stiffness = 3;
+  InitialSpec bent;
+  bent.body = "rod";
+  bent.displacement = Formula("0.01*x^2", "/scene/initial", "x");
+  bent.velocity_z = Formula("0.3*x", "/scene/initial", "x");
+  SceneSpec joined = bodies_scene({{"rod", rod, 1}, {"ball", ball, 1}, {"other", ball, 1}}, 5), alone = unit_beam();
+  joined.stops.named = {{"wall", in_part("ball", 0), {}, {}, 1.0}};
+  joined.initial.of_bodies = {bent, {}};
+  joined.initial.of_bodies[1].body = "other";
+  joined.initial.of_bodies[1].displacement = Formula(0.2);
+  alone.structure = rod;
+  alone.stops = {};
+  alone.initial = bent;
+  const SemiDiscrete all = discretised(joined, 5, *mass("consistent")),
+                     one = discretised(alone, 5, *mass("consistent"));
+  REQUIRE(all.dofs() == one.dofs() + 2);
+  CHECK((all.position.head(one.dofs()) - one.position).norm() == 0);
+  CHECK((all.velocity.head(one.dofs()) - one.velocity).norm() == 0);
+  CHECK(one.velocity.norm() > 0);
+  CHECK(all.position[one.dofs()] == 0);
+  CHECK(all.position[one.dofs() + 1] == 0.2);
+  // A stop that a body begins beyond is told.
+  joined.stops.named[0].at = in_part("other", 0);
+  joined.stops.named[0].upper = 0.1;
+  CHECK_THROWS_AS(check_scene(joined, 5), BeyondStop);
+}

@@ -139,7 +139,7 @@ TEST_CASE("bodies that cannot be are refused at their place") {
 TEST_CASE("an initial state by body is refused where its body cannot begin so") {
   const auto begun = [](const char* initial) { return refusal(with_body_key("/scene/initial", Json::parse(initial))); };
   CHECK(begun(R"({"rood": {"displacement": "x"}})") ==
-        "/scene/initial/rood: no body \"rood\" (bodies: \"ball\", \"rod\"); did you mean \"rod\"?");
+        "/scene/initial/rood: no body \"rood\" (bodies: \"rod\", \"ball\"); did you mean \"rod\"?");
   CHECK(begun(R"({"rod": {"displacement_z": "x"}})") ==
         "/scene/initial/rod/displacement_z: only a beam of planes 2 moves along uz; expected 0");
   CHECK(begun(R"({"rod": {"displacement": "t"}})") != "none");
