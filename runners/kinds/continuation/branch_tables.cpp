@@ -12,6 +12,14 @@
 
 namespace ricochet {
 
+void cut_at(BranchTrace& trace, const SpecialPoint& point) {
+  const auto left = static_cast<std::size_t>(std::max(point.corner, 1LL)) + 1;
+  if (left < trace.corners.size()) trace.corners.resize(left);
+  std::erase_if(trace.states, [&](const auto& one) { return one.first >= static_cast<long long>(left); });
+  std::erase_if(trace.marks, [&](const MarkedOrbit& one) { return one.corner >= static_cast<long long>(left); });
+  trace.end = fmt::format("stopped at the first {}, at {:.10g}", point.kind, point.parameter);
+}
+
 BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter) {
   BranchRow row;
   const MapMarch made = map.march(x, parameter, clock, true);

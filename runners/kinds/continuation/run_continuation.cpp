@@ -123,14 +123,6 @@ class ContinuationRun {
     return std::nullopt;
   }
 
-  static void cut(BranchTrace& trace, const SpecialPoint& point) {
-    const auto left = static_cast<std::size_t>(std::max(point.corner, 1LL)) + 1;
-    if (left < trace.corners.size()) trace.corners.resize(left);
-    std::erase_if(trace.states, [&](const auto& one) { return one.first >= static_cast<long long>(left); });
-    std::erase_if(trace.marks, [&](const MarkedOrbit& one) { return one.corner >= static_cast<long long>(left); });
-    trace.end = fmt::format("stopped at the first {}, at {:.10g}", point.kind, point.parameter);
-  }
-
   void run_branch(FollowedBranch& branch, const ShotOrbit& shot, int way, int depth) {
     BranchRun run = begin(branch, shot, way);
     std::optional<SpecialPoint> stopping;
@@ -149,7 +141,7 @@ class ContinuationRun {
     }
     branch.trace = run.trace();
     if (!stopping && !over_budget_) stopping = stopping_point(branch, branch.trace);
-    if (stopping) cut(branch.trace, *stopping);
+    if (stopping) cut_at(branch.trace, *stopping);
     if (over_budget_) branch.trace.end = fmt::format("the budget of {:g} s was spent", budget_of(case_));
     checkpoints_.keep(branch.name, run, map_->sets());
     pieces_ += run.state().pieces;
