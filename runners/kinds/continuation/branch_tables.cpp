@@ -12,6 +12,16 @@
 
 namespace ricochet {
 
+void cut_at(BranchTrace& trace, const SpecialPoint& point) {
+  // A mark lies behind its corner.
+  const long long last = point.corner + (point.kind == "mark");
+  const auto left = static_cast<std::size_t>(std::max(last, 1LL)) + 1;
+  if (left < trace.corners.size()) trace.corners.resize(left);
+  std::erase_if(trace.states, [&](const auto& one) { return one.first >= static_cast<long long>(left); });
+  std::erase_if(trace.marks, [&](const MarkedOrbit& one) { return one.corner >= static_cast<long long>(left); });
+  trace.end = fmt::format("stopped at the first {}, at {:.10g}", point.kind, point.parameter);
+}
+
 namespace {
 
 int runs_of(const PeriodicMap& map, const MapMarch& made, bool half) {

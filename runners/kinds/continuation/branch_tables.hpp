@@ -21,6 +21,9 @@ struct FollowedBranch {
   std::vector<std::pair<long long, std::string>> leaves;  ///< corner and name of branches that begin there
 };
 
+/// Ends a branch at one of its special points.
+void cut_at(BranchTrace& trace, const SpecialPoint& point);
+
 /// The row of one orbit, marched once more: tip, residual, penetration.
 BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter);
 BranchRow orbit_row(SteppedMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter);

@@ -22,6 +22,8 @@
 namespace ricochet {
 namespace {
 
+// Steps between two looks for a point at which a branch stops.
+constexpr std::size_t look_every = 16;
 // Of the gap: to which residuals an orbit is solved, and within which it is its own image.
 constexpr double solved = 1e-11, near_image = 1e-6;
 
@@ -55,6 +57,7 @@ class ReferenceRun {
     record_.id = case_.id;
     record_.axes = case_.axes;
     record_.notes.push_back(fmt::format("the reference {}", content_of(case_.references.front()).dump()));
+    if (!plan_.marks.empty()) record_.notes.push_back("steps of arclength do not solve the values of mark");
     for (const WantedOrbit& orbit : plan_.orbits) try {
         follow(orbit);
       } catch (const Refusal& refusal) {
@@ -119,6 +122,26 @@ class ReferenceRun {
     }
   }
 
+  PointSearch search(const FollowedBranch& branch) const {
+    PointSearch search;
+    search.half = branch.clock.half;
+    search.prominence = plan_.prominence.value_or(least_fold * gap_ / metres_);
+    search.by_steps = true;
+    constexpr double contacts = 1e-9;  // of the range
+    search.contacts = contacts * plan_.range();
+    return search;
+  }
+
+  // The first point of a kind at which branches stop.
+  std::optional<SpecialPoint> stopping(const FollowedBranch& branch, const BranchTrace& trace) const {
+    if (plan_.stop_at.empty()) return std::nullopt;
+    for (SpecialPoint& point : special_points(trace, search(branch)))
+      if (point.kind != "end" &&
+          std::find(plan_.stop_at.begin(), plan_.stop_at.end(), point.kind) != plan_.stop_at.end())
+        return std::move(point);
+    return std::nullopt;
+  }
+
   void follow_branch(ReferenceOrbits& map, FollowedBranch& branch, const ShotOrbit& shot, int way) {
     ArcSteps limits;
     limits.branch = {plan_.from, plan_.to, plan_.most_pieces, plan_.longest, {}, plan_.multipliers};
@@ -132,7 +155,8 @@ class ReferenceRun {
       while (plan_.follow != Follow::none && follower.advance(1)) {
         if (*stop_) throw Interrupted{};
         if (thread_seconds() - begun_ > budget_of(case_)) over_budget_ = true;
-        if (over_budget_) break;
+        if (over_budget_ || (follower.trace().corners.size() % look_every == 0 && stopping(branch, follower.trace())))
+          break;
       }
     } catch (const Refusal& refusal) {  // no state where the branch would go on
       failure = refusal.sentence;
@@ -140,21 +164,15 @@ class ReferenceRun {
     branch.trace = follower.trace();
     if (!failure.empty()) branch.trace.end = failure;
     if (over_budget_) branch.trace.end = fmt::format("the budget of {:g} s was spent", budget_of(case_));
-    const double scale = gap_ / metres_;
-    PointSearch search;
-    search.half = branch.clock.half;
-    search.prominence = plan_.prominence.value_or(least_fold * scale);
-    search.by_steps = true;
-    constexpr double contacts = 1e-9;  // of the range
-    search.contacts = contacts * plan_.range();
-    branch.points = special_points(branch.trace, search);
+    if (const auto point = stopping(branch, branch.trace)) cut_at(branch.trace, *point);
+    branch.points = special_points(branch.trace, search(branch));
     steps_ += static_cast<long long>(branch.trace.corners.size());
     std::vector<BranchRow> rows = corner_rows_of(branch, plan_.multipliers);
     for (BranchRow& row : rows) {
       row.tip_velocity = map.tip(branch.trace.states.at(row.row), *row.parameter).second;
       row.penetration = 0;
     }
-    results_.add(branch, std::move(rows), {}, scale);
+    results_.add(branch, std::move(rows), {}, gap_ / metres_);
   }
 
   const StudyCase& case_;

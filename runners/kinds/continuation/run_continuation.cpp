@@ -187,16 +187,6 @@ class ContinuationRun {
     return std::nullopt;
   }
 
-  static void cut(BranchTrace& trace, const SpecialPoint& point) {
-    // A mark lies behind its corner.
-    const long long last = point.corner + (point.kind == "mark");
-    const auto left = static_cast<std::size_t>(std::max(last, 1LL)) + 1;
-    if (left < trace.corners.size()) trace.corners.resize(left);
-    std::erase_if(trace.states, [&](const auto& one) { return one.first >= static_cast<long long>(left); });
-    std::erase_if(trace.marks, [&](const MarkedOrbit& one) { return one.corner >= static_cast<long long>(left); });
-    trace.end = fmt::format("stopped at the first {}, at {:.10g}", point.kind, point.parameter);
-  }
-
   void run_branch(FollowedBranch& branch, const ShotOrbit& shot, int way, int depth) {
     auto run = begin(branch, shot, way);
     if (depth == 0 && way > 0 && run.trace().rebounds == 0)
@@ -214,7 +204,7 @@ class ContinuationRun {
     }
     branch.trace = run.trace();
     if (!stopping && !over_budget_) stopping = stopping_point(branch, branch.trace);
-    if (stopping) cut(branch.trace, *stopping);
+    if (stopping) cut_at(branch.trace, *stopping);
     if (branch.trace.end.starts_with("the range ends") && !continued_.impossible().empty())
       branch.trace.end += "; " + continued_.impossible();
     if (over_budget_) branch.trace.end = fmt::format("the budget of {:g} s was spent", budget_of(case_));

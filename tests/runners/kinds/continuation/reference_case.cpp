@@ -110,6 +110,22 @@ TEST_CASE("the reference of the tube becomes a torus at 0.0849574 m") {
   CHECK_THROWS_AS(run_continuation(*case_of(opened.study, "reference"), *opened.registry, {}, stopped), Interrupted);
 }
 
+TEST_CASE("a branch of a reference stops at the points at which branches stop") {
+  Json study = with_reference({{"name", "event-driven"}, {"modes", 8}});
+  study["parameter"] = {{"pointer", "/scene/support/amplitude"}, {"from", 0.083}, {"to", 0.088}};
+  study["orbits"] = {{{"at", 0.0845}, {"periods", 200}}};
+  study["stop_at"] = {"torus"};
+  study["both_ways"] = false;
+  const OpenedContinuation opened = opened_continuation(study);
+  const std::atomic<bool> stop{false};
+  const CaseRecord record = run_continuation(*case_of(opened.study, "reference"), *opened.registry, {}, stop);
+  const auto points = points_of(record);
+  REQUIRE_FALSE(points.empty());
+  CHECK(points.back().kind == "end");
+  CHECK(points.back().note.starts_with("stopped at the first torus, at 0.08495"));
+  for (const BranchRow& row : rows_of(record)) CHECK(*row.parameter < 0.0851);
+}
+
 TEST_CASE("a reference fills its columns and changes neither names nor limits nor orders") {
   const StudyResults plain = with_tables(synthetic::points()), beside = with_tables(with_beam(synthetic::points()));
   const auto before = point_limits_type().read(plain.derived), after = point_limits_type().read(beside.derived);
