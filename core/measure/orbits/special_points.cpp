@@ -232,8 +232,10 @@ void add_folds(const BranchTrace& trace, double prominence, bool by_steps, std::
     const double before = std::abs(corners[i].parameter - corners[i - 1].parameter),
                  after = std::abs(corners[i + 1].parameter - corners[i].parameter);
     const bool free = corners[i].runs == 0 || corners[i - 1].runs == 0;
-    const double half = 0.5 * (free ? std::min(before, after) : std::max(before, after));
+    double half = 0.5 * (free ? std::min(before, after) : std::max(before, after));
     if (by_steps) point.parameter = vertex(corners, i);
+    // A corner has no parabola: the orbit that was solved belongs to the interval.
+    half = std::max(half, std::abs(point.parameter - corners[i].parameter));
     point.low = point.parameter - half;
     point.high = point.parameter + half;
     point.multiplier = 1;
