@@ -176,7 +176,7 @@ void add_crossings(const Corners& corners, const Circle& circle, const PointSear
     if (!group.empty()) {
       const std::size_t last = group.back().corner;
       const bool near = static_cast<long long>(one.corner - last) < group_pieces ||
-                        corners[one.corner].arc - corners[last].arc < group_arc;
+                        corners[one.corner].arc - corners[last].arc < group_arc * search.gap;
       if (!near || search.by_steps) flush();
     }
     group.push_back(one);

@@ -26,12 +26,13 @@ struct PointSearch {
   bool half = false;
   double prominence = 0;  ///< least one of a fold, in units of λ
   bool by_steps = false;  ///< corners are orbits along a curve: what is between two of them is interpolated
+  double gap = 0.1;       ///< m
   double placed = 0;      ///< m: arclength to which orbits are known, where stops give back speed
 };
 
-/// Raw crossings this near along a branch are one group, by pieces or by arc (m).
+/// Raw crossings this near along a branch are one group, by pieces or by arc (of the gap).
 inline constexpr long long group_pieces = 40;
-inline constexpr double group_arc = 0.003;
+inline constexpr double group_arc = 0.03;
 /// Steps of the shortest run of contact below which no multiplier is told.
 inline constexpr int shortest_told = 4;
 
