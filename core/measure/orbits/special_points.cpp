@@ -176,7 +176,7 @@ void add_crossings(const Corners& corners, const Circle& circle, const PointSear
     if (!group.empty()) {
       const std::size_t last = group.back().corner;
       const bool near = static_cast<long long>(one.corner - last) < group_pieces ||
-                        corners[one.corner].arc - corners[last].arc < group_arc;
+                        corners[one.corner].arc - corners[last].arc < group_arc * search.gap;
       if (!near || search.by_steps) flush();
     }
     group.push_back(one);
@@ -237,6 +237,8 @@ void add_folds(const BranchTrace& trace, const PointSearch& search, std::vector<
       half = search.contacts;
     else if (search.by_steps)
       point.parameter = vertex(corners, i);
+    // A corner has no parabola: the orbit that was solved belongs to the interval.
+    half = std::max(half, std::abs(point.parameter - corners[i].parameter));
     point.low = point.parameter - half;
     point.high = point.parameter + half;
     point.multiplier = 1;

@@ -26,13 +26,14 @@ struct PointSearch {
   bool half = false;
   double prominence = 0;  ///< least one of a fold, in units of λ
   bool by_steps = false;  ///< corners are orbits along a curve: what is between two of them is interpolated
-  double contacts = 0;    ///< to which contacts are placed on corners, in units of λ; 0: they lie between corners
+  double gap = 0.1;       ///< m
   double placed = 0;      ///< m: arclength to which orbits are known, where stops give back speed
+  double contacts = 0;    ///< to which contacts are placed on corners, in units of λ; 0: they lie between corners
 };
 
-/// Raw crossings this near along a branch are one group, by pieces or by arc (m).
+/// Raw crossings this near along a branch are one group, by pieces or by arc (of the gap).
 inline constexpr long long group_pieces = 40;
-inline constexpr double group_arc = 0.003;
+inline constexpr double group_arc = 0.03;
 /// Steps of the shortest run of contact below which no multiplier is told.
 inline constexpr int shortest_told = 4;
 

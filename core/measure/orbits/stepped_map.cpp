@@ -163,7 +163,7 @@ ShotOrbit shoot(FollowedMap& map, VectorXd x, double parameter, const MapClock& 
       best = x;
     }
     // Where an iteration gains nothing any more the rest is round-off.
-    const bool settled = orbit.iterations > 1 && orbit.residual < largest_round_off && orbit.residual > 0.1 * last;
+    const bool settled = orbit.iterations > 1 && orbit.residual < stalled * tolerance && orbit.residual > 0.1 * last;
     orbit.found = settled || orbit.residual <= std::max(tolerance, made.rebounds);
     if (settled || orbit.residual <= tolerance || orbit.iterations == most || !std::isfinite(orbit.residual)) break;
     // What gives back speed is not solved more nearly than its impacts are placed: two more iterations are tried.

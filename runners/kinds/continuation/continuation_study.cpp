@@ -171,7 +171,12 @@ void check_followed(const Json& resolved, const Json& settings, const Registry& 
   const auto pointer = settings.at("parameter").at("pointer").get<std::string>();
   const std::string where = "/parameter/pointer";
   try {
-    const Json::json_pointer place(pointer);
+    // A key of a method is that of the first one of its role.
+    std::string first = pointer;
+    const std::string methods = "/methods/";
+    if (const auto key = pointer.find('/', methods.size()); pointer.starts_with(methods) && key != std::string::npos)
+      first.insert(key, "/0");
+    const Json::json_pointer place(resolved.contains(Json::json_pointer(first)) ? first : pointer);
     if (resolved.contains(place) && !pointer.starts_with("/scene/stops/")) {
       const Json& named = resolved.at(place);
       std::string what;

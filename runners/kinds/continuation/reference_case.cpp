@@ -127,6 +127,7 @@ class ReferenceRun {
     search.half = branch.clock.half;
     search.prominence = plan_.prominence.value_or(least_fold * gap_ / metres_);
     search.by_steps = true;
+    search.gap = gap_;
     constexpr double contacts = 1e-9;  // of the range
     search.contacts = contacts * plan_.range();
     return search;

@@ -168,7 +168,7 @@ class ContinuationRun {
 
   PointSearch search(const FollowedBranch& branch, const BranchTrace& trace) const {
     return {branch.clock.half, plan_.prominence.value_or(least_fold * continued_.parameter_scale()), by_steps,
-            trace.rebounds};
+            continued_.gap(), trace.rebounds};
   }
 
   // The first point of a kind at which branches stop, once nothing that follows can change it.
@@ -179,9 +179,10 @@ class ContinuationRun {
           std::find(plan_.stop_at.begin(), plan_.stop_at.end(), point.kind) == plan_.stop_at.end())
         continue;
       const auto last = static_cast<long long>(trace.corners.size()) - 1;
-      const bool settled = trace.ended() || (by_steps ? last > point.corner + 1
-                                                      : last - point.corner > 2 * group_pieces &&
-                                                            trace.corners.back().arc - point.arc > 2 * group_arc);
+      const bool settled =
+          trace.ended() || (by_steps ? last > point.corner + 1
+                                     : last - point.corner > 2 * group_pieces &&
+                                           trace.corners.back().arc - point.arc > 2 * group_arc * continued_.gap());
       return settled ? std::optional(std::move(point)) : std::nullopt;
     }
     return std::nullopt;
@@ -249,13 +250,13 @@ class ContinuationRun {
   }
 
   // The kept state of a branch nearest to a corner, by the value that is wanted.
-  static Eigen::VectorXd near(const BranchTrace& trace, long long corner, double parameter) {
+  Eigen::VectorXd near(const BranchTrace& trace, long long corner, double parameter) const {
     const auto at = [&](long long number) { return trace.corners[static_cast<std::size_t>(number)]; };
     auto best = trace.states.begin();
     double least = std::numeric_limits<double>::infinity();
     for (auto state = trace.states.begin(); state != trace.states.end(); ++state) {
       const bool beside = by_steps && std::abs(state->first - corner) <= 2;
-      if (!beside && std::abs(at(state->first).arc - at(corner).arc) > 10 * group_arc) continue;
+      if (!beside && std::abs(at(state->first).arc - at(corner).arc) > 10 * group_arc * continued_.gap()) continue;
       if (const double far = std::abs(at(state->first).parameter - parameter); far < least) least = far, best = state;
     }
     return best->second;
