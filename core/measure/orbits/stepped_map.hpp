@@ -120,6 +120,9 @@ class StepFollower {
   ShotOrbit towards(const Eigen::VectorXd& x, double parameter, double arc);
 
  private:
+  static constexpr double smallest_step = 1e-9, largest_step = 0.05;  // of the range
+  static constexpr double sharpest = 0.70710678118654752;             // cos 45°
+
   struct Point {
     Eigen::VectorXd x;
     double parameter = 0;
