@@ -141,8 +141,7 @@ bool StepFollower::correct(Point& point, const Point& along, int& iterations) {
     const VectorXd left = last_.image - point.x;
     const double residual = map_->metric().size(left);
     // Where an iteration gains nothing any more the rest is round-off.
-    if (residual <= limits_.tolerance ||
-        (iterations > 1 && residual < stalled * limits_.tolerance && residual > 0.1 * nearest))
+    if (residual <= limits_.tolerance || (iterations > 1 && residual < largest_round_off && residual > 0.1 * nearest))
       return true;
     // Impacts that rebound are placed to within a step: an orbit is known to that.
     if (residual <= last_.rebounds && residual > 0.5 * nearest) return true;
