@@ -18,7 +18,7 @@
   const measureOf = (one, name) => (name in one.measures ? one.measures[name] : null);
 
   // Whether a reference solved the case, and none of the study's methods.
-  const solved = (one) => one.id.startsWith("reference");
+  const solved = (one) => String(one.id).startsWith("reference");
 
   class Cases {
     constructor(data) {
