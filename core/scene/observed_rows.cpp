@@ -29,7 +29,7 @@ class RowMaker {
     rows_.names.push_back(name);
     rows_.on_support[i] = on_support;
     for (const auto& [dof, value] : row.free) entries_.emplace_back(static_cast<int>(i), dof, value);
-    if (!moved) return;
+    if (!moved || shares_.cols() == 0) return;  // nothing holds the structure
     for (const auto& [dof, value] : row.free) shares_.row(i) += value * problem_.static_modes.row(dof);
     for (const auto& [support, weight] : row.held) shares_(i, support) += weight;
   }
