@@ -185,13 +185,27 @@ std::shared_ptr<const AssembledStructure> join_bodies(const Bodies& bodies, int 
   return out;
 }
 
+namespace {
+
+const JoinedBody& body_of(const JoinedBodies& bodies, const InitialSpec& initial) {
+  Place place;
+  place.body = initial.body;
+  return bodies.of(place, "/scene/initial");
+}
+
+// A body by itself, from an initial state of its own.
+SceneSpec beginning(const JoinedBody& body, const InitialSpec& initial) {
+  SceneSpec alone = body.alone;
+  alone.initial = initial;
+  return alone;
+}
+
+}  // namespace
+
 void begin_bodies(const JoinedBodies& bodies, const InitialSpec& initial, SemiDiscrete& problem) {
   for (const InitialSpec& one : initial.of_bodies) {
-    Place place;
-    place.body = one.body;
-    const JoinedBody& body = bodies.of(place, "/scene/initial");
-    SceneSpec alone = body.alone;
-    alone.initial = one;
+    const JoinedBody& body = body_of(bodies, one);
+    const SceneSpec alone = beginning(body, one);
     SemiDiscrete begun;
     begun.space = body.space;
     interpolate_initial(alone, begun);
@@ -230,11 +244,8 @@ void check_initial_alone(const SceneSpec& alone, const JoinedBody& body) {
 
 void check_initial_of_bodies(const JoinedBodies& bodies, const InitialSpec& initial) {
   for (const InitialSpec& one : initial.of_bodies) {
-    Place place;
-    place.body = one.body;
-    const JoinedBody& body = bodies.of(place, "/scene/initial");
-    SceneSpec alone = body.alone;
-    alone.initial = one;
+    const JoinedBody& body = body_of(bodies, one);
+    const SceneSpec alone = beginning(body, one);
     try {
       check_initial_alone(alone, body);
     } catch (const InputError& error) {
