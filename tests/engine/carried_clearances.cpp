@@ -5,6 +5,7 @@
 #include <ricochet/scene/moved_supports.hpp>
 #include <ricochet/scene/structure/modal_structure.hpp>
 
+#include "tests/engine/steady_motion.hpp"
 #include "tests/marching.hpp"
 #include "tests/scene/structure/beam_files.hpp"
 
@@ -15,19 +16,10 @@ namespace carried_clearances_tests {
 
 constexpr double wide = 0.01;
 
-/// φ = v t.
-struct Uniform final : TimeHistory {
-  explicit Uniform(double speed) : v(speed) {}
-  double value(double t) const override { return v * t; }
-  double rate(double) const override { return v; }
-  double acceleration(double) const override { return 0; }
-  double v;
-};
-
 MotionSpec uniform(double speed, std::vector<std::string> supports = {}) {
   MotionSpec motion;
   motion.supports = std::move(supports);
-  motion.history = std::make_shared<const Uniform>(speed);
+  motion.history = std::make_shared<const Steady>(speed);
   return motion;
 }
 

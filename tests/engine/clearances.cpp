@@ -7,6 +7,7 @@
 #include <ricochet/scene/structure/modal_structure.hpp>
 #include <ricochet/scene/supports.hpp>
 
+#include "tests/engine/steady_motion.hpp"
 #include "tests/marching.hpp"
 #include "tests/scene/structure/beam_files.hpp"
 
@@ -85,15 +86,6 @@ SceneSpec driven_tube(int sides) {
   }
   return scene;
 }
-
-/// φ = v t.
-struct Steady final : TimeHistory {
-  explicit Steady(double speed) : v(speed) {}
-  double value(double t) const override { return v * t; }
-  double rate(double) const override { return v; }
-  double acceleration(double) const override { return 0; }
-  double v;
-};
 
 const Methods rebounding{{"consistent"}, {"signorini"}, {"moreau-jean", {{"restitution", 1.0}}}},
     holding{{"consistent"}, {"signorini"}, {"newmark-dumont-paoli"}};
