@@ -110,8 +110,6 @@ class StepFollower {
   /// Makes up to so many steps; false where the branch has ended.
   bool advance(long long steps);
   const BranchTrace& trace() const { return trace_; }
-  /// The largest u of its orbits, m; 0 where no stop gives back speed.
-  double rebounds() const { return trace_.rebounds; }
   long long pieces() const { return static_cast<long long>(trace_.corners.size()); }
   /// The last orbit, the unit secant and the step.
   BranchState state() const;

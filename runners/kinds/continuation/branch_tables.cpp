@@ -12,6 +12,13 @@
 
 namespace ricochet {
 
+std::optional<SpecialPoint> first_of(std::vector<SpecialPoint> points, const std::vector<std::string>& kinds) {
+  const auto found = std::find_if(points.begin(), points.end(), [&](const SpecialPoint& point) {
+    return point.kind != "end" && std::find(kinds.begin(), kinds.end(), point.kind) != kinds.end();
+  });
+  return found == points.end() ? std::nullopt : std::optional(std::move(*found));
+}
+
 void cut_at(BranchTrace& trace, const SpecialPoint& point) {
   // A mark lies behind its corner.
   const long long last = point.corner + (point.kind == "mark");

@@ -28,6 +28,9 @@ void cut_at(BranchTrace& trace, const SpecialPoint& point);
 BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter);
 BranchRow orbit_row(SteppedMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter);
 
+/// The first point of one of these kinds along a branch; no end of it.
+std::optional<SpecialPoint> first_of(std::vector<SpecialPoint> points, const std::vector<std::string>& kinds);
+
 /// Folds below this share of the parameter's scale are not listed where the study names no prominence.
 inline constexpr double least_fold = 1e-4;
 

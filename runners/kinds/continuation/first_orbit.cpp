@@ -11,9 +11,6 @@
 namespace ricochet {
 namespace {
 
-// Of the gap: an orbit this near to its own image is solved as one.
-constexpr double image_tolerance = 1e-6;
-
 Eigen::VectorXd as_x(const PeriodicMap& map, const LaneState& state, int) {
   return map.vector().read(state);
 }

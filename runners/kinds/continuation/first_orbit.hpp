@@ -6,6 +6,9 @@
 
 namespace ricochet {
 
+/// Of the gap: an orbit this near to its own image is solved as one.
+inline constexpr double image_tolerance = 1e-6;
+
 /// An orbit that branches begin with, or why there is none.
 struct FirstOrbit {
   ShotOrbit shot;

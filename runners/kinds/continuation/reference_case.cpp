@@ -12,6 +12,7 @@
 #include "runners/kinds/continuation/branch_tables.hpp"
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continued_map.hpp"
+#include "runners/kinds/continuation/first_orbit.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/store/fingerprint.hpp"
@@ -24,8 +25,8 @@ namespace {
 
 // Steps between two looks for a point at which a branch stops.
 constexpr std::size_t look_every = 16;
-// Of the gap: to which residuals an orbit is solved, and within which it is its own image.
-constexpr double solved = 1e-11, near_image = 1e-6;
+// Of the gap: to which residuals an orbit is solved.
+constexpr double solved = 1e-11;
 
 class ReferenceRun {
  public:
@@ -103,7 +104,7 @@ class ReferenceRun {
       half.half = true;
       const Eigen::VectorXd& from = shot.found ? shot.x : x;
       const double apart = map.metric().size(map.march(from, orbit.at, half).image - from);
-      if (!shot.found || apart <= near_image * gap_)
+      if (!shot.found || apart <= image_tolerance * gap_)
         if (ShotOrbit image = shoot(map, from, orbit.at, half, solved * gap_); image.found) {
           shot = std::move(image);
           clock = half;
@@ -136,11 +137,7 @@ class ReferenceRun {
   // The first point of a kind at which branches stop.
   std::optional<SpecialPoint> stopping(const FollowedBranch& branch, const BranchTrace& trace) const {
     if (plan_.stop_at.empty()) return std::nullopt;
-    for (SpecialPoint& point : special_points(trace, search(branch)))
-      if (point.kind != "end" &&
-          std::find(plan_.stop_at.begin(), plan_.stop_at.end(), point.kind) != plan_.stop_at.end())
-        return std::move(point);
-    return std::nullopt;
+    return first_of(special_points(trace, search(branch)), plan_.stop_at);
   }
 
   void follow_branch(ReferenceOrbits& map, FollowedBranch& branch, const ShotOrbit& shot, int way) {

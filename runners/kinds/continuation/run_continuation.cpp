@@ -174,18 +174,13 @@ class ContinuationRun {
   // The first point of a kind at which branches stop, once nothing that follows can change it.
   std::optional<SpecialPoint> stopping_point(const FollowedBranch& branch, const BranchTrace& trace) const {
     if (plan_.stop_at.empty()) return std::nullopt;
-    for (SpecialPoint& point : special_points(trace, search(branch, trace))) {
-      if (point.kind == "end" ||
-          std::find(plan_.stop_at.begin(), plan_.stop_at.end(), point.kind) == plan_.stop_at.end())
-        continue;
-      const auto last = static_cast<long long>(trace.corners.size()) - 1;
-      const bool settled =
-          trace.ended() || (by_steps ? last > point.corner + 1
-                                     : last - point.corner > 2 * group_pieces &&
-                                           trace.corners.back().arc - point.arc > 2 * group_arc * continued_.gap());
-      return settled ? std::optional(std::move(point)) : std::nullopt;
-    }
-    return std::nullopt;
+    auto point = first_of(special_points(trace, search(branch, trace)), plan_.stop_at);
+    if (!point || trace.ended()) return point;
+    const auto last = static_cast<long long>(trace.corners.size()) - 1;
+    const bool settled = by_steps ? last > point->corner + 1
+                                  : last - point->corner > 2 * group_pieces &&
+                                        trace.corners.back().arc - point->arc > 2 * group_arc * continued_.gap();
+    return settled ? point : std::nullopt;
   }
 
   void run_branch(FollowedBranch& branch, const ShotOrbit& shot, int way, int depth) {
