@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"
@@ -19,29 +18,38 @@ using say::Clause, say::Sentence, say::and_list, say::short_number;
 
 namespace {
 
-constexpr std::size_t most_points = 3, most_shifts = 3, most_unconfirmed = 4;
+constexpr std::size_t most_points = 4, most_shifts = 3, most_unconfirmed = 4;
 
-/// Kinds in the order in which they are told, what an orbit does there, and the point as a thing.
+/// What an orbit does at a point of a kind, and the point as a thing.
 struct KindWords {
   const char *kind, *does, *thing;
 };
 constexpr KindWords kind_words[] = {{"fold", "folds", "fold"},
-                                    {"symmetry", "loses its symmetry", "loss of symmetry"},
                                     {"torus", "becomes a torus", "torus"},
+                                    {"symmetry", "loses its symmetry", "loss of symmetry"},
                                     {"flip", "doubles its period", "flip"},
                                     {"first contact", "first touches a stop", "first contact"},
                                     {"contact", "gains or loses a contact", "change of contact"}};
 
-std::size_t kind_rank(const std::string& kind) {
+const KindWords* find_words(const std::string& kind) {
   const auto* found = std::find_if(std::begin(kind_words), std::end(kind_words),
                                    [&](const KindWords& one) { return one.kind == kind; });
-  return static_cast<std::size_t>(found - std::begin(kind_words));
+  return found == std::end(kind_words) ? nullptr : found;
 }
 
 const KindWords& point_words(const std::string& kind) {
   static constexpr KindWords other = {"", "changes", "point"};
-  const std::size_t rank = kind_rank(kind);
-  return rank < std::size(kind_words) ? kind_words[rank] : other;
+  const KindWords* found = find_words(kind);
+  return found ? *found : other;
+}
+
+std::string subject(const ToldPoint& told) {
+  const PointName& name = *told.name;
+  return fmt::format("the {}{}period-{} orbit", told.ends_stability ? "stable " : "",
+                     !name.symmetric   ? ""
+                     : *name.symmetric ? "symmetric "
+                                       : "asymmetric ",
+                     name.period);
 }
 
 std::string signed_number(double value, int digits) {
@@ -70,53 +78,13 @@ PointSpeaker::PointSpeaker(const answers::Compared& study) : study_(study), poin
   limits_ = point_limits_type().read(study.results().derived);
   orders_ = point_orders_type().read(study.results().derived);
   if (!known()) return;
-  std::map<std::string, int> found;
-  for (const PointPresenceRow& row : point_presence_type().read(study.results().derived))
-    found[row.name] += row.presence == word(PointPresence::found);
-  // Changes of contact last; else orders first, then the kind, then in how many cases it was found alone.
-  const auto rank = [&](const PointName* name) {
-    const auto told = std::count_if(orders_.begin(), orders_.end(), [&](const PointOrderRow& row) {
-      return row.name == name->text && row.method == points_.reference()->id && row.verdict == order_told;
-    });
-    const StudyPoint* point = points_.find(points_.root(), static_cast<int>(name - points_.names().data()));
-    // An interval of a fiftieth of the range locates nothing.
-    constexpr double wide_share = 0.02;
-    const PointLimitRow* limit = limit_of(name->text);
-    const bool wide = limit->low && limit->high && *limit->high - *limit->low > wide_share * points_.range();
-    return std::make_tuple(name->kind == "contact", told == 0, wide, kind_rank(name->kind), -found[name->text],
-                           point ? -point->row.prominence.value_or(0) : 0.0);
-  };
-  for (const PointName& name : points_.names())
-    if (limit_of(name.text)) told_.push_back(&name);
-  std::stable_sort(told_.begin(), told_.end(),
-                   [&](const PointName* a, const PointName* b) { return rank(a) < rank(b); });
-  // One of each kind before a second of any.
-  std::map<std::string, int> met;
-  std::map<const PointName*, int> turn;
-  for (const PointName* one : told_) turn[one] = met[one->kind]++;
-  std::stable_sort(told_.begin(), told_.end(),
-                   [&](const PointName* a, const PointName* b) { return turn[a] < turn[b]; });
-}
-
-const PointLimitRow* PointSpeaker::limit_of(const std::string& name) const {
-  const auto found = std::find_if(limits_.begin(), limits_.end(), [&](const PointLimitRow& row) {
-    return row.name == name && row.id == points_.reference()->id;
-  });
-  return found == limits_.end() ? nullptr : &*found;
+  told_ = told_points(points_, limits_, orders_);
 }
 
 const CaseRecord* PointSpeaker::record(const std::string& id) const {
   for (const CaseRecord* one : points_.cases())
     if (one->id == id) return one;
   return nullptr;
-}
-
-std::string PointSpeaker::subject(const PointName& name) const {
-  return fmt::format("the {}period-{} orbit",
-                     !name.symmetric   ? ""
-                     : *name.symmetric ? "symmetric "
-                                       : "asymmetric ",
-                     name.period);
 }
 
 /// "P0 on 10 elements, 2000 steps per period": what of it varies in the study.
@@ -129,51 +97,85 @@ std::string PointSpeaker::case_words(const CaseRecord& one) const {
   return out.empty() ? "the one case" : out;
 }
 
+std::string PointSpeaker::place_words(const ToldPoint& told, Sentence& said) const {
+  const PointLimitRow& limit = *told.limit;
+  const bool refined = limit.low && limit.high;
+  // Of one case its own interval is left.
+  const double own = told.point->half;
+  const auto half = refined   ? std::optional(0.5 * (*limit.high - *limit.low))
+                    : own > 0 ? std::optional(own)
+                              : std::nullopt;
+  const KindWords& words = point_words(told.name->kind);
+  Clause where{.form = "value", .measure = words.thing, .who = told.name->text, .methods = points_.reference()->id};
+  where.value = limit.limit;
+  where.low = limit.low;
+  where.high = limit.high;
+  where.uncertainty = half;
+  where.unit = unit_;
+  where.status = refined ? "" : "one";
+  said.clauses.push_back(where);
+  return fmt::format("{} at {}{}", words.does, point_value(*limit.limit, half), unit());
+}
+
+std::string PointSpeaker::facts_words(const ToldPoint& told, Sentence& said) const {
+  const std::string &name = told.name->text, &reference = points_.reference()->id;
+  std::vector<std::string> orders;
+  for (const PointOrderRow& row : orders_) {
+    if (row.name != name || row.method != reference || row.verdict != order_told) continue;
+    const auto axis = std::find_if(points_.axes().begin(), points_.axes().end(),
+                                   [&](const RefinedAxis& one) { return one.column == row.refined; });
+    const double width = 0.5 * (*row.high - *row.low);
+    orders.push_back(fmt::format("{} ± {} in {}", short_number(*row.order, 2), short_number(width, 1), axis->symbol));
+    Clause order{.form = "order", .measure = axis->words, .who = name, .methods = row.id};
+    order.value = row.order;
+    order.low = row.low;
+    order.high = row.high;
+    order.unit = "1";
+    said.clauses.push_back(order);
+  }
+  std::string facts = orders.empty() ? "" : "order " + and_list(orders);
+  if (told.limit->reference) {
+    const auto given = study_.results().study.find("reference");
+    const std::string words = given == study_.results().study.end()
+                                  ? "the reference"
+                                  : study_.method_words("reference", given->at(0).at("name").get<std::string>());
+    facts += fmt::format("{}{}: {}", facts.empty() ? "" : "; ", words, short_number(*told.limit->reference, 7));
+    Clause standard{.form = "value", .measure = "reference", .who = name, .methods = reference};
+    standard.value = told.limit->reference;
+    standard.unit = unit_;
+    said.clauses.push_back(standard);
+  }
+  return facts.empty() ? "" : " (" + facts + ")";
+}
+
 void PointSpeaker::say_points(say::Answer& answer) const {
-  const CaseRecord& reference = *points_.reference();
-  for (std::size_t k = 0; k < std::min(most_points, told_.size()); ++k) {
-    const PointName& name = *told_[k];
-    const PointLimitRow& limit = *limit_of(name.text);
-    const auto half = limit.low && limit.high ? std::optional(0.5 * (*limit.high - *limit.low)) : std::nullopt;
+  if (told_.empty()) return;
+  const auto same_orbit = [](const ToldPoint& a, const ToldPoint& b) {
+    return a.name->period == b.name->period && a.name->symmetric == b.name->symmetric;
+  };
+  // The first point alone, with the method; then those of its orbit in one sentence, and other orbits in one each.
+  const std::string method = points_.heads().size() > 1 ? "with " + study_.name(*points_.reference()) : std::string();
+  const std::string after = method.empty() ? "" : " " + method;
+  Sentence first;
+  const std::string place = place_words(told_.front(), first);
+  first.text = fmt::format("{} {}{}{}.", say::capitalised(subject(told_.front())), place, after,
+                           facts_words(told_.front(), first));
+  answer.say(std::move(first));
+  std::vector<ToldPoint> left(told_.begin() + 1, told_.begin() + std::min(most_points, told_.size()));
+  while (!left.empty()) {
+    const ToldPoint head = left.front();
     Sentence said;
-    Clause where{.form = "value", .measure = point_words(name.kind).thing, .who = name.text, .methods = reference.id};
-    where.value = limit.limit;
-    where.low = limit.low;
-    where.high = limit.high;
-    where.uncertainty = half;
-    where.unit = unit_;
-    where.status = half ? "" : "one";
-    said.clauses.push_back(where);
-    said.text = fmt::format("{} {} at {}{}", say::capitalised(subject(name)), point_words(name.kind).does,
-                            point_value(*limit.limit, half), unit());
-    if (k == 0 && points_.heads().size() > 1) said.text += " with " + study_.name(reference);
-    std::vector<std::string> orders;
-    for (const PointOrderRow& row : orders_) {
-      if (row.name != name.text || row.method != reference.id || row.verdict != order_told) continue;
-      const auto axis = std::find_if(points_.axes().begin(), points_.axes().end(),
-                                     [&](const RefinedAxis& one) { return one.column == row.refined; });
-      const double width = 0.5 * (*row.high - *row.low);
-      orders.push_back(fmt::format("{} ± {} in {}", short_number(*row.order, 2), short_number(width, 1), axis->symbol));
-      Clause order{.form = "order", .measure = axis->words, .who = name.text, .methods = row.id};
-      order.value = row.order;
-      order.low = row.low;
-      order.high = row.high;
-      order.unit = "1";
-      said.clauses.push_back(order);
-    }
-    std::string more = orders.empty() ? "" : "order " + and_list(orders);
-    if (limit.reference) {
-      const auto given = study_.results().study.find("reference");
-      const std::string words = given == study_.results().study.end()
-                                    ? "the reference"
-                                    : study_.method_words("reference", given->at(0).at("name").get<std::string>());
-      more += fmt::format("{}{}: {}", more.empty() ? "" : "; ", words, short_number(*limit.reference, 7));
-      Clause standard{.form = "value", .measure = "reference", .who = name.text, .methods = reference.id};
-      standard.value = limit.reference;
-      standard.unit = unit_;
-      said.clauses.push_back(standard);
-    }
-    said.text += (more.empty() ? "" : " (" + more + ")") + std::string(".");
+    std::vector<std::string> parts;
+    for (const ToldPoint& one : left)
+      if (same_orbit(one, head)) {
+        const std::string at = place_words(one, said);
+        parts.push_back(at + facts_words(one, said));
+      }
+    std::erase_if(left, [&](const ToldPoint& one) { return same_orbit(one, head); });
+    said.text =
+        same_orbit(head, told_.front())
+            ? say::capitalised(fmt::format("{}it also {}.", method.empty() ? "" : method + " ", and_list(parts)))
+            : fmt::format("{} {}{}.", say::capitalised(subject(head)), and_list(parts), after);
     answer.say(std::move(said));
   }
 }
@@ -184,7 +186,7 @@ void PointSpeaker::say_unconfirmed(say::Answer& answer) const {
   std::vector<std::string> parts;
   std::size_t count = 0;
   for (const StudyPoint& one : points_.points()) {
-    if (one.owner != points_.root() || kind_rank(one.kind) >= std::size(kind_words) || std::isnan(one.value)) continue;
+    if (one.owner != points_.root() || !find_words(one.kind) || std::isnan(one.value)) continue;
     if (++count > most_unconfirmed) continue;
     parts.push_back(fmt::format("{} at {}", point_words(one.kind).thing, short_number(one.value, 6)));
     Clause part{.form = "value", .measure = point_words(one.kind).thing, .methods = points_.reference()->id};
@@ -209,7 +211,7 @@ void PointSpeaker::say_unconfirmed(say::Answer& answer) const {
 
 void PointSpeaker::say_shifts(say::Answer& answer) const {
   if (told_.empty()) return;
-  const std::string& name = told_.front()->text;
+  const std::string& name = told_.front().name->text;
   std::vector<PointShiftRow> moved, still;
   for (PointShiftRow& row : point_shifts_type().read(study_.results().derived)) {
     if (row.name != name || say::is_refinement(row.choice) || !row.shift || !row.low || !row.high) continue;
@@ -225,7 +227,7 @@ void PointSpeaker::say_shifts(say::Answer& answer) const {
     const PointShiftRow& row = moved[k];
     parts.push_back(
         fmt::format("{}{} with {}", signed_number(*row.shift, 2), unit(), say::level_phrase(row.choice, row.value)));
-    Clause part{.form = "differ", .measure = point_words(told_.front()->kind).thing, .choice = row.choice};
+    Clause part{.form = "differ", .measure = point_words(told_.front().name->kind).thing, .choice = row.choice};
     part.who = row.value;
     part.methods = row.id;
     part.value = row.shift;
@@ -234,7 +236,7 @@ void PointSpeaker::say_shifts(say::Answer& answer) const {
     part.unit = unit_;
     said.clauses.push_back(part);
   }
-  const std::string thing = point_words(told_.front()->kind).thing;
+  const std::string thing = point_words(told_.front().name->kind).thing;
   if (!parts.empty()) {
     said.text = fmt::format("The {} moves by {}", thing, and_list(parts));
     if (moved.size() > most_shifts) said.text += fmt::format(", by less in {} more cases", moved.size() - most_shifts);
@@ -271,7 +273,7 @@ void PointSpeaker::say_shifts(say::Answer& answer) const {
 
 void PointSpeaker::say_absent(say::Answer& answer) const {
   if (told_.empty()) return;
-  const std::string thing = point_words(told_.front()->kind).thing;
+  const std::string thing = point_words(told_.front().name->kind).thing;
   Cases reached;
   Members absent;
   std::size_t shared = 0;
@@ -279,7 +281,7 @@ void PointSpeaker::say_absent(say::Answer& answer) const {
   Sentence said;
   for (const PointPresenceRow& row : point_presence_type().read(study_.results().derived)) {
     const CaseRecord* one = record(row.id);
-    if (row.name != told_.front()->text || !one || is_reference(*one) ||
+    if (row.name != told_.front().name->text || !one || is_reference(*one) ||
         row.presence == word(PointPresence::not_reached))
       continue;
     if (row.presence == word(PointPresence::absent)) {
@@ -299,7 +301,7 @@ void PointSpeaker::say_absent(say::Answer& answer) const {
                                                             [](const CaseRecord* one) { return !is_reference(*one); }));
   if (absent.empty() && shared == 0) {
     if (cases < 2) return;
-    Clause part{.form = "status", .measure = thing, .who = told_.front()->text};
+    Clause part{.form = "status", .measure = thing, .who = told_.front().name->text};
     part.status = "robust";
     part.value = static_cast<double>(reached.size());
     part.unit = "1";

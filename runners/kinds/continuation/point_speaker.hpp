@@ -5,6 +5,7 @@
 #include "runners/answers/answer.hpp"
 #include "runners/kinds/continuation/point_tables.hpp"
 #include "runners/kinds/continuation/study_points.hpp"
+#include "runners/kinds/continuation/told_points.hpp"
 
 namespace ricochet {
 
@@ -28,8 +29,9 @@ class PointSpeaker {
   void say_nothing(answers::Answer& answer) const;
 
  private:
-  const PointLimitRow* limit_of(const std::string& name) const;
-  std::string subject(const PointName& name) const;
+  /// "folds at 0.10057 ± 3e-5 m", and its orders and the reference's value in parentheses.
+  std::string place_words(const ToldPoint& told, answers::Sentence& said) const;
+  std::string facts_words(const ToldPoint& told, answers::Sentence& said) const;
   std::string case_words(const CaseRecord& record) const;
   std::string unit() const { return unit_.empty() ? "" : " " + unit_; }
   const CaseRecord* record(const std::string& id) const;
@@ -39,7 +41,7 @@ class PointSpeaker {
   std::string unit_;
   std::vector<PointLimitRow> limits_;
   std::vector<PointOrderRow> orders_;
-  std::vector<const PointName*> told_;  ///< names of the reference, those that are said first in front
+  std::vector<ToldPoint> told_;
 };
 
 }  // namespace ricochet

@@ -168,11 +168,12 @@ std::vector<PointShiftRow> shift_rows(const StudyPoints& study) {
   std::vector<PointShiftRow> rows;
   for (std::size_t name = 0; name < study.names().size(); ++name) {
     const StudyPoint* standard = study.find(study.root(), static_cast<int>(name));
-    if (!standard) continue;
+    // Where other turns share its place it is not known which one it is.
+    if (!standard || standard->sharing > 1) continue;
     for (std::size_t c = 0; c < study.cases().size(); ++c) {
       const StudyPoint* point = c == study.root() ? nullptr : study.find(c, static_cast<int>(name));
       const std::vector<std::string> differs = study.differences(c, study.root());
-      if (!point || differs.size() != 1 || is_reference(*study.cases()[c])) continue;
+      if (!point || point->sharing > 1 || differs.size() != 1 || is_reference(*study.cases()[c])) continue;
       PointShiftRow row{study.cases()[c]->id, study.names()[name].text, differs.front(),
                         study.level(c, differs.front()), study.level(study.root(), differs.front())};
       row.shift = point->value - standard->value;

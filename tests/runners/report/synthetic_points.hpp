@@ -121,7 +121,8 @@ inline CaseRecord points_case(const std::string& mass, double stiffness, int ele
       points.back().prominence = 0.018;
       points.back().side = "below";
     }
-    add_row_at("orbit-1+", s, parameter, tip, parameter > torus || back > 0 ? 2 : 0);
+    // Stable up to the torus, and again from 0.0958 to the fold.
+    add_row_at("orbit-1+", s, parameter, tip, back > 0 ? 1 : parameter > torus && parameter < 0.0958 ? 2 : 0);
   }
   add_point("orbit-1+", "end", *rows.back().arc, *rows.back().parameter, *rows.back().tip_displacement, 0);
   points.back().note = "range";

@@ -136,7 +136,8 @@ TEST_CASE("the answer gives value, interval and order, and every number of it st
   const StudyResults all = with_tables(synthetic::points());
   const auto said = sentences_of(all);
   REQUIRE(said.size() >= 4);
-  CHECK_THAT(said[0], Contains("The symmetric period-1 orbit folds at 0.1005") && Contains("±") && Contains("in h"));
+  CHECK_THAT(said[0],
+             Contains("The stable symmetric period-1 orbit folds at 0.1005") && Contains("±") && Contains("in h"));
   std::string whole;
   for (const std::string& one : said) {
     whole += one + "\n";

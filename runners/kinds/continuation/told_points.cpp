@@ -1,0 +1,97 @@
+#include "runners/kinds/continuation/told_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet {
+namespace {
+
+/// Share of stable orbits over the arc from `from` to `to`; nothing where no row lies there.
+std::optional<double> stable_share(const std::vector<BranchRow>& rows, double from, double to) {
+  double stable = 0, all = 0;
+  for (std::size_t k = 0; k + 1 < rows.size(); ++k) {
+    const double length = std::min(to, *rows[k + 1].arc) - std::max(from, *rows[k].arc);
+    if (length <= 0) continue;
+    all += length;
+    if (*rows[k].stable) stable += length;
+  }
+  return all > 0 ? std::optional(stable / all) : std::nullopt;
+}
+
+/// The place of a kind in the order in which kinds are told.
+std::size_t kind_rank(const std::string& kind) {
+  constexpr const char* kinds[] = {"fold", "torus", "symmetry", "flip", "first contact", "contact"};
+  return static_cast<std::size_t>(std::find(std::begin(kinds), std::end(kinds), kind) - std::begin(kinds));
+}
+
+}  // namespace
+
+bool ends_stability(const StudyPoints& study, const StudyPoint& point) {
+  const Table* table = find_table(study.cases()[point.owner]->tables, branches_name);
+  if (!table || !point.row.arc) return false;
+  std::vector<BranchRow> rows;
+  for (BranchRow& row : branch_rows_in(*table))
+    if (row.branch == point.row.branch && row.arc && row.stable) rows.push_back(std::move(row));
+  if (rows.empty()) return false;
+  constexpr double window_share = 0.05, least_difference = 0.5;
+  const double window = window_share * (*rows.back().arc - *rows.front().arc), at = *point.row.arc;
+  const auto before = stable_share(rows, at - window, at), after = stable_share(rows, at, at + window);
+  return before && after && std::abs(*before - *after) > least_difference;
+}
+
+std::vector<ToldPoint> told_points(const StudyPoints& study, const std::vector<PointLimitRow>& limits,
+                                   const std::vector<PointOrderRow>& orders) {
+  const std::string& reference = study.reference()->id;
+  // Changes of contact last; else where stability ends, orders, the kind, and in how many cases it was found alone.
+  using Rank = std::tuple<bool, bool, bool, bool, std::size_t, long, double>;
+  std::vector<std::pair<Rank, ToldPoint>> ranked;
+  std::vector<double> contacts;
+  for (const StudyPoint& one : study.points())
+    if (one.owner == study.root() && one.kind == "first contact") contacts.push_back(one.value);
+  for (std::size_t k = 0; k < study.names().size(); ++k) {
+    const PointName& name = study.names()[k];
+    const auto limit = std::find_if(limits.begin(), limits.end(), [&](const PointLimitRow& row) {
+      return row.name == name.text && row.id == reference;
+    });
+    const StudyPoint* point = study.find(study.root(), static_cast<int>(k));
+    if (limit == limits.end() || !point) continue;
+    if (name.kind == "fold" && std::any_of(contacts.begin(), contacts.end(), [&](double contact) {
+          return std::abs(contact - point->value) <= point->half;
+        }))
+      continue;
+    const bool ordered = std::any_of(orders.begin(), orders.end(), [&](const PointOrderRow& row) {
+      return row.name == name.text && row.method == reference && row.verdict == order_told;
+    });
+    long found = 0;
+    for (std::size_t c = 0; c < study.cases().size(); ++c)
+      found += study.presence(c, static_cast<int>(k), nullptr) == PointPresence::found;
+    // An interval of a fiftieth of the range locates nothing.
+    constexpr double wide_share = 0.02;
+    const bool wide = limit->low && limit->high && *limit->high - *limit->low > wide_share * study.range();
+    const ToldPoint told{&name, &*limit, point, ends_stability(study, *point)};
+    ranked.push_back({{name.kind == "contact", !told.ends_stability, !ordered, wide, kind_rank(name.kind), -found,
+                       -point->row.prominence.value_or(0)},
+                      told});
+  }
+  const auto by_rank = [](const auto& a, const auto& b) { return a.first < b.first; };
+  std::stable_sort(ranked.begin(), ranked.end(), by_rank);
+  // Where stability ends nowhere, every point is told.
+  if (std::any_of(ranked.begin(), ranked.end(), [](const auto& one) { return one.second.ends_stability; }))
+    std::erase_if(ranked, [](const auto& one) {
+      return one.second.name->kind == "contact" ||
+             (!one.second.ends_stability && one.second.name->kind != "first contact");
+    });
+  std::map<std::string, int> met;
+  std::vector<std::pair<int, ToldPoint>> turns;
+  for (const auto& [rank, told] : ranked) turns.emplace_back(met[told.name->kind]++, told);
+  std::stable_sort(turns.begin(), turns.end(), by_rank);
+  std::vector<ToldPoint> out;
+  for (const auto& [turn, told] : turns) out.push_back(told);
+  return out;
+}
+
+}  // namespace ricochet

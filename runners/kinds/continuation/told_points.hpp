@@ -1,0 +1,27 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "runners/kinds/continuation/point_tables.hpp"
+#include "runners/kinds/continuation/study_points.hpp"
+
+namespace ricochet {
+
+/// A point that an answer tells.
+struct ToldPoint {
+  const PointName* name = nullptr;
+  const PointLimitRow* limit = nullptr;  ///< of the reference's method
+  const StudyPoint* point = nullptr;     ///< of the reference case
+  bool ends_stability = false;           ///< stable orbits lie on one side of it alone
+};
+
+/// Whether stable orbits lie on one side of the point alone: their share of the arc differs by more than a half between
+/// both sides, over 5 % of the branch's arc each. Flickers of multipliers at corners change a share by little.
+bool ends_stability(const StudyPoints& study, const StudyPoint& point);
+
+/// The named points of the reference's method at which stable orbits end, and its first contacts; all where none ends
+/// them. One of each kind stands before a second of any. A fold at a first contact is told as the contact.
+std::vector<ToldPoint> told_points(const StudyPoints& study, const std::vector<PointLimitRow>& limits,
+                                   const std::vector<PointOrderRow>& orders);
+
+}  // namespace ricochet
