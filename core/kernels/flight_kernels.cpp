@@ -6,7 +6,10 @@
 namespace ricochet {
 namespace {
 
+// All that takes or gives a vector is inlined: a call would pass it as the caller's instruction set has it, the
+// callee's takes it as its own.
 #define RICOCHET_BODY [[gnu::always_inline]] inline
+#define RICOCHET_INLINED __attribute__((always_inline))
 
 // Four numbers: a sum by four has one order, whatever the instruction set.
 constexpr int wide = 4;
@@ -71,8 +74,8 @@ RICOCHET_BODY Wide load_some(const double* x, int count) {
 template <int slots, int drives>
 RICOCHET_BODY void leap_slots(int n, const double* table, const double* x, const double* e, double* out) {
   const int width = slots + drives;
-  const auto at = [n](int row) { return static_cast<long>(row) * n; };
-  const auto leap = [&](int j, auto load_one, auto store) {
+  const auto at = [n](int row) RICOCHET_INLINED { return static_cast<long>(row) * n; };
+  const auto leap = [&](int j, auto load_one, auto store) RICOCHET_INLINED {
     decltype(load_one(x)) own[slots], next[slots];
 #pragma GCC unroll 4
     for (int k = 0; k < slots; ++k) own[k] = load_one(x + at(k) + j);
@@ -92,11 +95,12 @@ RICOCHET_BODY void leap_slots(int n, const double* table, const double* x, const
   int j = 0;
   for (; j + wide <= n; j += wide)
     leap(
-        j, [](const double* from) { return load(from); },
-        [](double* to, Wide value) { *reinterpret_cast<LooseFour*>(to) = value; });
+        j, [](const double* from) RICOCHET_INLINED { return load(from); },
+        [](double* to, Wide value) RICOCHET_INLINED { *reinterpret_cast<LooseFour*>(to) = value; });
   for (; j < n; ++j)
     leap(
-        j, [](const double* from) { return *from; }, [](double* to, double value) { *to = value; });
+        j, [](const double* from) RICOCHET_INLINED { return *from; },
+        [](double* to, double value) RICOCHET_INLINED { *to = value; });
 }
 
 // Any number of slots, by a pass for each; `out` is another place.
@@ -178,12 +182,12 @@ RICOCHET_BODY void reaches_body(int n, long stride, int points, const double* h,
   int i = 0;
   for (; i + wide <= points; i += wide)
     reaches_from<Wide>(
-        i, n, stride, points, h, places, out, [](const double* from) { return load(from); },
-        [](double* to, Wide value) { *reinterpret_cast<LooseFour*>(to) = value; });
+        i, n, stride, points, h, places, out, [](const double* from) RICOCHET_INLINED { return load(from); },
+        [](double* to, Wide value) RICOCHET_INLINED { *reinterpret_cast<LooseFour*>(to) = value; });
   for (; i < points; ++i)
     reaches_from<double>(
-        i, n, stride, points, h, places, out, [](const double* from) { return *from; },
-        [](double* to, double value) { *to = value; });
+        i, n, stride, points, h, places, out, [](const double* from) RICOCHET_INLINED { return *from; },
+        [](double* to, double value) RICOCHET_INLINED { *to = value; });
 }
 
 // Two sums of products over n, eight at a time: `add`(sums, at) adds four products to one of them, at(array) being its
@@ -192,21 +196,21 @@ template <class Sums, class Add>
 RICOCHET_BODY void sum_by_eight(int n, Sums& even, Sums& odd, Add add) {
   int j = 0;
   for (; j + 2 * wide <= n; j += 2 * wide) {
-    add(even, [j](const double* of) { return load(of + j); });
-    add(odd, [j](const double* of) { return load(of + j + wide); });
+    add(even, [j](const double* of) RICOCHET_INLINED { return load(of + j); });
+    add(odd, [j](const double* of) RICOCHET_INLINED { return load(of + j + wide); });
   }
   if (j + wide <= n) {
-    add(even, [j](const double* of) { return load(of + j); });
+    add(even, [j](const double* of) RICOCHET_INLINED { return load(of + j); });
     j += wide;
-    add(odd, [j, count = n - j](const double* of) { return load_some(of + j, count); });
+    add(odd, [j, count = n - j](const double* of) RICOCHET_INLINED { return load_some(of + j, count); });
   } else if (j < n) {
-    add(even, [j, count = n - j](const double* of) { return load_some(of + j, count); });
+    add(even, [j, count = n - j](const double* of) RICOCHET_INLINED { return load_some(of + j, count); });
   }
 }
 
 RICOCHET_BODY double dot_body(int n, const double* h, const double* x) {
   Wide even{}, odd{};
-  sum_by_eight(n, even, odd, [&](Wide& sum, auto at) { sum += at(h) * at(x); });
+  sum_by_eight(n, even, odd, [&](Wide& sum, auto at) RICOCHET_INLINED { sum += at(h) * at(x); });
   return total(even, odd);
 }
 
@@ -221,7 +225,7 @@ RICOCHET_BODY void dots_body(int n, int rows, const double* matrix, const double
   for (; i + 4 <= rows; i += 4, matrix += 4L * n) {
     const double *a = matrix, *b = a + n, *c = b + n, *d = c + n;
     Four even, odd;
-    sum_by_eight(n, even, odd, [&](Four& sums, auto at) {
+    sum_by_eight(n, even, odd, [&](Four& sums, auto at) RICOCHET_INLINED {
       const Wide factor = at(x);
       sums.a += at(a) * factor;
       sums.b += at(b) * factor;
@@ -246,7 +250,7 @@ RICOCHET_BODY void products_body(int n, int rows, const double* matrix, int vect
     for (; i + 2 <= rows; i += 2, row += 2L * n) {
       const double* const next = row + n;
       Four even, odd;
-      sum_by_eight(n, even, odd, [&](Four& sums, auto at) {
+      sum_by_eight(n, even, odd, [&](Four& sums, auto at) RICOCHET_INLINED {
         const Wide first = at(row), second = at(next), left = at(one), right = at(other);
         sums.a += first * left;
         sums.b += second * left;
@@ -284,10 +288,11 @@ RICOCHET_BODY double quadratic_body(int n, int slots, int drives, const double* 
       }
       Wide even{}, odd{};
       if (b < slots) {
-        sum_by_eight(n, even, odd, [&](Wide& own, auto at) { own += at(form) * at(left) * at(right); });
+        sum_by_eight(n, even, odd,
+                     [&](Wide& own, auto at) RICOCHET_INLINED { own += at(form) * at(left) * at(right); });
         sum += total(even, odd);
       } else {
-        sum_by_eight(n, even, odd, [&](Wide& own, auto at) { own += at(form); });
+        sum_by_eight(n, even, odd, [&](Wide& own, auto at) RICOCHET_INLINED { own += at(form); });
         sum += e[a - slots] * e[b - slots] * total(even, odd);
       }
     }
