@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 #include "runners/kinds/continuation/page/branch_data.hpp"
@@ -86,6 +87,23 @@ const char* order_head(const std::string& refined) {
   return refined == "steps_per_period" ? "order in h" : refined == "contact.stiffness" ? "order in 1/κ" : "order in ℓ";
 }
 
+/// Places of names in a row in which those that the answer tells stand first.
+class ToldOrder {
+ public:
+  ToldOrder(const StudyPoints& study, const StudyResults& results) {
+    if (study.cases().empty()) return;
+    const auto limits = point_limits_type().read(results.derived);
+    for (const ToldPoint& one : told_points(study, limits, point_orders_type().read(results.derived)))
+      told_.push_back(one.name->text);
+  }
+  std::ptrdiff_t place(const std::string& name) const {
+    return std::find(told_.begin(), told_.end(), name) - told_.begin();
+  }
+
+ private:
+  std::vector<std::string> told_;
+};
+
 }  // namespace
 
 std::string points_html(const CaseView& view) {
@@ -93,7 +111,9 @@ std::string points_html(const CaseView& view) {
   std::vector<HtmlTable::Head> columns = {{"point"}, {with_unit(swept_parameter(view.results())), true}};
   for (const std::string& one : rows.refined) columns.push_back({order_head(one), true});
   columns.push_back({"cases that have it", true, "Without: a branch passed the place. Elsewhere: none came there."});
-  // What most is known of: orders, then cases that have it; changes of contact last.
+  // What the answer tells; then what most is known of: orders, cases that have it; changes of contact last.
+  const answers::Compared compared(view.results());
+  const ToldOrder told_order(StudyPoints(compared), view.results());
   std::vector<PointLimitRow> shown;
   for (const PointLimitRow& row : rows.limits)
     if (row.limit &&
@@ -104,7 +124,7 @@ std::string points_html(const CaseView& view) {
       return order.name == row.name && order.method == row.id && order.verdict == order_told;
     });
     const bool change = row.name.find("contact at") != std::string::npos && row.name.find("first") == std::string::npos;
-    return std::make_tuple(change, !told, -rows.found(row.name));
+    return std::make_tuple(told_order.place(row.name), change, !told, -rows.found(row.name));
   };
   std::stable_sort(shown.begin(), shown.end(),
                    [&](const PointLimitRow& a, const PointLimitRow& b) { return rank(a) < rank(b); });
@@ -161,7 +181,13 @@ Table point_levels(const CaseView& view) {
             {}};
   const answers::Compared compared(view.results());
   const StudyPoints study(compared);
-  for (std::size_t name = 0; name < study.names().size(); ++name)
+  const ToldOrder told_order(study, view.results());
+  std::vector<std::size_t> names(study.names().size());
+  std::iota(names.begin(), names.end(), std::size_t{0});
+  std::stable_sort(names.begin(), names.end(), [&](std::size_t a, std::size_t b) {
+    return told_order.place(study.names()[a].text) < told_order.place(study.names()[b].text);
+  });
+  for (const std::size_t name : names)
     for (const std::size_t head : study.heads()) {
       const int number = static_cast<int>(name);
       const PointConvergence found = study.convergence(head, number);
@@ -210,7 +236,8 @@ Table point_lines(const CaseView& view) {
         if (!one.order.told || limit.correction == 0) continue;
         double from = INFINITY, to = 0;
         for (const std::size_t c : study.along(one.finest, one.axis))
-          if (const auto size = study.axes()[one.axis].size(*study.cases()[c])) {
+          if (const auto size = study.axes()[one.axis].size(*study.cases()[c]);
+              size && study.find(c, static_cast<int>(name))) {
             from = std::min(from, *size);
             to = std::max(to, *size);
           }
