@@ -37,7 +37,7 @@ TEST_CASE("check: schemes that declare what is true pass every check") {
                             three_level_entry(0), three_level_entry(0.5), restoring_entry()}) {
     const auto results = checking::check_scheme(entry, {.child = false});
     INFO(text_of(results));
-    CHECK(checking::all_hold(results));
+    for (const auto& result : results) CHECK(result.finding != checking::Finding::fails);
     CHECK(results.size() == checking::scheme_checks().size());
   }
 }
