@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <ricochet/measure/statistics/effects.hpp>
-#include <set>
 
 #include "runners/report/html.hpp"
 #include "runners/store/record_values.hpp"

@@ -1,6 +1,5 @@
 // Each declared fact and each field of a plan, made wrong in turn, is caught by the check that measures it.
 #include <catch2/catch.hpp>
-#include <cmath>
 
 #include "runners/check/checks.hpp"
 #include "tests/check/sound_schemes.hpp"

@@ -1,5 +1,4 @@
 // What choices move: one scale per scene, gains told apart, levels told by their values.
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>

@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <cmath>
 #include <map>
 #include <string>

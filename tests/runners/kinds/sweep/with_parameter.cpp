@@ -1,7 +1,6 @@
 #include "runners/kinds/sweep/with_parameter.hpp"
 
 #include <catch2/catch.hpp>
-#include <numbers>
 #include <set>
 
 #include "tests/runners/study/study_fixture.hpp"
