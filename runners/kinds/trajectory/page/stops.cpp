@@ -80,17 +80,15 @@ std::vector<Cases> methods_from_finest(const answers::Compared& study) {
 }
 
 std::string stops_html(const CaseView& view) {
-  const Table* table = find_table(view.results().derived, "uncertainty");
-  if (!table || table->rows.empty()) return "";
-  const auto at = [&](const Row& row, const char* column) { return row[find_column(table->columns, column).value()]; };
+  const std::vector<answers::StopMeasure> all = answers::uncertainty_type().read(view.results().derived);
+  if (all.empty()) return "";
   std::vector<std::string> stops;
-  std::map<std::pair<std::string, std::string>, const Row*> rows;
-  for (const Row& row : table->rows) {
-    const std::string stop = at(row, "stop").text(), measure = at(row, "measure").text();
+  std::map<std::pair<std::string, std::string>, const answers::StopMeasure*> rows;
+  for (const answers::StopMeasure& row : all) {
     // Levels of spectra may be those of points.
-    if (std::find(first_measures.begin(), first_measures.end(), measure) == first_measures.end()) continue;
-    if (std::find(stops.begin(), stops.end(), stop) == stops.end()) stops.push_back(stop);
-    rows[{measure, stop}] = &row;
+    if (std::find(first_measures.begin(), first_measures.end(), row.measure) == first_measures.end()) continue;
+    if (std::find(stops.begin(), stops.end(), row.stop) == stops.end()) stops.push_back(row.stop);
+    rows[{row.measure, row.stop}] = &row;
   }
   HtmlTable html(
       "What each stop gives: the range over all methods at their finest step and mesh, widened by what these leave "
@@ -103,14 +101,12 @@ std::string stops_html(const CaseView& view) {
     html.row(in_words(name));
     answers::MeasureWords words;
     double size = 0;
-    const auto ends = [&](const Row& row) {
-      const bool known = !at(row, "low").is_nothing();
-      return std::pair(at(row, known ? "low" : "least").number().value_or(0),
-                       at(row, known ? "high" : "largest").number().value_or(0));
+    const auto ends = [](const answers::StopMeasure& row) {
+      return std::pair(row.low.value_or(row.least), row.low ? row.high.value_or(0) : row.largest);
     };
     for (const std::string& stop : stops)
       if (const auto found = rows.find({name, stop}); found != rows.end()) {
-        words.unit = at(*found->second, "unit").text();
+        words.unit = found->second->unit;
         const auto [low, high] = ends(*found->second);
         size = std::max({size, std::abs(low), std::abs(high)});
       }
@@ -122,13 +118,11 @@ std::string stops_html(const CaseView& view) {
         html.absent();
         continue;
       }
-      const Row& row = *found->second;
-      const bool known = !at(row, "low").is_nothing();
-      const auto [least, largest] = ends(row);
+      const auto [least, largest] = ends(*found->second);
       const std::string low = answers::short_number(words.factor * least, 3),
                         high = answers::short_number(words.factor * largest, 3),
                         text = low == high ? low : low + " to " + high;
-      html.number(known ? text : text + " ?", at(row, "sentence").text());
+      html.number(found->second->low ? text : text + " ?", found->second->sentence);
     }
   }
   return html.html();
