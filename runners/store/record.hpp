@@ -34,7 +34,7 @@ struct CaseRecord {
   Curve curve;
   std::vector<Table> tables;         ///< rows of its own, without the case's axes (stability.csv)
   std::vector<NumberTable> numbers;  ///< its large tables (points.csv, impacts.csv)
-  std::string arithmetic;  ///< digest of the arithmetic that computed it (arithmetic_digest.hpp); "": not known
+  std::string arithmetic;  ///< digest of the arithmetic that computed it; "": not known
   bool partial = false;    ///< saved while the case was running: what it had by then
 };
 

@@ -10,7 +10,7 @@
 /// Basins of several cases on one grid: which cells of a case end alike, which ends of different cases are one
 /// attractor, and what that says.
 ///
-/// On a grid of initial states the attractors are the same in every cell: cells that have one end (orbit_ends.hpp)
+/// On a grid of initial states the attractors are the same in every cell: cells that have one end (attractors.hpp)
 /// belong together wherever they lie. On a grid of parameters attractors move from cell to cell: neighbours belong
 /// together where the section of one continues that of the other (kAlongParameter), and a region is what such
 /// neighbours join.
