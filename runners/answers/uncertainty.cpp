@@ -176,38 +176,38 @@ Spread signed_spread(Spread spread, const std::string& measure) {
 
 }  // namespace
 
-const TableType<StopMeasure>& uncertainty_type() {
-  static const TableType<StopMeasure> all = [] {
-    RowType<StopMeasure> rows;
-    rows.add({"measure", "", "The measure, without its stop."}, &StopMeasure::measure)
-        .add({"stop", "", "Name of the stop, or of the point of a spectrum."}, &StopMeasure::stop)
-        .add({"unit", "", "Unit of the numbers."}, &StopMeasure::unit)
-        .add({"value", "", "That of the first method at its finest step and mesh."}, &StopMeasure::value)
-        .add({"least", "", "The least over the methods, each at its finest step and mesh."}, &StopMeasure::least)
-        .add({"largest", "", "The largest of them."}, &StopMeasure::largest)
-        .add({"methods", "1", "Methods that have a value."}, &StopMeasure::methods)
+const TableType<StopRange>& uncertainty_type() {
+  static const TableType<StopRange> all = [] {
+    RowType<StopRange> rows;
+    rows.add({"measure", "", "The measure, without its stop."}, &StopRange::measure)
+        .add({"stop", "", "Name of the stop, or of the point of a spectrum."}, &StopRange::stop)
+        .add({"unit", "", "Unit of the numbers."}, &StopRange::unit)
+        .add({"value", "", "That of the first method at its finest step and mesh."}, &StopRange::value)
+        .add({"least", "", "The least over the methods, each at its finest step and mesh."}, &StopRange::least)
+        .add({"largest", "", "The largest of them."}, &StopRange::largest)
+        .add({"methods", "1", "Methods that have a value."}, &StopRange::methods)
         .add({"step_gap", "", "The largest that the step still moves a method by; empty of a single step."},
-             &StopMeasure::step)
-        .add({"mesh_gap", "", "The same of the mesh."}, &StopMeasure::mesh)
+             &StopRange::step)
+        .add({"mesh_gap", "", "The same of the mesh."}, &StopRange::mesh)
         .add({"sampling", "", "Half the 95 % interval of a mean over the parts of the window, the largest."},
-             &StopMeasure::sampling)
+             &StopRange::sampling)
         .add({"low", "",
               "The least less the largest of the three, 0 where none is below 0; empty where that of the step is not "
               "known."},
-             &StopMeasure::low)
-        .add({"high", "", "The largest and the largest of the three."}, &StopMeasure::high)
+             &StopRange::low)
+        .add({"high", "", "The largest and the largest of the three."}, &StopRange::high)
         .add({"verdict", "",
               "settled: within 1 %; methods, step, mesh, sampling: what leaves it open; unknown: a single step."},
-             &StopMeasure::verdict)
-        .add({"sentence", "", "The same in words."}, &StopMeasure::sentence);
-    return TableType<StopMeasure>{"uncertainty",
+             &StopRange::verdict)
+        .add({"sentence", "", "The same in words."}, &StopRange::sentence);
+    return TableType<StopRange>{"uncertainty",
                                   "One measure of one stop over all methods: between which values it is.", rows};
   }();
   return all;
 }
 
 Table uncertainty_table(const Compared& study) {
-  std::vector<StopMeasure> rows;
+  std::vector<StopRange> rows;
   for (const std::string& name : measures_of_stops(study.results())) {
     const MeasureLimits limits = limits_of(study, name, false, all_cases(study.results()));
     const std::optional<Spread> found = spread_of(limits);
@@ -219,7 +219,7 @@ Table uncertainty_table(const Compared& study) {
       if (value) *value *= factor;
       return value;
     };
-    StopMeasure row{measure,
+    StopRange row{measure,
                     stop,
                     limits.words.unit,
                     factor * spread.value,

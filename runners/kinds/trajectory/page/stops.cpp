@@ -9,6 +9,7 @@
 #include "runners/answers/compared.hpp"
 #include "runners/answers/limits.hpp"
 #include "runners/answers/uncertainty.hpp"
+#include "runners/kinds/trajectory/stop_tables.hpp"
 #include "runners/report/html.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/table_reader.hpp"
@@ -36,10 +37,9 @@ constexpr std::size_t most_shocks_drawn = 3000, most_lines_drawn = 400;
 /// Densities of one record by series: "bar-a\nforce".
 std::map<std::string, std::vector<double>> densities(const CaseRecord& record, std::vector<double>* frequencies) {
   std::map<std::string, std::vector<double>> out;
-  const NumberTable* table = find_table(record.numbers, "spectra");
+  const NumberTable* table = spectra_type().find(record.numbers);
   if (!table) return out;
-  const auto *of = table->numbers("of"), *quantity = table->numbers("quantity"), *f = table->numbers("frequency"),
-             *density = table->numbers("density");
+  const auto& [of, quantity, f, density] = spectra_type().read(*table);
   const auto *names = table->words_of("of"), *quantities = table->words_of("quantity");
   if (!of || !quantity || !f || !density || !names || !quantities) return out;
   for (std::size_t i = 0; i < table->rows(); ++i) {
@@ -80,11 +80,11 @@ std::vector<Cases> methods_from_finest(const answers::Compared& study) {
 }
 
 std::string stops_html(const CaseView& view) {
-  const std::vector<answers::StopMeasure> all = answers::uncertainty_type().read(view.results().derived);
+  const std::vector<answers::StopRange> all = answers::uncertainty_type().read(view.results().derived);
   if (all.empty()) return "";
   std::vector<std::string> stops;
-  std::map<std::pair<std::string, std::string>, const answers::StopMeasure*> rows;
-  for (const answers::StopMeasure& row : all) {
+  std::map<std::pair<std::string, std::string>, const answers::StopRange*> rows;
+  for (const answers::StopRange& row : all) {
     // Levels of spectra may be those of points.
     if (std::find(first_measures.begin(), first_measures.end(), row.measure) == first_measures.end()) continue;
     if (std::find(stops.begin(), stops.end(), row.stop) == stops.end()) stops.push_back(row.stop);
@@ -101,7 +101,7 @@ std::string stops_html(const CaseView& view) {
     html.row(in_words(name));
     answers::MeasureWords words;
     double size = 0;
-    const auto ends = [](const answers::StopMeasure& row) {
+    const auto ends = [](const answers::StopRange& row) {
       return std::pair(row.low.value_or(row.least), row.low ? row.high.value_or(0) : row.largest);
     };
     for (const std::string& stop : stops)
@@ -145,14 +145,14 @@ Table shock_points(const CaseView& view) {
   std::vector<Point> points;
   for (const Cases& cases : methods_from_finest(answers::Compared(view.results()))) {
     const CaseRecord& record = *cases.front();
-    const NumberTable* table = find_table(record.numbers, "shocks");
+    const NumberTable* table = shocks_type().find(record.numbers);
     if (!table || table->rows() == 0) continue;
-    const auto& peaks = *table->numbers("peak_force");
+    const ShockColumns at = shocks_type().read(*table);
+    const std::vector<std::string>& stops = table->words.front().second;
     for (std::size_t i = 0; i < table->rows(); ++i)
-      points.push_back({peaks[i],
-                        {record.id, table->words_of("stop")->at(static_cast<std::size_t>((*table->numbers("stop"))[i])),
-                         (*table->numbers("t_peak"))[i], peaks[i], (*table->numbers("duration"))[i],
-                         (*table->numbers("rebounds"))[i]}});
+      points.push_back({(*at.peak_force)[i],
+                        {record.id, stops.at(static_cast<std::size_t>((*at.stop)[i])), (*at.t_peak)[i],
+                         (*at.peak_force)[i], (*at.duration)[i], (*at.rebounds)[i]}});
   }
   std::stable_sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.peak > b.peak; });
   for (Point& point : points) {

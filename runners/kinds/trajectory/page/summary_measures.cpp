@@ -29,9 +29,9 @@ struct SummaryMeasure {
 using SummaryMeasures = std::vector<std::pair<std::string, SummaryMeasure>>;
 
 // Measures of stops that have names.
-SummaryMeasures of_stops(const std::vector<answers::StopMeasure>& rows) {
+SummaryMeasures of_stops(const std::vector<answers::StopRange>& rows) {
   SummaryMeasures out;
-  for (const answers::StopMeasure& row : rows)
+  for (const answers::StopRange& row : rows)
     out.emplace_back(row.measure + "[" + row.stop + "]", SummaryMeasure{row.unit, row.least, row.largest, row.low,
                                                                         row.high, row.step, row.mesh, row.sampling});
   return out;
