@@ -152,3 +152,10 @@ TEST_CASE("a measure that agrees as well is told with its value, several with ho
   results.study["observe"] = {"energy_left", "impulse"};
   CHECK_THAT(sentences(results), Contains("Impulse agrees as well: 2 N s, nothing apart."));
 }
+
+TEST_CASE("a mass of the scene is never called by the name of a role") {
+  CHECK(answers::spoken("mass") == "the mass matrix");
+  CHECK(answers::spoken("structure.mass") == "the mass of the oscillator");
+  CHECK(answers::spoken("structure.masses.0.mass") == "the scene's mass");
+  CHECK(answers::spoken("structure.young") == "young");
+}
