@@ -131,4 +131,18 @@ inline double line_density(const SceneSpec& scene) {
   return section_properties(beam.section, beam.young, beam.density).rhoS;
 }
 
+/// Displacements of the contact points after each step.
+inline std::vector<Eigen::VectorXd> contact_history(const SceneSpec& scene, int elements, const Methods& methods,
+                                                    double h, double duration) {
+  Marcher made = marcher(scene, elements, methods, h);
+  made.start();
+  std::vector<Eigen::VectorXd> out;
+  for (long long n = made.step(); n < std::llround(duration / h); ++n) {
+    made.march(1);
+    out.push_back(made.program().problem->contact * made.position(0));
+  }
+  REQUIRE(made.status(0).running);
+  return out;
+}
+
 }  // namespace ricochet::testing

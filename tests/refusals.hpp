@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <ricochet/contract/errors.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -31,6 +32,17 @@ class CauseAndRemedy final : public Catch::MatcherBase<std::string> {
 
 inline CauseAndRemedy names_cause_and_remedy() {
   return {};
+}
+
+/// Runs `action`; returns "pointer: message" of the InputError that it throws, `none` without one.
+template <class Action>
+std::string input_error(Action action, const char* none = "no error") {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.pointer() + ": " + error.what();
+  }
+  return none;
 }
 
 }  // namespace ricochet::testing

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <ricochet/contact_solvers/box_problem.hpp>
 #include <ricochet/contact_solvers/held_band.hpp>
 #include <ricochet/kernels/floating_point.hpp>

@@ -100,7 +100,7 @@ class HeldBand;
 /// Only the columns of sets that were tried are asked for. Cost: O(m) to read the lane, and O(k³ + m·k) for each set of
 /// k points. A set of more than `many` points is held in the band of its operator (a BandDelassus), p corrected by the
 /// residual of W itself until that is round-off: O(n), n the size of the band, and no columns. A search over such sets
-/// that comes back to one goes on from the set that an interior point shows (see box_interior.hpp) before it descends.
+/// that comes back to one goes on from the set that an interior point shows (box_interior.cpp) before it descends.
 ///
 /// **Uniqueness.** y is unique. p is computed from scratch from the final set, so the warm start changes it by
 /// round-off only, as long as W is regular on that set. Where it is not (two points at one place, more supports than a
@@ -170,13 +170,13 @@ class BoxSolver {
   double residual() const;
   double tolerance() const;
 
-  // box_held.cpp
+  // box_set.cpp
   HeldBand* band_for(const Operator& A) const;
   void try_held(const Operator& A, HeldBand& band);
   void find_null();
   bool look_inside(const Operator& A, LaneOutcome& outcome);
 
-  // box_descent.cpp
+  // box_interior.cpp
   void descend(const Operator& A, LaneOutcome& outcome);
   bool slide(int entering);
   int first_to_leave(double& step) const;

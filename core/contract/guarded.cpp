@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <new>
 #include <ricochet/contract/check_inertia.hpp>

@@ -56,9 +56,9 @@ void Marcher::connect_efforts() {
   }
 }
 
-// A start beyond a stop is pushed from its first step as from any other: where a plan weights efforts of steps before,
-// those before t = 0 are the force of a compliant law in the initial state, at rest, as a start has no past at another
-// place; and a law that keeps a memory has seen that state. Rigid laws have no force there.
+// A start beyond a stop is pushed from its first step as from any other. Where a plan weights efforts of steps before,
+// those before t = 0 are the force of a compliant law in the initial state, at rest. A law that keeps a memory has seen
+// that state. Rigid laws have no force there.
 void Marcher::begin_contact() {
   if (!program_.contact || !program_.law->reads() || step_ != 0) return;
   const int points = lower_.rows(), T = program_.width;

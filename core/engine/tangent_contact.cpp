@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
 

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <ricochet/kernels/flight_kernels.hpp>
 #include <ricochet/kernels/instruction_set.hpp>

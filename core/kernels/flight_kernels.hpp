@@ -14,9 +14,9 @@ struct FlightKernels {
   void (*row)(int n, int slots, int drives, const double* row, const double* x, const double* e, double* out);
   /// amplitude += |re + i im|, bend += weight |re + i im|.
   void (*modulus)(int n, const double* re, const double* im, const double* weight, double* amplitude, double* bend);
-  /// Where each mode is after 0 and after k steps, and how far from there it may be at any step up to then: along its
-  /// first two values c and c + d, its second differences at most `bend`; or anywhere within its amplitude, where that
-  /// says more. `places`: four arrays, near, its radius, far, its radius.
+  /// Where each mode is after 0 and after k steps, and how far from there it may be at any step up to then. It goes
+  /// along its first two values c and c + d with second differences of at most `bend`, or stays within its amplitude;
+  /// the narrower of both is told. `places`: four arrays, near, its radius, far, its radius.
   void (*cone)(int n, double k, const double* value, const double* change, const double* amplitude, const double* bend,
                double* places);
   /// Σ h_j near_j, Σ |h_j| radius_j, and the same of far, over n modes of arrays that are `stride` numbers apart.

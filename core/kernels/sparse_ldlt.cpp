@@ -1,7 +1,5 @@
 #include <cholmod.h>
 
-#include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <memory>

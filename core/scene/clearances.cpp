@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/clearances.hpp>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
 #include <ricochet/scene/equilibrium.hpp>

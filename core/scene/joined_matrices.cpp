@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/basis/lowest_modes.hpp>
 #include <ricochet/scene/block_matrices.hpp>

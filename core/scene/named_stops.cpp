@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/kernels/floating_point.hpp>

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>

@@ -3,9 +3,9 @@
 
 namespace ricochet {
 
-/// The diagonal of a mass that is given, M_ii times a factor of its direction: along x, y, z what makes the sum the
-/// mass that a translation moves; of rotations that of the directions, together, whose displacements M couples with
-/// them (of all, where it couples none). A refusal where a dof with mass is neither, or a direction would lose its
+/// The diagonal of a mass that is given, M_ii times a factor of its direction. Along x, y, z the factor makes the sum
+/// the mass that a translation moves. Rotations have that of the directions, together, whose displacements M couples
+/// with them; of all, where it couples none. A refusal where a dof with mass is neither, or a direction would lose its
 /// mass.
 inline std::variant<Eigen::VectorXd, Refusal> given_diagonal(const GivenMass& given) {
   constexpr int rotation = 3;

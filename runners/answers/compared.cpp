@@ -296,7 +296,9 @@ std::string spoken(const std::string& choice) {
     return one == other ? spoken(one) : spoken(one) + " together with " + spoken(other);
   }
   const std::string known = spoken_choice(choice);
-  return known != choice ? known : report::in_words(last_part(choice));
+  if (known != choice) return known;
+  const std::string last = last_part(choice);
+  return spoken_choice(last) != last ? "the scene's " + last : report::in_words(last);  // not the mass matrix
 }
 
 std::string level_phrase(const std::string& choice, const std::string& level) {

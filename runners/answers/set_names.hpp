@@ -15,9 +15,9 @@ class SetNames {
   SetNames(const Compared& study, Cases methods, std::vector<std::string> columns);
   SetNames(const Compared& study, Cases methods) : SetNames(study, methods, study.columns()) {}
 
-  /// A rule of one to three attributes ("the singular mass with β = ½"), an end of a number ("stiffness 1e6 N/m and
-  /// more"), a union of at most three rules (four where nothing else is exact), up to three labels, all but such a set,
-  /// the levels of the largest choice that are wholly in, or the nearest rule with its exceptions. Never empty.
+  /// A rule of one to three attributes ("the singular mass with β = ½"), or an end of a number ("stiffness 1e6 N/m and
+  /// more"). A union of at most three rules, four where nothing else is exact. Up to three labels. All but such a set.
+  /// The levels of the largest choice that are wholly in. Else the nearest rule with its exceptions. Never empty.
   std::string of(const Members& chosen) const { return found(chosen, true).text; }
   /// The same, with whether it is one thing (a verb then has an s).
   struct Name {

@@ -176,27 +176,38 @@ Spread signed_spread(Spread spread, const std::string& measure) {
 
 }  // namespace
 
+const TableType<StopRange>& uncertainty_type() {
+  static const TableType<StopRange> all = [] {
+    RowType<StopRange> rows;
+    rows.add({"measure", "", "The measure, without its stop."}, &StopRange::measure)
+        .add({"stop", "", "Name of the stop, or of the point of a spectrum."}, &StopRange::stop)
+        .add({"unit", "", "Unit of the numbers."}, &StopRange::unit)
+        .add({"value", "", "That of the first method at its finest step and mesh."}, &StopRange::value)
+        .add({"least", "", "The least over the methods, each at its finest step and mesh."}, &StopRange::least)
+        .add({"largest", "", "The largest of them."}, &StopRange::largest)
+        .add({"methods", "1", "Methods that have a value."}, &StopRange::methods)
+        .add({"step_gap", "", "The largest that the step still moves a method by; empty of a single step."},
+             &StopRange::step)
+        .add({"mesh_gap", "", "The same of the mesh."}, &StopRange::mesh)
+        .add({"sampling", "", "Half the 95 % interval of a mean over the parts of the window, the largest."},
+             &StopRange::sampling)
+        .add({"low", "",
+              "The least less the largest of the three, 0 where none is below 0; empty where that of the step is not "
+              "known."},
+             &StopRange::low)
+        .add({"high", "", "The largest and the largest of the three."}, &StopRange::high)
+        .add({"verdict", "",
+              "settled: within 1 %; methods, step, mesh, sampling: what leaves it open; unknown: a single step."},
+             &StopRange::verdict)
+        .add({"sentence", "", "The same in words."}, &StopRange::sentence);
+    return TableType<StopRange>{"uncertainty",
+                                  "One measure of one stop over all methods: between which values it is.", rows};
+  }();
+  return all;
+}
+
 Table uncertainty_table(const Compared& study) {
-  Table table{
-      "uncertainty",
-      "One measure of one stop over all methods: between which values it is.",
-      {{"measure", "", "The measure, without its stop."},
-       {"stop", "", "Name of the stop, or of the point of a spectrum."},
-       {"unit", "", "Unit of the numbers."},
-       {"value", "", "That of the first method at its finest step and mesh."},
-       {"least", "", "The least over the methods, each at its finest step and mesh."},
-       {"largest", "", "The largest of them."},
-       {"methods", "1", "Methods that have a value."},
-       {"step_gap", "", "The largest that the step still moves a method by; empty of a single step."},
-       {"mesh_gap", "", "The same of the mesh."},
-       {"sampling", "", "Half the 95 % interval of a mean over the parts of the window, the largest."},
-       {"low", "",
-        "The least less the largest of the three, 0 where none is below 0; empty where that of the step is not known."},
-       {"high", "", "The largest and the largest of the three."},
-       {"verdict", "",
-        "settled: within 1 %; methods, step, mesh, sampling: what leaves it open; unknown: a single step."},
-       {"sentence", "", "The same in words."}},
-      {}};
+  std::vector<StopRange> rows;
   for (const std::string& name : measures_of_stops(study.results())) {
     const MeasureLimits limits = limits_of(study, name, false, all_cases(study.results()));
     const std::optional<Spread> found = spread_of(limits);
@@ -204,15 +215,29 @@ Table uncertainty_table(const Compared& study) {
     const auto [measure, stop] = *measure_of_stop(name);
     const Spread spread = signed_spread(*found, measure);
     const double factor = limits.words.factor;
-    const auto scaled = [factor](std::optional<double> value) { return value ? Cell(*value * factor) : Cell(); };
-    const std::optional<double> margin = spread.margin();
-    table.rows.push_back({measure, stop, limits.words.unit, factor * spread.value, factor * spread.least,
-                          factor * spread.largest, spread.methods, scaled(spread.step), scaled(spread.mesh),
-                          scaled(spread.sampling), margin ? Cell(factor * spread.low(*margin)) : Cell(),
-                          margin ? Cell(factor * (spread.largest + *margin)) : Cell(), verdict(spread),
-                          interval_sentence(study, limits, spread).text});
+    const auto scaled = [factor](std::optional<double> value) {
+      if (value) *value *= factor;
+      return value;
+    };
+    StopRange row{measure,
+                    stop,
+                    limits.words.unit,
+                    factor * spread.value,
+                    factor * spread.least,
+                    factor * spread.largest,
+                    spread.methods,
+                    scaled(spread.step),
+                    scaled(spread.mesh),
+                    scaled(spread.sampling)};
+    if (const auto margin = spread.margin()) {
+      row.low = factor * spread.low(*margin);
+      row.high = factor * (spread.largest + *margin);
+    }
+    row.verdict = verdict(spread);
+    row.sentence = interval_sentence(study, limits, spread).text;
+    rows.push_back(std::move(row));
   }
-  return table;
+  return uncertainty_type().with(rows);
 }
 
 namespace {

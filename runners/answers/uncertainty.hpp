@@ -3,9 +3,19 @@
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/limits.hpp"
-#include "runners/table/table.hpp"
+#include "runners/table/row_type.hpp"
 
 namespace ricochet::answers {
+
+/// One row of `uncertainty`, in its unit.
+struct StopRange {
+  std::string measure = {}, stop = {}, unit = {};
+  double value = 0, least = 0, largest = 0;
+  std::size_t methods = 0;
+  std::optional<double> step = {}, mesh = {}, sampling = {}, low = {}, high = {};
+  std::string verdict = {}, sentence = {};
+};
+const TableType<StopRange>& uncertainty_type();
 
 /// uncertainty: one row per measure of a stop that has a name, what all methods and refinements together leave of it.
 ///

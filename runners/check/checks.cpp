@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <ricochet/contract/plugin_call.hpp>
 
 #include "runners/check/law_checks.hpp"

@@ -5,7 +5,7 @@
 /// What is looked at in a contact law.
 namespace ricochet::checking {
 
-// Rigid laws (law_rigid.cpp).
+// Rigid laws.
 Verdict complementarity_holds(const Law& law);
 
 // Compliant laws (law_compliant.cpp).
@@ -17,10 +17,10 @@ Verdict potential_stores_the_force(const Law& law);
 Verdict energy_over_a_step(const Law& law);
 Verdict dissipation_is_reported(const Law& law);
 
-// Laws that change the problem (law_problem.cpp).
+// Laws that change the problem.
 Verdict changed_problem_is_sound(const Law& law);
 
-// All laws (law_conduct.cpp).
+// All laws.
 Verdict solve_allocates_nothing(const Law& law);
 Verdict lanes_are_independent(const Law& law);
 Verdict untouched_lanes_are_left_alone(const Law& law);

@@ -40,7 +40,7 @@ Eigen::MatrixXd unit_stiffness(const FiniteElementSpace& space);
 std::vector<SpaceBench> accepted(const Mass& mass, int elements);
 std::vector<SpaceBench> accepted_pinned(const Mass& mass, int elements);
 
-// What is looked at in a mass strategy (mass_matrix.cpp, mass_structure.cpp).
+// What is looked at in a mass strategy.
 
 Verdict some_structure_is_accepted(const Mass& mass);
 Verdict matrix_is_symmetric(const Mass& mass);

@@ -13,9 +13,9 @@ struct ParameterSet {
   std::string text;  ///< "beta 0.25, gamma 0.5"
 };
 
-/// The values a method is tried with: its defaults (a parameter without one: the middle of its range, else 1e5);
-/// then, one parameter at a time, the ends and the middle of bounded ranges (just inside where an end is open), a
-/// hundredth and a hundredfold of the default where it is not bounded, each word, both truths.
+/// The values a method is tried with. First its defaults; of a parameter without one the middle of its range, else 1e5.
+/// Then one parameter at a time: the ends and the middle of bounded ranges (just inside an open end), a hundredth and a
+/// hundredfold of an unbounded default, each word, both truths.
 std::vector<ParameterSet> parameter_sets(const std::vector<ParameterSpec>& specs);
 
 /// A method with one set of values.

@@ -12,7 +12,7 @@ Verdict plan_is_the_same_twice(const Scheme& scheme);
 Verdict refusals_name_cause(const Scheme& scheme);
 Verdict singular_mass_as_declared(const Scheme& scheme);
 
-// Marching against the plan itself (scheme_march.cpp, scheme_spectrum.cpp).
+// Marching against the plan itself (scheme_form.cpp, scheme_orders.cpp).
 Verdict march_is_the_plan(const Scheme& scheme);
 Verdict spectrum_is_the_march(const Scheme& scheme);
 Verdict stability_as_declared(const Scheme& scheme);
@@ -24,7 +24,7 @@ Verdict loads_at_their_times(const Scheme& scheme);
 Verdict supports_at_their_times(const Scheme& scheme);
 Verdict compliance_is_right(const Scheme& scheme);
 
-// Contact and energies (scheme_contact.cpp, scheme_energy.cpp).
+// Contact and energies (scheme_contact.cpp, scheme_checks.cpp).
 Verdict rigid_stops_hold(const Scheme& scheme);
 Verdict restitution_as_declared(const Scheme& scheme);
 Verdict start_at_a_stop(const Scheme& scheme);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "runners/check/dense_march.hpp"
 #include "runners/check/scheme_checks.hpp"

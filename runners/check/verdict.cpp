@@ -94,11 +94,6 @@ const char* finding_word(Finding finding) {
   return "not declared";
 }
 
-bool all_hold(const std::vector<CheckResult>& results) {
-  return std::none_of(results.begin(), results.end(),
-                      [](const CheckResult& result) { return result.finding == Finding::fails; });
-}
-
 CheckResult run_check(const std::string& name, const std::vector<Trial>& trials, const Isolation& isolation,
                       bool* hangs) {
   if (hangs) *hangs = false;

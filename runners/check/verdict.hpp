@@ -36,8 +36,6 @@ struct CheckResult {
   Finding finding = Finding::ok;
   std::vector<std::string> sentences;  ///< of a failure one for each parameter value, else at most one
 };
-/// Whether none of them fails.
-bool all_hold(const std::vector<CheckResult>& results);
 
 /// Thrown inside a check when the method refuses what the check would march; the verdict is then "not applicable".
 struct Refused {

@@ -10,7 +10,6 @@
 #include "runners/check/checks.hpp"
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
-#include "runners/study/check_object.hpp"
 
 namespace ricochet::checking {
 

@@ -1,10 +1,8 @@
-#include <algorithm>
 #include <ostream>
 
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/plan_files/plan_file.hpp"
-#include "runners/study/check_object.hpp"
 #include "runners/study/study_schema.hpp"
 #include "runners/table/text.hpp"
 

@@ -1,15 +1,8 @@
 #include <algorithm>
 
-#include "runners/kinds/basins/basins.hpp"
-#include "runners/kinds/bifurcation/bifurcation.hpp"
-#include "runners/kinds/continuation/continuation.hpp"
-#include "runners/kinds/convergence/convergence.hpp"
-#include "runners/kinds/kind.hpp"
-#include "runners/kinds/stability/stability.hpp"
+#include "runners/kinds/all_kinds.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
 #include "runners/kinds/trajectory/stop_measures.hpp"
-#include "runners/kinds/trajectory/trajectory.hpp"
-#include "runners/kinds/work-precision/work_precision.hpp"
 
 namespace ricochet {
 namespace {

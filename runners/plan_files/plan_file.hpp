@@ -37,11 +37,10 @@ void register_plan(const PlanSource& source, Registry& registry);
 /// The name under which a study gives a scheme that is no plugin: {"name": "plan", "file": "my-scheme.json"}.
 inline constexpr const char* stated_plan = "plan";
 
-/// If an entry of `methods.time` states its scheme itself, by "file" (a path, relative to `folder`, the study's) or by
-/// "plan" (the plan itself, as resolved studies have it, which need no file), reads the plan, registers it under its
-/// own name and leaves in `entry` this name and the parameters. Within a study a name stands for one scheme: throws
-/// InputError when the name is that of a plugin or of another plan among `before` (complete entries); and for whatever
-/// is wrong with the plan.
+/// An entry of `methods.time` may state its scheme itself: by "file", a path relative to `folder`, the study's, or by
+/// "plan", as resolved studies have it. This reads the plan, registers it under its own name, and leaves in `entry`
+/// this name and the parameters. Within a study a name stands for one scheme: throws InputError when the name is that
+/// of a plugin or of another plan among `before` (complete entries); and for whatever is wrong with the plan.
 std::optional<PlanSource> take_stated_plan(Json& entry, const std::string& pointer, const std::filesystem::path& folder,
                                            const Json& before, Catalogue& catalogue, Registry& registry);
 

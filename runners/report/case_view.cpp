@@ -7,7 +7,6 @@
 
 #include "runners/report/html.hpp"
 #include "runners/study/axis_meaning.hpp"
-#include "runners/table/in_order_met.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -188,23 +187,6 @@ const CaseRecord* CaseView::find(std::string_view id) const {
   const auto found = std::find_if(results_.cases.begin(), results_.cases.end(),
                                   [&](const CaseRecord& record) { return record.id == id; });
   return found == results_.cases.end() ? nullptr : &*found;
-}
-
-std::string CaseView::set_apart(const Cases& cases, const Cases& among, const std::vector<std::string>& columns) {
-  const auto values_in = [](const Cases& some, const std::string& column) {
-    InOrderMet<std::string, bool> out;
-    for (const CaseRecord* record : some)
-      if (const std::string value = text(*record, column); !value.empty()) out[value] = true;
-    return out;
-  };
-  std::string what;
-  for (const std::string& column : columns) {
-    std::vector<std::string> inside;
-    for (const auto& [value, ignored] : values_in(cases, column).list()) inside.push_back(value);
-    if (inside.empty() || inside.size() == values_in(among, column).list().size()) continue;
-    what += apart(what, column, inside);
-  }
-  return what;
 }
 
 std::vector<std::string> CaseView::values_of(const Cases& cases, const std::string& column) const {

@@ -82,9 +82,6 @@ class CaseView {
 
   /// What sets some of these cases apart from all: "all 24 cases", "12 of 24 cases (mass singular)".
   std::string describe(const Cases& cases) const;
-  /// What sets `cases` apart from `among` in some columns, without the count: "mass singular; time.beta 0.25"; "" where
-  /// nothing does.
-  static std::string set_apart(const Cases& cases, const Cases& among, const std::vector<std::string>& columns);
 
  private:
   static constexpr std::size_t no_value = static_cast<std::size_t>(-1);

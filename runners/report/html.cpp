@@ -127,16 +127,6 @@ std::string exact_text(double value) {
   return short_exponent(std::string(buffer, end.ptr));
 }
 
-std::string percent_text(double ratio) {
-  if (!std::isfinite(ratio) || std::abs(ratio) >= 1e4) return number_text(100 * ratio) + " %";
-  const double distance = 100 * std::abs(ratio - 1);
-  int decimals = 1;
-  if (distance > 0) decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(distance))), 2, 12);
-  std::string text = fmt::format("{:.{}f}", 100 * ratio, decimals);
-  if (text[0] == '-') text.replace(0, 1, "−");
-  return text + " %";
-}
-
 std::string share_text(double share) {
   return number_text(100 * share, 3) + " %";
 }

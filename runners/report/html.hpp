@@ -30,10 +30,6 @@ std::string number_text(double value, int digits = 4);
 /// The shortest text that reads back as the same number: "0.25", "1e-7".
 std::string exact_text(double value);
 
-/// An energy ratio in per cent with enough digits to see how far it is from 1: 0.9999876 → "99.9988 %", 0.7 → "70.00
-/// %".
-std::string percent_text(double ratio);
-
 /// A share in per cent to three significant digits, however small: 0.05 → "5 %", 2.4e-9 → "2.4e-7 %".
 std::string share_text(double share);
 /// The same with its interval, where there is one: "65 % (60 % to 71 %)".

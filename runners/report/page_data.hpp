@@ -28,9 +28,9 @@ struct PageData {
 /// `all`: results of which the view may hold a part; they decide whether there are files of curves.
 PageData page_data(const CaseView& view, const KindPage& kind, const StudyResults& all);
 
-/// The cases of which a page holds curves over time: all where they fit the charts of a figure (24 rows of cases that
-/// differ in the step alone, or 96 cases), else 24 such rows: those with the least and with the most of what the answer
-/// speaks of first, and others spread evenly over the study.
+/// The cases of which a page holds curves over time: all where they fit the charts of a figure, which are 24 rows of
+/// cases that differ in the step alone, or 96 cases. Else 24 such rows. Among them are those with the least and with
+/// the most of what the answer speaks of first; the others are spread evenly over the study.
 class CurveChoice {
  public:
   CurveChoice(const CaseView& view, const StudyResults& all);

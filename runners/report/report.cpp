@@ -192,15 +192,7 @@ std::optional<StudyResults> shown_cases(const StudyResults& results) {
   if (results.cases.size() <= 2 * most_shown_cases) return std::nullopt;
   const Ids ids = chosen(results);
   StudyResults shown;
-  shown.study = results.study;
-  shown.name = results.name;
-  shown.question = results.question;
-  shown.kind = results.kind;
-  shown.columns = results.columns;
-  shown.axes = results.axes;
-  shown.expected_cases = results.expected_cases;
-  shown.part = results.part;
-  shown.environment = results.environment;
+  static_cast<StudyHeader&>(shown) = results;
   for (const CaseRecord& record : results.cases)
     if (ids.contains(record.id)) shown.cases.push_back(record);
   for (const Table& table : results.derived) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <ricochet/measure/statistics/effects.hpp>
-#include <set>
 
 #include "runners/report/html.hpp"
 #include "runners/store/record_values.hpp"
@@ -53,8 +52,8 @@ bool of_the_motion(const std::string& measure) {
   return !info || info->of == MeasureInfo::Of::motion;
 }
 
-// Whether the cases of some level that were run to their end never have this measure while those of another do: then
-// the method (or the step, the mesh) has none, and what is absent may neither be filled in nor taken for zero.
+// Whether the finished cases of some level never have this measure while those of another do. That level then has none:
+// what is absent may neither be filled in nor taken for zero.
 bool absent_by_level(const StudyResults& results, const std::vector<Factor>& factors,
                      const std::vector<std::optional<double>>& values) {
   for (const Factor& factor : factors) {

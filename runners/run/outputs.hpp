@@ -10,8 +10,7 @@ namespace ricochet {
 
 using RenderReport = std::function<std::string(const StudyResults&)>;
 
-/// Writes study.json, cases.csv, the derived tables, the exported tables of numbers, curves/ID.csv (curve_outputs.hpp),
-/// dictionary.csv
+/// Writes study.json, cases.csv, the derived tables, the exported tables of numbers, curves/ID.csv, dictionary.csv
 /// (what every column of these means), failures/ID.json and report.html into `folder` from the results alone, each file
 /// whole or not at all, and removes the curves of cases that are no longer in the study. `changed`: the cases whose
 /// curve must be written again; nothing means all. Throws StoreError.

@@ -46,12 +46,11 @@ class CasePlanner {
   std::map<std::pair<std::string, std::string>, std::string> endless_;  ///< role and name → what was found
 };
 
-/// What a step makes of the contacts of compliant laws, a line for each law, scheme and step among these cases: how
-/// long a contact lasts, half a period π√(m/κ) of the law's spring κ on the mass m that moves in it, how many steps
-/// that is, and what part of its energy one bounce of that mass loses at that step, marched over the instants at which
-/// it may begin within one. m is κ/ω² of the mode of the structure on that spring at its last contact point that has
-/// most of its energy there; of an oscillator it is its mass, on k + κ. Of laws without a constant stiffness nothing is
-/// told. "" where there is none.
+/// What a step makes of the contacts of compliant laws, a line for each law, scheme and step among these cases. A
+/// contact lasts half a period, π√(m/κ), of the law's spring κ on the mass m that moves in it. The line tells how many
+/// steps that is. It tells what share of its energy a bounce of m loses, over the instants of a step at which it may
+/// begin. m = κ/ω², ω that of the mode with most energy in a spring at the last contact point; of an oscillator m is
+/// its mass, on k + κ. Laws without a constant stiffness have no line. "" where there is none.
 std::string contacts_text(const std::vector<PlannedCase>& cases, const CasePlanner& planner, const Registry& registry);
 
 }  // namespace ricochet

@@ -32,7 +32,7 @@ std::filesystem::path default_folder(const std::string& study, const StudyPart& 
 
 /// Runs what is missing, so many cases at once, writes every finished case at once, then cases.csv, curves/,
 /// study.json and report.html, and prints the answer. Returns the exit code (0, 3, 5, 130); throws
-/// PartRefused (part_cases.hpp).
+/// PartRefused (study_cases.hpp).
 int run_study(const Study& study, const Catalogue& catalogue, const Registry& registry, const RunOptions& options);
 
 /// Rebuilds report.html (and cases.csv, curves/) from results.sqlite. Returns the exit code.

@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
-#include <memory>
 #include <mutex>
 
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
-#include "runners/run/environment.hpp"
 #include "runners/run/finish_run.hpp"
 #include "runners/run/progress.hpp"
 #include "runners/run/stop_signal.hpp"

@@ -9,7 +9,6 @@
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/summary_page.hpp"
-#include "runners/run/answers_table.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"
 #include "runners/table/text.hpp"

@@ -12,7 +12,7 @@ std::string environment_entry(const Environment& environment, const std::string&
 /// same library is the same wherever it lies.
 std::string without_place(const std::string& name, const std::string& value);
 
-/// The entry of an environment that is the digest of the processor's arithmetic (arithmetic_digest.hpp).
+/// The entry of an environment that is the digest of the processor's arithmetic (runners/march/study_identity.hpp).
 inline constexpr const char* kArithmetic = "arithmetic";
 
 /// Puts in the environment what arithmetic the finished cases were computed with, in the place of what runs have said

@@ -15,9 +15,8 @@
 namespace ricochet {
 
 /// Which run a store belongs to: a number that each run raises when it begins, with the name of that run. A lock on the
-/// folder says the same where locks hold; on file systems where they do not (locks that each node keeps for itself, a
-/// scheduler that starts a job again while its first start lives on), whoever finds another number than its own has
-/// lost the store.
+/// folder says the same where locks hold. On some file systems each node keeps its own locks, and a scheduler may start
+/// a job again while its first start lives on. Whoever finds another number than its own has lost the store.
 ///
 /// Both functions are called within the transaction that they speak of.
 class Epoch {

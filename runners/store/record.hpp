@@ -34,7 +34,7 @@ struct CaseRecord {
   Curve curve;
   std::vector<Table> tables;         ///< rows of its own, without the case's axes (stability.csv)
   std::vector<NumberTable> numbers;  ///< its large tables (points.csv, impacts.csv)
-  std::string arithmetic;  ///< digest of the arithmetic that computed it (arithmetic_digest.hpp); "": not known
+  std::string arithmetic;  ///< digest of the arithmetic that computed it; "": not known
   bool partial = false;    ///< saved while the case was running: what it had by then
 };
 
@@ -55,18 +55,21 @@ struct Environment {
       entries;  ///< program, commit, compiler, flags, processor, cores, libraries …
 };
 
-/// Everything a store holds, which is everything a report is made from.
-struct StudyResults {
+/// What a store says of a study beside its cases.
+struct StudyHeader {
   nlohmann::ordered_json study;  ///< resolved study
   std::string name, question, kind;
   std::vector<std::string> columns;  ///< axis columns of cases.csv, in order
   std::vector<Column> axes = {};     ///< what is known of them beyond the study format: parameters of methods
   std::map<std::string, std::string> method_words = {};  ///< see Study
-  std::vector<CaseRecord> cases;     ///< in the study's order; those not run yet are absent
   int expected_cases = 0;
   StudyPart part = {};  ///< of which these are the cases
   Environment environment;
-  std::vector<Table> derived;  ///< worked out of the cases when they are read, not stored
+};
+/// Everything a store holds, which is everything a report is made from.
+struct StudyResults : StudyHeader {
+  std::vector<CaseRecord> cases;  ///< in the study's order; those not run yet are absent
+  std::vector<Table> derived;     ///< worked out of the cases when they are read, not stored
 };
 
 /// What a measure of a case means, as the kinds of study declare theirs (also the report's tooltips).

@@ -75,8 +75,7 @@ CREATE TABLE begun(
 )sql";
 
 // What version 5 adds: the cases of earlier versions of the study, with all that belongs to them, in tables of their
-// own, where the case_id of a row is the fingerprint of its case; and where these cases ran, as JSON [[name, value],
-// …].
+// own. There the case_id of a row is the fingerprint of its case. Where these cases ran is JSON, [[name, value], …].
 constexpr const char* kAsideTables = R"sql(
 CREATE TABLE aside_environments(id INTEGER PRIMARY KEY, entries TEXT NOT NULL UNIQUE);
 CREATE TABLE aside_cases(

@@ -5,7 +5,6 @@
 #include <SQLiteCpp/Transaction.h>
 #include <fmt/format.h>
 
-#include <bit>
 #include <cmath>
 #include <ctime>
 #include <numeric>

@@ -31,7 +31,7 @@ struct ExpectedCase {
 ///
 /// The folder is locked while a Store lives. Each call below is all or nothing. A process killed at any moment leaves
 /// the store as it was after some call that returned: the last one, but for what begins() and save() wrote in the last
-/// half second (write_group.hpp). Errors are StoreError, with the path, the cause and what to do.
+/// half second (epoch.hpp). Errors are StoreError, with the path, the cause and what to do.
 class Store {
  public:
   /// Opens or creates FOLDER/results.sqlite; `fresh` forgets what it held. Refuses a store of another version.
@@ -71,7 +71,7 @@ class Store {
   /// No case is under way any more: the run ends in order.
   void nothing_under_way();
 
-  /// How far the run is, in words, and now: for who looks from elsewhere (read_status.hpp).
+  /// How far the run is, in words, and now: for who looks from elsewhere (read_store.hpp).
   void save_progress(const std::string& text);
 
   /// Adds finished cases, which are no longer under way; in the same transaction `next` begins, unless it is "".
@@ -87,7 +87,7 @@ class Store {
   std::string motion(const std::string& key) const;
   void save_motion(const std::string& key, const std::string& content);
 
-  /// Makes the views of these results anew (views.hpp): for who reads the store with SQL.
+  /// Makes the views of these results anew (schema.hpp): for who reads the store with SQL.
   void make_views(const StudyResults& results);
 
   /// Everything the store holds; the series of finished cases are read when somebody asks for them.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/named_stops.hpp>
 

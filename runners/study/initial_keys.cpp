@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "runners/json/json_text.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/study/plane_keys.hpp"

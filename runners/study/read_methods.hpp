@@ -22,9 +22,9 @@ struct MethodOptions {
 };
 
 /// Reads the methods of a role: a name, an object {name, parameters…}, or a list of either. Opens the libraries named,
-/// and only these. Throws InputError for an unknown name, parameter or value; PluginError when the only file that is
-/// meant to provide the name cannot serve, when the name is near no other and files were found that tell nothing of
-/// themselves, or when the library that provides it fails. A scheme that the study states itself (stated_plan.hpp) is
+/// and only these. Throws InputError for an unknown name, parameter or value. Throws PluginError when the library that
+/// provides the name fails, or the only file meant to provide it cannot serve. Also when the name is near no other, and
+/// files were found that tell nothing of themselves. A scheme that the study states itself (plan_file.hpp) is
 /// read relative to `folder`; its resolved object holds the plan.
 MethodOptions read_methods(Role role, const Json& value, const std::string& pointer, Catalogue& catalogue,
                            Registry& registry, const std::filesystem::path& folder = {});

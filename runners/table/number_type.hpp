@@ -15,7 +15,8 @@ class NumberType {
   /// `text`: what a row stands for. Not exported: for the report and for going on, no CSV.
   explicit NumberType(std::string name, std::string text = "", bool exported = true)
       : head_{std::move(name), {}, {}, {}, exported, std::move(text)} {}
-  NumberType& add(Column column, const Series* Columns::*member) {
+  /// Without a member: a column that nobody reads back.
+  NumberType& add(Column column, const Series* Columns::*member = nullptr) {
     head_.columns.push_back(std::move(column));
     members_.push_back(member);
     return *this;
@@ -33,7 +34,8 @@ class NumberType {
   /// Those that the table lacks are null. They last as long as the table.
   Columns read(const NumberTable& table) const {
     Columns found;
-    for (std::size_t k = 0; k < members_.size(); ++k) found.*members_[k] = table.series(head_.columns[k].name);
+    for (std::size_t k = 0; k < members_.size(); ++k)
+      if (members_[k]) found.*members_[k] = table.series(head_.columns[k].name);
     return found;
   }
 

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <initializer_list>
-#include <mutex>
 #include <optional>
 #include <ricochet/contract/errors.hpp>
 

@@ -12,7 +12,6 @@
 #include <future>
 #include <limits>
 #include <map>
-#include <memory>
 #include <new>
 #include <optional>
 #include <ricochet/contract/errors.hpp>

@@ -12,7 +12,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <numbers>
-#include <optional>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/loader/catalogue.hpp>

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -28,7 +27,6 @@
 #include "runners/march/seconds.hpp"
 #include "runners/march/study_identity.hpp"
 #include "runners/report/report.hpp"
-#include "runners/run/environment.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/store.hpp"

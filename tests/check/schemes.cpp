@@ -1,6 +1,5 @@
 // Each declared fact and each field of a plan, made wrong in turn, is caught by the check that measures it.
 #include <catch2/catch.hpp>
-#include <cmath>
 
 #include "runners/check/checks.hpp"
 #include "tests/check/sound_schemes.hpp"
@@ -37,7 +36,7 @@ TEST_CASE("check: schemes that declare what is true pass every check") {
                             three_level_entry(0), three_level_entry(0.5), restoring_entry()}) {
     const auto results = checking::check_scheme(entry, {.child = false});
     INFO(text_of(results));
-    CHECK(checking::all_hold(results));
+    for (const auto& result : results) CHECK(result.finding != checking::Finding::fails);
     CHECK(results.size() == checking::scheme_checks().size());
   }
 }

@@ -1,12 +1,7 @@
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <limits>
-#include <random>
 #include <ricochet/contact_solvers/box_problem.hpp>
-#include <vector>
 
-#include "tests/allocations.hpp"
 #include "tests/contact_solvers/box_problems.hpp"
 #include "tests/eigen.hpp"
 

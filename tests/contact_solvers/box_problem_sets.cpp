@@ -1,8 +1,6 @@
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
-#include <random>
 #include <ricochet/contact_solvers/box_problem.hpp>
 #include <vector>
 

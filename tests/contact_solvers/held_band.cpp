@@ -1,6 +1,5 @@
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <limits>
 #include <random>
 #include <ricochet/contact_solvers/held_band.hpp>

@@ -1,15 +1,10 @@
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
-#include <random>
 #include <ricochet/contact_solvers/box_problem.hpp>
 #include <ricochet/contact_solvers/pointwise_solver.hpp>
-#include <vector>
 
-#include "tests/allocations.hpp"
 #include "tests/contact_solvers/pointwise_problems.hpp"
-#include "tests/eigen.hpp"
 
 namespace pointwise_solver_tests {
 

@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 #include <functional>
-#include <limits>
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/registry.hpp>
 

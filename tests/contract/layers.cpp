@@ -3,8 +3,10 @@
 #include <catch2/catch.hpp>
 #include <cctype>
 #include <map>
+#include <regex>
 #include <ricochet/loader/catalogue.hpp>
 #include <set>
+#include <sstream>
 
 #include "tests/runners/scratch_folder.hpp"
 
@@ -51,6 +53,19 @@ std::vector<std::string> includes(const Source& source) {
     REQUIRE(close != std::string::npos);
     result.push_back(line.substr(8, close - 7));
   }
+  return result;
+}
+
+/// Names of sources in the comments of a file: "(epoch.hpp)", "runners/store/epoch.hpp".
+std::vector<std::string> named_sources(const std::string& text) {
+  static const std::regex name(R"(([a-z_\-]+)\.(hpp|cpp)\b)");
+  std::vector<std::string> result;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (const std::size_t comment = line.find("//"); comment != std::string::npos)
+      for (std::sregex_iterator at(line.begin() + static_cast<std::ptrdiff_t>(comment), line.end(), name), end;
+           at != end; ++at)
+        result.push_back(at->str());
   return result;
 }
 
@@ -182,7 +197,7 @@ TEST_CASE("core and runners include no plugin, and core no runner") {
       }
 }
 
-TEST_CASE("rooms include what lies below them, and every folder has its rule") {
+TEST_CASE("folders include what lies below them, and every folder has its rule") {
   const std::map<std::string, std::set<std::string>> below = {
       {"core/contract", {}},
       {"core/loader", {"core/contract"}},
@@ -272,4 +287,17 @@ TEST_CASE("core and runners know no method by name") {
           const bool named = !ordinary.count(name) && has_word(literal.text, name);
           if (exact || named) FAIL_CHECK(source.name << " names the method " << name << ": \"" << literal.text << '"');
         }
+}
+
+TEST_CASE("comments name sources that exist") {
+  const std::vector<std::string> folders = {"core", "plugins", "runners", "tests"};
+  std::set<std::string> there;
+  for (const std::string& folder : folders)
+    for (const Source& source : sources(folder)) there.insert(fs::path(source.name).filename().string());
+  for (const std::string& folder : folders)
+    for (const Source& source : sources(folder))
+      for (const std::string& name : named_sources(source.text)) {
+        INFO(source.name << " names " << name);
+        CHECK(there.contains(name));
+      }
 }

@@ -1,6 +1,4 @@
 #include <catch2/catch.hpp>
-#include <functional>
-#include <limits>
 #include <ricochet/contract/step_plan.hpp>
 
 #include "tests/contract/full_plan.hpp"

@@ -1,5 +1,4 @@
 // Given matrices march as the structure that they are of.
-#include <numbers>
 
 #include "tests/marching.hpp"
 #include "tests/scene/structure/beam_files.hpp"

@@ -55,20 +55,6 @@ LoadTerm push_along(double x, const std::string& formula) {
   return term;
 }
 
-/// Displacements of the contact points at every step.
-std::vector<Eigen::VectorXd> bodies_history(const SceneSpec& scene, int elements, const Methods& methods, double h,
-                                            double duration) {
-  Marcher made = marcher(scene, elements, methods, h);
-  made.start();
-  std::vector<Eigen::VectorXd> out;
-  for (long long n = made.step(); n < std::llround(duration / h); ++n) {
-    made.march(1);
-    out.push_back(made.program().problem->contact * made.position(0));
-  }
-  REQUIRE(made.status(0).running);
-  return out;
-}
-
 Choice spring_law(double stiffness) {
   return {"penalty", {{"stiffness", stiffness}}};
 }
@@ -96,8 +82,8 @@ TEST_CASE("two mirrored cantilevers that meet move as one against a wall") {
       {{{"consistent"}, spring_law(500), newmark}, {{"consistent"}, spring_law(1000), newmark}}};
   for (const auto& [of_two, of_one] : laws) {
     INFO(of_two.mass.name << ", " << of_two.contact.name);
-    const auto both = bodies_history(two, elements, of_two, 1e-4, 2),
-               alone = bodies_history(one, elements, of_one, 1e-4, 2);
+    const auto both = contact_history(two, elements, of_two, 1e-4, 2),
+               alone = contact_history(one, elements, of_one, 1e-4, 2);
     double most = 0, farthest = 0;
     for (std::size_t n = 0; n < both.size(); ++n) {
       most = std::max(most, std::abs(both[n][1] - alone[n][0]));
@@ -155,9 +141,9 @@ TEST_CASE("bodies that do not meet move as each alone, with its own damping") {
   };
   for (const char* name : {"consistent", "singular"}) {
     const Methods methods{{name}, {"signorini"}, {"newmark-dumont-paoli", {{"beta", 0.5}}}};
-    const auto all = bodies_history(both, elements, methods, 1e-3, 2),
-               first = bodies_history(alone(slow, 0.7, "sin(5*t)"), elements, methods, 1e-3, 2),
-               second = bodies_history(alone(fast, 0.4, "cos(4*t)"), elements, methods, 1e-3, 2);
+    const auto all = contact_history(both, elements, methods, 1e-3, 2),
+               first = contact_history(alone(slow, 0.7, "sin(5*t)"), elements, methods, 1e-3, 2),
+               second = contact_history(alone(fast, 0.4, "cos(4*t)"), elements, methods, 1e-3, 2);
     double most = 0;
     for (std::size_t n = 0; n < all.size(); ++n)
       most = std::max({most, std::abs(all[n][0] - first[n][0]), std::abs(all[n][1] - second[n][0])});
@@ -185,9 +171,9 @@ TEST_CASE("bodies in modes have each its own ratios of damping") {
     return scene;
   };
   const Methods methods{{"singular"}, {"signorini"}, {"newmark-dumont-paoli", {{"beta", 0.5}}}};
-  const auto all = bodies_history(both, elements, methods, 1e-3, 2),
-             first = bodies_history(alone(slow, 0.7, "sin(5*t)"), elements, methods, 1e-3, 2),
-             second = bodies_history(alone(fast, 0.4, "cos(4*t)"), elements, methods, 1e-3, 2);
+  const auto all = contact_history(both, elements, methods, 1e-3, 2),
+             first = contact_history(alone(slow, 0.7, "sin(5*t)"), elements, methods, 1e-3, 2),
+             second = contact_history(alone(fast, 0.4, "cos(4*t)"), elements, methods, 1e-3, 2);
   double most = 0;
   for (std::size_t n = 0; n < all.size(); ++n)
     most = std::max({most, std::abs(all[n][0] - first[n][0]), std::abs(all[n][1] - second[n][0])});
@@ -228,7 +214,7 @@ TEST_CASE("supports of one name move together, in each body by its own static mo
   one.stops.named = {{"a", along_beam(1), {}, -9, {}}};
   one.motions = two.motions;
   const Methods methods{{"consistent"}, {"signorini"}, {"newmark"}};
-  const auto both = bodies_history(two, 4, methods, 1e-3, 1), alone = bodies_history(one, 4, methods, 1e-3, 1);
+  const auto both = contact_history(two, 4, methods, 1e-3, 1), alone = contact_history(one, 4, methods, 1e-3, 1);
   for (std::size_t n = 0; n < both.size(); ++n) {
     REQUIRE(std::abs(both[n][0] - alone[n][0]) < 1e-13);
     REQUIRE(std::abs(both[n][1]) < 1e-13);
@@ -274,9 +260,9 @@ TEST_CASE("a basis of all modes of bodies moves them as all their dofs do") {
                        {"seen", in_part("bar", 0), {}, -9, {}}};
   scene.load.terms = {push_part(in_part("beam", 1), "0.4*sin(3*t)")};
   const Methods methods{{"consistent"}, spring_law(500), {"newmark-dumont-paoli", {{"beta", 0.5}}}};
-  const auto all = bodies_history(scene, elements, methods, 1e-4, 1);
+  const auto all = contact_history(scene, elements, methods, 1e-4, 1);
   scene.basis = BasisSpec{0, true};
-  const auto modes = bodies_history(scene, elements, methods, 1e-4, 1);
+  const auto modes = contact_history(scene, elements, methods, 1e-4, 1);
   double most = 0, farthest = 0;
   for (std::size_t n = 0; n < all.size(); ++n) {
     most = std::max(most, (all[n] - modes[n]).norm());

@@ -72,12 +72,7 @@ void check_alike(const std::vector<Impact>& a, const std::vector<Impact>& b, dou
 }
 
 std::string refused(const SceneSpec& scene) {
-  try {
-    check_scene(scene, 1);
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "none";
+  return input_error([&] { check_scene(scene, 1); });
 }
 
 TEST_CASE("a clearance of given matrices moves with what its support holds: at a steady speed nothing changes") {

@@ -17,15 +17,6 @@ SceneSpec ball(double height, double gravity) {
   return scene;
 }
 
-SceneSpec period_three_bar() {
-  SceneSpec scene;
-  scene.structure = BarSpec{.length = 1, .EA = 1, .rhoA = 1, .fixed = BarSpec::Fixed::right, .damping = {}};
-  scene.stops.lower = Formula(0.0);
-  scene.stops.place = StopsSpec::Place::tip;
-  scene.initial.displacement = Formula("(1-x)/2", "/scene/initial/displacement", "x");
-  return scene;
-}
-
 }  // namespace
 
 TEST_CASE("a ball falls as parabolas do, and bounces to e² of its height") {
@@ -67,7 +58,7 @@ TEST_CASE("a mass on a penalty spring stays in contact for half a period and goe
 
 TEST_CASE("the period-3 bar: contact from 1 to 2 with stress one half, energy one eighth, for a massless end") {
   const double h = 1e-3;
-  Marcher bar = marcher(period_three_bar(), 100,
+  Marcher bar = marcher(released_bar(1, "(1-x)/2"), 100,
                         {{"redistributed"}, {"signorini"}, {"newmark-dumont-paoli", {{"beta", 0.25}}}}, h);
   const EnergyAudit audit = audited(bar, 2.5);
   // The front is smeared over a few elements by dispersion, (1/100)^(2/3) of the length.

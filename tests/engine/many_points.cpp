@@ -1,6 +1,5 @@
 // Hundreds of contact points that close together: held in the band of the step, marched beside the columns alone.
 #include <Eigen/Core>
-#include <cstring>
 
 #include "tests/allocations.hpp"
 #include "tests/eigen.hpp"

@@ -34,20 +34,6 @@ SceneSpec thrown_pair(StopParameters first, StopParameters second) {
   return scene;
 }
 
-/// The contact points at every step.
-std::vector<Eigen::VectorXd> own_history(const SceneSpec& scene, int elements, const Methods& methods, double h,
-                                         double duration) {
-  Marcher made = marcher(scene, elements, methods, h);
-  made.start();
-  std::vector<Eigen::VectorXd> out;
-  for (long long n = made.step(); n < std::llround(duration / h); ++n) {
-    made.march(1);
-    out.push_back(made.program().problem->contact * made.position(0));
-  }
-  REQUIRE(made.status(0).running);
-  return out;
-}
-
 std::string own_refused(const SceneSpec& scene, const Methods& methods) {
   const auto program = compiled(problem_of(scene, 4, methods.mass, methods.contact), methods, 1e-5);
   return std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence : "";
@@ -78,14 +64,14 @@ TEST_CASE("an own parameter equal to the law's changes no bit") {
     INFO(law.name);
     StopParameters own{.stiffness = 2e5};
     if (law.name == "kelvin-voigt") own.damping = 10.0;
-    const auto plain = own_history(thrown_beam(), 8, under_law(law), 1e-5, 0.1),
-               same = own_history(thrown_beam({}, own), 8, under_law(law), 1e-5, 0.1);
+    const auto plain = contact_history(thrown_beam(), 8, under_law(law), 1e-5, 0.1),
+               same = contact_history(thrown_beam({}, own), 8, under_law(law), 1e-5, 0.1);
     CHECK(plain == same);
     CHECK(std::any_of(plain.begin(), plain.end(), [](const auto& u) { return u[1] < -0.04; }));
   }
   const Choice rebounding{"moreau-jean", {{"restitution", 0.7}}};
-  CHECK(own_history(thrown_beam(), 8, under_law({"signorini"}, rebounding), 1e-5, 0.1) ==
-        own_history(thrown_beam({.restitution = 0.7}, {}), 8, under_law({"signorini"}, rebounding), 1e-5, 0.1));
+  CHECK(contact_history(thrown_beam(), 8, under_law({"signorini"}, rebounding), 1e-5, 0.1) ==
+        contact_history(thrown_beam({.restitution = 0.7}, {}), 8, under_law({"signorini"}, rebounding), 1e-5, 0.1));
 }
 
 TEST_CASE("each of two masses meets its own stop as it would alone") {
@@ -107,18 +93,18 @@ TEST_CASE("each of two masses meets its own stop as it would alone") {
                                   {.stiffness = 9e4, .damping = 50.0}}};
   for (const Law& law : laws) {
     INFO(law.soft.name);
-    const auto mixed = own_history(thrown_pair({}, law.own), 1, under_law(law.soft), 1e-5, 0.3);
+    const auto mixed = contact_history(thrown_pair({}, law.own), 1, under_law(law.soft), 1e-5, 0.3);
     // Uncoupled rows of the active set and of Newton: round-off of the search alone.
     CHECK(largest_gap(column(mixed, 0),
-                      column(own_history(thrown_pair({}, {}), 1, under_law(law.soft), 1e-5, 0.3), 0)) < 1e-13);
+                      column(contact_history(thrown_pair({}, {}), 1, under_law(law.soft), 1e-5, 0.3), 0)) < 1e-13);
     CHECK(largest_gap(column(mixed, 1),
-                      column(own_history(thrown_pair({}, {}), 1, under_law(law.hard), 1e-5, 0.3), 1)) < 1e-13);
+                      column(contact_history(thrown_pair({}, {}), 1, under_law(law.hard), 1e-5, 0.3), 1)) < 1e-13);
     CHECK(largest_gap(column(mixed, 0), column(mixed, 1)) > 1e-3);
   }
-  const auto mixed = own_history(thrown_pair({}, {.restitution = 0.9}), 1, under_law({"signorini"}, jean), 1e-5, 0.3);
-  CHECK(column(mixed, 0) == column(own_history(thrown_pair({}, {}), 1, under_law({"signorini"}, jean), 1e-5, 0.3), 0));
+  const auto mixed = contact_history(thrown_pair({}, {.restitution = 0.9}), 1, under_law({"signorini"}, jean), 1e-5, 0.3);
+  CHECK(column(mixed, 0) == column(contact_history(thrown_pair({}, {}), 1, under_law({"signorini"}, jean), 1e-5, 0.3), 0));
   CHECK(column(mixed, 1) ==
-        column(own_history(thrown_pair({}, {}), 1, under_law({"signorini"}, lively), 1e-5, 0.3), 1));
+        column(contact_history(thrown_pair({}, {}), 1, under_law({"signorini"}, lively), 1e-5, 0.3), 1));
 }
 
 TEST_CASE("lanes beside each other have the sets of their points, bit for bit as alone") {

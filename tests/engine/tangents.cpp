@@ -1,5 +1,4 @@
 // Tangent columns are the derivative of the discrete step; a lane's state is all that it needs to go on.
-#include <cstring>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 
 #include "tests/marching.hpp"

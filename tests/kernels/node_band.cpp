@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <ricochet/kernels/block.hpp>
 #include <ricochet/kernels/combined_form.hpp>
 #include <ricochet/kernels/node_band.hpp>

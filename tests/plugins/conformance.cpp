@@ -27,22 +27,12 @@ SceneSpec impacting_scene() {
   return scene;
 }
 
-// A bar let go towards a stop at its free end, for mass strategies that are made for bars: first impact after 0.01 s.
-SceneSpec impacting_bar() {
-  SceneSpec scene;
-  scene.structure = BarSpec{.length = 1, .EA = 1e4, .rhoA = 1, .fixed = BarSpec::Fixed::right, .damping = {}};
-  scene.stops.lower = Formula(0.0);
-  scene.stops.place = StopsSpec::Place::tip;
-  scene.initial.displacement = Formula("0.05*(1-x)", "/scene/initial/displacement", "x");
-  return scene;
-}
-
 // The scene that a mass strategy is made for: the beam, else the bar. A refusal of both is a strategy without use.
 SceneSpec scene_for(const Choice& mass, int elements) {
   auto made = discretise(impacting_scene(), elements, *make(registry().mass(mass.name), mass));
   if (const auto* refusal = std::get_if<Refusal>(&made)) {
     CHECK_THAT(refusal->sentence, names_cause_and_remedy());
-    return impacting_bar();
+    return released_bar(1e4, "0.05*(1-x)");
   }
   return impacting_scene();
 }

@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-#include <numbers>
 #include <ricochet/scene/assembly.hpp>
 
 #include "tests/eigen.hpp"

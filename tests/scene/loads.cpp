@@ -109,12 +109,7 @@ TEST_CASE("an oscillator takes forces, which add to its own") {
 TEST_CASE("loads that act nowhere are refused where they stand") {
   const auto refused = [](SceneSpec scene, std::vector<LoadTerm> terms) -> std::string {
     scene.load.terms = std::move(terms);
-    try {
-      check_scene(scene, 1);
-    } catch (const InputError& error) {
-      return error.pointer() + ": " + error.what();
-    }
-    return "no error";
+    return input_error([&] { check_scene(scene, 1); });
   };
   const SceneSpec beam = unit_beam();
   CHECK(refused(beam, {separable("x", "t"), force_at(1.2, "1")}) ==

@@ -2,6 +2,7 @@
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/planes.hpp>
 
+#include "tests/refusals.hpp"
 #include "tests/scene/beam_numbers.hpp"
 
 using namespace ricochet;
@@ -123,12 +124,7 @@ TEST_CASE("what beams of one plane do not have is refused") {
     SceneSpec scene = held_beam(1, {clamped("wall", 0)});
     scene.stops = {};
     change(scene);
-    try {
-      check_scene(scene, 4);
-    } catch (const InputError& error) {
-      return error.pointer() + ": " + error.what();
-    }
-    return "";
+    return input_error([&] { check_scene(scene, 4); }, "");
   };
   const auto at = [](const char* component, std::vector<double> direction) {
     Place place;

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "tests/eigen.hpp"
+#include "tests/refusals.hpp"
 
 /// \file
 /// The beam most tests use, the mass plugins as a study would open them, and small dense checks.
@@ -46,6 +47,29 @@ inline SceneSpec unit_beam() {
   beam_of(scene).section.EI = 1;
   beam_of(scene).section.rhoS = 1;
   scene.initial = {};
+  return scene;
+}
+
+/// A bar of ρA = 1 held at its right end, let go from `shape` towards a rigid stop at 0 at its free end. With EA = 1e4 and
+/// 0.05 (1 − x) it arrives after 0.01 s.
+inline SceneSpec released_bar(double EA, const char* shape) {
+  SceneSpec scene;
+  scene.structure = BarSpec{.length = 1, .EA = EA, .rhoA = 1, .fixed = BarSpec::Fixed::right, .damping = {}};
+  scene.stops.lower = Formula(0.0);
+  scene.stops.place = StopsSpec::Place::tip;
+  scene.initial.displacement = Formula(shape, "/scene/initial/displacement", "x");
+  return scene;
+}
+
+/// A free bar of 10 m (EA = 900 N, ρA = 1 kg/m: waves of 30 m/s) thrown at 10 m/s at a stop at 0 from 5 m: contact on
+/// [0.5, 1.1667] s, force 300 N, impulse 200 N s. `later` (m) keeps the front off a tie between two steps.
+inline SceneSpec thrown_bar(double later = 0) {
+  SceneSpec scene;
+  scene.structure = BarSpec{.length = 10, .EA = 900, .rhoA = 1, .fixed = BarSpec::Fixed::none, .damping = {}};
+  scene.stops.lower = Formula(0.0);
+  scene.stops.place = StopsSpec::Place::tip;
+  scene.initial.displacement = Formula(5 + later);
+  scene.initial.velocity = Formula(-10.0);
   return scene;
 }
 
@@ -87,17 +111,6 @@ inline double fitted_slope(const std::vector<double>& x, const std::vector<doubl
   const Eigen::Map<const Eigen::VectorXd> b(y.data(), static_cast<Eigen::Index>(y.size()));
   const Eigen::VectorXd centred = a.array() - a.mean();
   return centred.dot(b) / centred.squaredNorm();
-}
-
-/// Runs `action`, which must throw InputError; returns "pointer: message".
-template <class Action>
-std::string input_error(Action action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "no error";
 }
 
 }  // namespace ricochet::testing

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
 #include <ricochet/engine/flight/closed_steps.hpp>
 #include <ricochet/kernels/flight_kernels.hpp>
 #include <ricochet/kernels/floating_point.hpp>

@@ -62,9 +62,9 @@ class StepReadings {
 };
 
 /// How many steps lie ahead in which every measure of a motion stays between its bounds. The bound of the motion alone
-/// would say it of few steps where some point is near a bound or a fast mode is strong: so it is asked again from where
-/// it ends, and the few points that it leaves open are read, as often as they could have reached their bound since: in
-/// every step just before they do. What ends it is then the first step in which one does, up to round-off.
+/// covers few steps where a point is near a bound or a fast mode is strong. It is then asked again from where it ends.
+/// The few points that it leaves open are read as often as they could have reached their bound since, in every step
+/// just before they do. The first step in which one does ends it, up to round-off.
 class ClearSteps {
  public:
   ClearSteps(const StepRows& rows, FlightBound& bound, const FlightMotion& motion)

@@ -10,7 +10,7 @@
 /// Basins of several cases on one grid: which cells of a case end alike, which ends of different cases are one
 /// attractor, and what that says.
 ///
-/// On a grid of initial states the attractors are the same in every cell: cells that have one end (orbit_ends.hpp)
+/// On a grid of initial states the attractors are the same in every cell: cells that have one end (attractors.hpp)
 /// belong together wherever they lie. On a grid of parameters attractors move from cell to cell: neighbours belong
 /// together where the section of one continues that of the other (kAlongParameter), and a region is what such
 /// neighbours join.
@@ -74,7 +74,7 @@ std::vector<int> attractors_of(const BasinGrid& grid);
 ///
 /// s = 1: a smooth boundary; s < 1: a fractal one; s = 0: no accuracy helps. `labels` is row after row (rows ×
 /// columns; one row is a line, d = 1), one label per cell, < 0 where the end is not known. f(ε) is the share of the
-/// known cells of which one of the (up to 2d) cells ε further along an axis is known and ends differently; ε = 1, 2, 4,
+/// known cells of which one of the (up to 2d) cells ε further along an axis is known and ends differently. ε = 1, 2, 4,
 /// … cells, up to a quarter of the shorter side. Usable sizes have 0 < f ≤ 0.8: beyond, ε is too large for this
 /// boundary. s is the least-squares slope of ln f over ln ε; its 95 % interval joins the scatter (Student) and the
 /// counts (1/√n, n uncertain cells that lie 2ε apart). Nothing with fewer than 3 usable sizes. Throws

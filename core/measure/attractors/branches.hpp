@@ -5,9 +5,9 @@
 /// \file
 /// Attractors along the parameter, first within a case, then over cases: identities that last.
 ///
-/// Within a case an attractor moves little from one value of the parameter to the next, which tells it from the others;
-/// between cases it may be displaced by the errors of both at every value, which many values together tell from being
-/// another one. So branches are followed case by case, and matched as wholes.
+/// Within a case an attractor moves little from one value of the parameter to the next, which tells it from the others.
+/// Between cases the errors of both may displace it at every value; many values together tell it from another one. So
+/// branches are followed case by case, and matched as wholes.
 namespace ricochet {
 
 /// Successive values of the parameter, and branches of cases against each other: a third of the spread.

@@ -58,9 +58,9 @@ struct Diagram {
   void number_values();
 };
 
-/// The case that others are compared with: of those with anything decided the one with the stiffest contact (a rigid
-/// one, where there is one), then the most steps per period, then the most elements, then all
-/// dofs or the most modes, then the first.
+/// The case that others are compared with, of those with anything decided. It has the stiffest contact (a rigid one,
+/// where there is one), then the most steps per period, the most elements, all dofs or the most modes; else it is the
+/// first.
 std::optional<std::size_t> reference_case(const Diagram& diagram);
 
 /// Values × starts where both cases decided, and how many of them agree.

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <map>
 #include <ricochet/measure/attractors/opinions.hpp>
-#include <stdexcept>
 #include <string>
 
 namespace ricochet {

@@ -5,8 +5,8 @@
 namespace ricochet {
 
 /// Contact that is there from the start. A point is held by its stop at t = 0 where it lies beyond the place from which
-/// the law acts, or on it without moving into it (its speed towards the stop is at most round-off), and for as long as
-/// it has not left it. What closes there meanwhile is no impact: nothing has hit anything. A point that lies on its
+/// the law acts. It is held as well where it lies on it and its speed towards the stop is at most round-off. It is held
+/// until it leaves. What closes there meanwhile is no impact. A point that lies on its
 /// stop and moves into it is not held: it hits at t = 0.
 ///
 /// An integration whose clock has left t = 0 has no start. Allocates when constructed.

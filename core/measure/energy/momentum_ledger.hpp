@@ -4,9 +4,9 @@
 
 namespace ricochet {
 
-/// The momentum that contact efforts have given by the end of each step (N s), whatever the plan: a free unit mass is
-/// marched by the plan itself under the sum of the efforts, with the weights that the program gives them, and its
-/// velocity is read as the plan reads it. In a plan of one stage that is Σ h p; where an effort acts over several steps
+/// The momentum that contact efforts have given by the end of each step (N s), whatever the plan. The plan itself moves
+/// a free unit mass under the sum of the efforts, with the weights that the program gives them. The velocity of that
+/// mass is read as the plan reads it. In a plan of one stage that is Σ h p; where an effort acts over several steps
 /// (Newmark: γh now, (1−γ)h in the next; averaged penalties), its momentum comes when the plan gives it.
 /// Allocates in its constructor only; between contacts it costs one test.
 class MomentumLedger {

@@ -142,10 +142,10 @@ struct Works {
   Works& operator+=(const Works& other);
 };
 
-/// The works of a stage by its test displacement s, from what the step has found already: the squares that a free step
-/// has added up for damping and the clamp, or one pass over the vectors that s weighs; one more per loss term, and the
-/// points that push. What a scene does not have is not computed. Keeps what damping and loads ask of each stage,
-/// allocates when constructed; one lane at a time, each stage in turn.
+/// The works of a stage by its test displacement s, from what the step has found already. Those are the squares that a
+/// free step has added up for damping and the clamp, or one pass over the vectors that s weighs. Each loss term takes
+/// one more pass. Points that push are added. What a scene does not have is not computed. Keeps what damping and loads
+/// ask of each stage, allocates when constructed; one lane at a time, each stage in turn.
 ///
 /// A start rule without work form is no step of the balance, which begins after it. What its contact works is added all
 /// the same: ω pᵀ(H(v⁻ + v⁺)/2 + Δφ/Δt), v the plan's velocity before and after it, ω p the momentum given within it.

@@ -11,10 +11,10 @@
 /// 1. *Usable* points have e > 4 max(floor, other error): closer, what the error is measured against shapes it as much
 ///    as the method does. A lone dip (e under a quarter of what its two neighbours interpolate, the next one larger
 ///    again: a signed error on its way through zero) is left out, one in five points at most.
-/// 2. A window of at least three neighbouring points is *straight* when ln e over ln r scatters by at most 0.4 around
-///    its line (a factor of 1.5, as impacts do), bends by no more than chance or by less than 0.1 in slope from end to
-///    end (quadratic term, t test at 95 %; six points or more whose slopes only rise or only fall bend), and predicts
-///    each of its ends from the others (within 5 % or by t at 99 %).
+/// 2. A window of at least three neighbouring points is *straight* under three conditions. ln e over ln r scatters by
+///    at most 0.4 around its line (a factor of 1.5, as impacts do). It bends by no more than chance, or by less than
+///    0.1 in slope from end to end (quadratic term, t test at 95 %). Six points or more whose slopes only rise, or only
+///    fall, bend. Each of its ends is predicted from the others, within 5 % or by t at 99 %.
 /// 3. The longest straight window is taken, the finer of equals. It gives way to a straight window that lies beyond it
 ///    by three finer points and falls (low end of its interval above 0.3): the coarser one was pre-asymptotic. One that
 ///    does not fall gives way to a coarser one that does: there the errors meet a floor.
@@ -63,10 +63,10 @@ struct OrderFit {
 
 /// Fits the order. Confirmed: the interval holds the declared order and is no wider than ±0.5, or |p − declared| ≤ 0.05
 /// with ±0.3. Refuted: the interval is 0.1 or more away from it, the range reaches the finest usable point, and the
-/// finer points do not move towards the declared order (slopes that go one way, or the finer half nearer to it by
-/// half); too fast only over five points or more, since errors that cancel fall faster for a while. Otherwise
-/// undecided, with the reason: too few usable points, too wide an interval, another error that dominates or may, errors
-/// that stop falling, nothing declared. Points in any order; equal sizes are taken together (geometric mean). Throws
+/// finer points do not move towards the declared order. They move where slopes go one way, or the finer half is nearer
+/// by half. Too fast is refuted over five points or more, since errors that cancel fall faster for a while. Else
+/// undecided, with the reason: too few points, too wide an interval, another error, errors that stop falling, nothing
+/// declared. Points in any order; equal sizes are taken together (geometric mean). Throws
 /// std::invalid_argument on a size that is not positive, on a negative error or floor.
 OrderFit fit_order(const std::vector<OrderPoint>& points, const OrderQuestion& question = {});
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <ricochet/measure/orbits/shoot.hpp>
 #include <ricochet/measure/orbits/stepped_map.hpp>
 

@@ -1,5 +1,4 @@
 #pragma once
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <ricochet/measure/orbits/multipliers.hpp>

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <ricochet/engine/march_loads.hpp>
 #include <ricochet/engine/stage_state.hpp>
 #include <ricochet/measure/orbits/periodic_map.hpp>

@@ -42,9 +42,9 @@ struct SectionPoint {
   double displacement = 0, velocity = 0, opposite_displacement = 0, opposite_velocity = 0;
 };
 
-/// A contact that begins: ωt in [0, 2π), the side (0 lower, 1 upper), the speed at which the point closes (m/s), the
-/// row of H that does (of several at once, the first), and t (s) since the orbit's own beginning, counted from a whole
-/// period of the forcing.
+/// A contact that begins: ωt in [0, 2π), the side (0 lower, 1 upper), the speed at which the point closes (m/s). Then
+/// the row of H that closes, of several at once the first, and t (s) since the orbit's own beginning, counted from a
+/// whole period of the forcing.
 struct ImpactPoint {
   double phase = 0;
   std::int64_t side = 0;  ///< as wide as the others: no padding, the bytes of equal impacts are equal

@@ -56,10 +56,10 @@ struct Horizon {
 ObservedOrRefusal observe_free(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
                                const Excitation& start, const Horizon& horizon);
 
-/// The scene itself, impacts and loads included. Growing: at some step the energy exceeds everything that the initial
-/// state and the loads gave by as much again (the scheme's own energy where it has one, plus the springs' of compliant
-/// laws), or the common energy is a thousand times that and grows on to the end, by thirds as above. `law` makes one
-/// for each integration.
+/// The scene itself, impacts and loads included. It grows where at some step the energy exceeds all that the initial
+/// state and the loads gave by as much again. The energy is the scheme's own where it has one, plus that of the springs
+/// of compliant laws. It also grows where the common energy is a thousand times that and grows on to the end, by thirds
+/// as above. `law` makes one for each integration.
 ObservedOrRefusal observe_scene(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
                                 const std::function<std::unique_ptr<ContactLaw>()>& law, const Parameters& parameters,
                                 const Horizon& horizon);

@@ -53,10 +53,10 @@ inline constexpr double lowest_order = 0.5;
 /// The limit of `values`, sizes in any order, one value of each. `floor` ≥ 0: what round-off makes of a value. `truth`:
 /// the exact value where one is known. Nothing of no values.
 ///
-/// With the differences d of values from coarse to fine and the ratio r of the last sizes, the rest is |d_last|/(rᵖ −
-/// 1). u is |d_last| or the rest, the larger; where two orders p in a row agree within 0.6 the rest alone, at least a
-/// tenth of |d_last|; of two sizes |d_last|; of what moves 2 |d_last|; of what wanders the range of the last three
-/// values.
+/// With the differences d of values from coarse to fine and the ratio r of the last sizes, the rest is
+/// |d_last|/(rᵖ − 1). u is the larger of |d_last| and the rest. Where two orders p in a row agree within 0.6, u is the
+/// rest alone, at least a tenth of |d_last|. Of two sizes u is |d_last|, of what moves 2 |d_last|, of what wanders the
+/// range of the last three values.
 std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std::optional<double> truth = {});
 
 /// The limit over two refinements, at the finest of both: uncertainties are added, the status is the worse of the two.

@@ -4,9 +4,9 @@
 
 namespace ricochet {
 
-/// An order of the rows of a symmetric pattern (n × n, both triangles) in which its band is narrow: reverse
-/// Cuthill–McKee (Cuthill and McKee 1969; George 1971), each component from a node at the end of a longest path, or the
-/// order given where that is as narrow. Row i of the new order is row out[i] of the matrix.
+/// An order of the rows of a symmetric pattern (n × n, both triangles) in which its band is narrow. Reverse
+/// Cuthill–McKee (Cuthill and McKee 1969; George 1971) begins each component at a node at the end of a longest path.
+/// The order given stays where it is as narrow. Row i of the new order is row out[i] of the matrix.
 std::vector<int> narrow_order(const SparseMatrix& pattern);
 
 }  // namespace ricochet

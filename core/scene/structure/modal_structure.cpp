@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
 #include <ricochet/scene/files/text_file.hpp>

@@ -9,9 +9,9 @@ namespace ricochet {
 std::vector<int> dof_directions(const DofTable& table, const std::vector<int>& order);
 
 /// Rigid motions of the dofs in `order`, as columns: each translation that a dof has, then each rotation
-/// u = ω × (x − x₀), x₀ the mean place, that K (all dofs of the table, in m) lets be: (K u)_i is zero to 1e-6 of its
-/// terms in every row that no ground holds. Rows that a ground holds are those where K resists a translation. `unit`: m
-/// per unit of the table's places.
+/// u = ω × (x − x₀) that K lets be, x₀ the mean place. K is of all dofs of the table, in m. It lets u be where (K u)_i
+/// is zero to 1e-6 of its terms in every row that no ground holds. A ground holds the rows in which K resists a
+/// translation. `unit`: m per unit of the table's places.
 Eigen::MatrixXd rigid_motions(const DofTable& table, const SparseMatrix& stiffness, double unit,
                               const std::vector<int>& order);
 

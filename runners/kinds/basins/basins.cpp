@@ -1,5 +1,3 @@
-#include "runners/kinds/basins/basins.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <functional>
 #include <iostream>
 
+#include "runners/kinds/all_kinds.hpp"
 #include "runners/kinds/basins/basin_answers.hpp"
 #include "runners/kinds/basins/basin_tables.hpp"
 #include "runners/kinds/basins/cell_scenes.hpp"
@@ -19,6 +18,10 @@
 #include "runners/study/fields.hpp"
 
 namespace ricochet {
+
+/// Integrates the orbit of one cell again, from the scene's initial state: --cell X,Y as in cells.csv.
+int march_cell_again(const StudyResults& results, const PointRequest& asked, std::ostream& out);
+
 namespace {
 
 std::vector<Field> basins_keys() {

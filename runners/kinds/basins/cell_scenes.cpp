@@ -1,6 +1,5 @@
 #include "runners/kinds/basins/cell_scenes.hpp"
 
-#include <algorithm>
 #include <ricochet/measure/orbits/judge_orbit.hpp>
 #include <tuple>
 

@@ -67,7 +67,7 @@ CellEnd no_start_end(const std::string& sentence);
 std::string to_bytes(const std::vector<CellEnd>& ends);
 std::vector<CellEnd> cell_ends(const std::string& bytes);
 
-/// The section of an end, ready to be compared (core/measure/attractors/orbit_ends.hpp), in units of
+/// The section of an end, ready to be compared (core/measure/attractors/attractors.hpp), in units of
 /// SectionPlan::scale and ω·scale, without the sawtooth of single steps.
 SettledSection settled_section(const CellEnd& end, const SectionPlan& plan);
 

@@ -1,5 +1,3 @@
-#include "runners/kinds/bifurcation/bifurcation.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 
+#include "runners/kinds/all_kinds.hpp"
 #include "runners/kinds/bifurcation/bifurcation_answers.hpp"
 #include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/bifurcation/run_bifurcation.hpp"
@@ -23,6 +22,10 @@
 #include "runners/table/text.hpp"
 
 namespace ricochet {
+
+/// Integrates one orbit again, from where its kept periods begin: --parameter and --start as in values.csv.
+int march_orbit_again(const StudyResults& results, const PointRequest& asked, std::ostream& out);
+
 namespace {
 
 std::vector<Field> bifurcation_keys() {

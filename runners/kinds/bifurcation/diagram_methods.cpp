@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/measure/statistics/quantiles.hpp>
-#include <set>
 
 #include "runners/answers/set_names.hpp"
 #include "runners/kinds/bifurcation/diagram_speaker.hpp"

@@ -14,7 +14,6 @@
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/discrete_problem.hpp>
 #include <ricochet/scene/supports.hpp>
-#include <set>
 
 #include "runners/march/bytes.hpp"
 #include "runners/march/prepare_case.hpp"

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <ricochet/measure/motion/motion_errors.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 

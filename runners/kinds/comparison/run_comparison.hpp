@@ -7,8 +7,8 @@ namespace ricochet {
 /// Runs one case of kind `convergence` or `work-precision` and compares it with its references.
 ///
 /// Measures: error.NAME and floor.NAME for each error of the study (see motion_errors.hpp) against the first reference
-/// that applies; the floor is the largest of that reference's own gap and of its distance to the other references.
-/// horizon (s); declared_order where the scheme declares one for such a run. Status `refused` when no reference
+/// that applies. The floor is the larger of that reference's own gap and its distance to the other references. Further
+/// horizon (s), and declared_order where the scheme declares one for such a run. Status `refused` when no reference
 /// applies.
 CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry, References& references,
                           const std::atomic<bool>& stop);

@@ -1,5 +1,4 @@
-#include "runners/kinds/continuation/continuation.hpp"
-
+#include "runners/kinds/all_kinds.hpp"
 #include "runners/kinds/continuation/branch_point.hpp"
 #include "runners/kinds/continuation/continuation_answers.hpp"
 #include "runners/kinds/continuation/continuation_study.hpp"

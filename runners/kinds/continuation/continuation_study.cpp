@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <utility>

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
-#include <tuple>
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/study/axis_meaning.hpp"

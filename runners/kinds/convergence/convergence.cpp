@@ -1,5 +1,4 @@
-#include "runners/kinds/convergence/convergence.hpp"
-
+#include "runners/kinds/all_kinds.hpp"
 #include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/kinds/comparison/page/page.hpp"

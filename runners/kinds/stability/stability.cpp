@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runners/kinds/all_kinds.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/stability/page/page.hpp"
 #include "runners/kinds/stability/run_stability.hpp"

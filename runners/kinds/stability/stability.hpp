@@ -1,7 +1,6 @@
 #pragma once
 #include <vector>
 
-#include "runners/kinds/kind.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {
@@ -12,8 +11,5 @@ constexpr long long most_scene_steps = 200000, least_scene_steps = 200, free_ste
 /// The steps of a case of kind `stability`, s: evenly spaced on a logarithmic scale. Throws InputError for a range that
 /// numbers cannot hold.
 std::vector<double> steps_of(const StudyCase& study_case);
-
-/// Each case goes through a range of steps: spectral radius of the step, and what marching it shows.
-KindPointer stability_kind();
 
 }  // namespace ricochet

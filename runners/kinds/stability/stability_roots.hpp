@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "runners/report/case_view.hpp"
 #include "runners/table/row_type.hpp"
 
 namespace ricochet {
@@ -22,13 +21,5 @@ TableType<RootRow> stability_roots_type();
 
 /// Counts the roots of the step h, one of so many, in the rows of `stability_roots`.
 void add_roots(std::vector<RootRow>& rows, bool closed, double h, std::size_t of, const StepSpectrum& spectrum);
-
-/// "newmark (beta 0.25, gamma 0.5)": a case by what tells methods apart, as one item of a list.
-std::string method_name(const report::CaseView& view, const CaseRecord& record,
-                        const std::vector<std::string>& columns);
-
-/// Sentences of an answer: which methods leave which roots on the circle, and where; which leave none. `columns`: what
-/// tells the methods apart.
-std::vector<std::string> roots_told(const StudyResults& results, const std::vector<std::string>& columns);
 
 }  // namespace ricochet

@@ -41,9 +41,9 @@ namespace ricochet {
 // What a bifurcation diagram, or an image of basins, owes to its methods: the tables worked out of the `values`,
 // `bifurcations` and `points` (or `cells` and `cell_points`) that the cases leave.
 //
-// Clouds of section points live in (tip displacement, tip velocity), each divided by its standard deviation over all
-// section points of the study and the motions' places half a period later (so that a study of one orbit is measured
-// against its motion): distances are without unit. Clouds of more than 64 points are thinned evenly to that. See
+// Clouds of section points live in (tip displacement, tip velocity), without unit. Each is divided by its standard
+// deviation over all section points of the study and the motions' places half a period later. A study of one orbit is
+// so measured against its motion. Clouds of more than 64 points are thinned evenly to that. See
 // core/measure/attractors: point_clouds.hpp (distances, their null), attractors.hpp (what counts as one attractor at
 // one value), branches.hpp (along the parameter) and basin_grid.hpp.
 //

@@ -1,5 +1,4 @@
 #pragma once
-#include <map>
 #include <optional>
 #include <ricochet/measure/attractors/attractors.hpp>
 #include <ricochet/measure/attractors/diagram.hpp>

@@ -1,6 +1,5 @@
 #include "runners/kinds/sweep/sweep.hpp"
 
-#include <algorithm>
 #include <numbers>
 
 #include "runners/kinds/stored_study.hpp"

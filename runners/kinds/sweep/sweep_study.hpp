@@ -19,10 +19,11 @@ Json sweep_settings(const Json& resolved);
 /// The most memory that the results of a study may need, bytes.
 inline constexpr double largest_results = 16e9;
 
-/// Refuses, with pointer, what no case of the sweep could do: a pointer that names no scalar of the scene or of the
-/// methods (the nearest one, and all of them, are told) or that names a list; two axes with the same pointer; a start
-/// that does not read what the parameter changes; at_most < periods; more exponents than the state has components;
-/// results beyond largest_results. `cases`: number of combinations of the axes; `dofs`: of the coarsest mesh.
+/// Refuses, with pointer, what no case of the sweep could do:
+///   · a pointer that names a list, or no scalar of the scene or of the methods (the nearest one, and all, are told),
+///   · two axes with the same pointer, a start that does not read what the parameter changes,
+///   · at_most < periods, more exponents than the state has components, results beyond largest_results.
+/// `cases`: number of combinations of the axes; `dofs`: of the coarsest mesh.
 void check_sweep(const Json& resolved, const Json& settings, const Registry& registry, double cases, int dofs);
 
 /// Refuses, with the pointer `where`, what names no scalar of the scene or of the methods, or a list.

@@ -30,18 +30,18 @@ StudyCase with_parameters(const StudyCase& study_case, const std::vector<std::pa
 /// The case at rest in the laboratory frame, u = u_t = 0, whatever its scene's initial state.
 StudyCase at_rest(const StudyCase& study_case);
 
-/// ω of the forcing (rad/s): of the support where it moves, else of the oscillator's force where there is one; where
-/// neither has an amplitude, the first pulsation that is given (it still sets the period); else that of the longest
-/// period that a motion or a table says; 0: no period at all.
+/// ω of the forcing (rad/s): of the support where it moves, else of the oscillator's force. Where neither has an
+/// amplitude, the first pulsation that is given still sets the period. Else the longest period of a motion or a table.
+/// 0: no period at all.
 double forcing_pulsation(const SceneSpec& scene);
 
 /// Whether anything changes with time: the support, the oscillator's force, the load, motions.
 bool is_forced(const SceneSpec& scene);
 
 /// Throws InputError unless the scene has a forcing period T = 2π/ω and everything that changes with time repeats with
-/// it: an oscillator's force whose pulsation is no multiple of ω, a motion or a table without a period or with one that
-/// is no whole fraction of T, a load with f(x, t + kT) ≠ f(x, t) beyond 1e-9 of its
-/// largest value (looked at in 9 places, 64 phases, k = 1, 2, 7, 50, 300, 2000).
+/// it. The pulsation of an oscillator's force is a multiple of ω. Motions and tables have a period that is a whole
+/// fraction of T. A load has f(x, t + kT) = f(x, t) to 1e-9 of its largest value, read at 9 places, 64 phases and k =
+/// 1, 2, 7, 50, 300, 2000.
 void check_forcing(const SceneSpec& scene);
 
 /// The values of the parameter, ascending.

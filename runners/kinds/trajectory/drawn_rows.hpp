@@ -5,8 +5,8 @@
 
 namespace ricochet {
 
-/// What a film shows of a structure: places of a beam, a bar or an oscillator; nodes on a plane with what joins them,
-/// also those of bodies and of a beam in two planes; or, where no node has a place of its own, a bar for each point.
+/// What a film shows of a structure: places of a beam, a bar or an oscillator, or nodes on a plane with what joins
+/// them. Bodies and beams in two planes are nodes as well. Where no node has a place of its own, each point is a bar.
 struct DrawnRows {
   Snapshots shape;  ///< all that does not change, with a stop for each contact point, without bounds
   SparseRows rows;  ///< of its values at an instant, on the dofs of the mesh

@@ -5,15 +5,17 @@
 
 namespace ricochet {
 
-NumberTable orbits_head() {
-  NumberTable table =
-      number_table("orbits", {{"stop", "", "Name of the clearance."},
-                              {"t", "s", "Time of the sample."},
-                              {"first", "m", "Displacement along the first of its components, from its axis."},
-                              {"second", "m", "Displacement along the second."},
-                              {"radius", "m", "Radius of the clearance."}});
-  table.text = "One sample of a place within its clearance, of one case.";
-  return table;
+const NumberType<OrbitColumns>& orbits_type() {
+  static const NumberType<OrbitColumns> all = [] {
+    NumberType<OrbitColumns> type("orbits", "One sample of a place within its clearance, of one case.");
+    type.add({"stop", "", "Name of the clearance."}, &OrbitColumns::stop)
+        .add({"t", "s", "Time of the sample."}, &OrbitColumns::t)
+        .add({"first", "m", "Displacement along the first of its components, from its axis."}, &OrbitColumns::first)
+        .add({"second", "m", "Displacement along the second."}, &OrbitColumns::second)
+        .add({"radius", "m", "Radius of the clearance."}, &OrbitColumns::radius);
+    return type;
+  }();
+  return all;
 }
 
 OrbitTaker::OrbitTaker(const Marcher& marcher, const WindowParts& window, long long steps)
@@ -41,7 +43,7 @@ void OrbitTaker::step_done(Marcher& marcher) {
 }
 
 NumberTable OrbitTaker::finish() const {
-  NumberTable table = orbits_head();
+  NumberTable table = orbits_type().head();
   std::vector<std::string> names;
   for (const int stop : stops_) names.push_back(list_.names[static_cast<std::size_t>(stop)]);
   table.words = {{"stop", names}};

@@ -4,7 +4,7 @@
 #include <ricochet/measure/statistics/running_moments.hpp>
 #include <vector>
 
-#include "runners/table/number_table.hpp"
+#include "runners/table/number_type.hpp"
 
 namespace ricochet {
 
@@ -31,7 +31,10 @@ class OrbitTaker final : public StepObserver {
   std::vector<double> t_, values_;  // of each sample u₁, u₂ of each clearance
 };
 
-/// `orbits` without rows: what its columns mean.
-NumberTable orbits_head();
+/// Columns of `orbits`.
+struct OrbitColumns {
+  const Series *stop = nullptr, *t = nullptr, *first = nullptr, *second = nullptr, *radius = nullptr;
+};
+const NumberType<OrbitColumns>& orbits_type();
 
 }  // namespace ricochet

@@ -1,5 +1,4 @@
 #pragma once
-#include <algorithm>
 #include <ricochet/engine/marcher.hpp>
 #include <vector>
 

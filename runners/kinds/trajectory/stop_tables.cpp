@@ -17,34 +17,6 @@ namespace {
 const Column stop_or_point{"stop", "", "Name of the stop, or number of the contact point."};
 const Column side_of_stop{"side", "", "Its side: lower or upper."};
 
-NumberTable shocks_head() {
-  NumberTable table = number_table(
-      "shocks",
-      {stop_or_point,
-       side_of_stop,
-       {"t_begin", "s", "Time of the first instant whose force is above force_above."},
-       {"t_peak", "s", "Time of the largest force."},
-       {"peak_force", "N", "Largest force."},
-       {"impulse", "N s", "Momentum that the stop gives from the first to the last such instant, by magnitude."},
-       {"duration", "s", "From the first to the end of the last such instant, whole sub-steps."},
-       {"speed_in", "m/s", "Velocity towards the stop when the point last closed before it."},
-       {"rebounds", "1", "How often the force rose above force_above."},
-       {"open_end", "", "Whether the force was above it when the integration ended."}});
-  table.text = "One shock of one case: force above force_above, joined while apart by less than rest.";
-  return table;
-}
-
-NumberTable spectra_head() {
-  NumberTable table = number_table("spectra", {{"of", "", "Name of the stop or the point."},
-                                               {"quantity", "", "Displacement, or force, positive upwards."},
-                                               {"frequency", "Hz", "Frequency f."},
-                                               {"density", "m²/Hz or N²/Hz",
-                                                "One-sided power spectral density: its sum times the spacing of f is "
-                                                "the variance."}});
-  table.text = "One frequency of one power spectral density of one case, by Welch's method over the window.";
-  return table;
-}
-
 Table histogram_head() {
   return {"histogram",
           "One class of the peak forces of the shocks at one stop of one case. Of more than 100000 different peaks "
@@ -77,7 +49,7 @@ std::vector<std::string> stop_names(const SemiDiscrete& problem) {
 }
 
 void add_shocks(CaseRecord& record, const ShockRecorder& recorder, const std::vector<std::string>& names) {
-  NumberTable table = shocks_head();
+  NumberTable table = shocks_type().head();
   table.words = {{"stop", names}, {"side", {"lower", "upper"}}, {"open_end", {"false", "true"}}};
   for (const Shock& shock : shocks_in_order(recorder))
     table.add({static_cast<double>(shock.point), static_cast<double>(shock.side), shock.begin, shock.peak_at,
@@ -215,7 +187,7 @@ void add_parts(CaseRecord& record, const StopWatches& watches, const SemiDiscret
 }
 
 void add_spectra(CaseRecord& record, const OutputWatch& outputs) {
-  NumberTable table = spectra_head();
+  NumberTable table = spectra_type().head();
   Table octaves = third_octaves_head();
   std::vector<std::string> names;
   for (const SpectrumTaker& one : outputs.spectra()) {
@@ -234,6 +206,42 @@ void add_spectra(CaseRecord& record, const OutputWatch& outputs) {
 }
 
 }  // namespace
+
+const NumberType<ShockColumns>& shocks_type() {
+  static const NumberType<ShockColumns> all = [] {
+    NumberType<ShockColumns> type("shocks",
+                                  "One shock of one case: force above force_above, joined while apart by less than "
+                                  "rest.");
+    type.add(stop_or_point, &ShockColumns::stop)
+        .add(side_of_stop)
+        .add({"t_begin", "s", "Time of the first instant whose force is above force_above."})
+        .add({"t_peak", "s", "Time of the largest force."}, &ShockColumns::t_peak)
+        .add({"peak_force", "N", "Largest force."}, &ShockColumns::peak_force)
+        .add({"impulse", "N s", "Momentum that the stop gives from the first to the last such instant, by magnitude."})
+        .add({"duration", "s", "From the first to the end of the last such instant, whole sub-steps."},
+             &ShockColumns::duration)
+        .add({"speed_in", "m/s", "Velocity towards the stop when the point last closed before it."})
+        .add({"rebounds", "1", "How often the force rose above force_above."}, &ShockColumns::rebounds)
+        .add({"open_end", "", "Whether the force was above it when the integration ended."});
+    return type;
+  }();
+  return all;
+}
+
+const NumberType<SpectrumColumns>& spectra_type() {
+  static const NumberType<SpectrumColumns> all = [] {
+    NumberType<SpectrumColumns> type(
+        "spectra", "One frequency of one power spectral density of one case, by Welch's method over the window.");
+    type.add({"of", "", "Name of the stop or the point."}, &SpectrumColumns::of)
+        .add({"quantity", "", "Displacement, or force, positive upwards."}, &SpectrumColumns::quantity)
+        .add({"frequency", "Hz", "Frequency f."}, &SpectrumColumns::frequency)
+        .add({"density", "m²/Hz or N²/Hz",
+              "One-sided power spectral density: its sum times the spacing of f is the variance."},
+             &SpectrumColumns::density);
+    return type;
+  }();
+  return all;
+}
 
 StopReading stop_reading(const StopContacts& contacts, const StopWatches& watches, int stop,
                          std::optional<StopSide> side) {
@@ -304,7 +312,7 @@ void describe_stop_tables(CaseRecord& record) {
   for (const Table& head : {histogram_head(), parts, third_octaves_head()})
     for (Table& table : record.tables)
       if (table.name == head.name) describe(table, head);
-  for (const NumberTable& head : {shocks_head(), spectra_head(), orbits_head()})
+  for (const NumberTable& head : {shocks_type().head(), spectra_type().head(), orbits_type().head()})
     for (NumberTable& table : record.numbers)
       if (table.name == head.name) {
         table.text = head.text;

@@ -3,9 +3,19 @@
 
 #include "runners/kinds/trajectory/output_watch.hpp"
 #include "runners/kinds/trajectory/stop_measures.hpp"
-#include "runners/table/number_table.hpp"
+#include "runners/table/number_type.hpp"
 
 namespace ricochet {
+
+/// Columns of `shocks` and of `spectra` that are read back.
+struct ShockColumns {
+  const Series *stop = nullptr, *t_peak = nullptr, *peak_force = nullptr, *duration = nullptr, *rebounds = nullptr;
+};
+const NumberType<ShockColumns>& shocks_type();
+struct SpectrumColumns {
+  const Series *of = nullptr, *quantity = nullptr, *frequency = nullptr, *density = nullptr;
+};
+const NumberType<SpectrumColumns>& spectra_type();
 
 /// What looks at the stops of a trajectory beside the recorder of impacts; null: nothing does.
 struct StopWatches {

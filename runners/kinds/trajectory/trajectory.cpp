@@ -7,6 +7,7 @@
 #include <map>
 
 #include "runners/answers/uncertainty.hpp"
+#include "runners/kinds/all_kinds.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
 #include "runners/kinds/trajectory/contact_rows.hpp"
 #include "runners/kinds/trajectory/energy_tables.hpp"

@@ -1,6 +1,5 @@
 // Identities of attractors: within a value, along the parameter, over cases; and the choice behind a difference.
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <random>
 #include <ricochet/measure/attractors/branches.hpp>
 #include <ricochet/measure/statistics/choices.hpp>

@@ -1,6 +1,5 @@
 // One rule for the same end of two orbits of a scene.
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <random>
 #include <ricochet/measure/attractors/basin_grid.hpp>
 

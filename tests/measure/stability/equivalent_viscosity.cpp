@@ -1,5 +1,4 @@
 // What schemes dissipate by themselves, against their closed forms and against marching.
-#include <numbers>
 #include <ricochet/measure/stability/equivalent_viscosity.hpp>
 
 #include "tests/eigen.hpp"

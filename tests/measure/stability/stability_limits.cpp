@@ -5,7 +5,6 @@
 #include <ricochet/measure/stability/structure_physics.hpp>
 
 #include "tests/amplification_roots.hpp"
-#include "tests/eigen.hpp"
 #include "tests/marching.hpp"
 #include "tests/measure/stability/marched_steps.hpp"
 

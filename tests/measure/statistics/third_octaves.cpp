@@ -1,7 +1,5 @@
 // Levels of thirds of octaves: what bands are, and that no power is lost or told twice.
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <numeric>
 #include <ricochet/measure/statistics/third_octaves.hpp>
 
 using namespace ricochet;

@@ -21,15 +21,6 @@ SceneSpec beam_scene(StopsSpec::Place place = StopsSpec::Place::tip) {
   return scene;
 }
 
-SceneSpec bar_scene() {
-  SceneSpec scene;
-  scene.structure = BarSpec{.length = 1, .EA = 1e4, .rhoA = 1, .fixed = BarSpec::Fixed::right, .damping = {}};
-  scene.stops.lower = Formula(0.0);
-  scene.stops.place = StopsSpec::Place::tip;
-  scene.initial.displacement = Formula("0.05*(1-x)", "/scene/initial/displacement", "x");
-  return scene;
-}
-
 Choice nitsche(double gamma0, const char* evaluation = "implicit") {
   return {"nitsche", {{"gamma0", gamma0}, {"evaluation", std::string(evaluation)}}};
 }
@@ -62,7 +53,7 @@ double chain(int elements) {
 }  // namespace
 
 TEST_CASE("Nitsche's springs are consistent: a structure at rest on its stop feels nothing of κ") {
-  const SceneSpec scene = GENERATE(beam_scene(StopsSpec::Place::tip), beam_scene(StopsSpec::Place::nodes), bar_scene());
+  const SceneSpec scene = GENERATE(beam_scene(StopsSpec::Place::tip), beam_scene(StopsSpec::Place::nodes), released_bar(1e4, "0.05*(1-x)"));
   double kappa = 0;
   const auto result = made(scene, 6, nitsche(7), &kappa);
   const auto& problem = std::get<SemiDiscrete>(result);
@@ -96,8 +87,8 @@ TEST_CASE("below the limit of coercivity Nitsche's method is refused with the li
   CHECK(chain(5) == Approx(3.68).margin(5e-3));
   CHECK(chain(10) == Approx(3.91).margin(5e-3));
   CHECK(chain(20) == Approx(3.98).margin(5e-3));
-  CHECK_THAT(refusal(bar_scene(), 8, nitsche(0.99)), Contains("the limit is 1,"));
-  CHECK(refusal(bar_scene(), 8, nitsche(1.01)).empty());
+  CHECK_THAT(refusal(released_bar(1e4, "0.05*(1-x)"), 8, nitsche(0.99)), Contains("the limit is 1,"));
+  CHECK(refusal(released_bar(1e4, "0.05*(1-x)"), 8, nitsche(1.01)).empty());
 }
 
 TEST_CASE("what Nitsche's method cannot do is refused in a sentence") {

@@ -3,7 +3,6 @@
 
 #include <cstdlib>
 #include <ricochet/contract/plugin.hpp>
-#include <stdexcept>
 #include <string>
 
 /// What a plugin must not do, by name; "none" does nothing.

@@ -1,8 +1,6 @@
 // Built several times: a library whose constructor ends the process that loads it, or keeps it.
 #include <unistd.h>
 
-#include <cstdlib>
-
 #include "stand_in.hpp"
 
 [[maybe_unused]] static void stay() {

@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <ricochet/loader/catalogue.hpp>
 
 #include "tests/plugins/reference/event_driven_problems.hpp"

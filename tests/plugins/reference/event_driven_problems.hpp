@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <ricochet/loader/catalogue.hpp>
 

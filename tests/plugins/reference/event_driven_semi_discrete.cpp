@@ -1,4 +1,3 @@
-#include <numeric>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 

@@ -1,7 +1,6 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <numeric>
 #include <ricochet/loader/catalogue.hpp>
 
 #include "tests/plugins/reference/exact_problems.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 
 // The semi-discrete motion, exact in time: against closed forms, conservation laws and the schemes that march it.
-#include <numeric>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 

@@ -17,17 +17,6 @@ Choice kane(double beta, double gamma, const std::string& impulse = "energy") {
   return {"kane", {{"beta", beta}, {"gamma", gamma}, {"impulse", impulse}}};
 }
 
-// A bar of 10 m (EA = 900 N, ρA = 1 kg/m: waves of 30 m/s) thrown with 10 m/s at a wall that it meets at 0.5 s.
-SceneSpec thrown_bar() {
-  SceneSpec scene;
-  scene.structure = BarSpec{.length = 10, .EA = 900, .rhoA = 1, .fixed = BarSpec::Fixed::none, .damping = {}};
-  scene.stops.lower = Formula(0.0);
-  scene.stops.place = StopsSpec::Place::tip;
-  scene.initial.displacement = Formula(5.0);
-  scene.initial.velocity = Formula(-10.0);
-  return scene;
-}
-
 struct Thrown {
   double gain = 0, common_gain = 0;  // over the first energy
   double force = 0;                  // mean over the contact, N

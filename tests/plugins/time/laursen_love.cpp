@@ -12,17 +12,6 @@ namespace {
 
 const Choice love{"laursen-love"};
 
-// A bar thrown at a stop at 10 m/s from 5 m: contact on [.5, 1.1667] s, force 300 N, impulse 200 N s.
-SceneSpec thrown_bar() {
-  SceneSpec scene;
-  scene.structure = BarSpec{.length = 10, .EA = 900, .rhoA = 1, .fixed = BarSpec::Fixed::none, .damping = {}};
-  scene.stops.lower = Formula(0.0);
-  scene.stops.place = StopsSpec::Place::tip;
-  scene.initial.displacement = Formula(5.0);
-  scene.initial.velocity = Formula(-10.0);
-  return scene;
-}
-
 SceneSpec beam_between_stops() {
   SceneSpec scene = working_set();
   scene.stops.place = StopsSpec::Place::nodes;

@@ -8,18 +8,6 @@ namespace {
 
 constexpr double bar_energy = 500, bar_step = 0.005;
 
-// 10 m/s from 5 m, that is 100 steps; `later` (m) keeps the front off a tie between the steps 100 and 101, where
-// round-off would decide.
-SceneSpec thrown_bar(double later) {
-  SceneSpec scene;
-  scene.structure = BarSpec{.length = 10, .EA = 900, .rhoA = 1, .fixed = BarSpec::Fixed::none, .damping = {}};
-  scene.stops.lower = Formula(0.0);
-  scene.stops.place = StopsSpec::Place::tip;
-  scene.initial.displacement = Formula(5 + later);
-  scene.initial.velocity = Formula(-10.0);
-  return scene;
-}
-
 struct Throw {
   double mean = 0, deviation = 0;  // of the force over [0.55, 1.1] s, N
   double energy = 0, gain = 0;     // of the scheme after contact, and its largest gain in a step, over the first

@@ -1,5 +1,4 @@
 // What choices move: one scale per scene, gains told apart, levels told by their values.
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -152,4 +151,11 @@ TEST_CASE("a measure that agrees as well is told with its value, several with ho
   for (CaseRecord& record : results.cases) record.measures.emplace_back("impulse", 2);
   results.study["observe"] = {"energy_left", "impulse"};
   CHECK_THAT(sentences(results), Contains("Impulse agrees as well: 2 N s, nothing apart."));
+}
+
+TEST_CASE("a mass of the scene is never called by the name of a role") {
+  CHECK(answers::spoken("mass") == "the mass matrix");
+  CHECK(answers::spoken("structure.mass") == "the mass of the oscillator");
+  CHECK(answers::spoken("structure.masses.0.mass") == "the scene's mass");
+  CHECK(answers::spoken("structure.young") == "young");
 }

@@ -3,7 +3,6 @@
 
 #include <catch2/catch.hpp>
 #include <map>
-#include <random>
 
 #include "tests/runners/answers/small_studies.hpp"
 

@@ -11,7 +11,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <thread>
 
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;

@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-#include <cmath>
 
 #include "runners/kinds/trajectory/page/page.hpp"
 #include "runners/report/report.hpp"

@@ -255,8 +255,6 @@ TEST_CASE("images of basins hold every cell, and their difference counts those t
   CHECK(bytes_of(curves, "poor/cells:u8") == basins.grids[1].cells);
   const std::string html = basins_html(view);
   CHECK_THAT(html, Contains("a smooth boundary is not excluded") && Contains("33.3 %"));
-  REQUIRE(!basins_said(view).empty());
-  CHECK_THAT(basins_said(view).front(), Contains("3 attractors"));
   // The same colours whatever the order of the cases; the raw cells where nothing was derived.
   StudyResults turned = results;
   std::reverse(turned.cases.begin(), turned.cases.end());
@@ -268,7 +266,6 @@ TEST_CASE("images of basins hold every cell, and their difference counts those t
 TEST_CASE("cells that begin beyond a stop have a colour of their own, and no share counts them", "[report]") {
   StudyResults results = synthetic::basins(20);
   Table& cells = results.derived[0];
-  const std::string all = basins_said(CaseView(results)).front();
   const std::size_t of_a_case = cells.rows.size() / 2;
   const auto set = [&](std::size_t row, const char* name, const Cell& value) {
     cells.rows[row][*find_column(cells.columns, name)] = value;
@@ -295,10 +292,6 @@ TEST_CASE("cells that begin beyond a stop have a colour of their own, and no sha
   CHECK(in("no_starts") == 19);
   CHECK(in("undecided").whole().value() + in("decided").whole().value() == static_cast<long long>(of_a_case) - 19);
   CHECK(basin_failures(CaseView(results)).rows.size() == 2);  // as before
-  const std::vector<std::string> said = basins_said(CaseView(results));
-  CHECK_THAT(said[0], Contains("of the starts end in one of them"));
-  CHECK(said[1] == "19 of the 380 cells are no starts: they begin beyond a stop, and no share counts them.");
-  CHECK_THAT(all, Contains("of the cells end in one of them"));
 }
 
 TEST_CASE("cells that were not marched themselves are said", "[report]") {

@@ -173,6 +173,7 @@ StudyResults many(int count, int bad) {
   results.name = "many";
   results.kind = "trajectory";
   results.columns = {"mass", "stops.upper"};
+  results.method_words = {{"mass lumped", "row sums"}};
   results.expected_cases = count;
   Table table{"energy_changes", "One case.", {{"case", "", ""}, {"value", "1", ""}}, {}};
   for (int i = 0; i < count; ++i) {
@@ -199,6 +200,7 @@ TEST_CASE("shown cases: of more some, each value of an axis, what is not done, a
     const auto shown = shown_cases(all);
     REQUIRE(shown);
     CHECK(shown->cases.size() == most_shown_cases);
+    CHECK(shown->method_words == all.method_words);  // methods have one name, however many cases there are
     CHECK(shown->columns == all.columns);
     std::set<std::string> ids;
     std::set<std::string> masses, stops;

@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -129,7 +128,7 @@ inline CaseRecord dynamics_case(const std::string& time, double beta, const Dyna
   return record;
 }
 
-/// The derived tables, as runners/kinds/sweep/dynamics_tables.hpp says them, from formulas as well.
+/// The derived tables, as runners/kinds/sweep/sweep_tables.hpp says them, from formulas as well.
 inline void derive_synthetic(StudyResults& out) {
   const auto row_of = [&](const CaseRecord& record, std::initializer_list<Cell> more) {
     Row row = place_of(out, record);

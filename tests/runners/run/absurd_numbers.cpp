@@ -1,7 +1,6 @@
 // Numbers that are in range and absurd, in the place of every number of the shipped studies: each makes rows, or is an
 // error of the input; nothing else.
 #include <catch2/catch.hpp>
-#include <filesystem>
 #include <limits>
 #include <ricochet/loader/catalogue.hpp>
 

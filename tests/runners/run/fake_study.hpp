@@ -1,7 +1,6 @@
 #pragma once
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <set>
 #include <string>
 

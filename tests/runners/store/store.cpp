@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <cstring>
 #include <limits>
 
 #include "runners/store/atomic_file.hpp"

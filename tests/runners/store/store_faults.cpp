@@ -2,8 +2,6 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <cstring>
-#include <limits>
 
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/record_values.hpp"

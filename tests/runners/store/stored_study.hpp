@@ -5,7 +5,6 @@
 
 #include <catch2/catch.hpp>
 #include <cstring>
-#include <limits>
 
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/record_values.hpp"

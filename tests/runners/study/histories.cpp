@@ -7,6 +7,7 @@
 
 #include "runners/store/record_values.hpp"
 #include "runners/store/snapshots.hpp"
+#include "tests/refusals.hpp"
 #include "tests/runners/kinds/trajectory/case_runs.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
@@ -42,12 +43,7 @@ class Studies {
   }
   /// What its text is refused with: "POINTER: sentence".
   std::string refusal(const Json& study) {
-    try {
-      parse(study);
-    } catch (const InputError& error) {
-      return error.pointer() + ": " + error.what();
-    }
-    return "none";
+    return input_error([&] { parse(study); });
   }
 
  private:

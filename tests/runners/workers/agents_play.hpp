@@ -3,8 +3,6 @@
 /// The coordinator against machines that are scripts: whatever the order in which they speak, and whichever of them
 /// vanish, come back late or talk nonsense, the same rows come out, each once, and nobody waits for ever.
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <thread>
 #include <utility>
 
 #include "runners/march/study_identity.hpp"

@@ -4,7 +4,6 @@
 #include <sched.h>
 
 #include <catch2/catch.hpp>
-#include <ricochet/contract/errors.hpp>
 #include <thread>
 
 #include "tests/runners/scratch_folder.hpp"

@@ -5,6 +5,8 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/history/piecewise_cubic.hpp>
 
+#include "tests/refusals.hpp"
+
 using namespace ricochet;
 using Catch::Matchers::WithinAbs;
 
@@ -187,14 +189,7 @@ TEST_CASE("a table that repeats is as long as its period and ends as it begins")
   table.period = 0.05;
   CHECK_NOTHROW(table.check("/scene/motions/0/acceleration"));
   CHECK(table.covers(-3, 1e6, 0));
-  const auto refusal = [](const TimeTable& of) {
-    try {
-      of.check("/a");
-    } catch (const InputError& error) {
-      return error.pointer() + ": " + error.what();
-    }
-    return std::string("none");
-  };
+  const auto refusal = [](const TimeTable& of) { return testing::input_error([&] { of.check("/a"); }); };
   table.period = 0.06;
   CHECK(refusal(table) ==
         "/a/period: a.csv is 0.05 s long and is to repeat after 0.06 s; expected one period of it, 0.05 s");

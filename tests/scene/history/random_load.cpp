@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/history/random_load.hpp>
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <set>
 
@@ -202,46 +201,6 @@ std::string differences_html(const CaseView& view) {
 }
 
 }  // namespace
-
-std::vector<std::string> basins_said(const CaseView& view) {
-  const Basins basins = basins_of(view.results());
-  if (basins.grids.empty()) return {};
-  size_t attractors = 0, known = 0, decided = 0, fewest = basins.xs.size() * basins.ys.size(), most_beyond = 0;
-  for (const BasinLabel& label : basins.labels) attractors += label.decided;
-  for (const BasinGrid& grid : basins.grids) {
-    fewest = std::min(fewest, grid.no_starts);
-    most_beyond = std::max(most_beyond, grid.no_starts);
-    for (const std::uint8_t cell : grid.cells) {
-      known += cell != BasinGrid::absent && basins.labels[cell].start;
-      decided += cell != BasinGrid::absent && basins.labels[cell].decided;
-    }
-  }
-  std::vector<std::string> out = {
-      fmt::format("Over {} × {} cells in {}: {}; {} of the {} end in one of them.", basins.xs.size(), basins.ys.size(),
-                  count_text(basins.grids.size(), "case", "cases"), count_text(attractors, "attractor", "attractors"),
-                  known > 0 ? share_text(static_cast<double>(decided) / static_cast<double>(known)) : "none",
-                  most_beyond > 0 ? "starts" : "cells")};
-  if (most_beyond > 0)
-    out.push_back(
-        fmt::format("{} of the {} cells are no starts: they begin beyond a stop, and no share counts them.",
-                    fewest == most_beyond ? std::to_string(most_beyond) : fmt::format("{} to {}", fewest, most_beyond),
-                    basins.xs.size() * basins.ys.size()));
-  double most = -1;
-  std::string who;
-  for (const BasinDifferenceRow& row : basin_differences_type().read(view.results().derived))
-    if (row.share && *row.share > most) {
-      most = *row.share;
-      who = view.name_of(row.id) + " and " + view.name_of(row.other);
-    }
-  if (most >= 0 && basins.grids.size() > 1)
-    out.push_back(fmt::format("At most {} of them depend on the method ({}).", share_text(most), who));
-  for (const UncertaintyRow& row : basin_uncertainty_type().read(view.results().derived))
-    if (row.high && *row.high < 1)
-      out.push_back(fmt::format("The boundary of basins is fractal in {}: uncertainty exponent {} (95 %: {} to {}).",
-                                view.name_of(row.id), number_text(row.exponent.value_or(0), 2),
-                                number_text(row.low.value_or(0), 2), number_text(*row.high, 2)));
-  return out;
-}
 
 std::string basins_html(const CaseView& view) {
   if (basins_of(view.results()).grids.empty()) return "";

@@ -14,10 +14,6 @@ Table basin_counts(const CaseView& view);
 /// Why cells failed, and how many.
 Table basin_failures(const CaseView& view);
 
-/// How many attractors the cells end in, how many of them depend on the method, whose boundary is fractal: a sentence
-/// each. Empty where no case has cells.
-std::vector<std::string> basins_said(const CaseView& view);
-
 /// What the cells end in by case, how fractal the boundary is, how many cells depend on the method. Empty where no case
 /// has cells.
 std::string basins_html(const CaseView& view);

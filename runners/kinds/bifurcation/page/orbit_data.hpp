@@ -23,9 +23,10 @@ std::string put_points(const CaseView& view, CurveData& curves, const PageBudget
 /// every k-th orbit that has one keeps its own whole.
 std::string put_portraits(const CaseView& view, CurveData& curves, const PageBudget& budget = {});
 
-/// What the page's script knows of the orbits of each case: every column of `values`, the group that colours it, the
-/// kind of its start, the interval of the parameter that it stands for (half-way to its neighbours of the same start),
-/// and what the section's displacements reach. Writes the points and portraits as well; `said` tells what was left out.
+/// What the page's script knows of the orbits of each case: every column of `values`, the group that colours it, and
+/// the kind of its start. Then the interval of the parameter that it stands for, half-way to its neighbours of the same
+/// start, and the range of the section's displacements. Writes the points and portraits as well; `said` tells what was
+/// left out.
 nlohmann::ordered_json orbit_data(const CaseView& view, CurveData& curves);
 
 }  // namespace ricochet::report

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <ricochet/measure/orbits/regime.hpp>
 
 namespace ricochet::report {

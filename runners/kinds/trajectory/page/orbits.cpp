@@ -1,5 +1,6 @@
 #include "runners/kinds/trajectory/page/orbits.hpp"
 
+#include "runners/kinds/trajectory/orbit_taker.hpp"
 #include "runners/kinds/trajectory/page/stops.hpp"
 
 namespace ricochet::report {
@@ -18,19 +19,18 @@ Table orbit_points(const CaseView& view) {
   std::vector<std::pair<const CaseRecord*, const NumberTable*>> tables;
   std::size_t rows = 0;
   for (const Cases& cases : methods_from_finest(answers::Compared(view.results()))) {
-    const NumberTable* table = find_table(cases.front()->numbers, "orbits");
+    const NumberTable* table = orbits_type().find(cases.front()->numbers);
     if (!table || table->rows() == 0 || tables.size() == most_methods) continue;
     tables.emplace_back(cases.front(), table);
     rows += table->rows();
   }
   const std::size_t every = std::max<std::size_t>(1, (rows + most_dots - 1) / most_dots);
   for (const auto& [record, orbits] : tables) {
-    const NumberTable& table = *orbits;
-    for (std::size_t i = 0; i < table.rows(); i += every) {
-      const auto number = [&](const char* column) { return (*table.numbers(column))[i]; };
-      out.rows.push_back({record->id, table.words_of("stop")->at(static_cast<std::size_t>(number("stop"))), number("t"),
-                          number("first"), number("second"), number("radius")});
-    }
+    const OrbitColumns at = orbits_type().read(*orbits);
+    const std::vector<std::string>& names = orbits->words.front().second;
+    for (std::size_t i = 0; i < orbits->rows(); i += every)
+      out.rows.push_back({record->id, names.at(static_cast<std::size_t>((*at.stop)[i])), (*at.t)[i], (*at.first)[i],
+                          (*at.second)[i], (*at.radius)[i]});
   }
   return out;
 }

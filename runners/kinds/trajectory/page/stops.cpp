@@ -9,6 +9,7 @@
 #include "runners/answers/compared.hpp"
 #include "runners/answers/limits.hpp"
 #include "runners/answers/uncertainty.hpp"
+#include "runners/kinds/trajectory/stop_tables.hpp"
 #include "runners/report/html.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/table_reader.hpp"
@@ -36,10 +37,9 @@ constexpr std::size_t most_shocks_drawn = 3000, most_lines_drawn = 400;
 /// Densities of one record by series: "bar-a\nforce".
 std::map<std::string, std::vector<double>> densities(const CaseRecord& record, std::vector<double>* frequencies) {
   std::map<std::string, std::vector<double>> out;
-  const NumberTable* table = find_table(record.numbers, "spectra");
+  const NumberTable* table = spectra_type().find(record.numbers);
   if (!table) return out;
-  const auto *of = table->numbers("of"), *quantity = table->numbers("quantity"), *f = table->numbers("frequency"),
-             *density = table->numbers("density");
+  const auto& [of, quantity, f, density] = spectra_type().read(*table);
   const auto *names = table->words_of("of"), *quantities = table->words_of("quantity");
   if (!of || !quantity || !f || !density || !names || !quantities) return out;
   for (std::size_t i = 0; i < table->rows(); ++i) {
@@ -80,17 +80,15 @@ std::vector<Cases> methods_from_finest(const answers::Compared& study) {
 }
 
 std::string stops_html(const CaseView& view) {
-  const Table* table = find_table(view.results().derived, "uncertainty");
-  if (!table || table->rows.empty()) return "";
-  const auto at = [&](const Row& row, const char* column) { return row[find_column(table->columns, column).value()]; };
+  const std::vector<answers::StopRange> all = answers::uncertainty_type().read(view.results().derived);
+  if (all.empty()) return "";
   std::vector<std::string> stops;
-  std::map<std::pair<std::string, std::string>, const Row*> rows;
-  for (const Row& row : table->rows) {
-    const std::string stop = at(row, "stop").text(), measure = at(row, "measure").text();
+  std::map<std::pair<std::string, std::string>, const answers::StopRange*> rows;
+  for (const answers::StopRange& row : all) {
     // Levels of spectra may be those of points.
-    if (std::find(first_measures.begin(), first_measures.end(), measure) == first_measures.end()) continue;
-    if (std::find(stops.begin(), stops.end(), stop) == stops.end()) stops.push_back(stop);
-    rows[{measure, stop}] = &row;
+    if (std::find(first_measures.begin(), first_measures.end(), row.measure) == first_measures.end()) continue;
+    if (std::find(stops.begin(), stops.end(), row.stop) == stops.end()) stops.push_back(row.stop);
+    rows[{row.measure, row.stop}] = &row;
   }
   HtmlTable html(
       "What each stop gives: the range over all methods at their finest step and mesh, widened by what these leave "
@@ -103,14 +101,12 @@ std::string stops_html(const CaseView& view) {
     html.row(in_words(name));
     answers::MeasureWords words;
     double size = 0;
-    const auto ends = [&](const Row& row) {
-      const bool known = !at(row, "low").is_nothing();
-      return std::pair(at(row, known ? "low" : "least").number().value_or(0),
-                       at(row, known ? "high" : "largest").number().value_or(0));
+    const auto ends = [](const answers::StopRange& row) {
+      return std::pair(row.low.value_or(row.least), row.low ? row.high.value_or(0) : row.largest);
     };
     for (const std::string& stop : stops)
       if (const auto found = rows.find({name, stop}); found != rows.end()) {
-        words.unit = at(*found->second, "unit").text();
+        words.unit = found->second->unit;
         const auto [low, high] = ends(*found->second);
         size = std::max({size, std::abs(low), std::abs(high)});
       }
@@ -122,13 +118,11 @@ std::string stops_html(const CaseView& view) {
         html.absent();
         continue;
       }
-      const Row& row = *found->second;
-      const bool known = !at(row, "low").is_nothing();
-      const auto [least, largest] = ends(row);
+      const auto [least, largest] = ends(*found->second);
       const std::string low = answers::short_number(words.factor * least, 3),
                         high = answers::short_number(words.factor * largest, 3),
                         text = low == high ? low : low + " to " + high;
-      html.number(known ? text : text + " ?", at(row, "sentence").text());
+      html.number(found->second->low ? text : text + " ?", found->second->sentence);
     }
   }
   return html.html();
@@ -151,14 +145,14 @@ Table shock_points(const CaseView& view) {
   std::vector<Point> points;
   for (const Cases& cases : methods_from_finest(answers::Compared(view.results()))) {
     const CaseRecord& record = *cases.front();
-    const NumberTable* table = find_table(record.numbers, "shocks");
+    const NumberTable* table = shocks_type().find(record.numbers);
     if (!table || table->rows() == 0) continue;
-    const auto& peaks = *table->numbers("peak_force");
+    const ShockColumns at = shocks_type().read(*table);
+    const std::vector<std::string>& stops = table->words.front().second;
     for (std::size_t i = 0; i < table->rows(); ++i)
-      points.push_back({peaks[i],
-                        {record.id, table->words_of("stop")->at(static_cast<std::size_t>((*table->numbers("stop"))[i])),
-                         (*table->numbers("t_peak"))[i], peaks[i], (*table->numbers("duration"))[i],
-                         (*table->numbers("rebounds"))[i]}});
+      points.push_back({(*at.peak_force)[i],
+                        {record.id, stops.at(static_cast<std::size_t>((*at.stop)[i])), (*at.t_peak)[i],
+                         (*at.peak_force)[i], (*at.duration)[i], (*at.rebounds)[i]}});
   }
   std::stable_sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.peak > b.peak; });
   for (Point& point : points) {

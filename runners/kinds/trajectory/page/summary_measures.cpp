@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <vector>
 
+#include "runners/answers/answer.hpp"
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/uncertainty.hpp"
 #include "runners/report/html.hpp"
 #include "runners/store/record_values.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -29,52 +28,34 @@ struct SummaryMeasure {
 };
 using SummaryMeasures = std::vector<std::pair<std::string, SummaryMeasure>>;
 
-std::optional<double> number_at(const Table& table, const Row& row, const char* column) {
-  return row[find_column(table.columns, column).value()].number();
-}
-
-std::string text_at(const Table& table, const Row& row, const char* column) {
-  return row[find_column(table.columns, column).value()].text();
-}
-
 // Measures of stops that have names.
-SummaryMeasures of_stops(const Table& table) {
+SummaryMeasures of_stops(const std::vector<answers::StopRange>& rows) {
   SummaryMeasures out;
-  for (const Row& row : table.rows)
-    out.emplace_back(text_at(table, row, "measure") + "[" + text_at(table, row, "stop") + "]",
-                     SummaryMeasure{text_at(table, row, "unit"), number_at(table, row, "least").value_or(0),
-                                    number_at(table, row, "largest").value_or(0), number_at(table, row, "low"),
-                                    number_at(table, row, "high"), number_at(table, row, "step_gap"),
-                                    number_at(table, row, "mesh_gap"), number_at(table, row, "sampling")});
+  for (const answers::StopRange& row : rows)
+    out.emplace_back(row.measure + "[" + row.stop + "]", SummaryMeasure{row.unit, row.least, row.largest, row.low,
+                                                                        row.high, row.step, row.mesh, row.sampling});
   return out;
 }
 
 // Measures of whole cases: the range over the methods, each with where its limit may be.
-SummaryMeasures of_cases(const Table& limits) {
+SummaryMeasures of_cases(const std::vector<answers::MeasureLimit>& limits) {
   SummaryMeasures out;
-  for (const Row& row : limits.rows) {
-    const std::string name = text_at(limits, row, "measure");
-    auto found = std::find_if(out.begin(), out.end(), [&](const auto& one) { return one.first == name; });
-    const double value = number_at(limits, row, "value").value_or(0);
-    const auto low = number_at(limits, row, "low"), high = number_at(limits, row, "high");
-    const bool known = number_at(limits, row, "u").has_value();
+  for (const answers::MeasureLimit& row : limits) {
+    auto found = std::find_if(out.begin(), out.end(), [&](const auto& one) { return one.first == row.measure; });
+    const double value = row.value.value_or(0);
     if (found == out.end()) {
-      SummaryMeasure first{.unit = text_at(limits, row, "unit"), .least = value, .largest = value};
-      first.low = low;
-      first.high = high;
-      out.emplace_back(name, std::move(first));
+      out.emplace_back(row.measure, SummaryMeasure{row.unit, value, value, row.low, row.high});
       found = out.end() - 1;
-      if (!known) found->second.low.reset();
+      if (!row.uncertainty) found->second.low.reset();
     }
     SummaryMeasure& one = found->second;
     one.least = std::min(one.least, value);
     one.largest = std::max(one.largest, value);
-    if (!known || !low || !high) one.low.reset();
-    if (one.low) one.low = std::min(*one.low, *low);
-    if (one.low) one.high = std::max(one.high.value_or(*high), *high);
-    for (const auto& [column, gap] :
-         {std::pair("step_moves", &SummaryMeasure::step), {"mesh_moves", &SummaryMeasure::mesh}})
-      if (const auto moves = number_at(limits, row, column)) one.*gap = std::max((one.*gap).value_or(0), *moves);
+    if (!row.uncertainty || !row.low || !row.high) one.low.reset();
+    if (one.low) one.low = std::min(*one.low, *row.low);
+    if (one.low) one.high = std::max(one.high.value_or(*row.high), *row.high);
+    if (row.step_moves) one.step = std::max(one.step.value_or(0), *row.step_moves);
+    if (row.mesh_moves) one.mesh = std::max(one.mesh.value_or(0), *row.mesh_moves);
   }
   return out;
 }
@@ -109,12 +90,10 @@ std::string summary_measures_html(const CaseView& view) {
   const StudyResults& results = view.results();
   const auto& scene = results.study.contains("scene") ? results.study.at("scene") : nlohmann::ordered_json();
   if (!scene.contains("stops") || scene.at("stops").is_null()) return "";
-  SummaryMeasures all;
-  if (const Table* stops = find_table(results.derived, "uncertainty")) all = of_stops(*stops);
-  if (const Table* limits = find_table(results.derived, "limits"))
-    for (auto& one : of_cases(*limits))
-      if (std::none_of(all.begin(), all.end(), [&](const auto& other) { return other.first == one.first; }))
-        all.push_back(std::move(one));
+  SummaryMeasures all = of_stops(answers::uncertainty_type().read(results.derived));
+  for (auto& one : of_cases(answers::limits_type().read(results.derived)))
+    if (std::none_of(all.begin(), all.end(), [&](const auto& other) { return other.first == one.first; }))
+      all.push_back(std::move(one));
   std::vector<std::string> order;
   if (const auto observed = results.study.find("observe"); observed != results.study.end() && observed->is_array())
     for (const auto& name : *observed) order.push_back(name.get<std::string>());

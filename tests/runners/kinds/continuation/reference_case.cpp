@@ -1,6 +1,5 @@
 // Cases that a reference solves: what the study makes of the key, what they leave, and that they change no other case.
 #include <algorithm>
-#include <cmath>
 
 #include "runners/kinds/continuation/point_tables.hpp"
 #include "runners/kinds/kind.hpp"

@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <ricochet/loader/catalogue.hpp>
-#include <set>
 
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"

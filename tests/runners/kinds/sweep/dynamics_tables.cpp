@@ -1,9 +1,5 @@
-#include <algorithm>
-#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
-#include <memory>
 #include <set>
 
 #include "runners/kinds/sweep/sweep_tables.hpp"

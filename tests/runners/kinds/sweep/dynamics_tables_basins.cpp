@@ -1,10 +1,6 @@
-#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
-#include <memory>
-#include <set>
 
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/run/finish_run.hpp"

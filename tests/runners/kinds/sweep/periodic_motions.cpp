@@ -8,6 +8,7 @@
 #include "runners/kinds/sweep/forced_scenes.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
+#include "tests/refusals.hpp"
 #include "tests/runners/kinds/sweep/sweep_case.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
@@ -98,12 +99,7 @@ class Moved {
     return {tip.begin() + transient + 1, tip.end()};
   }
   std::string refusal(const Json& text) {
-    try {
-      parse(text);
-    } catch (const InputError& error) {
-      return error.pointer() + ": " + error.what();
-    }
-    return "none";
+    return input_error([&] { parse(text); });
   }
 
  private:

@@ -1,7 +1,6 @@
 #pragma once
 
 // What a bifurcation study owes to its methods, on studies whose answer is known.
-#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>

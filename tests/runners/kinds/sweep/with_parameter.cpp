@@ -1,7 +1,6 @@
 #include "runners/kinds/sweep/with_parameter.hpp"
 
 #include <catch2/catch.hpp>
-#include <numbers>
 #include <set>
 
 #include "tests/runners/study/study_fixture.hpp"
@@ -18,21 +17,11 @@ StudyCase first_case(const Json& study = small_sweep()) {
 }
 
 std::string problem_of(const StudyCase& one, const std::string& pointer, double value) {
-  try {
-    with_parameter(one, pointer, value);
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "";
+  return testing::input_error([&] { with_parameter(one, pointer, value); }, "");
 }
 
 std::string forcing_problem(const SceneSpec& scene) {
-  try {
-    check_forcing(scene);
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "";
+  return testing::input_error([&] { check_forcing(scene); }, "");
 }
 
 SceneSpec shaken(const std::string& load) {

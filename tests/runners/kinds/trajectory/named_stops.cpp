@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "runners/store/record_values.hpp"
+#include "tests/refusals.hpp"
 #include "tests/runners/kinds/trajectory/case_runs.hpp"
 
 using namespace ricochet;
@@ -86,21 +87,16 @@ TEST_CASE("an observed measure of a stop that is not there is refused with the n
   Json study = beam_between(Json::parse(R"([{"name": "plate", "at": {"x": 0.75}, "lower": -0.01, "upper": 0.01}])"));
   const auto refusal = [&](const char* measure) {
     study["observe"] = measure;
-    try {
-      runs.study(study);
-    } catch (const InputError& error) {
-      return error.pointer() + ": " + error.what();
-    }
-    return std::string("none");
+    return testing::input_error([&] { runs.study(study); });
   };
-  CHECK(refusal("impulse[plate]") == "none");
+  CHECK(refusal("impulse[plate]") == "no error");
   CHECK_THAT(refusal("impulse[plato]"),
              Catch::Contains("/observe/0: no stop \"plato\"") && Catch::Contains("did you mean \"plate\"?"));
   CHECK_THAT(refusal("energy_left[plate]"), Catch::Contains("/observe: no measure \"energy_left\" of a stop"));
   CHECK_THAT(refusal("rms_forces[plate]"), Catch::Contains("did you mean \"rms_force\"?"));
   CHECK_THAT(refusal("rms_force"), Catch::Contains("expected rms_force[NAME]"));
   CHECK_THAT(refusal("impulse[]"), Catch::Contains("expected impulse[NAME]"));
-  CHECK(refusal("impulse") == "none");
+  CHECK(refusal("impulse") == "no error");
   study["scene"]["stops"] = {{"lower", -0.01}, {"at", "tip"}};
   CHECK_THAT(refusal("impulse[plate]"), Catch::Contains("the scene has no stops with names"));
 }

@@ -6,6 +6,7 @@
 #include "runners/kinds/trajectory/stop_measures.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"
+#include "tests/refusals.hpp"
 #include "tests/runners/kinds/trajectory/case_runs.hpp"
 
 using namespace ricochet;
@@ -57,12 +58,7 @@ const Table& table_of(const CaseRecord& record, const char* name) {
 }
 
 std::string refused_outputs(const Json& study) {
-  try {
-    CaseRuns().study(study);
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "none";
+  return testing::input_error([&] { CaseRuns().study(study); });
 }
 
 }  // namespace
@@ -366,7 +362,7 @@ TEST_CASE("outputs that cannot be are refused by pointer, with the nearest name"
   study["observe"] = "shock_rate[end]";
   CHECK(refused_outputs(study) == "/observe/0: shock_rate counts shocks; give outputs.shocks");
   study["observe"] = "window_force[end]";
-  CHECK(refused_outputs(study) == "none");
+  CHECK(refused_outputs(study) == "no error");
   study.erase("window");
   CHECK(refused_outputs(study) == "/observe/0: window_force is measured over a window; give one");
   study["kind"] = "convergence";

@@ -22,7 +22,7 @@ StudyResults rounds() {
     record.id = mass;
     record.axes = {{"mass", mass}, {"step", 1e-5}};
     record.status = "done";
-    NumberTable orbits = orbits_head();
+    NumberTable orbits = orbits_type().head();
     orbits.words = {{"stop", {"plate", "grid"}}};
     for (int i = 0; i < 2 * dots; ++i)
       orbits.add({static_cast<double>(i / dots), 0.01 * i, 1e-3 * std::cos(0.1 * i), 1e-3 * std::sin(0.1 * i), 1e-3});

@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 #include "tests/runners/report/browser/browser.hpp"
 #include "tests/runners/report/browser/driven.hpp"

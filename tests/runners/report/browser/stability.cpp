@@ -1,5 +1,4 @@
 // Figures of kind `stability`, read back from the browser: what is drawn is what the cases' tables hold.
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <new>
 #include <ricochet/contract/plugin.hpp>
 #include <vector>
 
