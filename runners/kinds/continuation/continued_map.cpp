@@ -163,10 +163,10 @@ void ContinuedMap::check_kernel(int scene) {
 }
 
 // An end of the range, or the last value on the way to it from the first orbit at which the scene is possible.
-double ContinuedMap::possible_end(double end) {
+double ContinuedMap::possible_end(double end, std::string& impossible) {
   std::string reason;
   if (scene_at(end, false, reason) >= 0) return end;
-  impossible_ = fmt::format("at {:g}: {}", end, reason);
+  impossible = fmt::format("at {:g}: {}", end, reason);
   double possible = reference_at_;
   constexpr int halvings = 30;
   for (int k = 0; k < halvings; ++k) {
@@ -178,14 +178,14 @@ double ContinuedMap::possible_end(double end) {
 
 // Whether the parameter enters by amplitude and stops alone, and affinely.
 void ContinuedMap::check_ends() {
-  from_ = possible_end(plan_.from);
-  to_ = possible_end(plan_.to);
+  from_ = possible_end(plan_.from, impossible_[0]);
+  to_ = possible_end(plan_.to, impossible_[1]);
   std::string reason;
   const double between = 0.5 * (from_ + to_);
   const int low = scene_at(from_, false, reason), high = scene_at(to_, false, reason),
             middle = scene_at(between, false, reason);
   if (low < 0 || high < 0 || !(from_ < to_)) {
-    refusal_ = impossible_ + "; expected a range in which the scene is possible";
+    refusal_ = impossible_[impossible_[0].empty()] + "; expected a range in which the scene is possible";
     return;
   }
   const bool one_group =

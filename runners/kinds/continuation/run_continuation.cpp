@@ -201,8 +201,9 @@ class ContinuationRun {
     branch.trace = run.trace();
     if (!stopping && !over_budget_) stopping = stopping_point(branch, branch.trace);
     if (stopping) cut_at(branch.trace, *stopping);
-    if (branch.trace.end.starts_with("the range ends") && !continued_.impossible().empty())
-      branch.trace.end += "; " + continued_.impossible();
+    if (const std::string& why = continued_.impossible(branch.trace.corners.back().parameter);
+        branch.trace.end.starts_with("the range ends") && !why.empty())
+      branch.trace.end += "; " + why;
     if (over_budget_) branch.trace.end = fmt::format("the budget of {:g} s was spent", budget_of(case_));
     checkpoints_.keep(branch.name, kept(run), sets_of(map_));
     pieces_ += run.pieces();

@@ -169,6 +169,9 @@ TEST_CASE("a branch ends where the scene becomes impossible, and says why") {
 }
 
 TEST_CASE("a root of the step on displacements without mass refuses the case") {
+  // The other end is that of the study.
+  study["both_ways"] = true;
+  CHECK(points_of(continued(study)).back().note == "the range ends at 0.48");
   Json study = tube_continuation();
   study["methods"]["time"]["beta"] = 0.25;
   check_says(refusal_of(study), {"a root of modulus 1 on displacements without mass", "no orbit stands alone"});
