@@ -36,6 +36,9 @@ TEST_CASE("keys of continuation are refused by pointer, with what was found and 
   check_says(error_of(with("/orbits/0/from", "res")), {"/orbits/0/from: expected one of", "did you mean \"rest\""});
   check_says(error_of(with("/follow", "peices")), {"/follow: ", "did you mean \"pieces\""});
   check_says(error_of(with("/stop_at", "fol")), {"/stop_at: ", "did you mean \"fold\""});
+  const std::string prominence = error_of(with("/prominence", -1));
+  check_says(prominence, {"/prominence: expected a number in ]0, ", "found -1"});
+  CHECK(prominence.find("in as the") == std::string::npos);
   check_says(error_of(with("/mark", {{"parameter", {0.5}}})), {"/mark/parameter/0: ", "0.5", "0.07 to 0.09"});
   Json twice = with("/orbits/0/symmetric", "yes");
   twice["orbits"][0]["period"] = 2;
