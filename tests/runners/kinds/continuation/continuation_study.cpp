@@ -59,6 +59,11 @@ TEST_CASE("continuation follows real numbers of the scene or of a method alone")
              {"/parameter/pointer: ", "did you mean", "/scene/support/amplitude"});
 }
 
+TEST_CASE("no orbit depends on where motions begin, so none is followed along it") {
+  check_says(error_of(with("/parameter/pointer", "/scene/initial/displacement")),
+             {"/parameter/pointer: /scene/initial/displacement is where motions begin", "expected a number"});
+}
+
 TEST_CASE("a scene without a forcing period has no orbits") {
   check_says(
       error_of(with("/scene/support/pulsation", 0)),
