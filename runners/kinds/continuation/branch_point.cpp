@@ -226,7 +226,7 @@ std::filesystem::path csv_file(const std::filesystem::path& folder, const std::s
 int solve_branch_point(const StudyResults& results, const PointRequest& asked, std::ostream& out) {
   if (asked.branch.empty() || !asked.arc || asked.marches())
     throw PointRefused(
-        "ricochet point: this is a study of kind continuation; expected --branch NAME and --arc S, as in "
+        "this is a study of kind continuation; expected --branch NAME and --arc S, as in "
         "branches.csv");
   const double arc = *asked.arc;
   const CaseRecord& record = find_case(results, asked.case_id);
