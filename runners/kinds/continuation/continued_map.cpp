@@ -30,6 +30,14 @@ double gap_of(const LaneSpec& lane) {
 }
 
 // A load that is not its own image half a period later, with the sign changed: where it is seen, in words.
+// Whether a formula stands there, which the parameter multiplies.
+bool is_formula(const Json& scene, const std::string& pointer) {
+  const Json::json_pointer there(pointer.substr(std::string("/scene").size()));
+  if (!scene.contains(there) || !scene.at(there).is_string()) return false;
+  const Formula formula(scene.at(there).get<std::string>(), pointer);
+  return formula.uses_x() || formula.uses_t();
+}
+
 std::string not_odd(const SemiDiscrete& problem, double period) {
   const bool loaded = problem.load && !problem.load->absent();
   constexpr int phases = 16;
@@ -59,8 +67,10 @@ std::string not_odd(const SemiDiscrete& problem, double period) {
 }  // namespace
 
 bool is_length(const std::string& pointer) {
-  return pointer.ends_with("/support/amplitude") || pointer.ends_with("/stops/lower") ||
-         pointer.ends_with("/stops/upper");
+  const bool stop =
+      pointer.starts_with("/scene/stops/") &&
+      (pointer.ends_with("/lower") || pointer.ends_with("/upper") || pointer.ends_with("/clearance/radius"));
+  return stop || pointer == "/scene/support/amplitude" || pointer.ends_with("/displacement/amplitude");
 }
 
 ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry, const ContinuationPlan& plan)
@@ -78,7 +88,7 @@ ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry
   if (reference_ < 0) return;
   refusal_.clear();
   gap_ = gap_of(scenes_[reference_].lane);
-  if (!is_length(plan.pointer)) {
+  if (!is_length(plan.pointer) || is_formula(study_case.scene_json, plan.pointer)) {
     const double value = std::max(std::abs(plan.from), std::abs(plan.to));
     metres_ = value > 0 ? gap_ / value : gap_;
   }
