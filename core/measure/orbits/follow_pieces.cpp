@@ -134,8 +134,10 @@ Piece PieceFollower::end_of_piece(double least, double largest) {
     }
   }
   const double along = state_.parameter_along, limit = along > 0 ? largest : least;
-  const double s = along == 0 ? std::numeric_limits<double>::infinity() : (limit - state_.parameter) / along;
-  if (s <= piece.length && s >= 0) {
+  // Beyond the limit, by round-off or not, the branch ends at once.
+  const double s =
+      along == 0 ? std::numeric_limits<double>::infinity() : std::max(0.0, (limit - state_.parameter) / along);
+  if (s <= piece.length) {
     piece.tie = false;
     piece.length = s;
     piece.change = {};

@@ -228,6 +228,7 @@ class ContinuationRun {
       if (!switched) {
         SpecialPoint& failed = followed_[number].points[i];
         failed.note += (failed.note.empty() ? "" : "; ") + std::string("switch failed: no orbit was found near it");
+        if (parameter < continued_.from() || parameter > continued_.to()) return ShotOrbit{};
         continue;
       }
       if (const std::string known = branch_through(*switched); !known.empty()) {
