@@ -59,6 +59,7 @@ void PieceFollower::new_direction() {
 // not solved to round-off is solved again. The new margin of what changed must grow along the branch.
 void PieceFollower::sweep() {
   constexpr int most = 3;
+  constexpr double singular = 1e10;
   const Index D = map_->size();
   for (int iteration = 0; iteration < most; ++iteration) {
     std::vector<PeriodicMap::Column> columns = {{state_.x, state_.parameter, false},
@@ -69,6 +70,10 @@ void PieceFollower::sweep() {
     VectorXd right = VectorXd::Zero(D + 1);
     right.head(D) = left;
     const VectorXd correction = bordered_.solve(right);
+    if (map_->metric().size(correction.head(D), correction[D]) > singular * residual_) {
+      state_.parameter_along = std::numeric_limits<double>::quiet_NaN();  // no direction
+      break;
+    }
     if (correction.allFinite()) {
       state_.x += correction.head(D);
       state_.parameter += correction[D];
