@@ -92,7 +92,17 @@ void BranchRun::keep(bool special) {
     if (at == 0) return false;
     const BranchCorner &now = trace_.corners[static_cast<std::size_t>(at)],
                        &was = trace_.corners[static_cast<std::size_t>(at - 1)];
-    return now.way == was.way && now.runs == was.runs && now.raw.outside == was.raw.outside;
+namespace {
+
+// Whether a special point may lie between two corners.
+bool changes(const BranchCorner& was, const BranchCorner& now) {
+  return now.way != was.way || now.runs != was.runs || !(now.raw.outside == was.raw.outside) ||
+         !(now.smooth.outside == was.smooth.outside);
+}
+
+}  // namespace
+
+    return !changes(was, now);
   };
   trace_.stride *= 2;
   std::erase_if(trace_.states, [&](const auto& one) { return one.first % trace_.stride != 0 && regular(one.first); });
@@ -153,7 +163,7 @@ bool BranchRun::advance(long long pieces) {
     const auto size = trace_.corners.size();
     const BranchCorner &now = trace_.corners[size - 1], &was = trace_.corners[size - 2];
     const bool closed = follower_.state().sets == first_;
-    keep(now.way != was.way || now.runs != was.runs || !(now.raw.outside == was.raw.outside) || closed);
+    keep(changes(was, now) || closed);
     if (limits_.ends_at_image && is_image(map_->sets(), follower_.state().sets))
       trace_.end = fmt::format("its orbits become their own images at {:.10g}", now.parameter);
     else if (closed)
