@@ -45,6 +45,14 @@ bool is_image(const SetSteps& sets, const SetSequence& sequence) {
   return true;
 }
 
+int repeats_sooner(const SetSequence& sequence, int period) {
+  const std::ptrdiff_t steps = std::ssize(sequence) / period;
+  for (int sooner = 1; sooner < period; ++sooner)
+    if (period % sooner == 0 && std::equal(sequence.begin() + sooner * steps, sequence.end(), sequence.begin()))
+      return sooner;
+  return 0;
+}
+
 BranchRun::BranchRun(PeriodicMap& map, const MapClock& clock, PieceFollower follower, BranchLimits limits)
     : map_(&map), clock_(clock), follower_(std::move(follower)), limits_(std::move(limits)) {
   first_ = follower_.state().sets;
@@ -168,6 +176,9 @@ bool BranchRun::advance(long long pieces) {
       trace_.end = fmt::format("its orbits become their own images at {:.10g}", now.parameter);
     else if (closed)
       trace_.end = "closed: the branch came back to its first piece";
+    else if (const int sooner = limits_.ends_sooner ? repeats_sooner(follower_.state().sets, clock_.period) : 0)
+      trace_.end = fmt::format("its orbits repeat after {} period{} from {:.10g} on", sooner, sooner == 1 ? "" : "s",
+                               now.parameter);
     else if (follower_.state().pieces >= limits_.pieces)
       trace_.end = fmt::format("{} pieces, the most that the study allows", limits_.pieces);
     else if (follower_.state().arc >= limits_.arc)

@@ -48,6 +48,7 @@ SetSteps* sets_of(SteppedMap&) {
 BranchRun begin_branch(PeriodicMap& map, const MapClock& clock, const ShotOrbit& shot, int way, BranchLimits limits,
                        double round_off, std::optional<KeptBranch> kept) {
   limits.ends_at_image = limits.ends_at_image && !is_image(map.sets(), shot.sets);
+  limits.ends_sooner = !clock.half && repeats_sooner(shot.sets, clock.period) == 0;
   // A residual that several steps of Newton's method leave.
   const double drift = std::max(100 * round_off, 1e-15);
   if (kept) return {map, clock, PieceFollower(map, clock, kept->entry, drift), limits, kept->trace, kept->first};
