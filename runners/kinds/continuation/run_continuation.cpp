@@ -140,7 +140,7 @@ class ContinuationRun {
       branch.name += way > 0 ? "+" : "-";
       run_branch(branch, shot, way, 0);
       // A branch that closes has been followed both ways.
-      if (followed_.back().trace.end.starts_with("closed") && by_steps) break;
+      if (followed_.back().trace.end.starts_with("closed")) break;
     }
   }
 
