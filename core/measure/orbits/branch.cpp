@@ -80,15 +80,27 @@ void BranchRun::read() {
   corner.runs = runs.count;
   corner.shortest = runs.shortest;
   corner.change = state.change;
-  std::vector<std::complex<double>> raw = multipliers_of(follower_.derivative());
+  std::vector<std::complex<double>> raw = multipliers_of(*map_, clock_, follower_.derivative());
   corner.raw = roots_at(raw);
-  corner.smooth = runs.count == 0 ? corner.raw
-                                  : roots_at(multipliers_of(half_step_derivative(
-                                        *map_, state.sets, clock_, state.parameter, follower_.measures())));
+  corner.smooth =
+      runs.count == 0
+          ? corner.raw
+          : roots_at(multipliers_of(
+                *map_, clock_, half_step_derivative(*map_, state.sets, clock_, state.parameter, follower_.measures())));
   raw.resize(std::min(raw.size(), static_cast<std::size_t>(limits_.multipliers)));
   corner.leading = std::move(raw);
   trace_.corners.push_back(std::move(corner));
 }
+
+namespace {
+
+// Whether a special point may lie between two corners.
+bool changes(const BranchCorner& was, const BranchCorner& now) {
+  return now.way != was.way || now.runs != was.runs || !(now.raw.outside == was.raw.outside) ||
+         !(now.smooth.outside == was.smooth.outside);
+}
+
+}  // namespace
 
 // Every so many corners, and those at which something changes.
 void BranchRun::keep(bool special) {
@@ -100,16 +112,6 @@ void BranchRun::keep(bool special) {
     if (at == 0) return false;
     const BranchCorner &now = trace_.corners[static_cast<std::size_t>(at)],
                        &was = trace_.corners[static_cast<std::size_t>(at - 1)];
-namespace {
-
-// Whether a special point may lie between two corners.
-bool changes(const BranchCorner& was, const BranchCorner& now) {
-  return now.way != was.way || now.runs != was.runs || !(now.raw.outside == was.raw.outside) ||
-         !(now.smooth.outside == was.smooth.outside);
-}
-
-}  // namespace
-
     return !changes(was, now);
   };
   trace_.stride *= 2;
@@ -174,13 +176,14 @@ bool BranchRun::advance(long long pieces) {
     keep(changes(was, now) || closed);
     if (limits_.ends_at_image && is_image(map_->sets(), follower_.state().sets))
       trace_.end = fmt::format("its orbits become their own images at {:.10g}", now.parameter);
-    else if (closed)
-      trace_.end = "closed: the branch came back to its first piece";
     else if (const int sooner = limits_.ends_sooner ? repeats_sooner(follower_.state().sets, clock_.period) : 0)
       trace_.end = fmt::format("its orbits repeat after {} period{} from {:.10g} on", sooner, sooner == 1 ? "" : "s",
                                now.parameter);
+    else if (closed)
+      trace_.end = "closed: the branch came back to its first piece";
     else if (follower_.state().pieces >= limits_.pieces)
-      trace_.end = fmt::format("{} pieces, the most that the study allows", limits_.pieces);
+      trace_.end =
+          fmt::format("{} piece{}, the most that the study allows", limits_.pieces, limits_.pieces == 1 ? "" : "s");
     else if (follower_.state().arc >= limits_.arc)
       trace_.end = fmt::format("an arc of {:g} m, the longest that the study allows", limits_.arc);
     if (trace_.ended()) trace_.states.emplace(static_cast<long long>(size) - 1, follower_.state().x);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <ricochet/measure/orbits/impact_jump.hpp>
+#include <ricochet/measure/orbits/massless_roots.hpp>
 #include <ricochet/measure/orbits/multipliers.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
 
@@ -29,7 +30,6 @@ double gap_of(const LaneSpec& lane) {
   return lane.amplitude != 0 ? std::abs(lane.amplitude) : 1;
 }
 
-// A load that is not its own image half a period later, with the sign changed: where it is seen, in words.
 // Whether a formula stands there, which the parameter multiplies.
 bool is_formula(const Json& scene, const std::string& pointer) {
   const Json::json_pointer there(pointer.substr(std::string("/scene").size()));
@@ -38,6 +38,7 @@ bool is_formula(const Json& scene, const std::string& pointer) {
   return formula.uses_x() || formula.uses_t();
 }
 
+// A load that is not its own image half a period later, with the sign changed: where it is seen, in words.
 std::string not_odd(const SemiDiscrete& problem, double period) {
   const bool loaded = problem.load && !problem.load->absent();
   constexpr int phases = 16;
@@ -97,8 +98,8 @@ ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry
   std::string reason;
   for (const double end : {from_, to_})
     if (refusal_.empty()) check_class(scene_at(end, false, reason));
-  if (refusal_.empty()) check_kernel(reference_);
   check_image(reference_);
+  if (refusal_.empty()) check_kernel(reference_);
   const bool images = std::any_of(plan.orbits.begin(), plan.orbits.end(),
                                   [](const WantedOrbit& one) { return one.symmetric == HalfMap::yes; });
   if (refusal_.empty() && images) refusal_ = no_image_;
@@ -162,14 +163,21 @@ void ContinuedMap::check_tangents() {
 void ContinuedMap::check_kernel(int scene) {
   const Program program = this->program(scene);
   if (SetSteps::refusal(program) || program.problem->inertia.kernel_dimension == 0) return;
-  // A root ±1 of the step is a multiplier 1 of a period: P(x) = x has no orbit that stands alone.
+  // A root that is a multiplier 1 of the map, as ±1 is: P(x) = x has no orbit that stands alone.
   const SetSteps sets(program);
-  constexpr double near = 1e-7;
-  for (const std::complex<double>& root : multipliers_of(sets[0].state.topRows(sets.state_size())))
-    if (std::abs(std::abs(root) - 1) < near && std::abs(root.imag()) < near)
-      refusal_ =
-          "the step has a root of modulus 1 on displacements without mass, so that no orbit stands alone; use β > 1/4 "
-          "with damping, or a regular mass";
+  constexpr double near = 1e-7, one = 1e-6;
+  std::vector<std::complex<double>> roots = multipliers_of(sets[0].state.topRows(sets.state_size()));
+  bool alone = std::none_of(roots.begin(), roots.end(), [](const std::complex<double>& root) {
+    return std::abs(std::abs(root) - 1) < near && std::abs(root.imag()) < near;
+  });
+  const bool half = no_image_.empty();
+  for (const std::complex<double>& multiplier :
+       after_steps(massless_roots(program, sets), case_.steps_per_period / (half ? 2 : 1), half ? -1 : 1))
+    alone = alone && std::abs(multiplier - 1.0) > one;
+  if (!alone)
+    refusal_ =
+        "the step has a root of modulus 1 on displacements without mass, so that no orbit stands alone; use "
+        "newmark-dumont-paoli with β > 1/4 and damping of the stiffness, or a regular mass";
 }
 
 // An end of the range, or the last value on the way to it from the first orbit at which the scene is possible.

@@ -146,7 +146,11 @@ class ContinuationRun {
 
   void add_orbit(FollowedBranch& branch, const ShotOrbit& shot) {
     BranchRow row = orbit_row(map_, branch.clock, shot.x, shot.parameter);
-    const auto all = multipliers_of(derivative_at(map_, shot, branch.clock));
+    std::vector<std::complex<double>> all;
+    if constexpr (by_steps)
+      all = multipliers_of(derivative_at(map_, shot, branch.clock));
+    else
+      all = multipliers_of(map_, branch.clock, derivative_at(map_, shot, branch.clock));
     row.branch = branch.name;
     row.arc = 0;
     put_multipliers(all, outside(all), plan_.multipliers, row);
@@ -224,12 +228,12 @@ class ContinuationRun {
       const std::string name = fmt::format("{}.{}", followed_[number].name, i + 1);
       const MapClock clock = followed_[number].clock;
       const auto switched = switch_branch(map_, clock, point, continued_.gap(), tolerance(), [&](double parameter) {
+        if (parameter < continued_.from() || parameter > continued_.to()) return ShotOrbit{};
         return shoot(map_, near(followed_[number].trace, point.corner, parameter), parameter, clock, tolerance());
       });
       if (!switched) {
         SpecialPoint& failed = followed_[number].points[i];
         failed.note += (failed.note.empty() ? "" : "; ") + std::string("switch failed: no orbit was found near it");
-        if (parameter < continued_.from() || parameter > continued_.to()) return ShotOrbit{};
         continue;
       }
       if (const std::string known = branch_through(*switched); !known.empty()) {
