@@ -14,7 +14,8 @@ namespace ricochet {
 namespace {
 
 std::string unit_text(const ParameterSpec& spec) {
-  return spec.unit.empty() || spec.unit == "1" ? std::string() : ", in " + spec.unit;
+  return spec.unit.empty() || spec.unit == "1" || spec.unit.starts_with("as the ") ? std::string()
+                                                                                   : ", in " + spec.unit;
 }
 
 ParameterValue to_parameter(const Json& value, ParameterSpec::Type type, const std::string& pointer,

@@ -45,6 +45,14 @@ bool is_image(const SetSteps& sets, const SetSequence& sequence) {
   return true;
 }
 
+int repeats_sooner(const SetSequence& sequence, int period) {
+  const std::ptrdiff_t steps = std::ssize(sequence) / period;
+  for (int sooner = 1; sooner < period; ++sooner)
+    if (period % sooner == 0 && std::equal(sequence.begin() + sooner * steps, sequence.end(), sequence.begin()))
+      return sooner;
+  return 0;
+}
+
 BranchRun::BranchRun(PeriodicMap& map, const MapClock& clock, PieceFollower follower, BranchLimits limits)
     : map_(&map), clock_(clock), follower_(std::move(follower)), limits_(std::move(limits)) {
   first_ = follower_.state().sets;
@@ -72,15 +80,27 @@ void BranchRun::read() {
   corner.runs = runs.count;
   corner.shortest = runs.shortest;
   corner.change = state.change;
-  std::vector<std::complex<double>> raw = multipliers_of(follower_.derivative());
+  std::vector<std::complex<double>> raw = multipliers_of(*map_, clock_, follower_.derivative());
   corner.raw = roots_at(raw);
-  corner.smooth = runs.count == 0 ? corner.raw
-                                  : roots_at(multipliers_of(half_step_derivative(
-                                        *map_, state.sets, clock_, state.parameter, follower_.measures())));
+  corner.smooth =
+      runs.count == 0
+          ? corner.raw
+          : roots_at(multipliers_of(
+                *map_, clock_, half_step_derivative(*map_, state.sets, clock_, state.parameter, follower_.measures())));
   raw.resize(std::min(raw.size(), static_cast<std::size_t>(limits_.multipliers)));
   corner.leading = std::move(raw);
   trace_.corners.push_back(std::move(corner));
 }
+
+namespace {
+
+// Whether a special point may lie between two corners.
+bool changes(const BranchCorner& was, const BranchCorner& now) {
+  return now.way != was.way || now.runs != was.runs || !(now.raw.outside == was.raw.outside) ||
+         !(now.smooth.outside == was.smooth.outside);
+}
+
+}  // namespace
 
 // Every so many corners, and those at which something changes.
 void BranchRun::keep(bool special) {
@@ -92,7 +112,7 @@ void BranchRun::keep(bool special) {
     if (at == 0) return false;
     const BranchCorner &now = trace_.corners[static_cast<std::size_t>(at)],
                        &was = trace_.corners[static_cast<std::size_t>(at - 1)];
-    return now.way == was.way && now.runs == was.runs && now.raw.outside == was.raw.outside;
+    return !changes(was, now);
   };
   trace_.stride *= 2;
   std::erase_if(trace_.states, [&](const auto& one) { return one.first % trace_.stride != 0 && regular(one.first); });
@@ -153,13 +173,17 @@ bool BranchRun::advance(long long pieces) {
     const auto size = trace_.corners.size();
     const BranchCorner &now = trace_.corners[size - 1], &was = trace_.corners[size - 2];
     const bool closed = follower_.state().sets == first_;
-    keep(now.way != was.way || now.runs != was.runs || !(now.raw.outside == was.raw.outside) || closed);
+    keep(changes(was, now) || closed);
     if (limits_.ends_at_image && is_image(map_->sets(), follower_.state().sets))
       trace_.end = fmt::format("its orbits become their own images at {:.10g}", now.parameter);
+    else if (const int sooner = limits_.ends_sooner ? repeats_sooner(follower_.state().sets, clock_.period) : 0)
+      trace_.end = fmt::format("its orbits repeat after {} period{} from {:.10g} on", sooner, sooner == 1 ? "" : "s",
+                               now.parameter);
     else if (closed)
       trace_.end = "closed: the branch came back to its first piece";
     else if (follower_.state().pieces >= limits_.pieces)
-      trace_.end = fmt::format("{} pieces, the most that the study allows", limits_.pieces);
+      trace_.end =
+          fmt::format("{} piece{}, the most that the study allows", limits_.pieces, limits_.pieces == 1 ? "" : "s");
     else if (follower_.state().arc >= limits_.arc)
       trace_.end = fmt::format("an arc of {:g} m, the longest that the study allows", limits_.arc);
     if (trace_.ended()) trace_.states.emplace(static_cast<long long>(size) - 1, follower_.state().x);

@@ -36,6 +36,8 @@ ContactRuns contact_runs(const SetSteps& sets, const SetSequence& sequence, bool
 /// Whether the second half of the steps has the sets of the first one with the sides exchanged: an orbit that stands
 /// alone with such sets is its own image under x → −x, t → t + T/2.
 bool is_image(const SetSteps& sets, const SetSequence& sequence);
+/// The divisor of its period after which a sequence repeats: an orbit alone with such sets does so too. 0: none.
+int repeats_sooner(const SetSequence& sequence, int period);
 
 /// An orbit that was solved exactly where it was asked for.
 struct MarkedOrbit {
@@ -64,6 +66,7 @@ struct BranchLimits {
   std::vector<double> marks = {};
   int multipliers = 4;
   bool ends_at_image = false;      ///< of orbits that are not their own images: whether it ends where they become so
+  bool ends_sooner = false;        ///< of orbits of several periods: whether it ends where they repeat sooner
   std::size_t most_states = 2000;  ///< evenly spaced ones
 };
 

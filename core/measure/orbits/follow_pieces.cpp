@@ -59,6 +59,7 @@ void PieceFollower::new_direction() {
 // not solved to round-off is solved again. The new margin of what changed must grow along the branch.
 void PieceFollower::sweep() {
   constexpr int most = 3;
+  constexpr double singular = 1e10;
   const Index D = map_->size();
   for (int iteration = 0; iteration < most; ++iteration) {
     std::vector<PeriodicMap::Column> columns = {{state_.x, state_.parameter, false},
@@ -69,6 +70,10 @@ void PieceFollower::sweep() {
     VectorXd right = VectorXd::Zero(D + 1);
     right.head(D) = left;
     const VectorXd correction = bordered_.solve(right);
+    if (map_->metric().size(correction.head(D), correction[D]) > singular * residual_) {
+      state_.parameter_along = std::numeric_limits<double>::quiet_NaN();  // no direction
+      break;
+    }
     if (correction.allFinite()) {
       state_.x += correction.head(D);
       state_.parameter += correction[D];
@@ -134,8 +139,10 @@ Piece PieceFollower::end_of_piece(double least, double largest) {
     }
   }
   const double along = state_.parameter_along, limit = along > 0 ? largest : least;
-  const double s = along == 0 ? std::numeric_limits<double>::infinity() : (limit - state_.parameter) / along;
-  if (s <= piece.length && s >= 0) {
+  // Beyond the limit, by round-off or not, the branch ends at once.
+  const double s =
+      along == 0 ? std::numeric_limits<double>::infinity() : std::max(0.0, (limit - state_.parameter) / along);
+  if (s <= piece.length) {
     piece.tie = false;
     piece.length = s;
     piece.change = {};

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/kernels/eigenvalues.hpp>
+#include <ricochet/measure/orbits/massless_roots.hpp>
 #include <ricochet/measure/orbits/multipliers.hpp>
+#include <utility>
 
 namespace ricochet {
 
@@ -22,6 +24,17 @@ std::vector<std::complex<double>> multipliers_of(MatrixXd derivative, int withou
   std::erase_if(all, [&](const std::complex<double>& value) {
     return without_kernel > 0 && std::abs(value + 1.0) < near && without_kernel-- > 0;
   });
+  return all;
+}
+
+std::vector<std::complex<double>> multipliers_of(const PeriodicMap& map, const MapClock& clock, MatrixXd derivative) {
+  constexpr double near = 1e-6;
+  auto all = multipliers_of(std::move(derivative));
+  for (const std::complex<double>& massless : after_steps(map.massless_roots(), clock.steps(), clock.sign()))
+    if (const auto it =
+            std::find_if(all.begin(), all.end(), [&](const auto& one) { return std::abs(one - massless) < near; });
+        it != all.end())
+      all.erase(it);
   return all;
 }
 

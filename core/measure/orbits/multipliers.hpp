@@ -11,6 +11,10 @@ namespace ricochet {
 /// those at −1 (to 1e-6) that a scheme has on the kernel of a singular mass are left out, that many at most.
 std::vector<std::complex<double>> multipliers_of(Eigen::MatrixXd derivative, int without_kernel = 0);
 
+/// Those of sign · P over the steps of a clock, without those of massless_roots() (to 1e-6): no motion has them.
+std::vector<std::complex<double>> multipliers_of(const PeriodicMap& map, const MapClock& clock,
+                                                 Eigen::MatrixXd derivative);
+
 /// How many multipliers are where.
 struct Outside {
   int total = 0;  ///< |μ| > 1

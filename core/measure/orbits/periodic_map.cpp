@@ -146,6 +146,7 @@ PeriodicMap::PeriodicMap(Program program, AffineLane lanes, double parameter_met
       sets_(marcher_.program()),
       vector_(marcher_.program()),
       metric_(marcher_.program(), sets_.state_size(), parameter_metres),
+      massless_roots_(ricochet::massless_roots(marcher_.program(), sets_)),
       template_(marcher_.lane_state(0)),
       tip_(marcher_.program().model->tip().dense(marcher_.program().model->rows()).row(0)),
       affine_load_(std::move(load)) {}

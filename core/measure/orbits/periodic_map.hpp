@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <complex>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -110,6 +111,8 @@ class PeriodicMap {
   const Program& program() const { return marcher_.program(); }
   const AffineLane& lanes() const { return lanes_; }
   const StateVector& vector() const { return vector_; }
+  /// Of its steps (massless_roots.hpp).
+  const std::vector<std::complex<double>>& massless_roots() const { return massless_roots_; }
 
   /// The marcher of this value with its lane at x, at the strobe; until the map is asked again.
   Marcher& begin(const Eigen::VectorXd& x, double parameter);
@@ -147,6 +150,7 @@ class PeriodicMap {
   SetSteps sets_;
   StateVector vector_;
   StateMetric metric_;
+  std::vector<std::complex<double>> massless_roots_;
   LaneState template_;
   Eigen::RowVectorXd tip_;
   std::vector<double> sine_, cosine_;    // of ωt + ψ at the steps of a period

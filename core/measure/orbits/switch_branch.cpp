@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/kernels/eigenvalues.hpp>
+#include <ricochet/measure/orbits/massless_roots.hpp>
 #include <ricochet/measure/orbits/switch_branch.hpp>
 
 namespace ricochet {
@@ -9,13 +10,24 @@ using Eigen::VectorXd;
 
 namespace {
 
-// The vector of the real multiplier nearest to −1; nothing where all are complex.
-std::optional<VectorXd> critical_vector(const Eigen::MatrixXd& derivative) {
+std::vector<std::complex<double>> massless(const PeriodicMap& map, const MapClock& clock) {
+  return after_steps(map.massless_roots(), clock.steps(), clock.sign());
+}
+std::vector<std::complex<double>> massless(const SteppedMap&, const MapClock&) {
+  return {};
+}
+
+// The vector of the real multiplier nearest to −1, `without` these; nothing where all are complex.
+std::optional<VectorXd> critical_vector(const Eigen::MatrixXd& derivative,
+                                        const std::vector<std::complex<double>>& without) {
+  constexpr double same = 1e-6;
   const GeneralModes modes = general_modes(derivative);
   if (!modes.found) return std::nullopt;
   Eigen::Index nearest = -1;
   for (Eigen::Index i = 0; i < modes.values.size(); ++i)
     if (modes.values[i].imag() == 0 &&
+        std::none_of(without.begin(), without.end(),
+                     [&](const auto& one) { return std::abs(one - modes.values[i]) < same; }) &&
         (nearest < 0 || std::abs(modes.values[i].real() + 1) < std::abs(modes.values[nearest].real() + 1)))
       nearest = i;
   if (nearest < 0) return std::nullopt;
@@ -47,7 +59,7 @@ std::optional<SwitchedOrbit> switch_branch(Map& map, const MapClock& clock, cons
       const double parameter = point.parameter + side * widths * width;
       const ShotOrbit own = x_at(parameter);
       if (!own.found) continue;
-      auto v = critical_vector(derivative_at(map, own, clock));
+      auto v = critical_vector(derivative_at(map, own, clock), massless(map, clock));
       if (!v) continue;
       *v /= map.metric().size(*v);
       for (const double amplitude : {1e-3, 3e-3, 1e-2})

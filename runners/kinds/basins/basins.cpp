@@ -118,7 +118,7 @@ std::string text_of(const CellEnd& end) {
 
 int march_cell_again(const StudyResults& results, const PointRequest& asked, std::ostream& out) {
   if (asked.cell.empty() || asked.parameter || !asked.start.empty() || asked.solves())
-    throw PointRefused("ricochet point: this is a study of kind basins; expected --cell X,Y, as in cells.csv");
+    throw PointRefused("this is a study of kind basins; expected --cell X,Y, as in cells.csv");
   const auto [x, y] = two_numbers(asked.cell);
   const CaseRecord& record = find_case(results, asked.case_id);
   const StoredStudy stored(results, asked.plugins);

@@ -206,7 +206,7 @@ std::string description(const OrbitRow& orbit) {
 int march_orbit_again(const StudyResults& results, const PointRequest& asked, std::ostream& out) {
   if (!asked.parameter || asked.start.empty() || !asked.cell.empty() || asked.solves())
     throw PointRefused(
-        "ricochet point: this is a study of kind bifurcation; expected --parameter VALUE and --start NAME, as in "
+        "this is a study of kind bifurcation; expected --parameter VALUE and --start NAME, as in "
         "values.csv");
   const CaseRecord& record = find_case(results, asked.case_id);
   const std::vector<OrbitRow> orbits = orbits_in(stored_table(record, values_name));

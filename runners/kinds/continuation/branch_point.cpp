@@ -82,11 +82,12 @@ BranchPoint by_pieces(PeriodicMap& map, const ContinuationPlan& plan, const MapC
     follower.go(piece);
   }
   BranchPoint point;
-  point.multipliers = multipliers_of(follower.derivative());
+  point.multipliers = multipliers_of(map, clock, follower.derivative());
   const SetSequence& sets = follower.state().sets;
   PeriodicMap::Measures measures = follower.measures();
   for (std::size_t k = 0; k < measures.value.size(); ++k) measures.value[k] += along * measures.slope[k];
-  point.half_step = roots_at(multipliers_of(half_step_derivative(map, sets, clock, there.parameter, measures)));
+  point.half_step =
+      roots_at(multipliers_of(map, clock, half_step_derivative(map, sets, clock, there.parameter, measures)));
   const long long pieces = follower.state().pieces;
   point.way = pieces == 0 && along == 0 ? "a kept orbit"
                                         : fmt::format("on piece {} behind the kept orbit at an arc of {} m", pieces + 1,
@@ -226,7 +227,7 @@ std::filesystem::path csv_file(const std::filesystem::path& folder, const std::s
 int solve_branch_point(const StudyResults& results, const PointRequest& asked, std::ostream& out) {
   if (asked.branch.empty() || !asked.arc || asked.marches())
     throw PointRefused(
-        "ricochet point: this is a study of kind continuation; expected --branch NAME and --arc S, as in "
+        "this is a study of kind continuation; expected --branch NAME and --arc S, as in "
         "branches.csv");
   const double arc = *asked.arc;
   const CaseRecord& record = find_case(results, asked.case_id);

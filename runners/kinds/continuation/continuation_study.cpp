@@ -169,6 +169,10 @@ void check_continuation(const Json& resolved) {
 void check_followed(const Json& resolved, const Json& settings, const Registry& registry, double, int) {
   const auto pointer = settings.at("parameter").at("pointer").get<std::string>();
   const std::string where = "/parameter/pointer";
+  if (names_initial_state(pointer))
+    throw InputError(where, fmt::format("{} is where motions begin, which no periodic orbit depends on; expected a "
+                                        "number that the steps depend on",
+                                        pointer));
   try {
     // A key of a method is that of the first one of its role.
     std::string first = pointer;

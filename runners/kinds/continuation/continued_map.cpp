@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <ricochet/measure/orbits/impact_jump.hpp>
+#include <ricochet/measure/orbits/massless_roots.hpp>
 #include <ricochet/measure/orbits/multipliers.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
 
@@ -27,6 +28,14 @@ double gap_of(const LaneSpec& lane) {
   }
   if (std::isfinite(gap) && gap > 0) return gap;
   return lane.amplitude != 0 ? std::abs(lane.amplitude) : 1;
+}
+
+// Whether a formula stands there, which the parameter multiplies.
+bool is_formula(const Json& scene, const std::string& pointer) {
+  const Json::json_pointer there(pointer.substr(std::string("/scene").size()));
+  if (!scene.contains(there) || !scene.at(there).is_string()) return false;
+  const Formula formula(scene.at(there).get<std::string>(), pointer);
+  return formula.uses_x() || formula.uses_t();
 }
 
 // A load that is not its own image half a period later, with the sign changed: where it is seen, in words.
@@ -59,8 +68,10 @@ std::string not_odd(const SemiDiscrete& problem, double period) {
 }  // namespace
 
 bool is_length(const std::string& pointer) {
-  return pointer.ends_with("/support/amplitude") || pointer.ends_with("/stops/lower") ||
-         pointer.ends_with("/stops/upper");
+  const bool stop =
+      pointer.starts_with("/scene/stops/") &&
+      (pointer.ends_with("/lower") || pointer.ends_with("/upper") || pointer.ends_with("/clearance/radius"));
+  return stop || pointer == "/scene/support/amplitude" || pointer.ends_with("/displacement/amplitude");
 }
 
 ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry, const ContinuationPlan& plan)
@@ -78,7 +89,7 @@ ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry
   if (reference_ < 0) return;
   refusal_.clear();
   gap_ = gap_of(scenes_[reference_].lane);
-  if (!is_length(plan.pointer)) {
+  if (!is_length(plan.pointer) || is_formula(study_case.scene_json, plan.pointer)) {
     const double value = std::max(std::abs(plan.from), std::abs(plan.to));
     metres_ = value > 0 ? gap_ / value : gap_;
   }
@@ -87,8 +98,8 @@ ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry
   std::string reason;
   for (const double end : {from_, to_})
     if (refusal_.empty()) check_class(scene_at(end, false, reason));
-  if (refusal_.empty()) check_kernel(reference_);
   check_image(reference_);
+  if (refusal_.empty()) check_kernel(reference_);
   const bool images = std::any_of(plan.orbits.begin(), plan.orbits.end(),
                                   [](const WantedOrbit& one) { return one.symmetric == HalfMap::yes; });
   if (refusal_.empty() && images) refusal_ = no_image_;
@@ -152,21 +163,28 @@ void ContinuedMap::check_tangents() {
 void ContinuedMap::check_kernel(int scene) {
   const Program program = this->program(scene);
   if (SetSteps::refusal(program) || program.problem->inertia.kernel_dimension == 0) return;
-  // A root ±1 of the step is a multiplier 1 of a period: P(x) = x has no orbit that stands alone.
+  // A root that is a multiplier 1 of the map, as ±1 is: P(x) = x has no orbit that stands alone.
   const SetSteps sets(program);
-  constexpr double near = 1e-7;
-  for (const std::complex<double>& root : multipliers_of(sets[0].state.topRows(sets.state_size())))
-    if (std::abs(std::abs(root) - 1) < near && std::abs(root.imag()) < near)
-      refusal_ =
-          "the step has a root of modulus 1 on displacements without mass, so that no orbit stands alone; use β > 1/4 "
-          "with damping, or a regular mass";
+  constexpr double near = 1e-7, one = 1e-6;
+  std::vector<std::complex<double>> roots = multipliers_of(sets[0].state.topRows(sets.state_size()));
+  bool alone = std::none_of(roots.begin(), roots.end(), [](const std::complex<double>& root) {
+    return std::abs(std::abs(root) - 1) < near && std::abs(root.imag()) < near;
+  });
+  const bool half = no_image_.empty();
+  for (const std::complex<double>& multiplier :
+       after_steps(massless_roots(program, sets), case_.steps_per_period / (half ? 2 : 1), half ? -1 : 1))
+    alone = alone && std::abs(multiplier - 1.0) > one;
+  if (!alone)
+    refusal_ =
+        "the step has a root of modulus 1 on displacements without mass, so that no orbit stands alone; use "
+        "newmark-dumont-paoli with β > 1/4 and damping of the stiffness, or a regular mass";
 }
 
 // An end of the range, or the last value on the way to it from the first orbit at which the scene is possible.
-double ContinuedMap::possible_end(double end) {
+double ContinuedMap::possible_end(double end, std::string& impossible) {
   std::string reason;
   if (scene_at(end, false, reason) >= 0) return end;
-  impossible_ = fmt::format("at {:g}: {}", end, reason);
+  impossible = fmt::format("at {:g}: {}", end, reason);
   double possible = reference_at_;
   constexpr int halvings = 30;
   for (int k = 0; k < halvings; ++k) {
@@ -178,14 +196,14 @@ double ContinuedMap::possible_end(double end) {
 
 // Whether the parameter enters by amplitude and stops alone, and affinely.
 void ContinuedMap::check_ends() {
-  from_ = possible_end(plan_.from);
-  to_ = possible_end(plan_.to);
+  from_ = possible_end(plan_.from, impossible_[0]);
+  to_ = possible_end(plan_.to, impossible_[1]);
   std::string reason;
   const double between = 0.5 * (from_ + to_);
   const int low = scene_at(from_, false, reason), high = scene_at(to_, false, reason),
             middle = scene_at(between, false, reason);
   if (low < 0 || high < 0 || !(from_ < to_)) {
-    refusal_ = impossible_ + "; expected a range in which the scene is possible";
+    refusal_ = impossible_[impossible_[0].empty()] + "; expected a range in which the scene is possible";
     return;
   }
   const bool one_group =

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -27,10 +28,11 @@ class ContinuedMap {
   /// Why orbits are not their own images; "" where they may be.
   const std::string& no_image() const { return no_image_; }
 
-  /// The part of the range in which the scene is possible, and why not all of it; "" where it is.
+  /// The part of the range in which the scene is possible.
   double from() const { return from_; }
   double to() const { return to_; }
-  const std::string& impossible() const { return impossible_; }
+  /// Why not beyond the end of that part nearer to a value; "" where the study ends there.
+  const std::string& impossible(double near) const { return impossible_[near - from_ > to_ - near]; }
 
   const ForcedScenes& scenes() const { return scenes_; }
   /// A scene at this value; −1 where it is refused, with the reason.
@@ -53,7 +55,7 @@ class ContinuedMap {
   void check_class(int scene);
   void check_kernel(int scene);
   void check_tangents();
-  double possible_end(double end);
+  double possible_end(double end, std::string& impossible);
   void check_ends();
   bool affine_loads(int low, int middle, int high);
   void check_image(int scene);
@@ -67,7 +69,7 @@ class ContinuedMap {
   std::map<double, int> marched_;  // scenes by value
   std::optional<AffineLane> lanes_;
   double gap_ = 1, metres_ = 1, reference_at_ = 0, from_ = 0, to_ = 0;
-  std::string impossible_;
+  std::array<std::string, 2> impossible_;  // at the ends
 };
 
 }  // namespace ricochet

@@ -48,6 +48,7 @@ SetSteps* sets_of(SteppedMap&) {
 BranchRun begin_branch(PeriodicMap& map, const MapClock& clock, const ShotOrbit& shot, int way, BranchLimits limits,
                        double round_off, std::optional<KeptBranch> kept) {
   limits.ends_at_image = limits.ends_at_image && !is_image(map.sets(), shot.sets);
+  limits.ends_sooner = !clock.half && repeats_sooner(shot.sets, clock.period) == 0;
   // A residual that several steps of Newton's method leave.
   const double drift = std::max(100 * round_off, 1e-15);
   if (kept) return {map, clock, PieceFollower(map, clock, kept->entry, drift), limits, kept->trace, kept->first};
@@ -139,13 +140,17 @@ class ContinuationRun {
       branch.name += way > 0 ? "+" : "-";
       run_branch(branch, shot, way, 0);
       // A branch that closes has been followed both ways.
-      if (followed_.back().trace.end.starts_with("closed") && by_steps) break;
+      if (followed_.back().trace.end.starts_with("closed")) break;
     }
   }
 
   void add_orbit(FollowedBranch& branch, const ShotOrbit& shot) {
     BranchRow row = orbit_row(map_, branch.clock, shot.x, shot.parameter);
-    const auto all = multipliers_of(derivative_at(map_, shot, branch.clock));
+    std::vector<std::complex<double>> all;
+    if constexpr (by_steps)
+      all = multipliers_of(derivative_at(map_, shot, branch.clock));
+    else
+      all = multipliers_of(map_, branch.clock, derivative_at(map_, shot, branch.clock));
     row.branch = branch.name;
     row.arc = 0;
     put_multipliers(all, outside(all), plan_.multipliers, row);
@@ -201,8 +206,9 @@ class ContinuationRun {
     branch.trace = run.trace();
     if (!stopping && !over_budget_) stopping = stopping_point(branch, branch.trace);
     if (stopping) cut_at(branch.trace, *stopping);
-    if (branch.trace.end.starts_with("the range ends") && !continued_.impossible().empty())
-      branch.trace.end += "; " + continued_.impossible();
+    if (const std::string& why = continued_.impossible(branch.trace.corners.back().parameter);
+        branch.trace.end.starts_with("the range ends") && !why.empty())
+      branch.trace.end += "; " + why;
     if (over_budget_) branch.trace.end = fmt::format("the budget of {:g} s was spent", budget_of(case_));
     checkpoints_.keep(branch.name, kept(run), sets_of(map_));
     pieces_ += run.pieces();
@@ -222,6 +228,7 @@ class ContinuationRun {
       const std::string name = fmt::format("{}.{}", followed_[number].name, i + 1);
       const MapClock clock = followed_[number].clock;
       const auto switched = switch_branch(map_, clock, point, continued_.gap(), tolerance(), [&](double parameter) {
+        if (parameter < continued_.from() || parameter > continued_.to()) return ShotOrbit{};
         return shoot(map_, near(followed_[number].trace, point.corner, parameter), parameter, clock, tolerance());
       });
       if (!switched) {

@@ -14,7 +14,12 @@
 namespace ricochet {
 
 LaneState stored_orbit(const WantedOrbit& orbit, Program program, int steps_per_period) {
-  const StudyResults results = read_store(orbit.study);
+  StudyResults results;
+  try {
+    results = read_store(orbit.study);
+  } catch (const StoreError& error) {
+    throw PointRefused(error.what());
+  }
   if (results.kind != "bifurcation")
     throw PointRefused(fmt::format("{} holds a study of kind {}; expected bifurcation", orbit.study, results.kind));
   const CaseRecord& record = find_case(results, orbit.case_id);

@@ -366,8 +366,13 @@ std::optional<SweptAxis> swept_axis(const StudyResults& results, const nlohmann:
   try {
     const nlohmann::ordered_json::json_pointer place(pointer);
     out.factor = pointer.starts_with("/scene/") && results.study.contains(place) && results.study.at(place).is_string();
+    // In a list of the scene no axis has a name.
+    if (out.axis.unit.empty() && pointer.starts_with("/scene/"))
+      for (const Scalar& one : scalars_of(results.study.at("scene")))
+        if (one.pointer == pointer) out.axis = {out.axis.name, one.field->spec.unit, one.field->spec.text};
   } catch (const nlohmann::ordered_json::exception&) {
     return std::nullopt;
+  } catch (const InputError&) {  // a scene of another format
   }
   return out;
 }

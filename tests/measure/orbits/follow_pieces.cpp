@@ -195,3 +195,18 @@ TEST_CASE("multipliers by the half-step rule do not depend on where the period b
     CHECK(changes > 1);
   }
 }
+
+TEST_CASE("a branch that begins beyond the range ends at once") {
+  Started from(500, true, 0.08);
+  CHECK(run(from, 1, 0.07, 0.079).trace().end == "the range ends at 0.08");
+}
+
+TEST_CASE("each special point has a state of its branch at its corner") {
+  // The half-step rule crosses the circle there between two corners that have the same frozen multipliers outside.
+  Started from(8000, true, 0.08);
+  const BranchRun branch = run(from, 1, 0.07, 0.0926);
+  for (const SpecialPoint& point : special_points(branch.trace(), {true, 1e-5})) {
+    INFO(point.kind << " at " << point.parameter);
+    CHECK(branch.trace().states.contains(point.corner));
+  }
+}

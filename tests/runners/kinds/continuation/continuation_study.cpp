@@ -36,6 +36,9 @@ TEST_CASE("keys of continuation are refused by pointer, with what was found and 
   check_says(error_of(with("/orbits/0/from", "res")), {"/orbits/0/from: expected one of", "did you mean \"rest\""});
   check_says(error_of(with("/follow", "peices")), {"/follow: ", "did you mean \"pieces\""});
   check_says(error_of(with("/stop_at", "fol")), {"/stop_at: ", "did you mean \"fold\""});
+  const std::string prominence = error_of(with("/prominence", -1));
+  check_says(prominence, {"/prominence: expected a number in ]0, ", "found -1"});
+  CHECK(prominence.find("in as the") == std::string::npos);
   check_says(error_of(with("/mark", {{"parameter", {0.5}}})), {"/mark/parameter/0: ", "0.5", "0.07 to 0.09"});
   Json twice = with("/orbits/0/symmetric", "yes");
   twice["orbits"][0]["period"] = 2;
@@ -54,6 +57,11 @@ TEST_CASE("continuation follows real numbers of the scene or of a method alone")
   check_says(error_of(with("/parameter/pointer", "/methods/mass/velocity")), {"is the word \"P1\""});
   check_says(error_of(with("/parameter/pointer", "/scene/support/amplitde")),
              {"/parameter/pointer: ", "did you mean", "/scene/support/amplitude"});
+}
+
+TEST_CASE("no orbit depends on where motions begin, so none is followed along it") {
+  check_says(error_of(with("/parameter/pointer", "/scene/initial/displacement")),
+             {"/parameter/pointer: /scene/initial/displacement is where motions begin", "expected a number"});
 }
 
 TEST_CASE("a scene without a forcing period has no orbits") {
@@ -161,6 +169,9 @@ TEST_CASE("a branch ends where the scene becomes impossible, and says why") {
   REQUIRE_FALSE(points.empty());
   CHECK(*points.back().parameter == Approx(0.5).margin(1e-9));
   check_says(points.back().note, {"the range ends at 0.5", "at 0.6: "});
+  // The other end is that of the study.
+  study["both_ways"] = true;
+  CHECK(points_of(continued(study)).back().note == "the range ends at 0.48");
   // Beyond 0.1 m the clamp goes through the stops.
   study = with("/scene/stops/at", "nodes");
   study["parameter"]["to"] = 0.12;
@@ -170,6 +181,14 @@ TEST_CASE("a branch ends where the scene becomes impossible, and says why") {
 
 TEST_CASE("a root of the step on displacements without mass refuses the case") {
   Json study = tube_continuation();
+  const std::vector<std::string> says = {"a root of modulus 1 on displacements without mass", "no orbit stands alone"};
   study["methods"]["time"]["beta"] = 0.25;
-  check_says(refusal_of(study), {"a root of modulus 1 on displacements without mass", "no orbit stands alone"});
+  check_says(refusal_of(study), says);
+  // Without damping of the stiffness β = ½ has the roots ±i there: i²⁰⁰ = 1, i²⁰² = −1.
+  study = with("/scene/structure/damping", {{"mass", 2}});
+  CHECK(refusal_of(study).empty());
+  study["scene"]["stops"]["lower"] = nullptr;
+  check_says(refusal_of(study), says);
+  study["steps_per_period"] = 202;
+  CHECK(refusal_of(study).empty());
 }

@@ -274,8 +274,70 @@ TEST_CASE("an orbit that is not found fails its case, whose other orbits are fol
   }
 }
 
-TEST_CASE("an orbit of a bifurcation study that is not there is a row that says so") {
+TEST_CASE("an orbit of a bifurcation study that is not there is a row that says so, and others are followed") {
   Json study = tube_continuation();
+  study["orbits"].push_back(study["orbits"][0]);
   study["orbits"][0]["from"] = {{"study", "/nowhere"}, {"case", "ab"}, {"parameter", 0.085}, {"start", "rest"}};
-  CHECK_THROWS(continued(study));
+  study["at_most"] = {{"pieces", 3}};
+  const CaseRecord record = continued(study);
+  CHECK(record.status == "failed");
+  CHECK(record.reason.find("/nowhere: there is no results.sqlite") != std::string::npos);
+  CHECK(points_of(record).front().note == record.reason);
+  CHECK_FALSE(rows_of(record).empty());
+}
+
+TEST_CASE("a branch of doubled orbits ends where they repeat sooner") {
+  Json study = oscillator_continuation(R"({"name": "newmark-dumont-paoli", "beta": 0.25})");
+  study["scene"]["structure"]["force"]["pulsation"] = 2.6;
+  study["steps_per_period"] = 1000;
+  study["parameter"]["from"] = 5.75;
+  study["parameter"]["to"] = 5.77;
+  study["orbits"][0]["at"] = 5.755;
+  study["switch"] = "flip";
+  const auto points = points_of(continued(study));
+  const auto end = std::find_if(points.begin(), points.end(), [](const SpecialRow& one) {
+    return one.note.starts_with("its orbits repeat after 1 period from");
+  });
+  REQUIRE(end != points.end());
+  // That is the flip at which it began.
+  const auto flip =
+      std::find_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "flip"; });
+  REQUIRE(flip != points.end());
+  CHECK(*end->parameter >= *flip->low);
+  CHECK(*end->parameter <= *flip->high);
+}
+
+TEST_CASE("roots of the step on displacements without mass are no multipliers") {
+  Json study = tube_continuation();
+  study["scene"]["structure"]["damping"] = {{"mass", 2}};
+  study["orbits"] = Json::parse(R"([{"at": 0.075, "from": "free"}])");
+  for (const int steps : {200, 202}) {
+    if (steps == 202) study["scene"]["stops"]["lower"] = nullptr;
+    study["steps_per_period"] = steps;
+    study["at_most"] = {{"pieces", 1}};
+    // All modes are damped, those that the step does not resolve by a few percent; what is left out has 1.
+    for (const BranchRow& row : rows_of(continued(study)))
+      if (row.contact_runs == 0) CHECK(std::abs(*row.multipliers.at(0)) < 0.99);
+  }
+}
+
+TEST_CASE("a branch without a direction ends where it begins, and no branch leaves the range") {
+  // i⁴⁰² = −1 on the tip without mass, so that 1 is a multiplier of every doubled orbit.
+  Json study = tube_continuation();
+  study["scene"]["structure"]["damping"] = {{"mass", 2}};
+  study["scene"]["stops"]["lower"] = nullptr;
+  study["mesh"]["elements"] = 6;
+  study["steps_per_period"] = 402;
+  study["orbits"] = Json::parse(R"([{"at": 0.079, "from": "free"}])");
+  study["switch"] = "flip";
+  study["at_most"] = {{"pieces", 100}};
+  const CaseRecord record = continued(study);
+  for (const BranchRow& row : rows_of(record)) {
+    CHECK(*row.parameter >= 0.07);
+    CHECK(*row.parameter <= 0.09);
+  }
+  const auto points = points_of(record);
+  CHECK(std::any_of(points.begin(), points.end(), [](const SpecialRow& one) {
+    return one.kind == "end" && one.note.find("no direction") != std::string::npos;
+  }));
 }

@@ -307,3 +307,14 @@ TEST_CASE("Steps per period are an axis that excludes may name") {
 }
 
 }  // namespace sweep_study_tests
+
+TEST_CASE("a parameter inside a list has the unit and the meaning of its key") {
+  StudyResults results;
+  results.study = Json::parse(R"({"scene": {
+    "structure": {"type": "beam", "length": 1, "section": {"type": "given", "EI": 1, "rhoS": 1}},
+    "stops": [{"name": "plate", "at": {"x": 1}, "lower": -0.1, "upper": 0.1}]}})");
+  const auto swept = swept_axis(results, {{"pointer", "/scene/stops/0/upper"}});
+  REQUIRE(swept);
+  CHECK(swept->axis.unit == "m");
+  CHECK(swept->axis.text.starts_with("Upper stop"));
+}
