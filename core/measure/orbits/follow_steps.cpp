@@ -209,11 +209,10 @@ void StepFollower::mark_up_to(const Point& next) {
     if (!(share >= 0) || share > 1) continue;
     const ShotOrbit at = shoot(*map_, now_.x + share * (next.x - now_.x), mark, clock_, limits_.tolerance);
     if (!at.found) continue;
-    const FollowedMap::Image image = map_->march(at.x, mark, clock_);
     const double arc = trace_.corners.back().arc + secant_to({at.x, mark}).second;
     const bool known = !trace_.marks.empty() && trace_.marks.back().parameter == mark &&
                        std::abs(trace_.marks.back().arc - arc) <= smallest_step * arc;
-    if (!known) trace_.marks.push_back({mark, arc, image.tip, pieces() - 1, at.x});
+    if (!known) trace_.marks.push_back({mark, arc, map_->march(at.x, mark, clock_).tip, pieces() - 1, at.x});
   }
 }
 
