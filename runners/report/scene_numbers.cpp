@@ -10,12 +10,19 @@
 namespace ricochet::report {
 namespace {
 
-/// A motion: its formula, its file, or its amplitude and pulsation.
-std::string motion_text(const nlohmann::ordered_json& given) {
+/// A history: its formula, its file, its amplitude and pulsation (of a displacement), or its spectrum.
+std::string history_words(const nlohmann::ordered_json& given) {
+  if (given.is_string()) return given.get<std::string>();
+  if (!given.is_object()) return given.dump();
   for (const char* key : {"file", "formula"})
-    if (given.contains(key)) return given[key].is_string() ? given[key].get<std::string>() : given[key].dump();
-  return fmt::format("{} m sin({} rad/s t + {})", given["amplitude"].dump(), given["pulsation"].dump(),
-                     given["phase"].dump());
+    if (given.contains(key)) return history_words(given[key]);
+  if (given.contains("amplitude"))
+    return fmt::format("{} m sin({} rad/s t + {})", given["amplitude"].dump(), given["pulsation"].dump(),
+                       given["phase"].dump());
+  if (!given.contains("psd")) return given.dump();
+  const auto& psd = given["psd"];
+  return fmt::format("random, one-sided density {} N²/Hz from {} to {} Hz", history_words(psd),
+                     number_text(number_at(psd, "from").value_or(0)), number_text(number_at(psd, "to").value_or(0)));
 }
 
 /// Motions of supports: which supports, what is given, and where it stands.
@@ -29,22 +36,9 @@ std::vector<std::string> motion_words(const SceneValues& scene) {
     std::string who;
     for (const auto& name : motion["supports"]) who += (who.empty() ? "" : ", ") + name.get<std::string>();
     words.push_back(fmt::format("{} of {}: {}", accelerates ? "acceleration" : "displacement",
-                                who == "all" ? "all supports" : who, motion_text(given)));
+                                who == "all" ? "all supports" : who, history_words(given)));
   }
   return words;
-}
-
-/// A history: its formula, its file, or its spectrum.
-std::string history_words(const nlohmann::ordered_json& given) {
-  if (given.is_string()) return given.get<std::string>();
-  if (!given.is_object()) return given.dump();
-  if (given.contains("file")) return given["file"].get<std::string>();
-  if (!given.contains("psd")) return given.dump();
-  const auto& psd = given["psd"];
-  const auto& density = psd.contains("formula") ? psd["formula"] : psd.value("file", nlohmann::ordered_json(""));
-  return fmt::format("random, one-sided density {} N²/Hz from {} to {} Hz",
-                     density.is_string() ? density.get<std::string>() : density.dump(),
-                     number_text(number_at(psd, "from").value_or(0)), number_text(number_at(psd, "to").value_or(0)));
 }
 
 /// Loads in words, a line for each term.

@@ -22,6 +22,8 @@ struct Outside {
   int below = 0;  ///< real, < −1
   int pairs = 0;  ///< complex, |μ| > 1, counted once
   bool operator==(const Outside&) const = default;
+  /// Sign of det(1 − P').
+  int side() const { return above % 2 != 0 ? -1 : 1; }
 };
 Outside outside(const std::vector<std::complex<double>>& multipliers);
 

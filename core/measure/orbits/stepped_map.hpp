@@ -125,32 +125,50 @@ class StepFollower {
     Eigen::VectorXd x;
     double parameter = 0;
   };
-  bool correct(Point& point, const Point& along, int& iterations);
-  bool pass_graze(Point& next);
-  double cosine(const Point& a, const Point& b) const;
+  /// A step to an orbit, solved there.
+  struct Step {
+    Point to;
+    FollowedMap::Image image = {};
+    std::vector<std::complex<double>> multipliers = {};
+    int iterations = 0;
+    int turned = 0;      ///< sign of the determinant of the last bordered matrix; 0: none was needed
+    bool jumps = false;  ///< over a contact that the map does not resolve
+  };
+  enum class Verdict { taken, crosses, failed };
+
+  double range() const;  // m
+  bool within(const Point& point) const;
+  std::optional<FollowedMap::Image> image_of(const Point& point, bool derivative = false);
+  bool correct(Step& step, const Point& along);
   std::optional<Point> tangent(const Point& at, const Eigen::MatrixXd& derivative);
-  bool set_tangent(int way);
-  void place_contact(const Point& beyond, const Point& along, bool turns);
-  void keep(const Point& point, const FollowedMap::Image& image, std::vector<std::complex<double>> multipliers);
+  bool set_tangent(int way, const Eigen::MatrixXd& derivative);
   Eigen::VectorXd by_parameter(const Point& point, double share);
   Eigen::MatrixXd bordered(const Eigen::MatrixXd& derivative, const Eigen::VectorXd& slope, const Point& along) const;
   double overlap(const Point& a, const Point& b) const;
+  std::pair<Point, double> secant_to(const Point& point) const;
   Eigen::VectorXd asymmetry(const Point& point);
-  void mark_up_to(const Point& next);
-  bool leaves(const Point& next);
+
+  std::optional<Step> next_orbit();
+  Verdict judge(Step& step);
+  bool goes_back(const Step& step) const;
+  bool pass_graze(Step& step);
   bool turn_corner();
-  bool comes_back(double far) const;
+  bool reaches_end(const Point& beyond);
+  std::string why_left(const Step& tried) const;
+  void take(Step step);
+  bool comes_back(const Point& secant, double far) const;
+  void mark_up_to(const Point& next);
+  void place_contact(const Step& beyond);
+  void keep(Step step);
 
   FollowedMap* map_;
   MapClock clock_;
   ArcSteps limits_;
   Point now_, along_;  // the last orbit, the unit secant
   double step_ = 0;
-  int orientation_ = 0;    // sign of the determinant of the bordered matrix; 0: not known yet
-  int turned_ = 0;         // that of the last correction
+  int orientation_ = 0;    // sign of det(1 − P') dλ/ds, which a branch keeps
   double corner_ = -1;     // arc of the last corner that was turned
   Eigen::VectorXd apart_;  // x − its image, where branches end at images
-  FollowedMap::Image last_;
   std::string failure_;
   BranchTrace trace_;
 };

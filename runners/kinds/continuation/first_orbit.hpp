@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <ricochet/measure/orbits/shoot.hpp>
 #include <string>
 
@@ -16,10 +17,23 @@ struct FirstOrbit {
   std::string why;  ///< "" where it was found
 };
 
+/// What a search for an orbit asks of those who have its map.
+struct OrbitStarts {
+  int steps_per_period = 0;  ///< 0: a map without steps
+  double gap = 1;            ///< m
+  std::string no_image;      ///< why orbits are not their own images; "" where they may be
+  /// Where Newton's method begins, of a transient after so many periods. Throws Refusal where there is no such state.
+  std::function<Eigen::VectorXd(int periods, const MapClock& clock)> state;
+  std::function<double(const Eigen::VectorXd& x, const MapClock& clock)> tolerance;  ///< of residuals, m
+};
+
 /// Solves a wanted orbit by Newton's method: from the motion without contact, from a stored orbit, or from a transient.
 /// Where that did not settle, states after 3, 10, 30 and 100 periods are tried, which pass near to orbits. An orbit
-/// that is its own image is solved by half its period; one that repeats sooner than wanted is none. `round_off`: the
-/// largest of the map so far, m. Map: PeriodicMap or SteppedMap.
+/// that is its own image is solved by half its period; one that repeats sooner than wanted is none. Map: PeriodicMap,
+/// SteppedMap or ReferenceOrbits.
+template <class Map>
+FirstOrbit first_orbit(Map& map, const OrbitStarts& starts, const WantedOrbit& orbit);
+/// The same of a method. `round_off`: the largest of the map so far, m.
 template <class Map>
 FirstOrbit first_orbit(ContinuedMap& continued, Map& map, int steps_per_period, const WantedOrbit& orbit,
                        double& round_off);

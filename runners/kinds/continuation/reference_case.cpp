@@ -36,8 +36,10 @@ class ReferenceRun {
         plan_(continuation_plan(study_case.settings)),
         solver_(registry.reference(case_.references.front().name)->make(case_.references.front().parameters)) {
     const ReferenceProblem problem = problem_at(plan_.orbits.front().at, false);
-    const auto place = [&](const std::function<double(double)>& of) { return of ? of(problem.length) : HUGE_VAL; };
-    const double lower = place(problem.lower), upper = place(problem.upper);
+    const auto place = [](const ReferenceProblem& of, const std::function<double(double)>& stop) {
+      return stop ? stop(of.length) : HUGE_VAL;
+    };
+    const double lower = place(problem, problem.lower), upper = place(problem, problem.upper);
     const bool both = std::isfinite(lower) && std::isfinite(upper);
     gap_ = both ? 0.5 * std::abs(upper - lower) : std::min(std::abs(lower), std::abs(upper));
     if (!std::isfinite(gap_) || gap_ <= 0)
@@ -46,12 +48,12 @@ class ReferenceRun {
     metres_ = is_length(plan_.pointer) || largest == 0 ? 1 : gap_ / largest;
     for (const double value : {plan_.from, plan_.to, plan_.orbits.front().at}) {
       const ReferenceProblem one = problem_at(value, false);
-      const double apart = std::abs(one.lower(one.length) + one.upper(one.length));
-      image_ = image_ && one.load_zero && apart <= solved * gap_;
+      if (!one.load_zero || std::abs(place(one, one.lower) + place(one, one.upper)) > solved * gap_)
+        no_image_ = "the scene is not its own image: stops of other distances, or a load";
     }
   }
 
-  int size() { return orbits_at(plan_.orbits.front(), plan_.orbits.front().at).size(); }
+  int size() { return orbits_at(plan_.orbits.front()).size(); }
 
   CaseRecord run(const std::atomic<bool>& stop) {
     stop_ = &stop;
@@ -77,44 +79,32 @@ class ReferenceRun {
     return std::get<ReferenceProblem>(std::move(problem));
   }
 
-  ReferenceOrbits orbits_at(const WantedOrbit& orbit, double value) const {
+  // The map of the scene that an orbit begins in, with its stops or without.
+  ReferenceOrbits orbits_at(const WantedOrbit& orbit, bool open = false) const {
     const bool own = orbit.from == OrbitSource::state;
-    return {[this, own](double at) {
-              const ReferenceProblem problem = problem_at(at, own);
+    return {[this, own, open](double at) {
+              ReferenceProblem problem = problem_at(at, own);
+              problem.contact_absent = problem.contact_absent || open;
               auto made = solver_->map(problem);
               if (auto* refusal = std::get_if<Refusal>(&made)) throw std::move(*refusal);
               return ReferenceOrbits::Scene{std::get<std::unique_ptr<ReferenceMap>>(std::move(made)),
                                             2 * std::numbers::pi / problem.support_pulsation};
             },
-            value, metres_};
+            orbit.at, metres_};
   }
 
   void follow(const WantedOrbit& orbit) {
-    if (orbit.from != OrbitSource::rest && orbit.from != OrbitSource::state)
-      throw Refusal{"a reference begins from rest or from the scene's own state"};
-    if (orbit.symmetric == HalfMap::yes && !image_)
-      throw Refusal{"the scene is not its own image: stops of other distances, or a load"};
-    ReferenceOrbits map = orbits_at(orbit, orbit.at);
-    MapClock clock{0, orbit.period, orbit.symmetric == HalfMap::yes};
-    const Eigen::VectorXd x = map.settle(orbit.at, std::max(1, orbit.periods));
-    const bool may_be_image = orbit.symmetric == HalfMap::automatic && image_ && orbit.period % 2 != 0;
-    ShotOrbit shot = shoot(map, x, orbit.at, clock, solved * gap_);
-    if (may_be_image) {
-      MapClock half = clock;
-      half.half = true;
-      const Eigen::VectorXd& from = shot.found ? shot.x : x;
-      const double apart = map.metric().size(map.march(from, orbit.at, half).image - from);
-      if (!shot.found || apart <= image_tolerance * gap_)
-        if (ShotOrbit image = shoot(map, from, orbit.at, half, solved * gap_); image.found) {
-          shot = std::move(image);
-          clock = half;
-        }
-    }
-    if (!shot.found)
-      throw Refusal{
-          fmt::format("no orbit of period {} within {} iterations at {:g}; nearest return {:.3g} m after {} "
-                      "periods",
-                      orbit.period, shot.iterations, orbit.at, shot.nearest, orbit.periods)};
+    ReferenceOrbits map = orbits_at(orbit);
+    const auto tolerance = [&](const Eigen::VectorXd&, const MapClock&) { return solved * gap_; };
+    const auto state = [&](int periods, const MapClock& clock) -> Eigen::VectorXd {
+      if (orbit.from == OrbitSource::stored)
+        throw Refusal{"a stored orbit is a state of a method; expected rest, state or free of a reference"};
+      if (orbit.from != OrbitSource::free) return map.settle(orbit.at, periods);
+      ReferenceOrbits open = orbits_at(orbit, true);
+      return shoot(open, Eigen::VectorXd::Zero(map.size()), orbit.at, clock, solved * gap_).x;
+    };
+    const auto [shot, clock, why] = first_orbit(map, {0, gap_, no_image_, state, tolerance}, orbit);
+    if (!why.empty()) return results_.add_missing(orbit.name, orbit.at, why);
     for (const int way : {1, -1}) {
       if (way < 0 && (!plan_.both_ways || plan_.follow == Follow::none)) break;
       FollowedBranch branch{orbit.name, clock, {}, {}, shot.iterations, {}};
@@ -124,14 +114,9 @@ class ReferenceRun {
   }
 
   PointSearch search(const FollowedBranch& branch) const {
-    PointSearch search;
-    search.half = branch.clock.half;
-    search.prominence = plan_.prominence.value_or(least_fold * gap_ / metres_);
-    search.by_steps = true;
-    search.gap = gap_;
     constexpr double contacts = 1e-9;  // of the range
-    search.contacts = contacts * plan_.range();
-    return search;
+    return {branch.clock.half,       plan_.prominence.value_or(least_fold * gap_ / metres_), true, gap_, 0,
+            contacts * plan_.range()};
   }
 
   // The first point of a kind at which branches stop.
@@ -179,7 +164,8 @@ class ReferenceRun {
   std::unique_ptr<ReferenceSolver> solver_;
   const std::atomic<bool>* stop_ = nullptr;
   double gap_ = 1, metres_ = 1, begun_ = thread_seconds();
-  bool image_ = true, over_budget_ = false;
+  std::string no_image_;  // why orbits are not their own images; "" where they may be
+  bool over_budget_ = false;
   CaseRecord record_;
   BranchResults results_;
   long long steps_ = 0;
