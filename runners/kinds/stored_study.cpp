@@ -46,6 +46,12 @@ namespace {
 
 constexpr std::size_t ids_told = 12;
 
+// What is only drawn beside the cases may be gone.
+std::string text_to_compute(nlohmann::ordered_json study) {
+  study.erase("beneath");
+  return study.dump();
+}
+
 }  // namespace
 
 const CaseRecord& find_case(const StudyResults& results, const std::string& id) {
@@ -68,7 +74,7 @@ const CaseRecord& find_case(const StudyResults& results, const std::string& id) 
 }
 
 StoredStudy::StoredStudy(const StudyResults& results, const std::vector<std::filesystem::path>& plugins)
-    : catalogue(standard_catalogue(plugins)), study(parse_study(results.study.dump(), catalogue, registry)) {}
+    : catalogue(standard_catalogue(plugins)), study(parse_study(text_to_compute(results.study), catalogue, registry)) {}
 
 const StudyCase& StoredStudy::find(const std::string& id) const {
   if (const StudyCase* found = find_case(study, id)) return *found;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <ricochet/measure/orbits/branch.hpp>
+#include <ricochet/measure/orbits/shoot.hpp>
 #include <utility>
 
 namespace ricochet {
@@ -127,8 +128,6 @@ void BranchRun::finish(const Piece& piece) {
 }
 
 bool BranchRun::advance(long long pieces) {
-  // Of the affine steps against the map that is marched: beyond it the sets are not those of an orbit any more.
-  constexpr double largest_residual = 1e-8;  // m
   constexpr int most_standing = 100;
   const double at_once = met_at_once * map_->metric().parameter_metres() * (limits_.largest - limits_.least);
   for (; pieces > 0 && !trace_.ended(); --pieces) {

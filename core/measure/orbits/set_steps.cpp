@@ -43,6 +43,9 @@ std::optional<std::string> SetSteps::refusal(const Program& program) {
       return "its impact measure does not see the effort of its own step";
   }
   if (!program.contact) return std::nullopt;
+  if (std::count_if(program.stages.begin(), program.stages.end(), [](const auto& one) { return one.reads_contact; }) >
+      1)
+    return "several of its stages read contact";
   if (!program.problem->motions.empty()) return "supports or stops move by histories";
   if (program.law->memory_per_point() > 0) return "its law keeps a memory";
   if (program.own_sets) return "its stops have parameters of their own";

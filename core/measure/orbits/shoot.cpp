@@ -25,7 +25,7 @@ ShotOrbit shoot(PeriodicMap& map, VectorXd x, double parameter, const MapClock& 
     before = std::exchange(orbit.sets, std::move(made.sets));
     // With the sets of an orbit one iteration is exact: what a second one leaves is round-off.
     const bool settled = orbit.iterations > 1 && before == orbit.sets && orbit.residual < largest_round_off;
-    orbit.found = orbit.residual <= tolerance || (settled && orbit.residual > 0.1 * last);
+    orbit.found = orbit.residual <= std::min(tolerance, largest_residual) || (settled && orbit.residual > 0.1 * last);
     if (orbit.found || orbit.iterations == most || !std::isfinite(orbit.residual)) break;
     const VectorXd correction = DenseLu(one - map.derivative(orbit.sets, clock)).solve(left);
     if (!correction.allFinite()) break;

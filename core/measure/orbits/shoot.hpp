@@ -39,6 +39,8 @@ double round_off_of_map(PeriodicMap& map, const Eigen::VectorXd& x, double param
 inline constexpr double round_offs = 30;
 /// Above it a residual that falls no more is no round-off, m.
 inline constexpr double largest_round_off = 1e-9;
+/// Above it nothing is an orbit, however badly the map is rounded, and affine steps are not those that are marched, m.
+inline constexpr double largest_residual = 1e-8;
 /// How many tolerances a residual of steps may stay at where an iteration gains nothing: it is round-off.
 inline constexpr double stalled = 100;
 

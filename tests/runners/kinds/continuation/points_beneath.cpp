@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "runners/kinds/stored_study.hpp"
 #include "runners/run/run_study.hpp"
 #include "tests/runners/kinds/continuation/tube_study.hpp"
 #include "tests/runners/scratch_folder.hpp"
@@ -70,4 +71,11 @@ TEST_CASE("points of another scene, parameter or section are not drawn beneath b
   CHECK(holds(said("phase", {{"phase", 1.5}}), "another section, strobe at phase 1.5; expected strobe at phase 0"));
   study["beneath"] = (folder / "nowhere").string();
   CHECK(holds(said_of(study), "/beneath: "));
+}
+
+TEST_CASE("cases are computed again without the points beneath them") {
+  StudyResults results;
+  results.study = opened_continuation(tube_continuation()).study.resolved;
+  results.study["beneath"] = "nowhere";
+  CHECK(StoredStudy(results, {}).study.cases.size() == 1);
 }

@@ -341,3 +341,16 @@ TEST_CASE("a branch without a direction ends where it begins, and no branch leav
     return one.kind == "end" && one.note.find("no direction") != std::string::npos;
   }));
 }
+
+TEST_CASE("a step of several stages that read contact is followed by steps, and its rows are orbits") {
+  Json study = tube_continuation();
+  study["methods"] = Json::parse(R"({"mass": "consistent", "contact": {"name": "penalty", "stiffness": 1e4},
+                                     "time": "bathe"})");
+  study["at_most"] = {{"pieces", 3}};
+  const CaseRecord record = continued(study);
+  CHECK(record.status == "done");
+  CHECK(std::any_of(record.notes.begin(), record.notes.end(), [](const std::string& note) {
+    return note.find("several of its stages read contact") != std::string::npos;
+  }));
+  for (const BranchRow& row : rows_of(record)) CHECK(*row.residual < 1e-10);
+}

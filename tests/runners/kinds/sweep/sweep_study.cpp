@@ -316,5 +316,5 @@ TEST_CASE("a parameter inside a list has the unit and the meaning of its key") {
   const auto swept = swept_axis(results, {{"pointer", "/scene/stops/0/upper"}});
   REQUIRE(swept);
   CHECK(swept->axis.unit == "m");
-  CHECK(swept->axis.text.starts_with("Upper stop"));
+  CHECK(swept->axis.text.starts_with("Upper bound"));
 }
