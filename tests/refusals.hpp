@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <ricochet/contract/errors.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -28,6 +29,17 @@ class CauseAndRemedy final : public Catch::MatcherBase<std::string> {
   }
   std::string describe() const override { return "names a cause and a remedy"; }
 };
+
+/// What `action` is refused with: "pointer: message"; `accepted` where it is not.
+template <class Action>
+std::string input_error(Action action, const char* accepted = "no error") {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.pointer() + ": " + error.what();
+  }
+  return accepted;
+}
 
 inline CauseAndRemedy names_cause_and_remedy() {
   return {};

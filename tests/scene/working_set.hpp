@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "tests/eigen.hpp"
+#include "tests/refusals.hpp"
 
 /// \file
 /// The beam most tests use, the mass plugins as a study would open them, and small dense checks.
@@ -87,17 +88,6 @@ inline double fitted_slope(const std::vector<double>& x, const std::vector<doubl
   const Eigen::Map<const Eigen::VectorXd> b(y.data(), static_cast<Eigen::Index>(y.size()));
   const Eigen::VectorXd centred = a.array() - a.mean();
   return centred.dot(b) / centred.squaredNorm();
-}
-
-/// Runs `action`, which must throw InputError; returns "pointer: message".
-template <class Action>
-std::string input_error(Action action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "no error";
 }
 
 }  // namespace ricochet::testing

@@ -55,12 +55,7 @@ struct Reading {
 };
 
 std::string refusal_in(const std::filesystem::path& folder, const Json& json) {
-  try {
-    Reading(json, folder);
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "";
+  return testing::input_error([&] { Reading(json, folder); }, "");
 }
 
 Json axis(const StudyCase& one, const std::string& name) {

@@ -43,12 +43,7 @@ struct Opened {
 };
 
 std::string refused(const Json& json, const std::filesystem::path& folder) {
-  try {
-    Opened(json, folder);
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "no error";
+  return testing::input_error([&] { Opened(json, folder); });
 }
 
 }  // namespace

@@ -47,12 +47,7 @@ Study opened(const Json& json, const std::filesystem::path& folder) {
 }
 
 std::string refused(const Json& json, const std::filesystem::path& folder) {
-  try {
-    opened(json, folder);
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "no error";
+  return testing::input_error([&] { opened(json, folder); });
 }
 
 std::string all(const std::vector<std::string>& notes) {

@@ -349,12 +349,7 @@ TEST_CASE("A load is a formula, or a list of forces at points and of shapes with
   CHECK(axis.cases.back().scene.load.terms.size() == 1);
 
   const auto refused = [&](const char* text) -> std::string {
-    try {
-      load(Json::parse(text));
-    } catch (const InputError& error) {
-      return error.pointer() + ": " + error.what();
-    }
-    return "no error";
+    return testing::input_error([&] { load(Json::parse(text)); });
   };
   CHECK_THAT(refused(R"([{"at": 1, "force": 1}, {"at": 2, "force": 1}])"),
              StartsWith("/scene/load/1/at: ") && Contains("beyond the beam"));
@@ -368,14 +363,7 @@ TEST_CASE("A load is a formula, or a list of forces at points and of shapes with
 
 TEST_CASE("Modes that a structure does not have, and a residual of no modes, are refused with their place") {
   Json study = small_study();
-  const auto fault = [&]() -> std::string {
-    try {
-      parse(study);
-    } catch (const InputError& error) {
-      return error.pointer() + ": " + error.what();
-    }
-    return "";
-  };
+  const auto fault = [&]() -> std::string { return testing::input_error([&] { parse(study); }, ""); };
   study["mesh"] = {{"elements", {4, 8}}, {"modes", {3, 9, nullptr}}};
   CHECK(fault() == "/mesh/modes/1: 9 modes; the structure has 8 degrees of freedom on 4 elements");
   study["mesh"]["modes"] = {3, 8};

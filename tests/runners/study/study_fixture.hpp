@@ -7,6 +7,7 @@
 #include <string>
 
 #include "runners/study/load_study.hpp"
+#include "tests/refusals.hpp"
 
 namespace ricochet::tests {
 
@@ -111,12 +112,7 @@ inline Study parse(const Json& study) {
 
 /// The error of a study that must be refused: "pointer: message", or "" when it is accepted.
 inline std::string refusal(const std::string& text) {
-  try {
-    parse(text);
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "";
+  return testing::input_error([&] { parse(text); }, "");
 }
 inline std::string refusal(const Json& study) {
   return refusal(study.dump(1));

@@ -17,6 +17,7 @@
 #include "runners/store/store.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"
+#include "tests/refusals.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
@@ -62,12 +63,7 @@ const Cell& cell(const Table& from, const Row& row, const std::string& column) {
 
 std::string problem_of(const Json& study) {
   Run run;
-  try {
-    run.go(study);
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "no error";
+  return testing::input_error([&] { run.go(study); });
 }
 
 }  // namespace

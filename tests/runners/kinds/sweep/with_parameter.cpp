@@ -18,21 +18,11 @@ StudyCase first_case(const Json& study = small_sweep()) {
 }
 
 std::string problem_of(const StudyCase& one, const std::string& pointer, double value) {
-  try {
-    with_parameter(one, pointer, value);
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "";
+  return testing::input_error([&] { with_parameter(one, pointer, value); }, "");
 }
 
 std::string forcing_problem(const SceneSpec& scene) {
-  try {
-    check_forcing(scene);
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "";
+  return testing::input_error([&] { check_forcing(scene); }, "");
 }
 
 SceneSpec shaken(const std::string& load) {
