@@ -30,19 +30,19 @@ class CauseAndRemedy final : public Catch::MatcherBase<std::string> {
   std::string describe() const override { return "names a cause and a remedy"; }
 };
 
-inline CauseAndRemedy names_cause_and_remedy() {
-  return {};
-}
-
-/// Runs `action`; returns "pointer: message" of the InputError that it throws, `none` without one.
+/// What `action` is refused with: "pointer: message"; `accepted` where it is not.
 template <class Action>
-std::string input_error(Action action, const char* none = "no error") {
+std::string input_error(Action action, const char* accepted = "no error") {
   try {
     action();
   } catch (const InputError& error) {
     return error.pointer() + ": " + error.what();
   }
-  return none;
+  return accepted;
+}
+
+inline CauseAndRemedy names_cause_and_remedy() {
+  return {};
 }
 
 }  // namespace ricochet::testing

@@ -1,17 +1,9 @@
 #pragma once
 
 // The force law recomputed at each answer, on random operators.
-#include <Eigen/Core>
-#include <catch2/catch.hpp>
-#include <cmath>
-#include <limits>
-#include <random>
-#include <ricochet/contact_solvers/box_problem.hpp>
 #include <ricochet/contact_solvers/pointwise_solver.hpp>
-#include <vector>
 
-#include "tests/allocations.hpp"
-#include "tests/eigen.hpp"
+#include "tests/contact_solvers/box_problems.hpp"
 
 using namespace ricochet;
 
@@ -19,14 +11,7 @@ namespace pointwise_solver_tests {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-inline constexpr double infinity = std::numeric_limits<double>::infinity();
-inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-struct Columns final : DelassusColumns {
-  explicit Columns(MatrixXd matrix) : W(std::move(matrix)) {}
-  const double* column(int j) override { return W.data() + j * W.rows(); }
-  MatrixXd W;
-};
+using box_problem_tests::Columns, box_problem_tests::epsilon, box_problem_tests::infinity;
 
 /// p = k δⁿ (1 + χ δ̇)₊, stiffness growing from lane to lane.
 struct Power final : PointwiseLaw {
@@ -123,17 +108,9 @@ inline Error error(const PointwiseLaw& law, const Problem& problem, const Vector
   return worst;
 }
 
-class Random {
+class Random : public box_problem_tests::Random {
  public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double operator()(double low, double high) { return low + (high - low) * uniform_(engine_); }
-  MatrixXd spd(int m, double decades) {
-    const MatrixXd Q = eigen::orthogonal(MatrixXd::NullaryExpr(m, m, [&] { return (*this)(-1, 1); }));
-    VectorXd d(m);
-    for (int i = 0; i < m; ++i) d[i] = std::pow(10, -decades * i / std::max(1, m - 1));
-    const MatrixXd W = Q * d.asDiagonal() * Q.transpose();
-    return (W + W.transpose()) / 2;
-  }
+  using box_problem_tests::Random::Random;
   Problem problem(int m, double decades) {
     Problem p;
     p.W = spd(m, decades);
@@ -145,10 +122,6 @@ class Random {
     p.upper = VectorXd::NullaryExpr(m, [&] { return (*this)(0, 1) < 0.2 ? infinity : (*this)(0, 0.6); });
     return p;
   }
-
- private:
-  std::mt19937_64 engine_;
-  std::uniform_real_distribution<double> uniform_{0, 1};
 };
 
 }  // namespace pointwise_solver_tests

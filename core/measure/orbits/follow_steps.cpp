@@ -35,6 +35,7 @@ StepFollower::StepFollower(FollowedMap& map, const MapClock& clock, VectorXd x, 
   first.multipliers = multipliers_of(first.image.derivative);
   orientation_ = way * outside(first.multipliers).side();
   keep(std::move(first));
+  if (!within(now_)) trace_.end = fmt::format("its first orbit is beyond the range, at {:.10g}", parameter);
   if (limits_.branch.ends_at_image) apart_ = asymmetry(now_);
 }
 

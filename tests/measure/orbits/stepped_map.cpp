@@ -62,6 +62,8 @@ TEST_CASE("steps of arclength follow the branch that pieces follow") {
   const auto& corners = steps_of.trace().corners;
   REQUIRE(corners.size() > 5);
   CHECK(corners.back().parameter == 0.082);  // the last orbit is solved at the end of the range
+  const StepFollower beyond(map, clock, orbit.x, 0.08, 1, ArcSteps{{0.081, 0.082}});
+  CHECK(beyond.trace().end == "its first orbit is beyond the range, at 0.08");
   const auto& lines = exact.trace().corners;
   for (const BranchCorner& corner : corners) {
     double nearest = 1;

@@ -1,11 +1,5 @@
 #include "runners/store/read_store.hpp"
 
-#include <catch2/catch.hpp>
-
-#include "runners/store/atomic_file.hpp"
-#include "runners/store/store.hpp"
-#include "tests/runners/scratch_folder.hpp"
-#include "tests/runners/store/sample_results.hpp"
 #include "tests/runners/store/stored_study.hpp"
 
 using namespace ricochet;
@@ -51,9 +45,8 @@ TEST_CASE("store reader: a case read alone is saved again as the same rows, and 
   const StudyResults copied = other.load(), whole = read_store(scratch / "one");
   REQUIRE(copied.cases.size() == 2);
   for (std::size_t i = 0; i < 2; ++i) {
-    const CaseRecord &a = whole.cases[i], &b = copied.cases[i];
-    store_tests::check_equal(a, b);
-    CHECK(a.arithmetic == b.arithmetic);
-    CHECK(a.tables.size() == b.tables.size());
+    store_tests::check_equal(copied.cases[i], whole.cases[i]);
+    CHECK(copied.cases[i].arithmetic == whole.cases[i].arithmetic);
+    CHECK(copied.cases[i].tables.size() == whole.cases[i].tables.size());
   }
 }

@@ -27,30 +27,14 @@ Json shaken_study() {
     "step": 1e-4, "duration": 0.5, "samples": 50})json");
 }
 
-/// A study whose files lie in a folder of their own.
-class Studies {
+/// Studies whose files lie in a folder of their own.
+class Studies : ScratchFolder, public CaseRuns {
  public:
-  Studies() {
+  Studies() : CaseRuns(path()) {
     write("base.csv", "t,a\n0,0\n0.025,9.81\n0.05,0\n0.4,0\n");
     write("force.csv", "t,F\n0,0\n0.1,5\n0.2,5\n");
   }
-  void write(const std::string& name, const std::string& text) const { write_text(folder_ / name, text); }
-  Study parse(const Json& study) { return parse_study(study.dump(1), catalogue_, registry_, folder_.path()); }
-  std::vector<CaseRecord> run(const Json& study) {
-    std::vector<CaseRecord> out;
-    for (const StudyCase& one : parse(study).cases) out.push_back(run_case(one, registry_, stop_));
-    return out;
-  }
-  /// What its text is refused with: "POINTER: sentence".
-  std::string refusal(const Json& study) {
-    return input_error([&] { parse(study); });
-  }
-
- private:
-  ScratchFolder folder_;
-  Catalogue catalogue_{RICOCHET_PLUGIN_DIR, {}, {}};
-  Registry registry_;
-  const std::atomic<bool> stop_ = false;
+  void write(const std::string& name, const std::string& text) const { write_text(*this / name, text); }
 };
 
 Json moved_by(const std::string& pointer, const Json& value) {
@@ -81,8 +65,8 @@ Json with_force(const Json& force) {
 TEST_CASE("a table pushes as the formula that it samples, and its factor and columns are those that are named") {
   Studies studies;
   const Json table = {{"file", "force.csv"}, {"value", "F"}, {"factor", 2}, {"after", "hold"}};
-  const CaseRecord by_table = studies.run(with_force(table)).front();
-  const CaseRecord by_formula = studies.run(with_force("2*(t < 0.1 ? 50*t : 5)")).front();
+  const CaseRecord by_table = studies.of(with_force(table)).front();
+  const CaseRecord by_formula = studies.of(with_force("2*(t < 0.1 ? 50*t : 5)")).front();
   REQUIRE(by_table.status == "done");
   const double tip = end_of(by_table, "tip_displacement");
   CHECK(tip != 0);
@@ -96,11 +80,11 @@ TEST_CASE("motions: a sampled formula is the table of its samples, displacement 
   // φ = 1 mm sin(20π t): its acceleration has no value at t = 0 and at the end, as a natural spline asks.
   study["scene"]["motions"][0] = {
       {"displacement", {{"formula", "1e-3*sin(20*pi*t)"}, {"every", 1e-4}, {"until", 0.5}}}};
-  const double by_displacement = end_of(studies.run(study).front(), "tip_displacement");
+  const double by_displacement = end_of(studies.of(study).front(), "tip_displacement");
   study["scene"]["motions"][0] = {
       {"acceleration", {{"formula", "-1e-3*(20*pi)^2*sin(20*pi*t)"}, {"every", 1e-4}, {"until", 0.5}}},
       {"start", {{"velocity", 1e-3 * 20 * pi}}}};
-  const double by_acceleration = end_of(studies.run(study).front(), "tip_displacement");
+  const double by_acceleration = end_of(studies.of(study).front(), "tip_displacement");
   // Both interpolate to (20π·1e-4)²/12 = 3e-6.
   CHECK(by_displacement == Approx(by_acceleration).epsilon(1e-4));
   CHECK(std::abs(by_displacement) > 1e-5);
@@ -110,7 +94,7 @@ TEST_CASE("random loads: a seed is an axis, and each seed is another load") {
   Studies studies;
   Json study = with_force({{"psd", {{"formula", "4/(1 + (f/20)^2)"}, {"from", 1}, {"to", 50}, {"lines", 980}}}});
   study["scene"]["seed"] = {1, 2, 3};
-  const std::vector<CaseRecord> records = studies.run(study), again = studies.run(study);
+  const std::vector<CaseRecord> records = studies.of(study), again = studies.of(study);
   REQUIRE(records.size() == 3);
   std::set<double> ends;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -127,7 +111,7 @@ TEST_CASE("a random load that repeats within the run is told") {
   study["duration"] = 15;
   const auto notes = [&] {
     std::string all;
-    const std::vector<CaseRecord> records = studies.run(study);
+    const std::vector<CaseRecord> records = studies.of(study);
     for (const std::string& note : records.front().notes) all += note + "\n";
     return all;
   };
@@ -140,11 +124,11 @@ TEST_CASE("a random load that repeats within the run is told") {
 
 TEST_CASE("a table is part of what a case is: another content makes another case, another time another one too") {
   Studies studies;
-  const Study before = studies.parse(shaken_study());
+  const Study before = studies.study(shaken_study());
   studies.write("base.csv", "t,a\n0,0\n0.025,9.8\n0.05,0\n0.4,0\n");
   Studies other;
-  CHECK(other.parse(shaken_study()).cases.front().id == before.cases.front().id);
-  CHECK(studies.parse(shaken_study()).cases.front().id != before.cases.front().id);
+  CHECK(other.study(shaken_study()).cases.front().id == before.cases.front().id);
+  CHECK(studies.study(shaken_study()).cases.front().id != before.cases.front().id);
   // A stored study knows its files, and says when they are no longer those.
   Json stored = before.resolved;
   CHECK_THAT(studies.refusal(stored), Contains("base.csv has changed since the run began"));
@@ -152,7 +136,7 @@ TEST_CASE("a table is part of what a case is: another content makes another case
 
 TEST_CASE("without motions, random loads and frames nothing of a study changes") {
   Studies studies;
-  const Json resolved = studies.parse(with_force(1)).resolved;
+  const Json resolved = studies.study(with_force(1)).resolved;
   for (const char* key : {"motions", "frame", "seed"}) CHECK_FALSE(resolved["scene"].contains(key));
   CHECK_FALSE(resolved["scene"]["stops"].contains("moves_with"));
 }
@@ -247,12 +231,12 @@ TEST_CASE("supports that move apart: static modes carry their motion, relative d
     "mesh": {"elements": 1},
     "methods": {"mass": "consistent", "contact": "none", "time": "newmark"},
     "step": 2e-5, "duration": 1, "samples": 11})json");
-  const double first = value_at(studies.run(study).front(), "tip_displacement", 1);
+  const double first = value_at(studies.of(study).front(), "tip_displacement", 1);
   study["scene"]["structure"]["tip"]["node"] = "N3";
-  const double second = value_at(studies.run(study).front(), "tip_displacement", 1);
+  const double second = value_at(studies.of(study).front(), "tip_displacement", 1);
   study["scene"]["structure"]["tip"]["node"] = "N2";
   study["scene"].erase("frame");
-  const double absolute = value_at(studies.run(study).front(), "tip_displacement", 1);
+  const double absolute = value_at(studies.of(study).front(), "tip_displacement", 1);
   CHECK(first == Approx(-174.7902).epsilon(1e-6));
   CHECK(second == Approx(-199.7219).epsilon(1e-6));
   // The static mode is ¾ there, and φ(1 s) = 2e5/12 m.
@@ -283,7 +267,7 @@ TEST_CASE("two masses that meet, shaken against each other") {
     "mesh": {"elements": 1},
     "methods": {"mass": "consistent", "contact": {"name": "penalty", "stiffness": 2.88e7}, "time": "newmark"},
     "step": 1e-5, "duration": 0.4, "samples": 8})json");
-  const CaseRecord record = studies.run(study).front();
+  const CaseRecord record = studies.of(study).front();
   REQUIRE(record.status == "done");
   // Converged to some 1e-8 m at this step; the printed ones are 3e-6 from these.
   CHECK(value_at(record, "tip_displacement", 0.05) == Approx(-3.5801e-4).margin(2e-7));
@@ -297,7 +281,7 @@ TEST_CASE("the film of given matrices has the first support as its clamp, where 
   studies.write("M.mtx", std::string(coordinates) + "2 2 1\n2 2 10\n");
   studies.write("dofs.csv", dof_header + "1,L,ux,0,0,0,left\n2,A,ux,1,0,0,\n");
   const CaseRecord record = studies
-                                .run(Json::parse(R"json({
+                                .of(Json::parse(R"json({
     "name": "film", "kind": "trajectory",
     "scene": {"structure": {"type": "assembled", "stiffness": "K.mtx", "mass": "M.mtx", "dofs": "dofs.csv"},
               "motions": [{"displacement": {"formula": "1e-3*sin(20*pi*t)", "every": 1e-4, "until": 0.1}}],

@@ -6,15 +6,6 @@ using namespace ricochet::testing;
 
 namespace {
 
-std::string error_of(const Json& text) {
-  try {
-    opened_continuation(text);
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "no error";
-}
-
 Json with(const std::string& pointer, Json value) {
   Json study = tube_continuation();
   study[Json::json_pointer(pointer)] = std::move(value);

@@ -13,15 +13,6 @@ using namespace ricochet::testing;
 
 namespace {
 
-std::string said_of(const Json& text) {
-  try {
-    opened_continuation(text);
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "no error";
-}
-
 // The tube at two amplitudes, marched from rest.
 void march_tube(const std::filesystem::path& folder, const Json& change = Json::object()) {
   Json study = tube_continuation();
@@ -61,16 +52,16 @@ TEST_CASE("points of another scene, parameter or section are not drawn beneath b
   const auto said = [&](const std::string& name, const Json& change) {
     march_tube(folder / name, change);
     study["beneath"] = (folder / name).string();
-    return said_of(study);
+    return error_of(study);
   };
   const auto holds = [](const std::string& text, const std::string& part) { return text.find(part) != text.npos; };
   CHECK(holds(said("gap", {{"scene", {{"stops", {{"upper", 0.11}}}}}}), "/beneath: "));
-  CHECK(holds(said_of(study), "has another scene: /scene/stops/upper differs"));
+  CHECK(holds(error_of(study), "has another scene: /scene/stops/upper differs"));
   CHECK(holds(said("pulsation", {{"parameter", {{"pointer", "/scene/support/pulsation"}, {"values", {9, 10}}}}}),
               "goes along /scene/support/pulsation; expected /scene/support/amplitude"));
   CHECK(holds(said("phase", {{"phase", 1.5}}), "another section, strobe at phase 1.5; expected strobe at phase 0"));
   study["beneath"] = (folder / "nowhere").string();
-  CHECK(holds(said_of(study), "/beneath: "));
+  CHECK(holds(error_of(study), "/beneath: "));
 }
 
 TEST_CASE("cases are computed again without the points beneath them") {

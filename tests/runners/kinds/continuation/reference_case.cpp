@@ -19,15 +19,6 @@ Json with_reference(Json reference) {
   return study;
 }
 
-std::string error_in(const Json& text) {
-  try {
-    opened_continuation(text);
-  } catch (const InputError& error) {
-    return error.pointer() + ": " + error.what();
-  }
-  return "no error";
-}
-
 const StudyCase* case_of(const Study& study, const std::string& id) {
   return find_case(study, id);
 }
@@ -73,13 +64,13 @@ TEST_CASE("each scene of a continuation study has its reference") {
 }
 
 TEST_CASE("references without orbits of their own are refused") {
-  CHECK(error_in(with_reference("self")).starts_with("/reference/0: it marches the methods themselves"));
-  CHECK(error_in(with_reference("event-drivn")).find("did you mean \"event-driven\"") != std::string::npos);
+  CHECK(error_of(with_reference("self")).starts_with("/reference/0: it marches the methods themselves"));
+  CHECK(error_of(with_reference("event-drivn")).find("did you mean \"event-driven\"") != std::string::npos);
   Json study = with_reference("event-driven");
   study["methods"]["contact"] = {{"name", "penalty"}, {"stiffness", 1e5}};
   study["parameter"] = {{"pointer", "/methods/contact/stiffness"}, {"from", 1e4}, {"to", 1e6}};
   study["orbits"][0]["at"] = 1e5;
-  CHECK(error_in(study).starts_with("/reference: a reference has no /methods/contact/stiffness"));
+  CHECK(error_of(study).starts_with("/reference: a reference has no /methods/contact/stiffness"));
   // A scene without a map is told by its case.
   const OpenedContinuation opened = opened_continuation(with_reference("exact"));
   const CasePlan plan = plan_continuation(*case_of(opened.study, "reference"), *opened.registry);
@@ -123,6 +114,33 @@ TEST_CASE("a branch of a reference stops at the points at which branches stop") 
   CHECK(points.back().kind == "end");
   CHECK(points.back().note.starts_with("stopped at the first torus, at 0.08495"));
   for (const BranchRow& row : rows_of(record)) CHECK(*row.parameter < 0.0851);
+}
+
+TEST_CASE("first orbits of a reference are looked for as those of a method") {
+  Json study = with_reference({{"name", "event-driven"}, {"modes", 8}});
+  study["parameter"]["from"] = 0.02;
+  study["follow"] = "none";
+  study["orbits"] = {{{"at", 0.03}, {"from", "free"}},
+                     {{"at", 0.03}, {"periods", 20}},
+                     {{"at", 0.03}, {"periods", 20}, {"period", 2}},
+                     {{"at", 0.03}, {"periods", 20}, {"symmetric", true}}};
+  const std::atomic<bool> stop{false};
+  const auto run = [&] {
+    const OpenedContinuation opened = opened_continuation(study);
+    return run_continuation(*case_of(opened.study, "reference"), *opened.registry, {}, stop);
+  };
+  const CaseRecord record = run();
+  const auto rows = rows_of(record);
+  REQUIRE(rows.size() == 3);
+  // Where nothing is touched the motion is linear: one solution, whatever it is looked for from.
+  for (const BranchRow& row : rows) {
+    CHECK(row.symmetric == true);
+    CHECK(*row.tip_displacement == Approx(*rows[0].tip_displacement).epsilon(0).margin(1e-11));
+  }
+  CHECK(record.reason == "the orbit found from rest at λ = 0.03 repeats after 1 period; expected period 2");
+  study["orbits"].erase(2);
+  study["scene"]["stops"]["lower"] = -0.11;
+  CHECK(run().reason.starts_with("the scene is not its own image"));
 }
 
 TEST_CASE("a reference fills its columns and changes neither names nor limits nor orders") {

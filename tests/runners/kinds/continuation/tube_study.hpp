@@ -9,6 +9,7 @@
 #include "runners/store/record_values.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"
+#include "tests/refusals.hpp"
 
 /// \file
 /// Small studies of kind `continuation`, from their text to what a case of them leaves.
@@ -48,6 +49,11 @@ inline OpenedContinuation opened_continuation(const Json& text) {
   opened.registry = &registry;
   REQUIRE_FALSE(opened.study.cases.empty());
   return opened;
+}
+
+/// What the text of a study is refused with.
+inline std::string error_of(const Json& text) {
+  return input_error([&] { opened_continuation(text); });
 }
 
 inline CaseRecord continued(const Json& text, const CaseContext& context = {}) {

@@ -7,9 +7,8 @@
 #include "runners/kinds/basins/run_basins.hpp"
 #include "runners/kinds/sweep/forced_scenes.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
-#include "runners/kinds/trajectory/run_case.hpp"
-#include "tests/refusals.hpp"
 #include "tests/runners/kinds/sweep/sweep_case.hpp"
+#include "tests/runners/kinds/trajectory/case_runs.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
@@ -52,16 +51,16 @@ Json harmonic(const char* supports, double amplitude = 1e-3) {
 const char* const oscillator = R"({"type": "oscillator", "mass": 1, "stiffness": 1600, "damping": 4})";
 
 /// Studies whose files lie in a folder of their own.
-class Moved {
+class Moved : ScratchFolder, public CaseRuns {
  public:
-  Moved() {
+  Moved() : CaseRuns(path()) {
     const std::string head = "%%MatrixMarket matrix coordinate real symmetric\n4 4 ";
-    write_text(folder_ / "K.mtx", head + "7\n1 1 1e4\n2 1 -1e4\n2 2 2e4\n3 2 -1e4\n3 3 2e4\n4 3 -1e4\n4 4 1e4\n");
-    write_text(folder_ / "M.mtx", head + "2\n2 2 1\n3 3 1\n");
+    write_text(*this / "K.mtx", head + "7\n1 1 1e4\n2 1 -1e4\n2 2 2e4\n3 2 -1e4\n3 3 2e4\n4 3 -1e4\n4 4 1e4\n");
+    write_text(*this / "M.mtx", head + "2\n2 2 1\n3 3 1\n");
     write_text(
-        folder_ / "dofs.csv",
+        *this / "dofs.csv",
         "dof,node,component,x,y,z,held\n1,N1,ux,0,0,0,left\n2,N2,ux,1,0,0,\n3,N3,ux,2,0,0,\n4,N4,ux,3,0,0,right\n");
-    write_text(folder_ / "start.csv", "dof,displacement,velocity\n2,1e-4,0\n3,-1e-4,1e-3\n");
+    write_text(*this / "start.csv", "dof,displacement,velocity\n2,1e-4,0\n3,-1e-4,1e-3\n");
     std::string table = "t,F,a\n";
     constexpr int entries = 400;
     for (int i = 0; i <= entries; ++i) {
@@ -69,13 +68,11 @@ class Moved {
       table += fmt::format("{:.17g},{:.17g},{:.17g}\n", whole * i / entries, std::cos(turn),
                            -1e-3 * omega * omega * std::sin(turn));
     }
-    write_text(folder_ / "one.csv", table);
+    write_text(*this / "one.csv", table);
   }
-  Study parse(const Json& text) { return parse_study(text.dump(1), catalogue_, registry_, folder_.path()); }
-  const Registry& registry() const { return registry_; }
   CaseRecord run(const Json& text) {
-    const Study study = parse(text);
-    CaseRecord record = run_bifurcation(study.cases.front(), registry_, {}, stop_);
+    const std::atomic<bool> stop = false;
+    CaseRecord record = run_bifurcation(study(text).cases.front(), registry(), {}, stop);
     INFO(record.reason);
     REQUIRE(record.status == "done");
     return record;
@@ -92,21 +89,12 @@ class Moved {
     constexpr int periods = transient + kept;
     text["duration"] = periods * whole * (1 + 1e-9);
     text["samples"] = periods;
-    const CaseRecord record = run_case(parse(text).cases.front(), registry_, stop_);
+    const CaseRecord record = first_of(text);
     INFO(record.reason);
     REQUIRE(record.status == "done");
     const Series& tip = record.curve.columns.at(1);
     return {tip.begin() + transient + 1, tip.end()};
   }
-  std::string refusal(const Json& text) {
-    return input_error([&] { parse(text); });
-  }
-
- private:
-  ScratchFolder folder_;
-  Catalogue catalogue_{RICOCHET_PLUGIN_DIR, {}, {}};
-  Registry registry_;
-  const std::atomic<bool> stop_ = false;
 };
 
 Json scene_of(const Json& structure, const Json& stops, const Json& motions) {
@@ -221,7 +209,7 @@ TEST_CASE("basins: bodies begin as they say, files are multiplied, and both axes
     study["axes"] = Json::array({{{"pointer", x}, {"from", -1}, {"to", 1}, {"count", 2}},
                                  {{"pointer", y}, {"from", -2}, {"to", 2}, {"count", 2}}});
     const std::atomic<bool> stop = false;
-    const CaseRecord record = run_basins(studies.parse(study).cases.front(), studies.registry(), {}, stop);
+    const CaseRecord record = run_basins(studies.study(study).cases.front(), studies.registry(), {}, stop);
     INFO(record.reason);
     CHECK(record.status == "done");
     return table_of(record, "cells").rows.size();
@@ -247,7 +235,7 @@ TEST_CASE("basins: bodies begin as they say, files are multiplied, and both axes
 TEST_CASE("random starts of a beam in two planes move along both") {
   Moved studies;
   const Json two = spans(R"({"planes": 2})");
-  const Study study = studies.parse(
+  const Study study = studies.study(
       swept_scene(scene_of(two, Json::parse(R"([{"name": "hole", "at": {"x": 0.5}, "clearance": {"radius": 4e-4}}])"),
                            Json::array({harmonic("p2")})),
                   "/scene/motions/0/displacement/amplitude", 1e-3, {{"elements", 4}}));

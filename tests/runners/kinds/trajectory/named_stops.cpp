@@ -87,7 +87,7 @@ TEST_CASE("an observed measure of a stop that is not there is refused with the n
   Json study = beam_between(Json::parse(R"([{"name": "plate", "at": {"x": 0.75}, "lower": -0.01, "upper": 0.01}])"));
   const auto refusal = [&](const char* measure) {
     study["observe"] = measure;
-    return testing::input_error([&] { runs.study(study); });
+    return runs.refusal(study);
   };
   CHECK(refusal("impulse[plate]") == "no error");
   CHECK_THAT(refusal("impulse[plato]"),
