@@ -20,7 +20,7 @@ class PointSpeaker {
   /// Whether a case left branches.
   bool known() const { return points_.reference() != nullptr; }
   void say_points(answers::Answer& answer) const;
-  /// What the points of the finest case are where no other case confirms them.
+  /// The points of one case where no other confirms them.
   void say_unconfirmed(answers::Answer& answer) const;
   void say_shifts(answers::Answer& answer) const;
   void say_absent(answers::Answer& answer) const;
@@ -29,6 +29,9 @@ class PointSpeaker {
   void say_nothing(answers::Answer& answer) const;
 
  private:
+  /// What the first orbits of the finest case are, where no branch has a special point.
+  void say_orbits(answers::Answer& answer) const;
+  std::string subject(const ToldPoint& told) const;
   /// "folds at 0.10057 ± 3e-5 m", and its orders and the reference's value in parentheses.
   std::string place_words(const ToldPoint& told, answers::Sentence& said) const;
   std::string facts_words(const ToldPoint& told, answers::Sentence& said) const;

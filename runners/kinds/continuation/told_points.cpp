@@ -22,13 +22,30 @@ std::optional<double> stable_share(const std::vector<BranchRow>& rows, double fr
   return all > 0 ? std::optional(stable / all) : std::nullopt;
 }
 
-/// The place of a kind in the order in which kinds are told.
+/// In the order in which kinds are told.
+constexpr PointWords point_kinds[] = {{"fold", "folds", "fold"},
+                                      {"torus", "becomes a torus", "torus"},
+                                      {"symmetry", "loses its symmetry", "loss of symmetry"},
+                                      {"flip", "doubles its period", "flip"},
+                                      {"first contact", "first touches a stop", "first contact"},
+                                      {"contact", "gains or loses a contact", "change of contact"}};
+
 std::size_t kind_rank(const std::string& kind) {
-  constexpr const char* kinds[] = {"fold", "torus", "symmetry", "flip", "first contact", "contact"};
-  return static_cast<std::size_t>(std::find(std::begin(kinds), std::end(kinds), kind) - std::begin(kinds));
+  const auto* found = std::find_if(std::begin(point_kinds), std::end(point_kinds),
+                                   [&](const PointWords& one) { return one.kind == kind; });
+  return static_cast<std::size_t>(found - std::begin(point_kinds));
 }
 
 }  // namespace
+
+const PointWords& point_words(const std::string& kind) {
+  static constexpr PointWords other = {"", "changes", "point"};
+  return is_point_kind(kind) ? point_kinds[kind_rank(kind)] : other;
+}
+
+bool is_point_kind(const std::string& kind) {
+  return kind_rank(kind) < std::size(point_kinds);
+}
 
 bool ends_stability(const StudyPoints& study, const StudyPoint& point) {
   const Table* table = find_table(study.cases()[point.owner]->tables, branches_name);

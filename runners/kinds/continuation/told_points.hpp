@@ -7,6 +7,13 @@
 
 namespace ricochet {
 
+/// What an orbit does at a point of a kind, and the point as a thing.
+struct PointWords {
+  const char *kind, *does, *thing;
+};
+const PointWords& point_words(const std::string& kind);
+bool is_point_kind(const std::string& kind);
+
 /// A point that an answer tells.
 struct ToldPoint {
   const PointName* name = nullptr;

@@ -180,6 +180,35 @@ TEST_CASE("one case names nothing, and says so") {
   CHECK_THAT(said[0], Contains("One case") && Contains("fold at 0.10056"));
 }
 
+namespace {
+
+/// Two cases of two methods; the first has branches without special points, or both.
+StudyResults without_points(bool both) {
+  StudyResults all = synthetic::points();
+  all.cases = {all.cases[5], all.cases[15]};
+  for (std::size_t k = 0; k < (both ? 2 : 1); ++k) {
+    std::vector<BranchRow> rows = branch_rows_in(*find_table(all.cases[k].tables, branches_name));
+    for (BranchRow& row : rows) row.point.reset();
+    all.cases[k].tables = {branches_table(4, rows), special_points_type().with({}), turns_type().with({})};
+  }
+  return with_tables(std::move(all));
+}
+
+}  // namespace
+
+TEST_CASE("where the finest case has no special point those of another are told") {
+  const auto said = sentences_of(without_points(false));
+  REQUIRE_FALSE(said.empty());
+  CHECK_THAT(said[0], Contains("the finest has none") && Contains("fold at 0.1"));
+}
+
+TEST_CASE("without special points the orbits are told, each once") {
+  const auto said = sentences_of(without_points(true));
+  REQUIRE(said.size() == 1);
+  // Both ways begin with one orbit at 0.08 m; its largest multiplier is 1 − 12 · 0.00495.
+  CHECK(said[0] == "No special point was met; orbits are stable at 0.08 m (largest multiplier 0.941).");
+}
+
 TEST_CASE("a study without orbits says why") {
   StudyResults none = synthetic::points();
   none.cases = {none.cases.front()};
