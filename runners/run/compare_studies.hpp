@@ -34,12 +34,20 @@ struct MeasureChange {
   NumberChange change = NumberChange::none;
 };
 
+/// A table of a case of both: of rows, or of columns of numbers.
+struct TableChange {
+  std::string table;
+  CasePair pair;
+  bool equal = false;  ///< bitwise, of numbers
+};
+
 struct StudyComparison {
   std::vector<ChangedText> inputs, environment;
   bool by_id = true;  ///< cases go together by their ids; else by their values on all axes of both
   std::vector<CasePair> pairs;
   std::vector<const CaseRecord*> only_a, only_b;
   std::vector<MeasureChange> measures;                  ///< of pairs that are done in both, measure by measure
+  std::vector<TableChange> tables;                      ///< of the same pairs, case by case
   std::vector<std::string> lines_only_a, lines_only_b;  ///< of the answers
 
   std::vector<CasePair> status_changes() const;
@@ -52,7 +60,7 @@ StudyComparison compare_studies(const StudyResults& a, const StudyResults& b);
 
 /// What a person reads, at most a screen of it.
 std::string comparison_text(const StudyComparison& found, const StudyResults& a, const StudyResults& b);
-/// All of it: a row per input, case, measure and line.
+/// All of it: a row per input, case, measure, table and line.
 Table comparison_table(const StudyComparison& found);
 
 }  // namespace ricochet

@@ -63,6 +63,32 @@ TEST_CASE("A study compared with itself is equal to the last bit, whenever it ra
   CHECK_THAT(comparison_text(found, a, b), Contains("The results are equal to the last bit."));
 }
 
+TEST_CASE("Tables of rows and of numbers count as results, with or without measures") {
+  StudyResults a = study();
+  a.cases.front().tables = {{"rows", "Rows.", {{"x", "1", "A number."}}, {{1.0}, {2.0}}}};
+  NumberTable numbers;
+  numbers.name = "numbers";
+  numbers.columns = {{"y", "1", "A number."}};
+  numbers.values = {{1.0, NAN}};
+  a.cases.back().numbers = {numbers};
+  StudyResults b = a;
+  const auto said = [&] { return comparison_text(compare_studies(a, b), a, b); };
+  CHECK_THAT(said(),
+             Contains("tables: 2 tables compared: 2 equal") && Contains("The results are equal to the last bit."));
+  b.cases.front().tables[0].rows[1][0] = 2 + 1e-15;
+  CHECK_THAT(said(),
+             Contains("1 equal; others: rows of 1 case") && Contains("have equal measures, but their tables differ"));
+  b.cases.back().numbers[0].values[0].push_back(3);
+  CHECK_THAT(said(), Contains("0 equal; others: numbers of 1 case, rows of 1 case"));
+  for (StudyResults* one : {&a, &b})
+    for (CaseRecord& record : one->cases) record.measures.clear();
+  CHECK_THAT(said(), Contains("The results differ in their tables."));
+  b.cases.back().numbers.clear();
+  const Table table = comparison_table(compare_studies(a, b));
+  CHECK(std::count_if(table.rows.begin(), table.rows.end(),
+                      [](const Row& row) { return row[0].text() == "table" && row.back().text() == "changed"; }) == 2);
+}
+
 TEST_CASE("What was asked differently is told by pointer, a list that grew as one value") {
   const StudyResults a = study();
   StudyResults b = study();
