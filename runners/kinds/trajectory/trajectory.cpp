@@ -48,8 +48,7 @@ std::vector<MeasureInfo> trajectory_measures() {
       {"largest_step_gain", "J",
        "Largest increase of the scheme's own energy (the common one where none is declared) over one step, beyond the "
        "work of the loads; where the scheme has an exact balance, by the works of each step, which the energy read "
-       "every "
-       "sixteen steps confirms.",
+       "every sixteen steps confirms.",
        Of::motion, false, "energy_brought_in"},
       {"drift_per_impact", "J",
        "Change of energy that damping and loads do not explain, divided by the number of impacts.", Of::motion, true,
@@ -66,10 +65,7 @@ std::vector<MeasureInfo> trajectory_measures() {
        true, "energy_brought_in"},
       {"balance_residual", "J",
        "What the balance of the scheme's own energy fails to close by: change − loads + damping + losses that the "
-       "scheme "
-       "declares − work of the stops; "
-       "round-off × steps "
-       "where the scheme has an exact balance.",
+       "scheme declares − work of the stops; round-off × steps where the scheme has an exact balance.",
        Of::motion, false, "energy_brought_in"},
       {"projection_energy", "J",
        "Energy after minus before the projection of the initial state on the constraint of a singular mass.",
@@ -89,8 +85,7 @@ std::vector<MeasureInfo> trajectory_measures() {
        true},
       {"impulse", "N s",
        "Momentum that the contact efforts give, summed by magnitude over the contact points; what an effort of each "
-       "stage is "
-       "worth follows from the scheme's plan."},
+       "stage is worth follows from the scheme's plan."},
       {"peak_contact_force", "N",
        "Largest force at one contact point over the run, from every step. That of an impact on a rigid stop is its "
        "impulse over a step or two: it grows as the step shrinks."},
@@ -122,8 +117,7 @@ std::vector<MeasureInfo> trajectory_measures() {
        Of::motion, false, "energy_brought_in"},
       {"dissipated_by_scheme", "J",
        "Energy that the scheme itself took out over the run, apart from damping and stops: numerical damping, where "
-       "the "
-       "scheme declares its losses.",
+       "the scheme declares its losses.",
        Of::motion, false, "energy_brought_in"},
       {"first_impact", "s", "Time of the first impact.", Of::motion, true},
       {"first_release", "s", "Time at which a contact point first opened again.", Of::motion, true},
