@@ -36,8 +36,8 @@ TableType<EnergyEnd> energy_ends_type() {
            &EnergyEnd::ratio)
       .add({"change", "1", "Distance of that ratio from 1."}, &EnergyEnd::change)
       .add({"noise_floor", "1",
-            "What of the change is not told from round-off: 2⁻⁵² times the number of steps, or the residual of the "
-            "energy balance over the energy brought in where the balance is exact, whichever is larger."},
+            "Share of the change that is not told from round-off: 2⁻⁵² times the number of steps. Where the balance is "
+            "exact, its residual over the energy brought in, if that is larger."},
            &EnergyEnd::noise_floor)
       .add({"kept", "", "Whether the change is within the noise floor."}, &EnergyEnd::kept)
       .add({"step_gain", "1", "Largest gain of one step over the energy brought in."}, &EnergyEnd::step_gain)
