@@ -104,7 +104,7 @@ TEST_CASE("times of impacts follow the clock of the scene, and a transient of on
   CHECK(done.strobed.size() == 16);
 
   // The same motion, marched without a section.
-  Marcher plain(program());
+  Marcher plain = marcher(scene, 1, methods, h);
   plain.start();
   std::vector<double> tips = {0, plain.tip(0)};
   for (int n = plain.step(); n < 18 * plan.steps_per_period; ++n) {
