@@ -252,7 +252,7 @@ std::vector<std::string> point_names(const Json& study, bool fields) {
 StudyKind trajectory_format(const std::vector<MeasureInfo>& measures) {
   StudyKind format;
   format.name = "trajectory";
-  format.text = "Each case marches its scene once.";
+  format.text = "Each case integrates its scene once.";
   format.shows_points = true;
   format.keys = {keys::step(),
                  keys::duration(),
