@@ -51,9 +51,7 @@ const TableType<MeasureLimit>& limits_type() {
         .add({"unit", "", "Unit of these."}, &MeasureLimit::unit)
         .add({"status", "",
               "What the values do as they are refined: one, same, two, settles, reaches truth, vanishes, moves, "
-              "wanders, "
-              "blows "
-              "up."},
+              "wanders, blows up."},
              &MeasureLimit::status)
         .add({"order", "1", "Order of convergence in the step, where two orders in a row agree."}, &MeasureLimit::order)
         .add({"step_moves", "", "What the step still moves it by, in `unit`."}, &MeasureLimit::step_moves)

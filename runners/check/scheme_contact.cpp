@@ -201,9 +201,8 @@ Verdict restitution_as_declared(const Scheme& scheme) {
   const std::vector<double> steps = contact_steps(plan), errors = errors_after_impact(scheme, steps, e);
   if (!(errors.back() <= 0.5 * errors.front() && errors.back() <= 0.02))
     return fails(
-        fmt::format("declares its restitution {}, e = {:g}; after one bounce of an oscillator the error is "
-                    "{:.2g} m at h = {:g} s and {:.2g} m at {:g} s, where it should vanish; a free mass "
-                    "rebounds with {}",
+        fmt::format("declares its restitution {}, e = {:g}; after one bounce of an oscillator the error is {:.2g} m at "
+                    "h = {:g} s and {:.2g} m at {:g} s, where it should vanish; a free mass rebounds with {}",
                     word(declared), e, errors.front(), steps.front(), errors.back(), steps.back(), range_text(*range)));
   return fine(fmt::format("{}, e = {:g}: a free mass rebounds with {}", word(declared), e, range_text(*range)));
 }

@@ -5,7 +5,7 @@
 /// The kinds of study, each made by the folder of its name.
 namespace ricochet {
 
-/// Each case marches its scene once: energies, impacts, a curve over time.
+/// Each case integrates its scene once: energies, impacts, a curve over time.
 KindPointer trajectory_kind();
 /// Each case is compared with a reference; orders of the errors in the step and in the element length.
 KindPointer convergence_kind();

@@ -59,8 +59,7 @@ std::string beyond_explicit_limit(const std::shared_ptr<const SemiDiscrete>& pro
                  : std::string("no smaller step is stable either: use an implicit scheme");
   return fmt::format(
       "the step of {:.5g} s is beyond the limit of an explicit scheme on this structure, whose free motion grows "
-      "{:.4g} "
-      "times per step: {}",
+      "{:.4g} times per step: {}",
       h, *radius, remedy);
 }
 

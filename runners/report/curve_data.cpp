@@ -108,8 +108,7 @@ std::string CurveData::thinning(bool files) const {
   if (thinned_ == 0) return "";
   return fmt::format(
       "{} series of up to {} samples are thinned to {} for this page: of each small interval the smallest and the "
-      "largest sample are "
-      "kept, so no peak is lost. The full series are in the store{}.",
+      "largest sample are kept, so no peak is lost. The full series are in the store{}.",
       thinned_, longest_, limit_, files ? " and in curves/" : "");
 }
 

@@ -206,8 +206,8 @@ std::optional<StudyResults> shown_cases(const StudyResults& results) {
 
 std::string shown_sentence(const StudyResults& shown, const StudyResults& all) {
   return fmt::format(
-      "The figures and the table of cases hold {} of {} cases, drawn by lot, and among them first of all those that "
-      "are not done, up to {}; what is said in words is of all, and all are in cases.csv.",
+      "The figures and the table of cases hold {} of {} cases, drawn by lot. Cases that are not done come first, up to "
+      "{}. Sentences speak of all cases, and cases.csv has all.",
       shown.cases.size(), all.cases.size(), most_shown_cases / 4);
 }
 

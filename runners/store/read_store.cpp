@@ -309,7 +309,8 @@ RunStatus read_status(const std::filesystem::path& folder) {
   RunStatus status;
   with_store(folder, [&](SQLite::Database& database) {
     SQLite::Transaction transaction(database);
-    SQLite::Statement study(database, "SELECT key, value FROM study WHERE key NOT IN ('resolved', 'columns', 'axes', 'method_words')");
+    SQLite::Statement study(
+        database, "SELECT key, value FROM study WHERE key NOT IN ('resolved', 'columns', 'axes', 'method_words')");
     while (study.executeStep()) {
       const std::string key = study.getColumn(0).getString();
       const auto value = nlohmann::json::parse(study.getColumn(1).getString());

@@ -144,8 +144,7 @@ std::string sentence(const SQLite::Exception& error, const SQLite::Database* dat
       return "the disk is full; free some space and run the same command again: the cases that finished are kept";
     case SQLITE_IOERR:
       return fmt::format(
-          "read or write error ({}); the cases that finished are kept: run the same command again once "
-          "that is solved",
+          "read or write error ({}); the cases that finished are kept: run the same command again once that is solved",
           cause);
     case SQLITE_READONLY:
       if (error.getExtendedErrorCode() == SQLITE_READONLY_DBMOVED)
@@ -204,9 +203,8 @@ void prepare_schema(SQLite::Database& database, const std::filesystem::path& fil
       transaction.commit();
     } else if (version != kStoreVersion) {
       throw StoreError(
-          fmt::format("{}: this store has format version {}, this program reads and writes version {}; "
-                      "run with --fresh to forget it and run every case again, or choose another folder "
-                      "with --out",
+          fmt::format("{}: this store has format version {}, this program reads and writes version {}; run with "
+                      "--fresh to forget it and run every case again, or choose another folder with --out",
                       file.string(), version, kStoreVersion));
     }
   });

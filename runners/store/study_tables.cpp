@@ -36,10 +36,8 @@ const TableType<answers::Clause>& answers::answers_type() {
     type.add({"order", "1", "Number of the sentence in the answer, from 1."}, &Clause::order)
         .add({"form", "",
               "What is said: keeps, gains, differ, none (no difference), open (not told), apart (how far, as a share "
-              "of the scale), needs (the step that "
-              "would tell), matters, part (matters in "
-              "some "
-              "combinations), value, order, cheapest, limit, diagram, basin, status."},
+              "of the scale), needs (the step that would tell), matters, part (matters in some combinations), value, "
+              "order, cheapest, limit, diagram, basin, status."},
              &Clause::form)
         .add({"measure", "", "The measure that is spoken of."}, &Clause::measure)
         .add({"choice", "", "The choice that is spoken of: a role, or an axis of the study."}, &Clause::choice)

@@ -18,8 +18,8 @@ Column axis_meaning(const std::string& column, const nlohmann::ordered_json& res
 /// The role of a method's axis, "mass" of "mass.velocity" and of "mass"; the column itself where it is no method's.
 std::string axis_role(const std::string& column);
 
-/// A choice in a sentence: "the mass matrix", "the step"; the column itself where there is no such word. Two joined by ×
-/// are said together, of one method as that method.
+/// A choice in a sentence: "the mass matrix", "the step"; the column itself where there is no such word. Two joined
+/// by × are said together, of one method as that method.
 std::string spoken_choice(const std::string& column);
 
 /// Every axis of a study that is about to run; parameters of methods as their plugins declare them.

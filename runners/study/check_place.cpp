@@ -8,7 +8,8 @@ namespace ricochet {
 namespace {
 
 const char* const place_forms =
-    R"({"x": m}, {"node": name, "component": name}, {"node": name, "direction": [3 numbers]} {"dofs": [{"dof", "weight"}]} or {"point": name}; of bodies with "body": name)";
+    R"({"x": m}, {"node": name, "component": name}, {"node": name, "direction": [3 numbers]}, )"
+    R"({"dofs": [{"dof", "weight"}]} or {"point": name}; of bodies with "body": name)";
 // What of a place says where it points: one at most of a position, one of a node unless a clearance stands there.
 bool one_way(const Field& field, const Json& place) {
   const int ways = place.contains("component") + place.contains("direction");

@@ -8,8 +8,8 @@ namespace ricochet {
 
 /// A checked and complete scene, scalars only (as check_object leaves it, lists replaced by one value each), as the
 /// core wants it. What one key alone does not show (a wall thicker than the radius, a position beyond the tip) is left
-/// to check_scene(). `files`: of a scene that may name some; their faults are InputErrors. "basis", which no study writes
-/// there, are the modes of a case that marches in some.
+/// to check_scene(). `files`: of a scene that may name some; their faults are InputErrors. "basis", which no study
+/// writes there, are the modes of a case that marches in some.
 SceneSpec read_scene(const Json& scene, StudyFiles* files);
 
 }  // namespace ricochet

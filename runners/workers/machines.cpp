@@ -176,8 +176,7 @@ std::string oddities(const std::vector<HostFacts>& machines, const std::vector<i
         together[one.name] < one.online)
       text += fmt::format(
           "{} may use {} of {} processors ({}); mpirun binds its ranks: start it with --bind-to none, one rank for "
-          "each "
-          "machine\n",
+          "each machine\n",
           place(one), one.processors, one.online, one.limit);
   return text;
 }

@@ -181,8 +181,7 @@ TEST_CASE("a clearance that moves by itself goes along one component, and meets 
     own.component = "ux";
     for (NamedStop& row : moving.stops.named) row.motion = std::make_shared<const MotionSpec>(own);
     CHECK(refused(moving) ==
-          "/scene/stops/0/moves_with/component: \"ux\" is no component of the clearance; expected uy "
-          "or uz");
+          "/scene/stops/0/moves_with/component: \"ux\" is no component of the clearance; expected uy or uz");
   }
 }
 

@@ -72,8 +72,7 @@ class Installed : public Prefix {
     step("'" RICOCHET_CMAKE "' -S project -B build -G '" RICOCHET_GENERATOR
          "' -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1"
          " -DCMAKE_CXX_COMPILER='" RICOCHET_CXX_COMPILER "' -DCMAKE_CXX_FLAGS='" RICOCHET_CXX_FLAGS
-         "'"
-         " -DCMAKE_PREFIX_PATH='" +
+         "' -DCMAKE_PREFIX_PATH='" +
          prefix().string() + "' -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF");
     step("'" RICOCHET_CMAKE "' --build build");
   }

@@ -77,14 +77,12 @@ TEST_CASE("lists of stops that cannot be are refused by name and pointer") {
         "/scene/stops/1/at: stops a and b are the same row: use one with both bounds");
   CHECK(fault(with_stops(beam, {{"a", at_x(1), {}, 0.1, 0.2}})) ==
         "/scene/initial/displacement: the initial displacement is 0 m at stop a, beyond the lower stop at 0.1 m; "
-        "expected "
-        "a state between the stops, or a compliant law that lets points pass them");
+        "expected a state between the stops, or a compliant law that lets points pass them");
   SceneSpec shaken = with_stops(beam, {{"a", at_x(1), at_x(0.5), {}, 0.1}});
   shaken.support = {0.01, 3, 0};
   CHECK(fault(shaken) ==
         "/scene/stops/0/to: stop a is between two points of a structure whose clamp moves; expected an amplitude of 0, "
-        "or "
-        "a stop on the ground");
+        "or a stop on the ground");
 }
 
 TEST_CASE("a scene of given matrices has places, no x") {

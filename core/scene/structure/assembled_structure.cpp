@@ -332,8 +332,7 @@ PlaceRow AssembledStructure::row(const Place& place, const std::string& pointer)
   if (modes) return point_row(*this, place, pointer);
   if (!place.point.empty())
     throw InputError(pointer,
-                     "points are those of a modal structure; expected node and component, node and direction, "
-                     "or dofs");
+                     "points are those of a modal structure; expected node and component, node and direction, or dofs");
   if (place.x)
     throw InputError(pointer,
                      "x has no meaning for matrices that are given; expected node and component, node and "

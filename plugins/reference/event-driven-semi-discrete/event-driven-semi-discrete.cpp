@@ -30,8 +30,7 @@ class EventDrivenSemiDiscrete final : public ReferenceSolver {
           "exact; use the reference self"};
     if (problem.contact_nonlinear)
       return Refusal{
-          "the contact law is not linear: between events the motion is not a sum of modes; use the "
-          "reference self"};
+          "the contact law is not linear: between events the motion is not a sum of modes; use the reference self"};
     try {
       EventDriven fine(problem, grid, 0.5);
       ReferenceMotion found;

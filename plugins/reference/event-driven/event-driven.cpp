@@ -49,8 +49,7 @@ class EventDriven final : public ReferenceSolver {
     if (problem.other_beam)
       return Refusal{
           "event-driven knows the uniform beam clamped at x = 0 and free at x = L, and this one has supports, "
-          "sections, "
-          "masses, tension or a foundation of its own: use `event-driven-semi-discrete` or `self`"};
+          "sections, masses, tension or a foundation of its own: use `event-driven-semi-discrete` or `self`"};
     if (problem.right_fixed)
       return Refusal{
           "event-driven solves a beam that is clamped at x = 0 and free at x = L; this one is fixed at x = L"};

@@ -64,8 +64,7 @@ ReferenceOrRefusal oscillator(const ReferenceProblem& problem, const SampleGrid&
 Refusal no_bar(const std::string& why) {
   return Refusal{
       "the bar has a closed form when it is undamped and unloaded, its ends stand still, and either it touches "
-      "nothing, "
-      "or it is stretched linearly at rest on a rigid stop at 0 at its tip; here " +
+      "nothing, or it is stretched linearly at rest on a rigid stop at 0 at its tip; here " +
       why + ": use event-driven-semi-discrete, or self"};
 }
 
@@ -158,8 +157,7 @@ class Exact final : public ReferenceSolver {
     if (problem.structure == "bar") return bar(problem, grid);
     return Refusal{
         fmt::format("closed forms are known for the oscillator and the bar, not for a {}: use event-driven (rigid "
-                    "stops at the tip, "
-                    "or none), event-driven-semi-discrete (on the mesh), or self",
+                    "stops at the tip, or none), event-driven-semi-discrete (on the mesh), or self",
                     problem.structure)};
   }
 };

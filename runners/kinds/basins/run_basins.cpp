@@ -349,8 +349,7 @@ CasePlan plan_basins(const StudyCase& study_case, const Registry& registry) {
   const std::size_t cells = first + (columns * rows - first) / 4;
   if (refine)
     out.notes.push_back(
-        fmt::format("{} of {} cells are marched, then those near boundaries; predicted as a quarter of "
-                    "the others",
+        fmt::format("{} of {} cells are marched, then those near boundaries; predicted as a quarter of the others",
                     first, columns * rows));
   const Json& settings = study_case.settings;
   const double periods = settings.at("transient").at("periods").get<double>() + settings.at("keep").get<double>();

@@ -120,9 +120,8 @@ TableType<OrderRow> orders_type() {
            &OrderRow::reason)
       .add({"saturates_at", "",
             "Where the errors do not fall, so that there is no order: what may keep them up. The law: stops of the "
-            "reference "
-            "are rigid and those of the case are not; the mesh, or the step: the reference has none. Not told: "
-            "neither."},
+            "reference are rigid and those of the case are not; the mesh, or the step: the reference has none. Not "
+            "told: neither."},
            &OrderRow::saturates_at);
   return {"orders", "The order with which one kind of error of one method falls as one quantity is refined.", rows};
 }

@@ -53,8 +53,7 @@ Table order_runs_table(const Compared& study) {
   const StudyResults& results = study.results();
   Table table{
       "order_runs",
-      "One method, error and refined quantity: the order over the longest run of slopes that agree, and where it "
-      "ends.",
+      "One method, error and refined quantity: the order over the longest run of slopes that agree, and where it ends.",
       {case_column()},
       {}};
   for (const std::string& column : study.columns()) table.columns.push_back(axis_column(results, column));

@@ -35,8 +35,8 @@ TableType<RootRow> stability_roots_type() {
       .add({"times", "1", "How many such roots a step has at most."}, &RootRow::times);
   return {
       "stability_roots",
-      "One root on the unit circle that is the scheme's own, over the steps of the range: of a motion that is damped "
-      "or has no inertia, or of points that are held.",
+      "One root on the unit circle that is the scheme's own, over the steps of the range. It is of a motion that is "
+      "damped or has no inertia, or of points that are held.",
       rows};
 }
 

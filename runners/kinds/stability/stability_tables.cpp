@@ -299,8 +299,7 @@ TableType<LimitRow> step_limits_type() {
   rows.of_case(&LimitRow::id)
       .add({"closed", "",
             "Whether contact is closed: predicted with points held on both sides, observed in the scene itself. "
-            "Otherwise "
-            "the structure alone."},
+            "Otherwise the structure alone."},
            &LimitRow::closed)
       .add(
           {"counted", "",

@@ -81,9 +81,9 @@ RowType<OrbitRow> orbit_row_type(int exponents, const SweptColumns& swept) {
     add({name + "_high", "1/s", "Upper end of that interval."}, &OrbitRow::Exponent::high);
   }
   type.add({"exponent_method", "",
-            "How the exponents were found: tangent, tangent+jump, or twin with its offset; superstable where all are "
-            "−∞, as the mass comes to rest on its stop; empty where there are none, or none that would see how impacts "
-            "move (the notes of the case say so)."},
+            "How the exponents were found: tangent, tangent+jump, or twin with its offset. superstable: all are −∞, as "
+            "the mass comes to rest on its stop. Empty: there are none, or none would see how impacts move; a note of "
+            "the case says so."},
            &OrbitRow::exponent_method)
       .add({"exponent_twin", "1/s",
             "The largest exponent by a second trajectory beside the first, as a check; empty where impacts have "

@@ -36,9 +36,8 @@ TableType<EnergyEnd> energy_ends_type() {
            &EnergyEnd::ratio)
       .add({"change", "1", "Distance of that ratio from 1."}, &EnergyEnd::change)
       .add({"noise_floor", "1",
-            "What of the change is not told from round-off: 2⁻⁵² times the number of steps, or the residual of the "
-            "energy "
-            "balance over the energy brought in where the balance is exact, whichever is larger."},
+            "Share of the change that is not told from round-off: 2⁻⁵² times the number of steps. Where the balance is "
+            "exact, its residual over the energy brought in, if that is larger."},
            &EnergyEnd::noise_floor)
       .add({"kept", "", "Whether the change is within the noise floor."}, &EnergyEnd::kept)
       .add({"step_gain", "1", "Largest gain of one step over the energy brought in."}, &EnergyEnd::step_gain)
@@ -78,8 +77,7 @@ Table energy_ledger_table(const StudyResults& results) {
   Table table = table_of_cases(
       results, "energy_ledger",
       "One finished case: where its energy came from and where it went. end = start + loads − damping − stops − scheme "
-      "− "
-      "form + residual.",
+      "− form + residual.",
       {{"start", "J", "The common energy of the initial state."},
        {"loads", "J", "What the load and the moving support brought in."},
        {"damping", "J", "What the viscous forces took."},
@@ -87,8 +85,7 @@ Table energy_ledger_table(const StudyResults& results) {
        {"scheme", "J", "What the scheme itself took in flight: the losses that it declares, else 0."},
        {"form", "J",
         "Change of what the scheme's own energy, whose balance this is, holds beyond the common one; 0 where it "
-        "declares "
-        "none."},
+        "declares none."},
        {"residual", "J",
         "What the balance fails to close by: round-off where the scheme's balance is exact, else losses that it does "
         "not declare."},

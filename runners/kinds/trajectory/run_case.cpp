@@ -183,8 +183,7 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
   if (!balances)
     record.notes.push_back(
         "the scheme declares no work form: the works of damping and loads, what contact dissipates and the balance are "
-        "not "
-        "known");
+        "not known");
   if (contact.impacts > 0 && balances)
     put("drift_per_impact", (energy.last.scheme - energy.scheme_start - energy.work_of_loads + energy.work_of_damping) /
                                 static_cast<double>(contact.impacts));

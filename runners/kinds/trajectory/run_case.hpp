@@ -10,7 +10,7 @@
 
 namespace ricochet {
 
-/// What would run for a case that marches its scene once.
+/// What would run for a case that integrates its scene once.
 CasePlan plan_case(const StudyCase& study_case, const Registry& registry);
 
 /// Runs one case of kind `trajectory` to its end. Whatever goes wrong in it is the record's status and reason; input

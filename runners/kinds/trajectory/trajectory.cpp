@@ -46,10 +46,8 @@ std::vector<MeasureInfo> trajectory_measures() {
       {"energy_left", "1", "Common energy at the end divided by the energy that was brought in.", Of::motion, false,
        "1"},
       {"largest_step_gain", "J",
-       "Largest increase of the scheme's own energy (the common one where none is declared) over one step, beyond the "
-       "work of the loads; where the scheme has an exact balance, by the works of each step, which the energy read "
-       "every "
-       "sixteen steps confirms.",
+       "Largest increase over one step of the scheme's own energy, or of the common one, beyond the work of the loads. "
+       "Of an exact balance it is by the works of each step; the energy confirms it every sixteen steps.",
        Of::motion, false, "energy_brought_in"},
       {"drift_per_impact", "J",
        "Change of energy that damping and loads do not explain, divided by the number of impacts.", Of::motion, true,
@@ -65,11 +63,9 @@ std::vector<MeasureInfo> trajectory_measures() {
       {"stored_at_stops", "J", "Energy that springs at the stops hold at the end beyond that at the start.", Of::motion,
        true, "energy_brought_in"},
       {"balance_residual", "J",
-       "What the balance of the scheme's own energy fails to close by: change − loads + damping + losses that the "
-       "scheme "
-       "declares − work of the stops; "
-       "round-off × steps "
-       "where the scheme has an exact balance.",
+       "What the balance of the scheme's own energy fails to close by. It is change − loads + damping + losses that "
+       "the "
+       "scheme declares − work of the stops: round-off × steps where the balance is exact.",
        Of::motion, false, "energy_brought_in"},
       {"projection_energy", "J",
        "Energy after minus before the projection of the initial state on the constraint of a singular mass.",
@@ -89,8 +85,7 @@ std::vector<MeasureInfo> trajectory_measures() {
        true},
       {"impulse", "N s",
        "Momentum that the contact efforts give, summed by magnitude over the contact points; what an effort of each "
-       "stage is "
-       "worth follows from the scheme's plan."},
+       "stage is worth follows from the scheme's plan."},
       {"peak_contact_force", "N",
        "Largest force at one contact point over the run, from every step. That of an impact on a rigid stop is its "
        "impulse over a step or two: it grows as the step shrinks."},
@@ -122,8 +117,7 @@ std::vector<MeasureInfo> trajectory_measures() {
        Of::motion, false, "energy_brought_in"},
       {"dissipated_by_scheme", "J",
        "Energy that the scheme itself took out over the run, apart from damping and stops: numerical damping, where "
-       "the "
-       "scheme declares its losses.",
+       "the scheme declares its losses.",
        Of::motion, false, "energy_brought_in"},
       {"first_impact", "s", "Time of the first impact.", Of::motion, true},
       {"first_release", "s", "Time at which a contact point first opened again.", Of::motion, true},
@@ -258,7 +252,7 @@ std::vector<std::string> point_names(const Json& study, bool fields) {
 StudyKind trajectory_format(const std::vector<MeasureInfo>& measures) {
   StudyKind format;
   format.name = "trajectory";
-  format.text = "Each case marches its scene once.";
+  format.text = "Each case integrates its scene once.";
   format.shows_points = true;
   format.keys = {keys::step(),
                  keys::duration(),

@@ -151,10 +151,9 @@ TEST_CASE("a beam that is bent and lies on its stop with its tip") {
   scene.stops.lower = Formula(-drop);
   scene.stops.place = StopsSpec::Place::tip;
   scene.load = Formula(-q);
-  const std::string shape = fmt::format(
-      "(-{0:.17g}*x^2*(6*{1:.17g}^2 - 4*{1:.17g}*x + x^2)/24 + {2:.17g}*x^2*(3*{1:.17g} "
-      "- x)/6)/{3:.17g}",
-      q, L, reaction, section.EI);
+  const std::string shape =
+      fmt::format("(-{0:.17g}*x^2*(6*{1:.17g}^2 - 4*{1:.17g}*x + x^2)/24 + {2:.17g}*x^2*(3*{1:.17g} - x)/6)/{3:.17g}",
+                  q, L, reaction, section.EI);
   scene.initial.displacement = Formula(shape, "/scene/initial/displacement", "x");
   scene.initial.velocity = Formula(0.0);
   INFO(mass.name << ", " << time.name);

@@ -23,6 +23,22 @@ struct Found {
   JudgedOrbit judged;
 };
 
+/// The orbit from the scene's start to the end of the plan.
+Orbit ended_orbit(const SceneSpec& scene, const Methods& methods, double h, const SectionPlan& plan) {
+  const auto program = [&] { return std::get<Program>(compiled(problem_of(scene, 1, methods.mass), methods, h)); };
+  const StartedOrbits started = start_orbits(program(), plan);
+  Program made = program();
+  Orbit orbit;
+  orbit.lane = made.lanes.front();
+  orbit.now = started.states.front();
+  orbit.transient_periods = 1;
+  SectionMarch march(std::move(made), plan);
+  march.load(0, orbit);
+  std::vector<Orbit> ended;
+  while (ended.empty()) ended = march.period();
+  return std::move(ended.front());
+}
+
 Found march_row(const Row& row, const Choice& time, int steps) {
   SceneSpec scene;
   scene.structure = OscillatorSpec{1, 1, 0, {1, row.omega, 0}};
@@ -40,18 +56,7 @@ Found march_row(const Row& row, const Choice& time, int steps) {
   Choice chosen = time;
   chosen.values["restitution"] = row.restitution;
   const Methods methods{{"consistent"}, {"signorini"}, chosen};
-  const auto program = [&] { return std::get<Program>(compiled(problem_of(scene, 1, methods.mass), methods, h)); };
-  const StartedOrbits started = start_orbits(program(), plan);
-  Program made = program();
-  Orbit orbit;
-  orbit.lane = made.lanes.front();
-  orbit.now = started.states.front();
-  orbit.transient_periods = 1;
-  SectionMarch march(std::move(made), plan);
-  march.load(0, orbit);
-  std::vector<Orbit> ended;
-  while (ended.empty()) ended = march.period();
-  Found found{std::move(ended.front()), {}};
+  Found found{ended_orbit(scene, methods, h, plan), {}};
   found.judged = judge(found.orbit, plan, std::nullopt);
   return found;
 }
@@ -94,23 +99,12 @@ TEST_CASE("times of impacts follow the clock of the scene, and a transient of on
   plan.keep = 16;
   const double period = 2 * std::numbers::pi / row.omega, h = period / plan.steps_per_period;
   const Methods methods{{"consistent"}, {"signorini"}, {"newmark-dumont-paoli", {{"restitution", 0.8}}}};
-  const auto program = [&] { return std::get<Program>(compiled(problem_of(scene, 1, methods.mass), methods, h)); };
-  const StartedOrbits started = start_orbits(program(), plan);
-  Program made = program();
-  Orbit orbit;
-  orbit.lane = made.lanes.front();
-  orbit.now = started.states.front();
-  orbit.transient_periods = 1;
-  SectionMarch march(std::move(made), plan);
-  march.load(0, orbit);
-  std::vector<Orbit> ended;
-  while (ended.empty()) ended = march.period();
-  const Orbit& done = ended.front();
+  const Orbit done = ended_orbit(scene, methods, h, plan);
   CHECK(done.transient_periods == 1);
   CHECK(done.strobed.size() == 16);
 
   // The same motion, marched without a section.
-  Marcher plain(program());
+  Marcher plain = marcher(scene, 1, methods, h);
   plain.start();
   std::vector<double> tips = {0, plain.tip(0)};
   for (int n = plain.step(); n < 18 * plan.steps_per_period; ++n) {

@@ -20,6 +20,15 @@ double tip_after(const Methods& methods, double h, double duration) {
   return beam.tip(0);
 }
 
+double one_augmentation(double stiffness, const Choice& time, double h) {
+  return tip_after(
+      {{"consistent"},
+       {"augmented-lagrangian",
+        {{"augmentation", stiffness}, {"iterations", 1LL}, {"tolerance", 0.0}, {"start", std::string("zero")}}},
+       time},
+      h, 0.3);
+}
+
 }  // namespace
 
 TEST_CASE("one augmentation from zero is the penalty") {
@@ -27,13 +36,7 @@ TEST_CASE("one augmentation from zero is the penalty") {
   const double stiffness = GENERATE(1e3, 1e6);
   const double h = 1e-4;
   const double penalty = tip_after({{"consistent"}, {"penalty", {{"stiffness", stiffness}}}, time}, h, 0.3);
-  const double once = tip_after(
-      {{"consistent"},
-       {"augmented-lagrangian",
-        {{"augmentation", stiffness}, {"iterations", 1LL}, {"tolerance", 0.0}, {"start", std::string("zero")}}},
-       time},
-      h, 0.3);
-  CHECK(once == penalty);
+  CHECK(one_augmentation(stiffness, time, h) == penalty);
 }
 
 TEST_CASE("the perturbed Lagrangian is one augmentation from zero, to the last bit, on any impact measure") {
@@ -43,13 +46,7 @@ TEST_CASE("the perturbed Lagrangian is one augmentation from zero, to the last b
   const double h = 1e-4;
   const double perturbed =
       tip_after({{"consistent"}, {"perturbed-lagrangian", {{"stiffness", stiffness}}}, time}, h, 0.3);
-  const double once = tip_after(
-      {{"consistent"},
-       {"augmented-lagrangian",
-        {{"augmentation", stiffness}, {"iterations", 1LL}, {"tolerance", 0.0}, {"start", std::string("zero")}}},
-       time},
-      h, 0.3);
-  CHECK(perturbed == once);
+  CHECK(perturbed == one_augmentation(stiffness, time, h));
 }
 
 TEST_CASE("many augmentations are Signorini") {

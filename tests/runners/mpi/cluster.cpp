@@ -117,8 +117,7 @@ void Cluster::start() {
   // Where this process is killed, its daemons go as well.
   const std::string watch = fmt::format(
       "setsid sh -c 'while kill -0 {0} && [ -d {1} ]; do sleep 1; done; [ -d {1} ] && kill -9 $(cat {1}/*.pid) && rm "
-      "-r "
-      "{1}' >/dev/null 2>&1 &",
+      "-r {1}' >/dev/null 2>&1 &",
       ::getpid(), folder);
   static_cast<void>(!std::system(watch.c_str()));
   std::string key(1024, '\0');

@@ -232,7 +232,6 @@ TEST_CASE("a stop whose numbers are lists, with parameters of its own, is told a
   study["scene"]["stops"] = Scene::parse(R"([{"name": "bar", "at": {"x": [0.5, 1]}, "lower": 0, "upper": [1e-3, 2e-3],
     "stiffness": [1e5, 1e6], "restitution": 0.5, "moves_with": "clamp"}])");
   CHECK(value_of(study, "stop bar") ==
-        "x = 0.5 m, lower 0 m, upper 0.001 and 0.002 m, stiffness 1e5 and 1e6 N/m, "
-        "restitution 0.5, moves with clamp");
+        "x = 0.5 m, lower 0 m, upper 0.001 and 0.002 m, stiffness 1e5 and 1e6 N/m, restitution 0.5, moves with clamp");
   CHECK(count(report::scene_svg(study), "<line class=\"stop\"") == 2);
 }

@@ -120,8 +120,7 @@ TEST_CASE("bodies that cannot be are refused at their place") {
   CHECK_THAT(refusal(with_body_key("/scene/structure", small_study()["scene"]["structure"])),
              Contains("does not go together with \"bodies\""));
   CHECK_THAT(refusal(with_body_key("/scene/stops/0/at/body", "rood")),
-             Contains("/scene/stops/0/at/body: no body \"rood\"; "
-                      "nearest rod"));
+             Contains("/scene/stops/0/at/body: no body \"rood\"; nearest rod"));
   CHECK_THAT(refusal(with_body_key("/mesh/elements", {{"rood", 4}})), Contains("did you mean \"rod\"?"));
   CHECK(refusal(with_body_key("/mesh/elements", {{"ball", 4}, {"rod", 1}})) ==
         "/mesh/elements/ball: 4 elements; body ball has no mesh, expected 1");

@@ -60,8 +60,7 @@ TEST_CASE("a general matrix is the mean of its triangles, and says how far they 
 
 TEST_CASE("a fault of a Matrix Market file has file, line, what was found and what was expected") {
   CHECK(matrix_fault("", 2) ==
-        "K.mtx is empty; expected %%MatrixMarket matrix, coordinate or array, real, symmetric or "
-        "general");
+        "K.mtx is empty; expected %%MatrixMarket matrix, coordinate or array, real, symmetric or general");
   CHECK(
       matrix_fault("%%MatrixMarket matrix coordinate complex general\n", 2) ==
       "K.mtx, line 1: \"%%MatrixMarket matrix coordinate complex general\"; expected %%MatrixMarket matrix, coordinate "

@@ -174,9 +174,9 @@ std::string fractions_html(const CaseView& view) {
 
 std::string uncertainty_html(const CaseView& view) {
   HtmlTable table(
-      "Uncertainty exponent s: the share of cells with an uncertain end falls as (uncertainty)<sup>s</sup>; 1 is a "
-      "smooth boundary, 0 one that no accuracy resolves (Grebogi, McDonald, Ott and Yorke 1983). With its 95 % "
-      "interval.",
+      "Uncertainty exponent s, with its 95 % interval: the share of cells with an uncertain end falls as "
+      "(uncertainty)<sup>s</sup>. 1 is a smooth boundary, 0 one that no accuracy resolves (Grebogi, McDonald, Ott and "
+      "Yorke 1983).",
       {{"case"}, {"cells at the boundary", true}, {"s"}, {""}});
   for (const auto& [id, share, value, low, high] : basin_uncertainty_type().read(view.results().derived)) {
     std::string text = "too few scales to say";

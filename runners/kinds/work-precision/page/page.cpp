@@ -111,9 +111,8 @@ std::string work_precision_html(const CaseView& view) {
   if (!scene.empty()) heads.insert(heads.begin() + 1, {"scene"});
   HtmlTable table(
       "The cheapest method for a relative error of at most 10<sup>−k</sup>, 1 being a motion at rest: of the steps "
-      "that were run, the one that takes the "
-      "least time. Spread: fastest to slowest repeat (in the time's tooltip); where the spreads overlap, the two are "
-      "not told apart.",
+      "that were run, the one that takes the least time. Spread: fastest to slowest repeat (in the time's tooltip); "
+      "where the spreads overlap, the two are not told apart.",
       std::move(heads));
   for (const TargetRow& row : type.read(view.results().derived)) {
     Quantity quantity = error_quantity(row.error);

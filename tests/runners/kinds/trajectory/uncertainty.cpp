@@ -58,8 +58,7 @@ TEST_CASE("an interval is the range over the methods, widened by the largest of 
   CHECK(told(table, "verdict").text() == "methods");
   CHECK(told(table, "sentence").text() ==
         "Rms force at bar: 9.8 to 11.2 N; the time scheme decides it (10.0 with newmark, 11.0 with moreau-jean); the "
-        "step "
-        "leaves 0.2.");
+        "step leaves 0.2.");
 
   results.cases.back().measures.emplace_back("confidence.rms_force[bar]", 0.8);
   const Table sampled = uncertain(results);

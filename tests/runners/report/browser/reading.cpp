@@ -19,15 +19,13 @@ const char* const page_width = "document.documentElement.scrollWidth";
 // Boxes and words that pass the right edge of what is seen, but for what lies in a box that scrolls by itself.
 const char* const beyond_edge =
     "Array.from(document.querySelectorAll('body *')).filter((e) => !e.closest('.scroll, .extremes, .hidden, .skip, "
-    ".notes, pre, svg') && "
-    "e.getClientRects().length && e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.tagName + ' ' + "
-    "e.className + ' ' + e.textContent.slice(0, 30))";
+    ".notes, pre, svg') && e.getClientRects().length && e.getBoundingClientRect().right > innerWidth + 1).map((e) => "
+    "e.tagName + ' ' + e.className + ' ' + e.textContent.slice(0, 30))";
 // A chart in the middle of the screen, drawn.
 const char* const show_chart =
-    "new Promise((done) => { document.documentElement.style.scrollBehavior = 'auto'; "
-    "const chart = document.activeElement.closest('.chart') || "
-    "Array.from(document.querySelectorAll('.chart')).find((one) "
-    "=> one.getClientRects().length), until = performance.now() + 10000; chart.scrollIntoView({block: 'center'}); "
+    "new Promise((done) => { document.documentElement.style.scrollBehavior = 'auto'; const chart = "
+    "document.activeElement.closest('.chart') || Array.from(document.querySelectorAll('.chart')).find((one) => "
+    "one.getClientRects().length), until = performance.now() + 10000; chart.scrollIntoView({block: 'center'}); "
     "(function look() { chart.querySelector('canvas') || performance.now() > until ? done(scrollY) : "
     "requestAnimationFrame(look); })(); })";
 
@@ -69,8 +67,7 @@ TEST_CASE("a wide table keeps its first column and says that it goes on", "[repo
       "document.getElementById('cases').tBodies[0].rows[0].cells[0], at = () => "
       "Math.round(cell.getBoundingClientRect().left), first = at(), wide = box.dataset.wide, hint = "
       "getComputedStyle(box, '::before').content; box.scrollLeft = 300; return [wide, hint, first, at(), "
-      "box.tabIndex]; "
-      "})()";
+      "box.tabIndex]; })()";
   const browser::Json values = driven("reading-table", {{{"name", "table"},
                                                          {"page", report_of("studies", "trajectory")},
                                                          {"width", 420},
@@ -211,8 +208,7 @@ TEST_CASE("a list of studies is read on a phone, one after the other", "[report]
   words_of(std::string(RICOCHET_COMMAND) + " report" + folders + " --out '" + file + "'");
   const char* const cells =
       "[...document.querySelectorAll('.studies tbody :is(th, td)')].map((cell) => "
-      "cell.getBoundingClientRect()).map((box) "
-      "=> box.width > 200 && box.right <= innerWidth)";
+      "cell.getBoundingClientRect()).map((box) => box.width > 200 && box.right <= innerWidth)";
   const browser::Json said =
       driven("reading-index",
              {{{"name", "index"}, {"page", file}, {"width", 420}, {"height", 900}, {"evaluate", {page_width, cells}}}})
