@@ -27,8 +27,8 @@ struct FlightKernels {
   double (*dot)(int n, const double* h, const double* x);
   /// out_i = Σ_j m_ij x_j, m by rows: bit for bit that of each row alone.
   void (*dots)(int n, int rows, const double* matrix, const double* x, double* out);
-  /// The same of several vectors, each bitwise as alone; the matrix, which is what has to come from far, is read once for
-  /// two.
+  /// The same of several vectors, each bitwise as alone; the matrix, which is what has to come from far, is read once
+  /// for two.
   void (*products)(int n, int rows, const double* matrix, int vectors, const double* const* x, double* const* out);
   /// out += a x.
   void (*add)(int n, double a, const double* x, double* out);

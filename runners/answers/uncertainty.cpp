@@ -200,8 +200,8 @@ const TableType<StopRange>& uncertainty_type() {
               "settled: within 1 %; methods, step, mesh, sampling: what leaves it open; unknown: a single step."},
              &StopRange::verdict)
         .add({"sentence", "", "The same in words."}, &StopRange::sentence);
-    return TableType<StopRange>{"uncertainty",
-                                  "One measure of one stop over all methods: between which values it is.", rows};
+    return TableType<StopRange>{"uncertainty", "One measure of one stop over all methods: between which values it is.",
+                                rows};
   }();
   return all;
 }
@@ -220,15 +220,15 @@ Table uncertainty_table(const Compared& study) {
       return value;
     };
     StopRange row{measure,
-                    stop,
-                    limits.words.unit,
-                    factor * spread.value,
-                    factor * spread.least,
-                    factor * spread.largest,
-                    spread.methods,
-                    scaled(spread.step),
-                    scaled(spread.mesh),
-                    scaled(spread.sampling)};
+                  stop,
+                  limits.words.unit,
+                  factor * spread.value,
+                  factor * spread.least,
+                  factor * spread.largest,
+                  spread.methods,
+                  scaled(spread.step),
+                  scaled(spread.mesh),
+                  scaled(spread.sampling)};
     if (const auto margin = spread.margin()) {
       row.low = factor * spread.low(*margin);
       row.high = factor * (spread.largest + *margin);

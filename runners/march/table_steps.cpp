@@ -58,8 +58,8 @@ std::vector<std::string> table_notes(const StudyCase& study_case) {
       const double longest = 1 / (enough * load[k].at(at).get<double>());
       if (h > longest * (1 + 1e-9))
         notes.push_back(
-            fmt::format("the spectrum of the load {} to {:.6g} Hz needs h ≤ {:.3g} s, {:.0f} steps per period",
-                        k, load[k].at(at).get<double>(), longest, enough));
+            fmt::format("the spectrum of the load {} to {:.6g} Hz needs h ≤ {:.3g} s, {:.0f} steps per period", k,
+                        load[k].at(at).get<double>(), longest, enough));
     }
   return notes;
 }

@@ -34,8 +34,8 @@ struct CaseRecord {
   Curve curve;
   std::vector<Table> tables;         ///< rows of its own, without the case's axes (stability.csv)
   std::vector<NumberTable> numbers;  ///< its large tables (points.csv, impacts.csv)
-  std::string arithmetic;  ///< digest of the arithmetic that computed it; "": not known
-  bool partial = false;    ///< saved while the case was running: what it had by then
+  std::string arithmetic;            ///< digest of the arithmetic that computed it; "": not known
+  bool partial = false;              ///< saved while the case was running: what it had by then
 };
 
 /// Whether a reference solved the case, and none of the study's methods.
@@ -87,10 +87,10 @@ struct MeasureInfo {
   const char* scale = "";
   /// How an answer speaks of it.
   struct Reading {
-    const char* words = "";             ///< "energy lost at the stops"; "": words of its name
-    int direction = 0;                  ///< 1: more is better, −1: less is, 0: neither
-    std::optional<double> truth = {};   ///< exact where nothing but contact changes energies, and the direction then
-    bool decades = false;               ///< differences are factors, not shares
+    const char* words = "";            ///< "energy lost at the stops"; "": words of its name
+    int direction = 0;                 ///< 1: more is better, −1: less is, 0: neither
+    std::optional<double> truth = {};  ///< exact where nothing but contact changes energies, and the direction then
+    bool decades = false;              ///< differences are factors, not shares
   };
   Reading reading = {};
 };

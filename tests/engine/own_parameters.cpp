@@ -101,8 +101,10 @@ TEST_CASE("each of two masses meets its own stop as it would alone") {
                       column(contact_history(thrown_pair({}, {}), 1, under_law(law.hard), 1e-5, 0.3), 1)) < 1e-13);
     CHECK(largest_gap(column(mixed, 0), column(mixed, 1)) > 1e-3);
   }
-  const auto mixed = contact_history(thrown_pair({}, {.restitution = 0.9}), 1, under_law({"signorini"}, jean), 1e-5, 0.3);
-  CHECK(column(mixed, 0) == column(contact_history(thrown_pair({}, {}), 1, under_law({"signorini"}, jean), 1e-5, 0.3), 0));
+  const auto mixed =
+      contact_history(thrown_pair({}, {.restitution = 0.9}), 1, under_law({"signorini"}, jean), 1e-5, 0.3);
+  CHECK(column(mixed, 0) ==
+        column(contact_history(thrown_pair({}, {}), 1, under_law({"signorini"}, jean), 1e-5, 0.3), 0));
   CHECK(column(mixed, 1) ==
         column(contact_history(thrown_pair({}, {}), 1, under_law({"signorini"}, lively), 1e-5, 0.3), 1));
 }

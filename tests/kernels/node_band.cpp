@@ -267,7 +267,8 @@ void check_squares(Kernel LaneKernels::*kernel, const Step& step, const Quadrati
 
 }  // namespace
 
-TEST_CASE("squares added up beside a step by nodes are those of a pass of their own, and the step stays bitwise equal") {
+TEST_CASE(
+    "squares added up beside a step by nodes are those of a pass of their own, and the step stays bitwise equal") {
   const bool border = GENERATE(false, true), everywhere = GENERATE(false, true), wide = GENERATE(false, true);
   BandLdlt ldlt;
   REQUIRE_FALSE(ldlt.factorise(system(border)));
@@ -291,7 +292,8 @@ TEST_CASE("squares added up beside a step by nodes are those of a pass of their 
   check_squares(&LaneKernels::node_step, step, QuadraticForm(wide ? coupled(true) : diagonal), 3, H.rows);
 }
 
-TEST_CASE("squares added up beside a step by modes are those of a pass of their own, and the step stays bitwise equal") {
+TEST_CASE(
+    "squares added up beside a step by modes are those of a pass of their own, and the step stays bitwise equal") {
   const bool unit = GENERATE(false, true);
   std::vector<double> columns(3 * 16, 0.0), value;
   for (std::size_t i = 0; i < dofs; ++i) {

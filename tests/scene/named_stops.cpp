@@ -103,7 +103,8 @@ TEST_CASE("a scene of given matrices has places, no x") {
         "/scene/stops: an assembled structure has no x; expected a list of stops with name and place");
   other = with_stops(scene, {end});
   other.support = {0.1, 2, 0};
-  CHECK(fault(other, 1) == "/scene/support/amplitude: the table of dofs names no support that could move; expected an amplitude of 0");
+  CHECK(fault(other, 1) ==
+        "/scene/support/amplitude: the table of dofs names no support that could move; expected an amplitude of 0");
   other = with_stops(scene, {end});
   other.load.terms.push_back({true, {}, {}, Formula(1.0), at_node("N0")});
   CHECK(fault(other, 1) == "/scene/load/0/at: the force acts where the structure is held: nothing there can move");

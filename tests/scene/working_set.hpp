@@ -50,8 +50,8 @@ inline SceneSpec unit_beam() {
   return scene;
 }
 
-/// A bar of ρA = 1 held at its right end, let go from `shape` towards a rigid stop at 0 at its free end. With EA = 1e4 and
-/// 0.05 (1 − x) it arrives after 0.01 s.
+/// A bar of ρA = 1 held at its right end, let go from `shape` towards a rigid stop at 0 at its free end. With EA = 1e4
+/// and 0.05 (1 − x) it arrives after 0.01 s.
 inline SceneSpec released_bar(double EA, const char* shape) {
   SceneSpec scene;
   scene.structure = BarSpec{.length = 1, .EA = EA, .rhoA = 1, .fixed = BarSpec::Fixed::right, .damping = {}};

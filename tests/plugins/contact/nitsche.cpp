@@ -53,7 +53,8 @@ double chain(int elements) {
 }  // namespace
 
 TEST_CASE("Nitsche's springs are consistent: a structure at rest on its stop feels nothing of κ") {
-  const SceneSpec scene = GENERATE(beam_scene(StopsSpec::Place::tip), beam_scene(StopsSpec::Place::nodes), released_bar(1e4, "0.05*(1-x)"));
+  const SceneSpec scene =
+      GENERATE(beam_scene(StopsSpec::Place::tip), beam_scene(StopsSpec::Place::nodes), released_bar(1e4, "0.05*(1-x)"));
   double kappa = 0;
   const auto result = made(scene, 6, nitsche(7), &kappa);
   const auto& problem = std::get<SemiDiscrete>(result);

@@ -1,4 +1,5 @@
-/// Cases in worker processes: the same results as in one process, whatever a plugin or another program does to the workers.
+/// Cases in worker processes: the same results as in one process, whatever a plugin or another program does to the
+/// workers.
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
