@@ -177,7 +177,7 @@ void ContinuedMap::check_kernel(int scene) {
   if (!alone)
     refusal_ =
         "the step has a root of modulus 1 on displacements without mass, so that no orbit stands alone; use "
-        "newmark-dumont-paoli with β > 1/4 and damping of the stiffness, or a regular mass";
+        "another weight of the scheme with damping of the stiffness, or a regular mass";
 }
 
 // An end of the range, or the last value on the way to it from the first orbit at which the scene is possible.

@@ -205,8 +205,8 @@ TEST_CASE("where the finest case has no special point those of another are told"
 TEST_CASE("without special points the orbits are told, each once") {
   const auto said = sentences_of(without_points(true));
   REQUIRE(said.size() == 1);
-  // Both ways begin with one orbit at 0.08 m; its largest multiplier is 1 − 12 · 0.00495.
-  CHECK(said[0] == "No special point was met; orbits are stable at 0.08 m (largest multiplier 0.941).");
+  // Both ways begin with one orbit at 0.08; its largest multiplier is 1 − 12 · 0.00495.
+  CHECK(said[0] == "No special point was met; orbits are stable at 0.08 (largest multiplier 0.941).");
 }
 
 TEST_CASE("a study without orbits says why") {
