@@ -289,6 +289,21 @@ TEST_CASE("core and runners know no method by name") {
         }
 }
 
+TEST_CASE("lambdas of kernels are inlined, whatever the compiler does of itself") {
+  // A call would pass a vector as the caller's instruction set has it, and take it as the callee's.
+  const std::regex called(R"(\[[^\]\[]*\]\s*(\([^()]*\)\s*)?\{)");
+  int kernels = 0;
+  for (const Source& source : sources("core/kernels")) {
+    const std::string name = fs::path(source.name).filename().string();
+    if (!name.starts_with("lane_") && source.text.find("vector_size") == std::string::npos) continue;
+    ++kernels;
+    std::smatch found;
+    INFO(source.name);
+    CHECK_FALSE(std::regex_search(source.text, found, called));
+  }
+  CHECK(kernels > 5);
+}
+
 TEST_CASE("comments name sources that exist") {
   const std::vector<std::string> folders = {"core", "plugins", "runners", "tests"};
   std::set<std::string> there;
