@@ -203,9 +203,9 @@ void constrain(ConstrainedModes& modes, const Eigen::RowVectorXd& row, bool plai
     vectors.col(k) = (exact / zeros.from_all(k)).matrix().normalized();
   }
   MatrixXd moved = MatrixXd::Zero(basis.rows(), count);
-  if (plain)
+  if (plain && count > 0)
     for (Index k = 0; k <= count; ++k) moved.row(seen[static_cast<std::size_t>(k)]) = vectors.row(k);
-  else
+  else if (count > 0)
     moved = basis(Eigen::all, seen) * vectors;
   const MatrixXd left = basis(Eigen::all, kept);
   const VectorXd left_mass = mass(kept);

@@ -191,7 +191,9 @@ TEST_CASE("moments and slopes of a body are those of it alone") {
   one.stops.named = {{"s", along_beam(0.7), {}, -9, {}}};
   one.stops.named.front().tangent = TangentSpec{0.01, {}, ""};
   const SemiDiscrete both = discretised(two, 4, *mass("consistent")), alone = discretised(one, 4, *mass("consistent"));
-  const auto own = [&](const SparseRows& rows) { return Eigen::MatrixXd(rows).rightCols(alone.dofs()); };
+  const auto own = [&](const SparseRows& rows) -> Eigen::MatrixXd {
+    return Eigen::MatrixXd(rows).rightCols(alone.dofs());
+  };
   CHECK(own(both.fields.rows) == Eigen::MatrixXd(alone.fields.rows));
   CHECK(own(both.tangents.rows) == Eigen::MatrixXd(alone.tangents.rows));
   CHECK(Eigen::MatrixXd(both.fields.rows).leftCols(alone.dofs()).norm() == 0);

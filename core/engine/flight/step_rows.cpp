@@ -25,7 +25,7 @@ StepRows::StepRows(const std::vector<FlightStage>& stages, int slots, const Eige
           const auto at = static_cast<std::size_t>(j);
           map.unknown += (folded.mass_history[at] * mass[mode] + folded.stiffness_history[at]) * slot(map, j);
         }
-        map.unknown.tail(drive_.count()) += stage.force.row(mode);
+        if (drive_.count() > 0) map.unknown.tail(drive_.count()) += stage.force.row(mode);
         map.unknown /= folded.mass * mass[mode] + folded.stiffness;
       }
       for (int j = 0; j < slots; ++j) {
