@@ -42,8 +42,9 @@ StepReadings::StepReadings(const StepRows& rows, const FlightWatch& watch, int p
           if (drives_ > 0) change.tail(drives_) += own.tail(drives_).lazyProduct(turn);
           return change;
         });
-  put_all(watch.drive.row(point), add_drive,
-          [&](const Eigen::RowVectorXd& own) -> Eigen::RowVectorXd { return own * turn; });
+  if (drives_ > 0)
+    put_all(watch.drive.row(point), add_drive,
+            [&](const Eigen::RowVectorXd& own) -> Eigen::RowVectorXd { return own * turn; });
 }
 
 double StepReadings::operator()(int step, const double* x, const double* e) const {
