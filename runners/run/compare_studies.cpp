@@ -1,9 +1,7 @@
 #include "runners/run/compare_studies.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <set>
 
@@ -129,9 +127,7 @@ bool equal_tables(const Table& a, const Table& b) {
 bool equal_tables(const NumberTable& a, const NumberTable& b) {
   if (a.values.size() != b.values.size()) return false;
   for (std::size_t c = 0; c < a.values.size(); ++c)
-    if (!std::equal(
-            a.values[c].begin(), a.values[c].end(), b.values[c].begin(), b.values[c].end(),
-            [](double x, double y) { return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y); }))
+    if (!std::equal(a.values[c].begin(), a.values[c].end(), b.values[c].begin(), b.values[c].end(), same_bits))
       return false;
   return true;
 }

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstdint>
 #include <list>
 #include <map>
 #include <ricochet/contract/errors.hpp>
@@ -231,10 +229,6 @@ int merge_folders_with(const RenderReport& render, const std::vector<fs::path>& 
 }
 
 namespace {
-
-bool same_bits(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
 
 void compare_series(const std::string& what, const std::vector<double>& stored, const std::vector<double>& again,
                     Comparison& out) {

@@ -1,4 +1,6 @@
 #pragma once
+#include <bit>
+#include <cstdint>
 #include <functional>
 #include <initializer_list>
 #include <memory>
@@ -7,6 +9,11 @@
 #include "runners/table/table.hpp"
 
 namespace ricochet {
+
+/// Whether two numbers are bitwise equal: a NaN is what it is, 0 is not −0.
+inline bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
 
 /// Numbers in order. Those of a stored result are read when they are asked for: from several threads, too; copies share
 /// what was read. Reading throws what their source throws.

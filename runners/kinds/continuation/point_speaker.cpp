@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"

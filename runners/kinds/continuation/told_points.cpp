@@ -22,6 +22,19 @@ std::optional<double> stable_share(const std::vector<BranchRow>& rows, double fr
   return all > 0 ? std::optional(stable / all) : std::nullopt;
 }
 
+/// Whether stable orbits lie on one side of the point alone: their share of the arc differs by more than a half between
+/// both sides, over 5 % of the branch's arc each. Flickers of multipliers at corners change a share by little.
+/// `rows`: by branch, those with an arc that are known to be stable or not.
+bool ends_stability(const std::map<std::string, std::vector<BranchRow>>& rows, const SpecialRow& point) {
+  const auto branch = rows.find(point.branch);
+  if (branch == rows.end() || !point.arc) return false;
+  const std::vector<BranchRow>& own = branch->second;
+  constexpr double window_share = 0.05, least_difference = 0.5;
+  const double window = window_share * (*own.back().arc - *own.front().arc), at = *point.arc;
+  const auto before = stable_share(own, at - window, at), after = stable_share(own, at, at + window);
+  return before && after && std::abs(*before - *after) > least_difference;
+}
+
 /// In the order in which kinds are told.
 constexpr PointWords point_kinds[] = {{"fold", "folds", "fold"},
                                       {"torus", "becomes a torus", "torus"},
@@ -47,25 +60,15 @@ bool is_point_kind(const std::string& kind) {
   return kind_rank(kind) < std::size(point_kinds);
 }
 
-bool ends_stability(const StudyPoints& study, const StudyPoint& point) {
-  const Table* table = find_table(study.cases()[point.owner]->tables, branches_name);
-  if (!table || !point.row.arc) return false;
-  std::vector<BranchRow> rows;
-  for (BranchRow& row : branch_rows_in(*table))
-    if (row.branch == point.row.branch && row.arc && row.stable) rows.push_back(std::move(row));
-  if (rows.empty()) return false;
-  constexpr double window_share = 0.05, least_difference = 0.5;
-  const double window = window_share * (*rows.back().arc - *rows.front().arc), at = *point.row.arc;
-  const auto before = stable_share(rows, at - window, at), after = stable_share(rows, at, at + window);
-  return before && after && std::abs(*before - *after) > least_difference;
-}
-
 std::vector<ToldPoint> told_points(const StudyPoints& study, const std::vector<PointLimitRow>& limits,
                                    const std::vector<PointOrderRow>& orders) {
   const std::string& reference = study.reference()->id;
   // Changes of contact last; else where stability ends, orders, the kind, and in how many cases it was found alone.
   using Rank = std::tuple<bool, bool, bool, bool, std::size_t, long, double>;
   std::vector<std::pair<Rank, ToldPoint>> ranked;
+  std::map<std::string, std::vector<BranchRow>> rows;
+  for (BranchRow& row : branch_rows_in(*find_table(study.reference()->tables, branches_name)))
+    if (row.arc && row.stable) rows[row.branch].push_back(std::move(row));
   std::vector<double> contacts;
   for (const StudyPoint& one : study.points())
     if (one.owner == study.root() && one.kind == "first contact") contacts.push_back(one.value);
@@ -89,7 +92,7 @@ std::vector<ToldPoint> told_points(const StudyPoints& study, const std::vector<P
     // An interval of a fiftieth of the range locates nothing.
     constexpr double wide_share = 0.02;
     const bool wide = limit->low && limit->high && *limit->high - *limit->low > wide_share * study.range();
-    const ToldPoint told{&name, &*limit, point, ends_stability(study, *point)};
+    const ToldPoint told{&name, &*limit, point, ends_stability(rows, point->row)};
     ranked.push_back({{name.kind == "contact", !told.ends_stability, !ordered, wide, kind_rank(name.kind), -found,
                        -point->row.prominence.value_or(0)},
                       told});

@@ -1,5 +1,5 @@
 #pragma once
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "runners/kinds/continuation/point_tables.hpp"
@@ -21,10 +21,6 @@ struct ToldPoint {
   const StudyPoint* point = nullptr;     ///< of the reference case
   bool ends_stability = false;           ///< stable orbits lie on one side of it alone
 };
-
-/// Whether stable orbits lie on one side of the point alone: their share of the arc differs by more than a half between
-/// both sides, over 5 % of the branch's arc each. Flickers of multipliers at corners change a share by little.
-bool ends_stability(const StudyPoints& study, const StudyPoint& point);
 
 /// The named points of the reference's method at which stable orbits end, and its first contacts; all where none ends
 /// them. One of each kind stands before a second of any. A fold at a first contact is told as the contact.

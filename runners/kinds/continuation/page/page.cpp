@@ -90,11 +90,9 @@ const char* order_head(const std::string& refined) {
 /// Places of names in a row in which those that the answer tells stand first.
 class ToldOrder {
  public:
-  ToldOrder(const StudyPoints& study, const StudyResults& results) {
+  ToldOrder(const StudyPoints& study, const PointRows& rows) {
     if (study.cases().empty()) return;
-    const auto limits = point_limits_type().read(results.derived);
-    for (const ToldPoint& one : told_points(study, limits, point_orders_type().read(results.derived)))
-      told_.push_back(one.name->text);
+    for (const ToldPoint& one : told_points(study, rows.limits, rows.orders)) told_.push_back(one.name->text);
   }
   std::ptrdiff_t place(const std::string& name) const {
     return std::find(told_.begin(), told_.end(), name) - told_.begin();
@@ -113,7 +111,7 @@ std::string points_html(const CaseView& view) {
   columns.push_back({"cases that have it", true, "Without: a branch passed the place. Elsewhere: none came there."});
   // What the answer tells; then what most is known of: orders, cases that have it; changes of contact last.
   const answers::Compared compared(view.results());
-  const ToldOrder told_order(StudyPoints(compared), view.results());
+  const ToldOrder told_order(StudyPoints(compared), rows);
   std::vector<PointLimitRow> shown;
   for (const PointLimitRow& row : rows.limits)
     if (row.limit &&
@@ -181,7 +179,7 @@ Table point_levels(const CaseView& view) {
             {}};
   const answers::Compared compared(view.results());
   const StudyPoints study(compared);
-  const ToldOrder told_order(study, view.results());
+  const ToldOrder told_order(study, PointRows(view));
   std::vector<std::size_t> names(study.names().size());
   std::iota(names.begin(), names.end(), std::size_t{0});
   std::stable_sort(names.begin(), names.end(), [&](std::size_t a, std::size_t b) {
