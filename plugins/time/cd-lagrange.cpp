@@ -13,10 +13,7 @@ using namespace plan_algebra;
 /// on the points that the position q + h w, known before the solve, finds at or beyond their stop. Energy (undamped,
 /// free): ½|w|²_M + ½|q + h w/2|²_K − ⅛h²|w|²_K; test displacement h(w + z/2). Start: w = v₀ + h/2 a₀.
 PlanOrRefusal cd_lagrange(const Parameters& p, double h, const ProblemFacts& facts) {
-  if (facts.mass_kernel_dimension > 0)
-    return Refusal{
-        "the velocity of the next half step needs the inverse of the mass, which is singular here: use a "
-        "lumped mass, or an implicit scheme"};
+  if (facts.mass_kernel_dimension > 0) return needs_mass("the velocity of the next half step");
   const double e = p.real("restitution");
   const auto [q, v] = slots<2>();
   const Combination ahead = q + h * v, next = v + z, mean = v + 0.5 * z;
@@ -60,9 +57,7 @@ void register_cd_lagrange(Registry& registry) {
           half a step late: of first order where the structure is damped, of second where it is not.)",
        .source = R"(Fekak, Brun, Gravouil and Depale (2017), A new heterogeneous asynchronous explicit–implicit time
           integrator for nonsmooth dynamics)",
-       .parameters = {with_role(
-           real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, Newton's restitution coefficient"),
-           ParameterRole::restitution)},
+       .parameters = {restitution_parameter()},
        .words = "CD-Lagrange"},
       cd_lagrange);
 }

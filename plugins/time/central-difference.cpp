@@ -13,7 +13,7 @@ using namespace plan_algebra;
 /// Newmark (0, ½). No effort moves the position of its own instant, so that there is no measure of impact. Energy
 /// (undamped, free): ½|v|²_M + ½|q|²_K − ⅛h²|a|²_M; test displacement h v + h²/2 a with the equations of both ends.
 PlanOrRefusal central_difference(const Parameters&, double h, const ProblemFacts& facts) {
-  if (facts.mass_kernel_dimension > 0) return Refusal{acceleration_needs_mass};
+  if (facts.mass_kernel_dimension > 0) return needs_mass("an acceleration");
   const auto [q, v, a] = slots<3>();
   const Combination end = q + h * v + h * h / 2 * a;
   Stage step = motion_at(1, end, v + h / 2 * (a + z));

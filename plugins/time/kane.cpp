@@ -24,9 +24,7 @@ PlanOrRefusal kane(const Parameters& p, double h, const ProblemFacts& facts) {
   const double epsilon = newmark.beta - newmark.gamma / 2;
   const bool jumps = epsilon != 0, damps = newmark.gamma != 0.5, energy = p.word("impulse") == "energy";
   if ((jumps || damps) && facts.mass_kernel_dimension > 0)
-    return Refusal{
-        "the acceleration at the end of the step needs the inverse of the mass, which is singular here: "
-        "use beta = 0.25 with gamma = 0.5, or a regular mass"};
+    return needs_mass("the acceleration at the end of the step", "use beta = 0.25 with gamma = 0.5, or a regular mass");
   StepPlan plan = mean_step_plan();
   plan.facts = {.order = damps ? 1.0 : 2.0, .needs_regular_mass = jumps || damps, .contact_never_gains = true};
   plan.stages = {mean_step(h, both_ends())};

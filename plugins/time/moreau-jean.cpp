@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include "shared_steps.hpp"
 
 namespace {
@@ -41,12 +39,12 @@ PlanOrRefusal moreau_jean(const Parameters& p, double h, const ProblemFacts& fac
   if (damps) step.loss = {{EnergyMatrix::M, theta - 0.5, z}, {EnergyMatrix::K, theta - 0.5, next - q}};
   StepPlan plan = mean_step_plan();
   plan.stages = {step};
+  // Above θ = ½ a step that rests on its stop keeps less: not known.
   plan.facts = {.order = damps ? 1.0 : 2.0,
+                .contact_order = damps ? std::optional<double>() : 1,
                 .restitution = Restitution::exact,
                 .needs_regular_mass = e > 0 || !damps,
                 .contact_never_gains = !damps};
-  // Above θ = ½ a step that rests on its stop keeps less: not known.
-  if (!damps) plan.facts.contact_order = 1;
   return plan;
 }
 
@@ -62,9 +60,7 @@ void register_moreau_jean(Registry& registry) {
        .source = R"(Jean and Moreau (1992); Moreau (1999), Numerical aspects of the sweeping process; Acary and
           Brogliato (2008), ch. 10)",
        .parameters = {real_parameter("theta", "1", 0.5, {.low = 0.5, .high = 1}, "θ; above ½ it damps, at first order"),
-                      with_role(real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1},
-                                               "e, Newton's restitution coefficient"),
-                                ParameterRole::restitution)},
+                      restitution_parameter()},
        .words = "Moreau–Jean"},
       moreau_jean);
 }

@@ -17,7 +17,7 @@ using namespace plan_algebra;
 /// An effort moves the next known position, t + h for stage 1 and t + h + c for stage 2: that one is kept between the
 /// stops.
 PlanOrRefusal noh_bathe(const Parameters& parameters, double h, const ProblemFacts& facts) {
-  if (facts.mass_kernel_dimension > 0) return Refusal{acceleration_needs_mass};
+  if (facts.mass_kernel_dimension > 0) return needs_mass("an acceleration");
   const double p = parameters.real("split"), c = p * h, d = (1 - p) * h;
   const double q1 = (1 - 2 * p) / (2 * p * (1 - p)), q2 = 0.5 - p * q1, q0 = 0.5 - q1 - q2;
   const auto [q, v, a, b] = slots<4>();

@@ -19,9 +19,8 @@ using namespace plan_algebra;
 /// (½|v|²_M + ½|q|²_K, test displacement Δq) is whole; below, what a load does to the filter is left out.
 PlanOrRefusal nonsmooth_generalised_alpha(const Parameters& p, double h, const ProblemFacts& facts) {
   if (facts.mass_kernel_dimension > 0)
-    return Refusal{
-        "a velocity that jumps needs the inverse of the mass, which is singular here: use generalised-alpha, whose "
-        "stops are at position level, or a regular mass"};
+    return needs_mass("a velocity that jumps",
+                      "use generalised-alpha, whose stops are at position level, or a regular mass");
   const AlphaMethod method = AlphaMethod::chung_hulbert(p.real("rho_inf"));
   const bool half = p.word("position") == "half", projected = p.word("position") == "projected";
   const bool trapezium = method.gamma == 0.5 && !projected;
@@ -65,13 +64,10 @@ void register_nonsmooth_generalised_alpha(Registry& registry) {
           systems with unilateral constraints; projected: after Brüls, Acary and Cardona (2014))",
        .parameters = {real_parameter("rho_inf", "1", 0.8, {.low = 0, .high = 1},
                                      "ρ∞, what a step leaves of the highest frequencies; 1 does not damp"),
-                      with_role(real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1},
-                                               "e, Newton's restitution coefficient"),
-                                ParameterRole::restitution),
-                      word_parameter(
-                          "position", {"half", "beta", "projected"}, "half",
-                          R"(what a jump w moves positions by: half, (h/2)w; beta, (β/γ)h w; projected, that and onto
-          the stops)")},
+                      restitution_parameter(),
+                      word_parameter("position", {"half", "beta", "projected"}, "half",
+                                     R"(what a jump w moves positions by: half, (h/2)w; beta, (β/γ)h w; projected,
+          that and onto the stops)")},
        .words = "nonsmooth generalised α"},
       nonsmooth_generalised_alpha);
 }

@@ -1,5 +1,8 @@
 #pragma once
+#include <fmt/format.h>
+
 #include <ricochet/contract/plugin.hpp>
+#include <string_view>
 
 /// \file
 /// Stages and parts of stages that several schemes have.
@@ -16,9 +19,17 @@ inline StepPlan plan_with(std::vector<std::string> slots) {
   return plan;
 }
 
-/// Why an explicit scheme with accelerations refuses a singular mass.
-inline constexpr char acceleration_needs_mass[] =
-    "an acceleration needs the inverse of the mass, which is singular here: use a lumped mass, or an implicit scheme";
+/// The refusal of a singular mass by schemes that have `what` of contact points as a state.
+inline Refusal needs_mass(std::string_view what, std::string_view remedy = "use a lumped mass, or an implicit scheme") {
+  return Refusal{fmt::format("{} needs the inverse of the mass, which is singular here: {}", what, remedy)};
+}
+
+/// e of Newton's law v⁺ = −e v⁻, from 0 to 1.
+inline ParameterSpec restitution_parameter() {
+  return with_role(
+      real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, Newton's restitution coefficient"),
+      ParameterRole::restitution);
+}
 
 /// The start stage of schemes with accelerations as their third slot,
 ///
