@@ -57,7 +57,7 @@ constexpr const char* shared_scripts[] = {"format",  "later",      "data",      
                                           "dataset", "options",    "method_curves", "strips",     "figure_section",
                                           "theme",   "chart_data", "figure",        "case_map",   "picture",
                                           "paper",   "dot_rows",   "side_panel",    "case_panel", "case_pick"};
-constexpr const char* page_scripts[] = {"film_stage",    "space_time", "film",          "sorting",
+constexpr const char* page_scripts[] = {"snapshots",     "film_stage", "space_time",    "film", "sorting",
                                         "column_filter", "case_table", "verdict_words", "page"};
 
 std::string page_program(const KindPage& kind) {

@@ -316,3 +316,18 @@ TEST_CASE("comments name sources that exist") {
         CHECK(there.contains(name));
       }
 }
+
+TEST_CASE("files have at most 400 lines, those of scripts at most 120 columns") {
+  const auto begins = [](unsigned char c) { return (c & 0xC0U) != 0x80U; };  // bytes that begin a character of UTF-8
+  for (const std::string folder : {"core", "plugins", "runners"})
+    for (const Source& source : sources(folder)) {
+      std::istringstream lines(source.text);
+      int count = 0;
+      for (std::string line; std::getline(lines, line);) {
+        INFO(source.name << ':' << ++count);
+        if (source.name.ends_with(".js")) CHECK(std::count_if(line.begin(), line.end(), begins) <= 120);
+      }
+      INFO(source.name);
+      CHECK(count <= 400);
+    }
+}

@@ -1,16 +1,17 @@
-// The case of the point or curve that lies where a chart was clicked: rows that speak of a case carry its id, and so do curves whose rows are columns.
+// The case of the point or curve that lies where a chart was clicked: rows that speak of a case carry its id, and so do
+// curves whose rows are columns.
 {
-  const reach = 14;   // pixels
+  const reach = 14;  // pixels
 
   // The rows of a series with what its filters leave of them.
-  function rowsOf({ dataset }, index) {
-    const { source, fromDatasetIndex, transform } = dataset[index];
+  function rowsOf({dataset}, index) {
+    const {source, fromDatasetIndex, transform} = dataset[index];
     if (source) return source;
-    const { dimension, "=": value } = transform.config;
-    return rowsOf({ dataset }, fromDatasetIndex).filter((row) => row[dimension] === value);
+    const {dimension, "=": value} = transform.config;
+    return rowsOf({dataset}, fromDatasetIndex).filter((row) => row[dimension] === value);
   }
   function pixelsOf(chart, series) {
-    const axes = { xAxisIndex: series.xAxisIndex || 0, yAxisIndex: series.yAxisIndex || 0 };
+    const axes = {xAxisIndex: series.xAxisIndex || 0, yAxisIndex: series.yAxisIndex || 0};
     return (x, y) => (x === null || y === null ? [NaN, NaN] : chart.convertToPixel(axes, [x, y]));
   }
   // Distance of a place to the line between two.
@@ -23,12 +24,18 @@
   // The first place of a rising list whose value is not below.
   function firstFrom(values, wanted) {
     let low = 0, high = values.length;
-    while (low < high) { const middle = (low + high) >> 1; if (values[middle] < wanted) low = middle + 1; else high = middle; }
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (values[middle] < wanted) low = middle + 1;
+      else high = middle;
+    }
     return low;
   }
   // Curves are over time, which rises: the samples around the place are enough, however many there are.
   function nearestOnCurve(chart, series, source, pixel, at, found) {
-    const xs = source[series.encode.x], ys = source[series.encode.y], along = (x) => chart.convertFromPixel({ xAxisIndex: series.xAxisIndex || 0, yAxisIndex: series.yAxisIndex || 0 }, [x, at[1]])[0];
+    const xs = source[series.encode.x], ys = source[series.encode.y],
+          along = (x) => chart.convertFromPixel(
+              {xAxisIndex: series.xAxisIndex || 0, yAxisIndex: series.yAxisIndex || 0}, [x, at[1]])[0];
     const last = Math.min(xs.length - 1, firstFrom(xs, along(at[0] + reach)));
     let before = null;
     for (let i = Math.max(0, firstFrom(xs, along(at[0] - reach)) - 1); i <= last; ++i) {
@@ -38,13 +45,21 @@
     }
   }
 
-  function caseAt({ chart, drawn }, at) {
+  function caseAt({chart, drawn}, at) {
     let nearest = reach, id = null;
-    const found = (distance, one) => { if (distance < nearest) { nearest = distance; id = one; } };
+    const found = (distance, one) => {
+      if (distance < nearest) {
+        nearest = distance;
+        id = one;
+      }
+    };
     for (const series of drawn.series) {
       if (series.datasetIndex === undefined || drawn.legend.selected[series.name] === false) continue;
       const rows = rowsOf(drawn, series.datasetIndex), pixel = pixelsOf(chart, series);
-      if (!Array.isArray(rows)) { if (series.case) nearestOnCurve(chart, series, rows, pixel, at, found); continue; }
+      if (!Array.isArray(rows)) {
+        if (series.case) nearestOnCurve(chart, series, rows, pixel, at, found);
+        continue;
+      }
       for (const row of rows) {
         if (!row.case) continue;
         const [x, y] = pixel(row[series.encode.x], row[series.encode.y]);

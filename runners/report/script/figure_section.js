@@ -1,28 +1,41 @@
-// A figure as a part of the page: heading, caption, choice of views, legend, and a place for each of its charts with what is said below it.
+// A figure as a part of the page: heading, caption, choice of views, legend, and a place for each of its charts with
+// what is said below it.
 {
-  const { escape } = ricochet.format;
+  const {escape} = ricochet.format;
   const shapes = {
-    circle: '<circle cx="15" cy="6" r="4"', rect: '<rect x="11" y="2" width="8" height="8"', roundRect: '<rect x="11" y="2" width="8" height="8"', triangle: '<path d="M15 1 L20 10 L10 10 Z"',
-    arrow: '<path d="M15 1 L20 10 L10 10 Z"', "triangle-down": '<path d="M10 2 L20 2 L15 11 Z"', cross: '<path stroke="#222" d="M11 2 L19 10 M19 2 L11 10"', diamond: '<path d="M15 1 L20 6 L15 11 L10 6 Z"',
+    circle: '<circle cx="15" cy="6" r="4"',
+    rect: '<rect x="11" y="2" width="8" height="8"',
+    roundRect: '<rect x="11" y="2" width="8" height="8"',
+    triangle: '<path d="M15 1 L20 10 L10 10 Z"',
+    arrow: '<path d="M15 1 L20 10 L10 10 Z"',
+    "triangle-down": '<path d="M10 2 L20 2 L15 11 Z"',
+    cross: '<path stroke="#222" d="M11 2 L19 10 M19 2 L11 10"',
+    diamond: '<path d="M15 1 L20 6 L15 11 L10 6 Z"',
   };
 
-  const mostEntries = 12;   // of a legend at first sight
+  const mostEntries = 12;  // of a legend at first sight
   function legend(entries, used) {
     if (entries.length < 2) return "";
-    const rest = entries.slice(mostEntries), more = '<details><summary>' + rest.length + ' more</summary><div class="legend-rest">';
-    return '<div class="legend" role="group" aria-label="Show or hide curves">' + legendEntries(entries.slice(0, mostEntries), used) +
-      (rest.length ? more + legendEntries(rest, used) + "</div></details>" : "") + "</div>";
+    const rest = entries.slice(mostEntries),
+          more = '<details><summary>' + rest.length + ' more</summary><div class="legend-rest">';
+    return '<div class="legend" role="group" aria-label="Show or hide curves">' +
+        legendEntries(entries.slice(0, mostEntries), used) +
+        (rest.length ? more + legendEntries(rest, used) + "</div></details>" : "") + "</div>";
   }
   function legendEntries(entries, used) {
     let out = "", heading = "";
     for (const entry of entries) {
       if ((entry.heading || "") !== heading) {
-        out += (heading ? '<span class="line"></span>' : "") + '<span class="heading">' + escape(entry.heading) + "</span>";
+        out += (heading ? '<span class="line"></span>' : "") + '<span class="heading">' + escape(entry.heading) +
+            "</span>";
         heading = entry.heading;
       }
-      const line = '<line x1="0" y1="6" x2="30" y2="6" stroke="' + entry.colour + '" stroke-width="2.2"' + (entry.dash ? ' stroke-dasharray="' + entry.dash + '"' : "") + "/>";
+      const line = '<line x1="0" y1="6" x2="30" y2="6" stroke="' + entry.colour + '" stroke-width="2.2"' +
+          (entry.dash ? ' stroke-dasharray="' + entry.dash + '"' : "") + "/>";
       const mark = shapes[entry.symbol] ? shapes[entry.symbol] + ' fill="' + entry.colour + '"/>' : "";
-      out += '<button type="button" aria-pressed="true" data-name="' + escape(entry.name) + '" title="' + escape(entry.name) + '"><svg width="30" height="12" aria-hidden="true">' + line + mark + "</svg>" + escape(ricochet.shorten(entry.name, used)) + "</button>";
+      out += '<button type="button" aria-pressed="true" data-name="' + escape(entry.name) + '" title="' +
+          escape(entry.name) + '"><svg width="30" height="12" aria-hidden="true">' + line + mark + "</svg>" +
+          escape(ricochet.shorten(entry.name, used)) + "</button>";
     }
     return out;
   }
@@ -30,31 +43,58 @@
     let out = "";
     if (figure.views.length > 1)
       out += '<span class="choice" role="group" aria-label="Scale of the vertical axis">' +
-        figure.views.map((name, v) => '<button type="button" data-view="' + v + '" aria-pressed="' + (v === 0) + '">' + escape(name) + "</button>").join("") + "</span>";
-    if (figure.charts.length > 1) out += '<label title="Off: the same vertical scale in all charts, so that they compare"><input type="checkbox" data-own> each chart its own scale</label>';
-    if (figure.charts.length > 12) out += '<label>Show <input type="search" data-facets placeholder="words of a chart\'s title"></label>';
+          figure.views
+              .map(
+                  (name, v) => '<button type="button" data-view="' + v + '" aria-pressed="' + (v === 0) + '">' +
+                      escape(name) + "</button>")
+              .join("") +
+          "</span>";
+    if (figure.charts.length > 1)
+      out += '<label title="Off: the same vertical scale in all charts, so that they compare">' +
+          '<input type="checkbox" data-own> each chart its own scale</label>';
+    if (figure.charts.length > 12)
+      out += '<label>Show <input type="search" data-facets placeholder="words of a chart\'s title"></label>';
     // Which of its forms the figure takes.
-    (figure.choices || []).forEach(({ name, options, at }) => {
-      out += "<label>" + escape(name) + " <select data-choice>" + options.map((option, k) => "<option" + (k === at ? " selected" : "") + ">" + escape(ricochet.shorten(option)) + "</option>").join("") + "</select></label>";
+    (figure.choices || []).forEach(({name, options, at}) => {
+      out += "<label>" + escape(name) + " <select data-choice>" +
+          options
+              .map(
+                  (option, k) =>
+                      "<option" + (k === at ? " selected" : "") + ">" + escape(ricochet.shorten(option)) + "</option>")
+              .join("") +
+          "</select></label>";
     });
     return '<div class="controls">' + out + "</div>";
   }
-  function classes({ charts, linked, overTime }, strips) {
+  function classes({charts, linked, overTime}, strips) {
     if (linked && !overTime) return charts.length === 1 ? "grid single broad" : "grid stacked";
     if (charts.length === 1) return "grid single";
     if (strips.length > 1) return "grid strips";
     return charts.length > 12 ? "grid many" : charts.length === 2 || charts.length === 4 ? "grid pair" : "grid";
   }
-  const notes = (list) => (list.length ? '<ul class="notes">' + list.map((note) => "<li>" + escape(note) + "</li>").join("") + "</ul>" : "");
-  function place(figure, { chart, index, label }, used) {
-    const single = figure.charts.length === 1 && /^all /.test(label), apart = chart.only !== undefined, wide = apart && figure.charts.every((other) => other === chart || other.only !== chart.only), title = escape(chart.title);
-    let out = '<figure data-title="' + title + '"' + (apart ? ' data-only="' + chart.only + '"' : "") + (apart && chart.only > 0 ? " hidden" : "") + (wide ? ' class="wide"' : "") + '><figcaption><span title="' + title + '">' + (single ? "" : escape(ricochet.shorten(label, used))) + "</span>";
-    if (chart.views.length) out += '<span class="export"><button type="button" data-export="svg">SVG</button><button type="button" data-export="png">PNG</button></span>';
+  const notes = (list) => (
+      list.length ? '<ul class="notes">' + list.map((note) => "<li>" + escape(note) + "</li>").join("") + "</ul>" : "");
+  function place(figure, {chart, index, label}, used) {
+    const single = figure.charts.length === 1 && /^all /.test(label), apart = chart.only !== undefined,
+          wide = apart && figure.charts.every((other) => other === chart || other.only !== chart.only),
+          title = escape(chart.title);
+    let out = '<figure data-title="' + title + '"' + (apart ? ' data-only="' + chart.only + '"' : "") +
+        (apart && chart.only > 0 ? " hidden" : "") + (wide ? ' class="wide"' : "") + '><figcaption><span title="' +
+        title + '">' + (single ? "" : escape(ricochet.shorten(label, used))) + "</span>";
+    if (chart.views.length)
+      out += '<span class="export"><button type="button" data-export="svg">SVG</button>' +
+          '<button type="button" data-export="png">PNG</button></span>';
     out += "</figcaption>";
     if (chart.views.length)
-      out += '<div class="chart" data-chart="' + index + '"' + (chart.height ? ' style="height:' + chart.height + 'px"' : "") + ' role="img" aria-label="' + escape(figure.title) + ": " + title + '"></div>';
+      out += '<div class="chart" data-chart="' + index + '"' +
+          (chart.height ? ' style="height:' + chart.height + 'px"' : "") + ' role="img" aria-label="' +
+          escape(figure.title) + ": " + title + '"></div>';
     else out += '<p class="nothing">No curve: no case of this chart has one.</p>';
-    chart.views.forEach((view, v) => { if (view.notes.length) out += '<div data-notes="' + (apart ? "" : v) + '"' + (v > 0 ? " hidden" : "") + ">" + notes(view.notes) + "</div>"; });
+    chart.views.forEach((view, v) => {
+      if (view.notes.length)
+        out += '<div data-notes="' + (apart ? "" : v) + '"' + (v > 0 ? " hidden" : "") + ">" + notes(view.notes) +
+            "</div>";
+    });
     return out + notes(chart.notes) + "</figure>";
   }
 
@@ -63,10 +103,19 @@
     section.className = "figure";
     section.id = "figure-" + figure.id;
     section.dataset.figure = figure.id;
-    const used = new Set(), strips = ricochet.strips(figure.charts), across = Math.max(...strips.map((strip) => strip.charts.length));
-    const charts = strips.map(({ label, charts: own }) => (label ? '<h4 class="strip" title="' + escape(label) + '">' + escape(ricochet.shorten(label, used)) + "</h4>" : "") + own.map((one) => place(figure, one, used)).join("")).join("");
-    section.innerHTML = "<h3>" + escape(figure.title) + '</h3><p class="caption">' + escape(figure.caption) + "</p>" + controls(figure) + legend(figure.legend, used) +
-      '<div class="' + classes(figure, strips) + '" style="--across:' + across + '">' + charts + "</div>" + (used.size ? '<p class="fine key">' + escape(ricochet.keyTo(used)) + "</p>" : "");
+    const used = new Set(), strips = ricochet.strips(figure.charts),
+          across = Math.max(...strips.map((strip) => strip.charts.length));
+    const charts = strips
+                       .map(
+                           ({label, charts: own}) => (label ? '<h4 class="strip" title="' + escape(label) + '">' +
+                                                              escape(ricochet.shorten(label, used)) + "</h4>" :
+                                                              "") +
+                               own.map((one) => place(figure, one, used)).join(""))
+                       .join("");
+    section.innerHTML = "<h3>" + escape(figure.title) + '</h3><p class="caption">' + escape(figure.caption) + "</p>" +
+        controls(figure) + legend(figure.legend, used) + '<div class="' + classes(figure, strips) +
+        '" style="--across:' + across + '">' + charts + "</div>" +
+        (used.size ? '<p class="fine key">' + escape(ricochet.keyTo(used)) + "</p>" : "");
     return section;
   };
 }

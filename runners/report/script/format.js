@@ -11,18 +11,26 @@ ricochet.groupBy = (list, valuesOf) => {
   }
   return groups;
 };
-ricochet.keyOf = (values) => values.map((value) => (value === null || value === undefined ? "" : String(value))).join("\u001f");
+ricochet.keyOf = (values) =>
+    values.map((value) => (value === null || value === undefined ? "" : String(value))).join("\u001f");
 {
   const minus = (text) => text.replace("-", "−");
 
   // The digits of a number: 0.00025 → ["-" or "", "25", −4].
   function digitsOf(value, text) {
     const [mantissa, exponent] = (text || Math.abs(value).toExponential()).split("e");
-    return { sign: value < 0 ? "-" : "", digits: mantissa.replace(".", "").replace(/0+$/, "") || "0", exponent: Number(exponent) };
+    return {
+      sign: value < 0 ? "-" : "",
+      digits: mantissa.replace(".", "").replace(/0+$/, "") || "0",
+      exponent: Number(exponent)
+    };
   }
-  const scientific = ({ sign, digits, exponent }) => sign + digits[0] + (digits.length > 1 ? "." + digits.slice(1) : "") + "e" + exponent;
-  function plain({ sign, digits, exponent }) {
-    if (exponent < 0) return sign + "0." + "0".repeat(-exponent - 1) + digits;
+  const scientific = ({sign, digits, exponent}) =>
+      sign + digits[0] + (digits.length > 1 ? "." + digits.slice(1) : "") + "e" + exponent;
+  function plain({sign, digits, exponent}) {
+    if (exponent < 0)
+      return sign + "0." +
+          "0".repeat(-exponent - 1) + digits;
     if (digits.length <= exponent + 1) return sign + digits + "0".repeat(exponent + 1 - digits.length);
     return sign + digits.slice(0, exponent + 1) + "." + digits.slice(exponent + 1);
   }
@@ -64,10 +72,13 @@ ricochet.keyOf = (values) => values.map((value) => (value === null || value === 
 
   const twoDecimals = (value) => (value.toFixed(2) === "-0.00" ? "0.00" : minus(value.toFixed(2)));
   const unitless = (unit) => unit === "" || unit === "1";
-  const marks = { done: "✓", refused: "⊘", diverged: "✕", failed: "!" };
+  const marks = {done: "✓", refused: "⊘", diverged: "✕", failed: "!"};
 
   ricochet.format = {
-    text, exact, shown, power,
+    text,
+    exact,
+    shown,
+    power,
     // An order of convergence: "1.00", "−0.03".
     order: twoDecimals,
     // A share of a variance: two digits where it is small, no decimals where it is not.

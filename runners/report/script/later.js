@@ -1,8 +1,12 @@
-// What is long to lay out waits until it is come near, looked for (Ctrl+F), or printed: a map of cases, a table of a thousand rows. Such a table stands in
-// the page as <noscript class="later">, which a browser that runs scripts reads as one text, and one that runs none as the table that it is.
+// What is long to lay out waits until it is come near, looked for (Ctrl+F), or printed: a map of cases, a table of a
+// thousand rows. Such a table stands in the page as <noscript class="later">, which a browser that runs scripts reads
+// as one text, and one that runs none as the table that it is.
 {
   const waiting = new Map();
-  const near = new IntersectionObserver((entries) => { for (const entry of entries) if (entry.isIntersecting) fill(entry.target); }, { rootMargin: "600px" });
+  const near = new IntersectionObserver((entries) => {
+    for (const entry of entries)
+      if (entry.isIntersecting) fill(entry.target);
+  }, {rootMargin: "600px"});
 
   function fill(place) {
     const make = waiting.get(place);
@@ -13,14 +17,20 @@
   }
   const later = ricochet.later = {
     fill,
-    fillAll() { for (const place of Array.from(waiting.keys())) if (place.isConnected) fill(place); },
+    fillAll() {
+      for (const place of Array.from(waiting.keys()))
+        if (place.isConnected) fill(place);
+    },
     waits: (place) => waiting.has(place),
     // Has `make` fill a place when its time has come.
-    wait(place, make) { waiting.set(place, make); near.observe(place); },
+    wait(place, make) {
+      waiting.set(place, make);
+      near.observe(place);
+    },
     // Tables that stand as text; `begin` works on what then stands there.
     startTables(begin) {
       for (const text of document.querySelectorAll("noscript.later")) {
-        const place = Object.assign(document.createElement("div"), { className: "waits" });
+        const place = Object.assign(document.createElement("div"), {className: "waits"});
         text.replaceWith(place);
         later.wait(place, () => {
           const made = document.createElement("template");
@@ -33,5 +43,7 @@
     },
   };
   window.addEventListener("beforeprint", () => later.fillAll());
-  document.addEventListener("keydown", (event) => { if (event.key === "F3" || ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "f")) later.fillAll(); });
+  document.addEventListener("keydown", (event) => {
+    if (event.key === "F3" || ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "f")) later.fillAll();
+  });
 }

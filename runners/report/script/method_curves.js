@@ -1,13 +1,17 @@
-// Cases as curves along an axis, in facets of at most eight curves: first by what must not share a chart, then by what is no method, then by methods
-// other than the mass matrix. Colour is the mass matrix; where a study has one mass only, it is the curve.
+// Cases as curves along an axis, in facets of at most eight curves: first by what must not share a chart, then by what
+// is no method, then by methods other than the mass matrix. Colour is the mass matrix; where a study has one mass only,
+// it is the curve.
 {
   const mostCurves = 8;
   // The first eight are those of curves; a diagram may overlay more methods.
-  const colours = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7B4FA0", "#8C6D31", "#44AA99", "#882255", "#333333", "#999933"];
+  const colours = [
+    "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7B4FA0", "#8C6D31", "#44AA99", "#882255",
+    "#333333", "#999933"
+  ];
 
   // Of the columns, those that become facets so that no chart has more curves than a reader can tell apart.
   function facetColumns(view, cases, columns, apart) {
-    const { roleOf } = ricochet, facets = columns.filter((column) => apart.includes(column));
+    const {roleOf} = ricochet, facets = columns.filter((column) => apart.includes(column));
     const isMethod = (column) => ricochet.roles.includes(roleOf(column));
     const candidates = columns.filter((column) => !apart.includes(column) && roleOf(column) !== "mass");
     for (const column of candidates.filter((one) => !isMethod(one)).concat(candidates.filter(isMethod))) {
@@ -18,19 +22,28 @@
     return facets;
   }
 
-  // A chart of some cases, which have columns `by` in common, whose views and notes are worked out when they are first looked at.
+  // A chart of some cases, which have columns `by` in common, whose views and notes are worked out when they are first
+  // looked at.
   function chartOf(title, cases, by, views, notes) {
     let seen = null, said = null;
-    return { title, cases, by, get views() { return seen || (seen = views()); }, get notes() { return said || (said = notes()); } };
+    return {
+      title,
+      cases,
+      by,
+      get views() { return seen || (seen = views()); },
+      get notes() { return said || (said = notes()); }
+    };
   }
 
   class MethodCurves {
     // `apart` must not share a chart, `ignored` tells nothing apart; facets are chosen over the cases `among`.
-    constructor(view, cases, along, { apart = [], ignored = [], among = cases, byMass = view.masses.length > 1 } = {}) {
-      const { roleOf, numberOf } = ricochet;
-      Object.assign(this, { view, byMass });
-      const others = view.varying.filter((column) => column !== along && !ignored.includes(column)), facets = facetColumns(view, among, others, apart);
-      const curveColumns = others.filter((column) => !facets.includes(column)), notMass = others.filter((column) => roleOf(column) !== "mass"), names = [];
+    constructor(view, cases, along, {apart = [], ignored = [], among = cases, byMass = view.masses.length > 1} = {}) {
+      const {roleOf, numberOf} = ricochet;
+      Object.assign(this, {view, byMass});
+      const others = view.varying.filter((column) => column !== along && !ignored.includes(column)),
+            facets = facetColumns(view, among, others, apart);
+      const curveColumns = others.filter((column) => !facets.includes(column)),
+            notMass = others.filter((column) => roleOf(column) !== "mass"), names = [];
       this.facetColumns = facets;
       // Columns whose values tell a case of a facet apart.
       this.said = [along].concat(curveColumns);
@@ -43,22 +56,35 @@
           if (!names.includes(name)) names.push(name);
           const rank = names.indexOf(name);
           return {
-            name, colour: byMass ? view.colour(first) : colours[rank % mostCurves], style: byMass ? styles.findIndex((style) => style.cases.includes(first)) : rank,
+            name,
+            colour: byMass ? view.colour(first) : colours[rank % mostCurves],
+            style: byMass ? styles.findIndex((style) => style.cases.includes(first)) : rank,
             cases: one.cases.slice().sort((a, b) => (numberOf(a, along) || 0) - (numberOf(b, along) || 0)),
           };
         });
-        return { title: group.label || "all cases", cases: group.cases, curves };
+        return {title: group.label || "all cases", cases: group.cases, curves};
       });
     }
     // A chart per facet, with the views that `draw` makes of it.
-    charts(draw) { return this.facets.map((facet, f) => chartOf(facet.title, facet.cases, this.facetColumns, () => draw(facet, f), () => this.view.outcomeNotes(facet.cases, this.said))); }
+    charts(draw) {
+      return this.facets.map(
+          (facet, f) => chartOf(
+              facet.title, facet.cases, this.facetColumns, () => draw(facet, f),
+              () => this.view.outcomeNotes(facet.cases, this.said)));
+    }
     legend() {
-      const entries = this.facets.flatMap((facet) => facet.curves).map(({ name, colour, style, across }) => ({ name, colour, dash: ricochet.svgDash(style), symbol: across ? "" : ricochet.symbol(style) }));
+      const entries =
+          this.facets.flatMap((facet) => facet.curves)
+              .map(
+                  ({name, colour, style, across}) =>
+                      ({name, colour, dash: ricochet.svgDash(style), symbol: across ? "" : ricochet.symbol(style)}));
       return ricochet.firstOfName(entries);
     }
     // What the colours mean, for a caption.
-    colours() { return this.byMass ? "One colour per mass matrix." : "One colour per curve (the study has one mass matrix)."; }
+    colours() {
+      return this.byMass ? "One colour per mass matrix." : "One colour per curve (the study has one mass matrix).";
+    }
   }
 
-  Object.assign(ricochet, { MethodCurves, chartOf, mostCurves, methodColours: colours });
+  Object.assign(ricochet, {MethodCurves, chartOf, mostCurves, methodColours: colours});
 }

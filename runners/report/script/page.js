@@ -1,28 +1,40 @@
 // The page: reads its data, makes its figures, and draws their charts as they come into sight.
 {
-  const read = (id) => { const e = document.getElementById(id); return e ? JSON.parse(e.textContent) : null; };
+  const read = (id) => {
+    const e = document.getElementById(id);
+    return e ? JSON.parse(e.textContent) : null;
+  };
   const figures = ricochet.figures = [];
 
   // A finger on a chart is the page's: the chart library hears of taps alone, as clicks.
-  const ofPage = (event) => { if (event.target.closest && event.target.closest("[_echarts_instance_]")) event.stopPropagation(); };
-  for (const name of ["touchstart", "touchmove", "touchend", "touchcancel"]) document.addEventListener(name, ofPage, { capture: true, passive: true });
+  const ofPage = (event) => {
+    if (event.target.closest && event.target.closest("[_echarts_instance_]")) event.stopPropagation();
+  };
+  for (const name of ["touchstart", "touchmove", "touchend", "touchcancel"])
+    document.addEventListener(name, ofPage, {capture: true, passive: true});
 
-  // Says of a box whether its table is wider than it, and whether there is more to the right; such a box can be reached and scrolled by keys. All boxes are
-  // measured before any is changed: a page is laid out once for all of them.
-  const resized = new Set(), widths = new ResizeObserver((entries) => entries.forEach(({ target }) => lookAt(target)));
+  // Says of a box whether its table is wider than it, and whether there is more to the right; such a box can be reached
+  // and scrolled by keys. All boxes are measured before any is changed: a page is laid out once for all of them.
+  const resized = new Set(), widths = new ResizeObserver((entries) => entries.forEach(({target}) => lookAt(target)));
   function lookAt(box) {
-    if (!resized.size) requestAnimationFrame(() => {
-      const found = Array.from(resized, (one) => [one, one.scrollWidth - one.clientWidth, one.scrollLeft]);
-      resized.clear();
-      for (const [one, more, at] of found) {
-        if (more > 1) { one.dataset.wide = at < more - 1 ? "more" : "all"; one.tabIndex = 0; }
-        else { delete one.dataset.wide; one.removeAttribute("tabindex"); }
-      }
-    });
+    if (!resized.size)
+      requestAnimationFrame(() => {
+        const found = Array.from(resized, (one) => [one, one.scrollWidth - one.clientWidth, one.scrollLeft]);
+        resized.clear();
+        for (const [one, more, at] of found) {
+          if (more > 1) {
+            one.dataset.wide = at < more - 1 ? "more" : "all";
+            one.tabIndex = 0;
+          } else {
+            delete one.dataset.wide;
+            one.removeAttribute("tabindex");
+          }
+        }
+      });
     resized.add(box);
   }
   function watchWidth(box) {
-    box.addEventListener("scroll", () => lookAt(box), { passive: true });
+    box.addEventListener("scroll", () => lookAt(box), {passive: true});
     widths.observe(box);
   }
   ricochet.watchWidth = watchWidth;
@@ -35,7 +47,7 @@
       const [figure, slot] = owner.get(entry.target) || [];
       if (slot && !slot.chart) figure.draw(slot);
     }
-  }, { rootMargin: "400px" });
+  }, {rootMargin: "400px"});
 
   // Brings a figure to the page: `put` places its section, and its charts are drawn as they come into sight.
   ricochet.mount = (description, put) => {
@@ -44,11 +56,15 @@
     put(section);
     const figure = new (description.map ? ricochet.CaseMap : ricochet.Figure)(description, section);
     figures.push(figure);
-    for (const slot of figure.slots) { owner.set(slot.element, [figure, slot]); later.observe(slot.element); }
+    for (const slot of figure.slots) {
+      owner.set(slot.element, [figure, slot]);
+      later.observe(slot.element);
+    }
     // A figure that takes several forms is made anew in its place.
     const choices = Array.from(section.querySelectorAll("[data-choice]"));
     choices.forEach((choice, k) => choice.addEventListener("change", () => {
-      const next = ricochet.mount(description.remake(choices.map((one) => one.selectedIndex)), (fresh) => section.replaceWith(fresh));
+      const next = ricochet.mount(
+          description.remake(choices.map((one) => one.selectedIndex)), (fresh) => section.replaceWith(fresh));
       ricochet.unmount(figure);
       next.show(Math.min(figure.view, next.description.views.length - 1));
       const again = next.section.querySelectorAll("[data-choice]")[k];
@@ -57,7 +73,11 @@
     return figure;
   };
   ricochet.unmount = (figure) => {
-    for (const { element, chart } of figure.slots) { owner.delete(element); later.unobserve(element); if (chart) chart.dispose(); }
+    for (const {element, chart} of figure.slots) {
+      owner.delete(element);
+      later.unobserve(element);
+      if (chart) chart.dispose();
+    }
     figures.splice(figures.indexOf(figure), 1);
     figure.section.remove();
   };
@@ -68,11 +88,15 @@
     const data = new ricochet.PageData(page, read("curve-data"));
     data.view = new ricochet.Cases(data);
     ricochet.data = data;
-    const all = ricochet.bounded(ricochet.makeFigures(data)), answer = ricochet.answerAmong(all), beside = document.getElementById("answer-figure");
+    const all = ricochet.bounded(ricochet.makeFigures(data)), answer = ricochet.answerAmong(all),
+          beside = document.getElementById("answer-figure");
     let after = place, link = document.getElementById("figure-links");
     for (const description of all) {
-      const answers = beside && description === answer, put = (fresh) => (answers ? beside.append(fresh) : after.after(fresh));
-      const figure = ricochet.mount(description, put), { section } = figure, entry = Object.assign(document.createElement("a"), { href: "#" + section.id, textContent: description.title });
+      const answers = beside && description === answer,
+            put = (fresh) => (answers ? beside.append(fresh) : after.after(fresh));
+      const figure = ricochet.mount(description, put), {section} = figure,
+            entry =
+                Object.assign(document.createElement("a"), {href: "#" + section.id, textContent: description.title});
       if (answers) {
         beside.parentElement.classList.add("beside");
         if (description.atFirst) figure.show(description.atFirst);
@@ -83,7 +107,8 @@
     ricochet.startFilm(data, after, link);
     if (!figures.length) place.remove();
     // A link from elsewhere names a figure that was not there when the page was read.
-    const target = location.hash.startsWith("#figure-") && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    const target =
+        location.hash.startsWith("#figure-") && document.getElementById(decodeURIComponent(location.hash.slice(1)));
     if (target) target.scrollIntoView();
     let pending = 0;
     window.addEventListener("resize", () => {
@@ -92,14 +117,22 @@
     });
   }
 
-  window.addEventListener("beforeprint", () => { ricochet.theme.onPaper(true); ricochet.paper.prepare(); });
-  window.addEventListener("afterprint", () => { ricochet.paper.finish(); ricochet.theme.onPaper(false); });
+  window.addEventListener("beforeprint", () => {
+    ricochet.theme.onPaper(true);
+    ricochet.paper.prepare();
+  });
+  window.addEventListener("afterprint", () => {
+    ricochet.paper.finish();
+    ricochet.theme.onPaper(false);
+  });
 
   // The summary takes its figure when it is asked for; printed from there, it is all that is printed.
   function startSummary() {
     const place = document.getElementById("summary-figure"), button = document.getElementById("print-summary");
     if (!place) return;
-    const follow = () => { if (location.hash === "#summary") ricochet.paper.showFirst(place); };
+    const follow = () => {
+      if (location.hash === "#summary") ricochet.paper.showFirst(place);
+    };
     window.addEventListener("hashchange", follow);
     button.addEventListener("click", () => window.print());
     follow();
@@ -116,11 +149,16 @@
       ricochet.theme.paint(box);
     });
     // Every digit of a number that is shown short.
-    document.addEventListener("mouseover", ({ target }) => { if (target.dataset && target.dataset.value && !target.title) target.title = target.dataset.value; });
+    document.addEventListener("mouseover", ({target}) => {
+      if (target.dataset && target.dataset.value && !target.title) target.title = target.dataset.value;
+    });
     startFigures();
     // With the names of the study.
     document.querySelectorAll("#answer .first ul.answer").forEach(ricochet.shortenLines);
-    for (const id of ["answer", "methods"]) { const section = document.getElementById(id); if (section) ricochet.explainWords(section); }
+    for (const id of ["answer", "methods"]) {
+      const section = document.getElementById(id);
+      if (section) ricochet.explainWords(section);
+    }
     startSummary();
     ricochet.theme.paint();
   });

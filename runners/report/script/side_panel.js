@@ -1,7 +1,12 @@
 // The panel beside the page that shows what a click chose: an orbit, a cell of an image, or a case.
 {
-  let panel = null, charts = [], shown = null, before = null;   // before: what had the focus
-  const element = (name, classes, text) => { const e = document.createElement(name); if (classes) e.className = classes; if (text !== undefined) e.textContent = text; return e; };
+  let panel = null, charts = [], shown = null, before = null;  // before: what had the focus
+  const element = (name, classes, text) => {
+    const e = document.createElement(name);
+    if (classes) e.className = classes;
+    if (text !== undefined) e.textContent = text;
+    return e;
+  };
 
   function clear() {
     charts.forEach((chart) => chart.dispose());
@@ -14,7 +19,7 @@
     const back = panel ? before : null;
     clear();
     before = null;
-    if (back && back.isConnected) back.focus({ preventScroll: true });
+    if (back && back.isConnected) back.focus({preventScroll: true});
   }
   function button(text, label, action) {
     const out = element("button", "", text);
@@ -30,7 +35,8 @@
     panel = element("aside", "orbit");
     panel.setAttribute("aria-label", label);
     panel.tabIndex = -1;
-    const head = element("div", "orbit-head"), words = element("h3", "", title), swatch = element("span", "swatch"), beside = element("span", "orbit-keys");
+    const head = element("div", "orbit-head"), words = element("h3", "", title), swatch = element("span", "swatch"),
+          beside = element("span", "orbit-keys");
     swatch.style.background = colour;
     words.prepend(swatch);
     for (const key of keys) beside.appendChild(key);
@@ -45,10 +51,17 @@
   // A command, and a button that copies it.
   function command(text) {
     const line = element("pre", "", text), copy = button("copy", "copy this command", () => {
-      const done = () => { copy.textContent = "copied"; };
-      const selected = () => { getSelection().selectAllChildren(line); if (document.execCommand("copy")) done(); };
-      if (navigator.clipboard) navigator.clipboard.writeText(text).then(done, selected); else selected();
-    });
+                                             const done = () => {
+                                               copy.textContent = "copied";
+                                             };
+                                             const selected = () => {
+                                               getSelection().selectAllChildren(line);
+                                               if (document.execCommand("copy")) done();
+                                             };
+                                             if (navigator.clipboard)
+                                               navigator.clipboard.writeText(text).then(done, selected);
+                                             else selected();
+                                           });
     copy.className = "copy";
     const box = element("div", "command");
     box.append(line, copy);
@@ -81,28 +94,55 @@
   }
   // Series that give the columns they draw as `source`.
   function plot(x, y, series, classes) {
-    const { shown: number, escape } = ricochet.format, box = element("div", classes);
+    const {shown: number, escape} = ricochet.format, box = element("div", classes);
     const axis = (name, vertical) => ({
-      type: "value", scale: true, name, nameLocation: "middle", nameGap: vertical ? 48 : 24, splitNumber: 4, axisLine: { show: true, onZero: false, lineStyle: { color: ricochet.faint } },
-      axisLabel: { fontSize: 10, color: ricochet.ink, hideOverlap: true, formatter: (v) => number(v) }, nameTextStyle: { fontSize: 11, color: ricochet.ink }, splitLine: { lineStyle: { color: "#ececec" } },
+      type: "value",
+      scale: true,
+      name,
+      nameLocation: "middle",
+      nameGap: vertical ? 48 : 24,
+      splitNumber: 4,
+      axisLine: {show: true, onZero: false, lineStyle: {color: ricochet.faint}},
+      axisLabel: {fontSize: 10, color: ricochet.ink, hideOverlap: true, formatter: (v) => number(v)},
+      nameTextStyle: {fontSize: 11, color: ricochet.ink},
+      splitLine: {lineStyle: {color: "#ececec"}},
     });
     panel.appendChild(box);
     const chart = ricochet.openChart(box);
     chart.setOption({
-      animation: false, backgroundColor: "#fff", grid: { left: 62, right: 14, top: 10, bottom: 38 },
-      tooltip: { trigger: "item", confine: true, formatter: (p) => escape(x) + " = " + number(ricochet.cell(p, "x"), 7) + "<br>" + escape(y) + " = " + number(ricochet.cell(p, "y"), 7) },
-      dataZoom: [{ type: "inside", xAxisIndex: 0, filterMode: "none", zoomOnMouseWheel: "shift" }], xAxis: axis(x, false), yAxis: axis(y, true),
-      dataset: series.map(({ source }) => ({ source })), series: series.map(({ source, ...one }, datasetIndex) => ({ ...one, datasetIndex })),
+      animation: false,
+      backgroundColor: "#fff",
+      grid: {left: 62, right: 14, top: 10, bottom: 38},
+      tooltip: {
+        trigger: "item",
+        confine: true,
+        formatter: (p) => escape(x) + " = " + number(ricochet.cell(p, "x"), 7) + "<br>" + escape(y) + " = " +
+            number(ricochet.cell(p, "y"), 7)
+      },
+      dataZoom: [{type: "inside", xAxisIndex: 0, filterMode: "none", zoomOnMouseWheel: "shift"}],
+      xAxis: axis(x, false),
+      yAxis: axis(y, true),
+      dataset: series.map(({source}) => ({source})),
+      series: series.map(({source, ...one}, datasetIndex) => ({...one, datasetIndex})),
     });
     charts.push(chart);
   }
-  document.addEventListener("keydown", (event) => { if (event.key === "Escape") close(); });
+  document.addEventListener("keydown", (event) => {
+    if (event.key === "Escape") close();
+  });
 
   // What lies under the mouse, where the chart library knows nothing of it.
   let tip = null;
   function hover(html, where) {
-    if (!html) { if (tip) tip.remove(); tip = null; return; }
-    if (!tip) { tip = element("div", "orbit-tip"); document.body.appendChild(tip); }
+    if (!html) {
+      if (tip) tip.remove();
+      tip = null;
+      return;
+    }
+    if (!tip) {
+      tip = element("div", "orbit-tip");
+      document.body.appendChild(tip);
+    }
     tip.innerHTML = html;
     tip.style.left = Math.max(0, Math.min(where[0] + 14, window.innerWidth - 300)) + "px";
     tip.style.top = Math.max(0, Math.min(where[1] + 14, window.innerHeight - 140)) + "px";
@@ -111,9 +151,28 @@
   const quoted = (text) => (/^[\w./+-]+$/.test(text) ? text : "'" + text.replace(/'/g, "'\\''") + "'");
   // Words of a command, `point` or `case`, that speaks of a case of this study.
   function commandOf(study, id, word = "point") {
-    const folder = location.protocol === "file:" ? decodeURIComponent(location.pathname).replace(/\/[^/]*$/, "") || "/" : "results/" + study;
+    const folder = location.protocol === "file:" ?
+        decodeURIComponent(location.pathname).replace(/\/[^/]*$/, "") || "/" :
+        "results/" + study;
     return "ricochet " + word + " " + quoted(folder) + " " + quoted(id);
   }
 
-  ricochet.sidePanel = { open, close, say, command, heading, list, more, table, plot, button, hover, quoted, commandOf, panel: () => panel, shown: () => shown, charts: () => charts };
+  ricochet.sidePanel = {
+    open,
+    close,
+    say,
+    command,
+    heading,
+    list,
+    more,
+    table,
+    plot,
+    button,
+    hover,
+    quoted,
+    commandOf,
+    panel: () => panel,
+    shown: () => shown,
+    charts: () => charts
+  };
 }

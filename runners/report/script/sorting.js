@@ -1,5 +1,6 @@
 // A number as it is written: "−1.2e-7"; not a number where it is a word.
-ricochet.numberWritten = (text) => (/^[−-]?[\d.∞]/.test(text) ? Number(text.replace("−", "-").replace("∞", "Infinity")) : NaN);
+ricochet.numberWritten = (text) =>
+    (/^[−-]?[\d.∞]/.test(text) ? Number(text.replace("−", "-").replace("∞", "Infinity")) : NaN);
 
 // Sorts a table by a click on a header; rows without a value stand last, either way.
 ricochet.startSorting = (table) => {
@@ -9,7 +10,11 @@ ricochet.startSorting = (table) => {
     const index = headers.indexOf(header), up = header.getAttribute("aria-sort") !== "ascending";
     headers.forEach((h) => h.setAttribute("aria-sort", "none"));
     header.setAttribute("aria-sort", up ? "ascending" : "descending");
-    const key = (row) => { const cell = row.cells[index], text = cell.textContent.trim(), v = cell.dataset.value === undefined ? ricochet.numberWritten(text) : Number(cell.dataset.value); return Number.isNaN(v) ? text : v; };
+    const key = (row) => {
+      const cell = row.cells[index], text = cell.textContent.trim(),
+            v = cell.dataset.value === undefined ? ricochet.numberWritten(text) : Number(cell.dataset.value);
+      return Number.isNaN(v) ? text : v;
+    };
     const compare = (a, b) => {
       const x = key(a), y = key(b);
       if (absent(x) || absent(y)) return absent(x) - absent(y);
@@ -19,5 +24,8 @@ ricochet.startSorting = (table) => {
     };
     Array.from(body.rows).sort(compare).forEach((row) => body.appendChild(row));
   }
-  headers.forEach((h) => { const button = h.querySelector("button"); if (button) button.addEventListener("click", () => sort(h)); });
+  headers.forEach((h) => {
+    const button = h.querySelector("button");
+    if (button) button.addEventListener("click", () => sort(h));
+  });
 };

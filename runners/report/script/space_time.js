@@ -1,6 +1,7 @@
-// The displacement of a structure over time and place as a picture: blue below, red above, a mark where a contact point is pushed.
+// The displacement of a structure over time and place as a picture: blue below, red above, a mark where a contact point
+// is pushed.
 {
-  const margin = { left: 56, right: 14, top: 8, bottom: 34 };
+  const margin = {left: 56, right: 14, top: 8, bottom: 34};
   const below = [5, 98, 160], above = [190, 60, 8], middle = [247, 247, 247];
 
   function shade(share) {
@@ -23,16 +24,31 @@
   }
 
   class SpaceTime {
-    constructor(canvas, shots, largest) { Object.assign(this, { canvas, shots, largest, image: picture(shots, largest) }); }
-    frame(width, height) { return { x: margin.left, y: margin.top, width: width - margin.left - margin.right, height: height - margin.top - margin.bottom }; }
+    constructor(canvas, shots, largest) {
+      Object.assign(this, {canvas, shots, largest, image: picture(shots, largest)});
+    }
+    frame(width, height) {
+      return {
+        x: margin.left,
+        y: margin.top,
+        width: width - margin.left - margin.right,
+        height: height - margin.top - margin.bottom
+      };
+    }
     // The instant under a place of the canvas.
     instant(offsetX) {
-      const { width, height } = this.canvas.getBoundingClientRect(), frame = this.frame(width, height);
-      return Math.max(0, Math.min(this.shots.count - 1, Math.floor(this.shots.count * (offsetX - frame.x) / frame.width)));
+      const {width, height} = this.canvas.getBoundingClientRect(), frame = this.frame(width, height);
+      return Math.max(
+          0, Math.min(this.shots.count - 1, Math.floor(this.shots.count * (offsetX - frame.x) / frame.width)));
     }
     draw(k) {
-      const { context, width, height, ink } = ricochet.freshCanvas(this.canvas), { shots } = this, frame = this.frame(width, height), { shown } = ricochet.format;
-      const across = (instant) => frame.x + frame.width * (instant + 0.5) / shots.count, length = shots.length || 1, share = (point) => (shots.names ? (shots.stops[point].at + 0.5) / shots.x.length : shots.mass ? 0.5 : shots.point[point] / length);
+      const {context, width, height, ink} = ricochet.freshCanvas(this.canvas), {shots} = this,
+                                     frame = this.frame(width, height), {shown} = ricochet.format;
+      const across = (instant) => frame.x + frame.width * (instant + 0.5) / shots.count, length = shots.length || 1,
+            share = (point) =>
+                (shots.names    ? (shots.stops[point].at + 0.5) / shots.x.length :
+                     shots.mass ? 0.5 :
+                                  shots.point[point] / length);
       const up = (point) => frame.y + frame.height * (1 - share(point));
       context.clearRect(0, 0, width, height);
       context.imageSmoothingEnabled = false;
@@ -55,19 +71,28 @@
       context.stroke();
       context.fillStyle = ink;
       context.textBaseline = "top";
-      for (const [instant, align] of [[0, "left"], [shots.count - 1, "right"]]) { context.textAlign = align; context.fillText(shown(shots.t[instant], 4), instant ? frame.x + frame.width : frame.x, frame.y + frame.height + 6); }
+      for (const [instant, align] of [[0, "left"], [shots.count - 1, "right"]]) {
+        context.textAlign = align;
+        context.fillText(
+            shown(shots.t[instant], 4), instant ? frame.x + frame.width : frame.x, frame.y + frame.height + 6);
+      }
       context.textAlign = "center";
-      context.fillText(shots.y ? "t (s), u" + shots.axes[shots.shown] : "t (s)", frame.x + 0.5 * frame.width, frame.y + frame.height + 6);
+      context.fillText(
+          shots.y ? "t (s), u" + shots.axes[shots.shown] : "t (s)", frame.x + 0.5 * frame.width,
+          frame.y + frame.height + 6);
       if (shots.mass) return;
       context.textAlign = "right";
-      const ends = shots.bodies ? [] : shots.names ? [shots.names[shots.names.length - 1], "", shots.names[0]] : [shown(length, 4), "x (m)", "0"], lines = ["top", "middle", "bottom"];
+      const ends = shots.bodies ? [] :
+          shots.names           ? [shots.names[shots.names.length - 1], "", shots.names[0]] :
+                                  [shown(length, 4), "x (m)", "0"],
+            lines = ["top", "middle", "bottom"];
       ends.forEach((words, end) => {
         context.textBaseline = lines[end];
         context.fillText(words, frame.x - 6, frame.y + 0.5 * end * frame.height, margin.left - 8);
       });
       context.textBaseline = "middle";
       const row = (place) => frame.y + frame.height * (1 - place / shots.x.length);
-      (shots.bodies ?? []).forEach(({ name, first }, b) => {
+      (shots.bodies ?? []).forEach(({name, first}, b) => {
         const next = shots.bodies[b + 1]?.first ?? shots.x.length;
         context.fillText(name, frame.x - 6, 0.5 * (row(first) + row(next)), margin.left - 8);
         if (b) context.fillRect(frame.x, row(first) - 0.5, frame.width, 1);
@@ -77,5 +102,6 @@
 
   ricochet.SpaceTime = SpaceTime;
   // The colours of the map, from −largest to largest, as a style.
-  ricochet.spaceTimeColours = "linear-gradient(to right, " + [-1, -0.5, 0, 0.5, 1].map((share) => "rgb(" + shade(share).join(",") + ")").join(", ") + ")";
+  ricochet.spaceTimeColours = "linear-gradient(to right, " +
+      [-1, -0.5, 0, 0.5, 1].map((share) => "rgb(" + shade(share).join(",") + ")").join(", ") + ")";
 }

@@ -1,18 +1,23 @@
-// Charts say their colours for white paper. On a dark screen one rule carries each over: greys run from the page's paper to its ink, pale fills are as near
-// to the dark paper as they were to white, and other hues are lightened until they stand out. Pictures and paper stay as they are said.
+// Charts say their colours for white paper. On a dark screen one rule carries each over: greys run from the page's
+// paper to its ink, pale fills are as near to the dark paper as they were to white, and other hues are lightened until
+// they stand out. Pictures and paper stay as they are said.
 {
-  const dark = window.matchMedia("(prefers-color-scheme: dark)"), enough = 4.5, pale = 0.67, white = [255, 255, 255], black = 0x22;
+  const dark = window.matchMedia("(prefers-color-scheme: dark)"), enough = 4.5, pale = 0.67, white = [255, 255, 255],
+        black = 0x22;
   const variable = (name) => channels(getComputedStyle(document.documentElement).getPropertyValue(name).trim());
 
   function channels(text) {
     const hex = /^#([0-9a-f]{3}|[0-9a-f]{6})$/i.exec(text);
-    if (hex) return hex[1].length === 3 ? Array.from(hex[1], (c) => parseInt(c + c, 16)) : [0, 2, 4].map((k) => parseInt(hex[1].slice(k, k + 2), 16));
+    if (hex)
+      return hex[1].length === 3 ? Array.from(hex[1], (c) => parseInt(c + c, 16)) :
+                                   [0, 2, 4].map((k) => parseInt(hex[1].slice(k, k + 2), 16));
     const parts = /^rgba?\(([\d.]+), ?([\d.]+), ?([\d.]+)(?:, ?([\d.]+))?\)$/.exec(text);
     return parts ? parts.slice(1, 4).map(Number).concat(parts[4] === undefined ? [] : [Number(parts[4])]) : null;
   }
   // Contrast as WCAG 2.1 defines it, 1 to 21.
   function luminance(rgb) {
-    const [r, g, b] = rgb.slice(0, 3).map((c) => (c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4));
+    const [r, g, b] =
+        rgb.slice(0, 3).map((c) => (c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4));
     return 0.2126 * r + 0.7152 * g + 0.0722 * b;
   }
   function contrast(a, b) {
@@ -36,7 +41,8 @@
     const rgb = dark.matches && !paper && typeof text === "string" && channels(text);
     if (!rgb) return text;
     const on = carried(rgb, variable("--paper"), variable("--ink")).map(Math.round);
-    return rgb.length > 3 ? "rgba(" + on.join(",") + "," + rgb[3] + ")" : "#" + on.map((c) => c.toString(16).padStart(2, "0")).join("");
+    return rgb.length > 3 ? "rgba(" + on.join(",") + "," + rgb[3] + ")" :
+                            "#" + on.map((c) => c.toString(16).padStart(2, "0")).join("");
   }
   // The same for all that an option holds, but for its rows.
   function carry(part, key) {
@@ -44,12 +50,13 @@
     if (typeof part === "function" && /color$/i.test(key)) return (...given) => colour(part(...given));
     if (Array.isArray(part)) return part.length > 2000 ? part : part.map((one) => carry(one, key));
     if (!part || typeof part !== "object" || Object.getPrototypeOf(part) !== Object.prototype) return part;
-    return Object.fromEntries(Object.entries(part).map(([name, value]) => [name, name === "dataset" ? value : carry(value, name)]));
+    return Object.fromEntries(
+        Object.entries(part).map(([name, value]) => [name, name === "dataset" ? value : carry(value, name)]));
   }
   function onScreen(option) {
     if (!dark.matches) return option;
-    const tooltip = option.tooltip && { backgroundColor: "#ffffff", borderColor: "#bbbbbb", ...option.tooltip };
-    return carry({ ...option, ...(tooltip ? { tooltip } : {}) }, "");
+    const tooltip = option.tooltip && {backgroundColor: "#ffffff", borderColor: "#bbbbbb", ...option.tooltip};
+    return carry({...option, ...(tooltip ? {tooltip} : {})}, "");
   }
 
   // Patches of colour in the page's own text, or in a part of it.
@@ -82,14 +89,18 @@
     if (ricochet.film) ricochet.film.paint();
     for (const [chart, redraw] of redraws) chart.isDisposed() ? redraws.delete(chart) : redraw();
   });
-  // A chart of this screen. `redraw` draws it again when the screen turns dark or light; without it, the last option is.
+  // A chart of this screen. `redraw` draws it again when the screen turns dark or light; without it, the last option
+  // is.
   function openChart(element, redraw) {
-    const chart = echarts.init(element, null, { renderer: "canvas" }), set = chart.setOption.bind(chart);
+    const chart = echarts.init(element, null, {renderer: "canvas"}), set = chart.setOption.bind(chart);
     let last = {};
-    chart.setOption = (option, ...rest) => { last = option; return set(onScreen(option), ...rest); };
+    chart.setOption = (option, ...rest) => {
+      last = option;
+      return set(onScreen(option), ...rest);
+    };
     redraws.set(chart, redraw || (() => set(onScreen(last), true)));
     return chart;
   }
 
-  Object.assign(ricochet, { openChart, theme: { colour, ink, paint, onPaper, contrast, channels } });
+  Object.assign(ricochet, {openChart, theme: {colour, ink, paint, onPaper, contrast, channels}});
 }

@@ -5,34 +5,61 @@
 
   class Basins {
     constructor(data) {
-      Object.assign(this, { data, view: data.view }, data.page.basins);
-      [this.across, this.up] = [this.xs, this.ys].map((values) => new ricochet.Interval().include(...ricochet.cellEdges(values)));
+      Object.assign(this, {data, view: data.view}, data.page.basins);
+      [this.across, this.up] =
+          [this.xs, this.ys].map((values) => new ricochet.Interval().include(...ricochet.cellEdges(values)));
       this.counts = data.rowsBy("basin_counts", ["case"]);
       this.failures = data.rowsBy("basin_failures", ["case"]);
     }
     name(id) { return this.view.label(this.data.byId.get(id)) || "all cases"; }
     cells(id) { return this.data.block(id + "/cells"); }
     // What a cell ends in: name and colour.
-    end(id, { column, row }) { return this.labels[this.cells(id)[row * this.xs.length + column]] || ["not known yet", "#fff"]; }
+    end(id, {column, row}) {
+      return this.labels[this.cells(id)[row * this.xs.length + column]] || ["not known yet", "#fff"];
+    }
 
     figure() {
-      const { grids } = this, compares = grids.length > 1, entry = ([name, colour], heading) => ricochet.swatch(name, colour, "rect", heading);
-      const caption = this.xs.length + " × " + this.ys.length + " cells: the attractor that each ends in." + (compares ? " Difference: cells that end elsewhere than with " + this.name(grids[0]) + "." : "") +
-        " White: not known yet. Click a cell for the command that marches it.";
-      const charts = grids.map((id) => ({ cases: [this.data.byId.get(id)], title: this.name(id) + (this.data.byId.get(id).partial ? " (partial)" : ""), height: 420, views: [this.image(id)].concat(compares ? [this.difference(id)] : []), notes: this.notes(id) }));
-      return { id: "basins", title: "Basins of attraction", caption, views: ["basins"].concat(compares ? ["difference"] : []), charts, linked: true, legend: this.labels.map((label) => entry(label, "Ends in")).concat(compares ? outcomes.map((one) => entry(one, "Difference")) : []) };
+      const {grids} = this, compares = grids.length > 1,
+            entry = ([name, colour], heading) => ricochet.swatch(name, colour, "rect", heading);
+      const caption = this.xs.length + " × " + this.ys.length + " cells: the attractor that each ends in." +
+          (compares ? " Difference: cells that end elsewhere than with " + this.name(grids[0]) + "." : "") +
+          " White: not known yet. Click a cell for the command that marches it.";
+      const charts = grids.map((id) => ({
+                                 cases: [this.data.byId.get(id)],
+                                 title: this.name(id) + (this.data.byId.get(id).partial ? " (partial)" : ""),
+                                 height: 420,
+                                 views: [this.image(id)].concat(compares ? [this.difference(id)] : []),
+                                 notes: this.notes(id)
+                               }));
+      return {
+        id: "basins",
+        title: "Basins of attraction",
+        caption,
+        views: ["basins"].concat(compares ? ["difference"] : []),
+        charts,
+        linked: true,
+        legend: this.labels.map((label) => entry(label, "Ends in"))
+                    .concat(compares ? outcomes.map((one) => entry(one, "Difference")) : [])
+      };
     }
     notes(id) {
-      const { count, mark } = ricochet.format, out = [], [counts] = this.counts(id);
-      if (counts && counts.filled > 0) out.push(counts.filled + " of " + counts.cells + " cells take the end of a marched one of their basin: only boundaries were marched cell by cell.");
-      if (counts && counts.no_starts > 0) out.push(counts.no_starts + " of " + counts.cells + " cells are no starts: they begin beyond a stop.");
-      for (const row of this.failures(id)) out.push(mark("failed") + " " + count(row.cells, "cell failed", "cells failed") + (row.reason ? ": " + row.reason : ""));
+      const {count, mark} = ricochet.format, out = [], [counts] = this.counts(id);
+      if (counts && counts.filled > 0)
+        out.push(
+            counts.filled + " of " + counts.cells +
+            " cells take the end of a marched one of their basin: only boundaries were marched cell by cell.");
+      if (counts && counts.no_starts > 0)
+        out.push(counts.no_starts + " of " + counts.cells + " cells are no starts: they begin beyond a stop.");
+      for (const row of this.failures(id))
+        out.push(
+            mark("failed") + " " + count(row.cells, "cell failed", "cells failed") +
+            (row.reason ? ": " + row.reason : ""));
       return out;
     }
     frame(id, other) {
       const x = ricochet.valueAxis(this.x, this.across, false), y = ricochet.valueAxis(this.y, this.up, true);
       for (const axis of [x, y]) {
-        axis.splitLine = { show: false };
+        axis.splitLine = {show: false};
         ricochet.withoutEnds(axis);
       }
       const out = ricochet.view(this.x, this.y, x, y);
@@ -43,10 +70,11 @@
     }
     // Cells that `wanted` takes in one colour, the others clear; several pixels a cell, so that edges stay sharp.
     series([name, colour], wanted) {
-      const drawn = new Map();   // by colour: that of a dark screen is not that of paper
+      const drawn = new Map();  // by colour: that of a dark screen is not that of paper
       const draw = (fill) => {
-        const columns = this.xs.length, rows = this.ys.length, each = Math.max(1, Math.ceil(1000 / Math.max(columns, rows)));
-        const canvas = Object.assign(document.createElement("canvas"), { width: each * columns, height: each * rows });
+        const columns = this.xs.length, rows = this.ys.length,
+              each = Math.max(1, Math.ceil(1000 / Math.max(columns, rows)));
+        const canvas = Object.assign(document.createElement("canvas"), {width: each * columns, height: each * rows});
         const context = canvas.getContext("2d");
         context.fillStyle = fill;
         for (let row = 0; row < rows; ++row)
@@ -60,58 +88,103 @@
         return canvas;
       };
       const render = (params, api) => {
-        const fill = api.visual("color") || colour, low = api.coord([api.value(0), api.value(2)]), high = api.coord([api.value(1), api.value(3)]);
-        return { type: "image", style: { image: drawn.get(fill) || draw(fill), x: low[0], y: high[1], width: high[0] - low[0], height: low[1] - high[1] } };
+        const fill = api.visual("color") || colour, low = api.coord([api.value(0), api.value(2)]),
+              high = api.coord([api.value(1), api.value(3)]);
+        return {
+          type: "image",
+          style: {
+            image: drawn.get(fill) || draw(fill),
+            x: low[0],
+            y: high[1],
+            width: high[0] - low[0],
+            height: low[1] - high[1]
+          }
+        };
       };
-      return { type: "custom", name, tags: [name], renderItem: render, encode: { x: [0, 1], y: [2, 3] }, clip: true, progressive: 0, color: colour, itemStyle: { color: colour }, data: [[this.across.low, this.across.high, this.up.low, this.up.high]] };
+      return {
+        type: "custom",
+        name,
+        tags: [name],
+        renderItem: render,
+        encode: {x: [0, 1], y: [2, 3]},
+        clip: true,
+        progressive: 0,
+        color: colour,
+        itemStyle: {color: colour},
+        data: [[this.across.low, this.across.high, this.up.low, this.up.high]]
+      };
     }
     image(id) {
       const out = this.frame(id), cells = this.cells(id);
-      this.labels.forEach((label, k) => { if (cells.includes(k)) out.option.series.push(this.series(label, (i) => cells[i] === k)); });
+      this.labels.forEach((label, k) => {
+        if (cells.includes(k)) out.option.series.push(this.series(label, (i) => cells[i] === k));
+      });
       return out;
     }
     difference(id) {
-      const first = this.grids[0], out = this.frame(id, first), own = this.cells(id), other = this.cells(first), [counts] = this.counts(id);
-      const decided = (cell) => cell !== absent && this.labels[cell][2], starts = (cell) => cell === absent || this.labels[cell][3], outcome = (i) => (!starts(own[i]) && !starts(other[i]) ? 3 : !decided(own[i]) || !decided(other[i]) ? 2 : own[i] === other[i] ? 1 : 0);
+      const first = this.grids[0], out = this.frame(id, first), own = this.cells(id), other = this.cells(first),
+            [counts] = this.counts(id);
+      const decided = (cell) => cell !== absent && this.labels[cell][2],
+            starts = (cell) => cell === absent || this.labels[cell][3],
+            outcome = (i) =>
+                (!starts(own[i]) && !starts(other[i])       ? 3 :
+                     !decided(own[i]) || !decided(other[i]) ? 2 :
+                     own[i] === other[i]                    ? 1 :
+                                                              0);
       const neither = this.labels.find((label) => !label[3]);
-      outcomes.forEach((one, k) => { if ([counts.differ, counts.same, counts.undecided][k] > 0) out.option.series.push(this.series(one, (i) => outcome(i) === k)); });
+      outcomes.forEach((one, k) => {
+        if ([counts.differ, counts.same, counts.undecided][k] > 0)
+          out.option.series.push(this.series(one, (i) => outcome(i) === k));
+      });
       if (neither) out.option.series.push(this.series(neither, (i) => outcome(i) === 3));
       const share = counts.share === null ? "" : " (" + ricochet.format.share(counts.share) + ")";
-      out.notes.push(id === first ? "This is what the others are compared with." : counts.differ + " of " + counts.decided + " cells that both decide differ" + share + ".");
+      out.notes.push(
+          id === first ? "This is what the others are compared with." :
+                         counts.differ + " of " + counts.decided + " cells that both decide differ" + share + ".");
       return out;
     }
 
     // The cell at a place of the chart.
     cellAt(id, chart, at) {
-      if (!chart.containPixel({ gridIndex: 0 }, at)) return null;
-      const place = chart.convertFromPixel({ xAxisIndex: 0, yAxisIndex: 0 }, at), part = (value, range, n) => Math.floor((value - range.low) / (range.high - range.low) * n);
+      if (!chart.containPixel({gridIndex: 0}, at)) return null;
+      const place = chart.convertFromPixel({xAxisIndex: 0, yAxisIndex: 0}, at),
+            part = (value, range, n) => Math.floor((value - range.low) / (range.high - range.low) * n);
       const column = part(place[0], this.across, this.xs.length), row = part(place[1], this.up, this.ys.length);
-      return column < 0 || row < 0 || column >= this.xs.length || row >= this.ys.length ? null : { id, column, row };
+      return column < 0 || row < 0 || column >= this.xs.length || row >= this.ys.length ? null : {id, column, row};
     }
-    words({ column, row }) {
-      const { unit } = ricochet.format;
+    words({column, row}) {
+      const {unit} = ricochet.format;
       return [this.x[0] + " = " + this.xs[column] + unit(this.x), this.y[0] + " = " + this.ys[row] + unit(this.y)];
     }
     tooltip(view, id, other) {
-      const { escape, shown } = ricochet.format;
+      const {escape, shown} = ricochet.format;
       return (given) => {
         const p = [].concat(given)[0], place = view.mouse && this.cellAt(id, view.mouse.chart, view.mouse.at);
         if (!view.mouse) return p && p.value ? escape(view.x[0]) + " = " + shown(p.value[0], 6) : "";
         if (!place) return "";
-        return "<div>" + this.words(place).map(escape).join("<br>") + '</div><div class="tip-row">' + escape(this.end(id, place)[0]) + "</div>" +
-          (other !== undefined && other !== id ? '<div class="fine">the other: ' + escape(this.end(other, place)[0]) + "</div>" : "") + '<div class="fine">click: its command</div>';
+        return "<div>" + this.words(place).map(escape).join("<br>") + '</div><div class="tip-row">' +
+            escape(this.end(id, place)[0]) + "</div>" +
+            (other !== undefined && other !== id ?
+                 '<div class="fine">the other: ' + escape(this.end(other, place)[0]) + "</div>" :
+                 "") +
+            '<div class="fine">click: its command</div>';
       };
     }
     open(place) {
-      const { sidePanel } = ricochet;
+      const {sidePanel} = ricochet;
       sidePanel.open(place, "The chosen cell", this.end(place.id, place)[1], this.words(place).join(", "), []);
       for (const id of this.grids) {
-        sidePanel.say(this.name(id) + ": " + this.end(id, place)[0] + (id === place.id ? ". The same cell again:" : ""));
-        if (id === place.id) sidePanel.command(sidePanel.commandOf(this.data.study.name, id) + " --cell=" + this.xs[place.column] + "," + this.ys[place.row]);
+        sidePanel.say(
+            this.name(id) + ": " + this.end(id, place)[0] + (id === place.id ? ". The same cell again:" : ""));
+        if (id === place.id)
+          sidePanel.command(
+              sidePanel.commandOf(this.data.study.name, id) + " --cell=" + this.xs[place.column] + "," +
+              this.ys[place.row]);
       }
     }
   }
 
   ricochet.answeredBy("basins");
-  ricochet.figure("basins", (data) => (data.page.basins && data.page.basins.grids.length ? [new Basins(data).figure()] : []));
+  ricochet.figure(
+      "basins", (data) => (data.page.basins && data.page.basins.grids.length ? [new Basins(data).figure()] : []));
 }

@@ -1,22 +1,33 @@
-// The bifurcation diagram: tip displacement on the section against the parameter, coloured by the regime of the orbit, with exponents, regimes and
-// verdicts in panels under it that share its horizontal axis. Views: a chart per case, all cases in one chart, a chart per case and kind of start.
+// The bifurcation diagram: tip displacement on the section against the parameter, coloured by the regime of the orbit,
+// with exponents, regimes and verdicts in panels under it that share its horizontal axis. Views: a chart per case, all
+// cases in one chart, a chart per case and kind of start.
 {
-  const { Interval, diagramPanels, methodColours } = ricochet;
-  const mostLanes = 24, mostStartCharts = 24;   // rows of a band of regimes; charts of the view by start
+  const {Interval, diagramPanels, methodColours} = ricochet;
+  const mostLanes = 24, mostStartCharts = 24;  // rows of a band of regimes; charts of the view by start
   const tip = ["tip displacement", "m"];
 
   class Diagram {
     constructor(data) {
       const orbits = new ricochet.Orbits(data);
-      Object.assign(this, { data, view: data.view, orbits, cases: orbits.cases, verdicts: data.rows("verdicts").filter((row) => row.from !== null && row.to !== null) });
-      const all = this.cases.map((one) => orbits.of(one.id)), present = (list) => ricochet.distinct(list).sort((a, b) => a - b);
+      Object.assign(this, {
+        data,
+        view: data.view,
+        orbits,
+        cases: orbits.cases,
+        verdicts: data.rows("verdicts").filter((row) => row.from !== null && row.to !== null)
+      });
+      const all = this.cases.map((one) => orbits.of(one.id)),
+            present = (list) => ricochet.distinct(list).sort((a, b) => a - b);
       this.parameters = all.reduce((sum, one) => sum.include(...one.columns.parameter), new Interval());
       this.kinds = present(all.flatMap((one) => one.kind));
       this.groups = present(all.flatMap((one) => one.group));
       this.twins = all.some((one) => one.columns.exponent_twin);
       this.mostExponents = 0;
       while (all.some((one) => one.columns["exponent_" + (this.mostExponents + 1)])) ++this.mostExponents;
-      this.frameExponents(this.cases.flatMap((one) => orbits.chosen(one.id).map((o) => orbits.number(one.id, "exponent_1", o)).filter((value) => value !== null)));
+      this.frameExponents(this.cases.flatMap(
+          (one) => orbits.chosen(one.id)
+                       .map((o) => orbits.number(one.id, "exponent_1", o))
+                       .filter((value) => value !== null)));
     }
     // Orbits that contract almost at once have exponents far below all others, which must not flatten these.
     frameExponents(values) {
@@ -24,83 +35,150 @@
       this.below = 0;
       if (!values.length) return;
       values.sort((a, b) => a - b);
-      const median = values[values.length >> 1], high = Math.max(values[values.length - 1], 0), least = Math.min(median, 0) - 4 * Math.max(high, Math.abs(median), 1e-12);
-      this.exponents = ricochet.roundOutwards(new Interval().include(0, ...values.filter((value) => value >= least)), 1e-12);
+      const median = values[values.length >> 1], high = Math.max(values[values.length - 1], 0),
+            least = Math.min(median, 0) - 4 * Math.max(high, Math.abs(median), 1e-12);
+      this.exponents =
+          ricochet.roundOutwards(new Interval().include(0, ...values.filter((value) => value >= least)), 1e-12);
       this.below = values.filter((value) => value < this.exponents.low).length;
     }
     title(one) { return (this.view.label(one) || "all cases") + (one.partial ? " (partial)" : ""); }
     colourOf(one) { return methodColours[this.cases.indexOf(one) % methodColours.length]; }
     methodName(one) { return this.view.label(one) || "the one method"; }
-    unfinished(id, o) { const status = this.orbits.cell(id, "status", o); return Boolean(status) && status !== "done"; }
+    unfinished(id, o) {
+      const status = this.orbits.cell(id, "status", o);
+      return Boolean(status) && status !== "done";
+    }
 
     figure() {
-      const { cases, kinds } = this, several = cases.length > 1, frames = this.frames();
-      const out = { id: "diagram", title: "Bifurcation diagram", caption: this.caption(), views: [several ? "side by side" : "diagram"], linked: true };
-      out.charts = cases.map((one, c) => this.chart({ title: this.title(one), cases: [one] }, frames[c], 0));
+      const {cases, kinds} = this, several = cases.length > 1, frames = this.frames();
+      const out = {
+        id: "diagram",
+        title: "Bifurcation diagram",
+        caption: this.caption(),
+        views: [several ? "side by side" : "diagram"],
+        linked: true
+      };
+      out.charts = cases.map((one, c) => this.chart({title: this.title(one), cases: [one]}, frames[c], 0));
       if (several) {
         const all = frames.reduce((sum, frame) => sum.join(frame.range), new Interval());
-        out.atFirst = out.views.push("overlaid") - 1;   // beside the answer
-        out.charts.push(this.chart({ title: "all methods", cases, byMethod: true }, { range: all, own: false }, out.atFirst));
+        out.atFirst = out.views.push("overlaid") - 1;  // beside the answer
+        out.charts.push(
+            this.chart({title: "all methods", cases, byMethod: true}, {range: all, own: false}, out.atFirst));
       }
       if (kinds.length > 1 && kinds.length * cases.length <= mostStartCharts) {
         const view = out.views.push("by start") - 1;
-        cases.forEach((one, c) => kinds.forEach((kind) => out.charts.push(this.chart({ title: (several ? this.title(one) + " · " : "") + this.orbits.kinds[kind][0], cases: [one], kind }, frames[c], view))));
+        cases.forEach(
+            (one, c) => kinds.forEach(
+                (kind) => out.charts.push(this.chart(
+                    {title: (several ? this.title(one) + " · " : "") + this.orbits.kinds[kind][0], cases: [one], kind},
+                    frames[c], view))));
       }
-      if (cases.length > methodColours.length) out.caption += " Overlaid, colours repeat after " + methodColours.length + " methods: the legend shows any of them alone.";
+      if (cases.length > methodColours.length)
+        out.caption +=
+            " Overlaid, colours repeat after " + methodColours.length + " methods: the legend shows any of them alone.";
       out.legend = this.legend(out.charts);
       return out;
     }
     caption() {
-      const { text, count } = ricochet.format, study = this.data.study.resolved, section = study.section || "", methods = this.data.rows("exponent_methods");
-      let when = { impact: "at each impact", extremum: "at each extremum of the tip" }[section] || "once in each forcing period";
+      const {text, count} = ricochet.format, study = this.data.study.resolved, section = study.section || "",
+                   methods = this.data.rows("exponent_methods");
+      let when = {impact: "at each impact", extremum: "at each extremum of the tip"}[section] ||
+          "once in each forcing period";
       if (section === "strobe" && study.phase) when += " (phase " + text(study.phase) + " rad)";
-      let out = "Tip displacement " + when + ", against " + this.orbits.parameter[0] + "; absolute, support motion included. Under it: ";
+      let out = "Tip displacement " + when + ", against " + this.orbits.parameter[0] +
+          "; absolute, support motion included. Under it: ";
       if (this.exponents) {
-        const by = methods.map((row) => (row.method || "method not said") + (methods.length > 1 ? " (" + row.orbits + " of " + row.all + ")" : "")).join(", ");
+        const by = methods
+                       .map(
+                           (row) => (row.method || "method not said") +
+                               (methods.length > 1 ? " (" + row.orbits + " of " + row.all + ")" : ""))
+                       .join(", ");
         out += "the largest Lyapunov exponent (1/s) with its interval, by " + by;
         const marginal = methods.length ? methods[0].marginal : 0;
-        if (marginal > 0) out += "; at " + count(marginal, "value and start", "values and starts") + " an exponent of a marginal root, the scheme's own, is set apart";
+        if (marginal > 0)
+          out += "; at " + count(marginal, "value and start", "values and starts") +
+              " an exponent of a marginal root, the scheme's own, is set apart";
         out += "; then the regime of each start.";
       } else {
         out += "the regime of each start.";
       }
       if (this.verdicts.length) out += " Last: what all methods together say of each interval.";
-      return [out + " Symbols tell starts apart; dense clouds are dots. Click a point for its orbit."].concat(this.data.page.orbits.said).filter(Boolean).join(" ");
+      return [out + " Symbols tell starts apart; dense clouds are dots. Click a point for its orbit."]
+          .concat(this.data.page.orbits.said)
+          .filter(Boolean)
+          .join(" ");
     }
     frames() {
-      const extents = this.cases.map((one) => { const extent = this.orbits.of(one.id).extent; return extent ? new Interval(...extent) : new Interval(); });
-      return ricochet.sharedFrames(extents).map((frame) => ({ own: frame.own, range: frame.range.empty ? frame.range : ricochet.roundOutwards(frame.range, 1e-9) }));
+      const extents = this.cases.map((one) => {
+        const extent = this.orbits.of(one.id).extent;
+        return extent ? new Interval(...extent) : new Interval();
+      });
+      return ricochet.sharedFrames(extents).map(
+          (frame) =>
+              ({own: frame.own, range: frame.range.empty ? frame.range : ricochet.roundOutwards(frame.range, 1e-9)}));
     }
     // The rows of a panel's band of regimes.
     lanes(panel) {
-      return panel.cases.flatMap((one) => this.orbits.starts(one.id).filter((start) => panel.kind === undefined || this.orbits.kindOfStart(start) === panel.kind)
-        .map((start) => ({ id: one.id, start, name: panel.cases.length > 1 ? this.methodName(one) + ", " + start : start })));
+      return panel.cases.flatMap(
+          (one) => this.orbits.starts(one.id)
+                       .filter((start) => panel.kind === undefined || this.orbits.kindOfStart(start) === panel.kind)
+                       .map((start) => ({
+                              id: one.id,
+                              start,
+                              name: panel.cases.length > 1 ? this.methodName(one) + ", " + start : start
+                            })));
     }
 
     chart(panel, frame, only) {
-      const lanes = this.lanes(panel), view = this.draw(panel, frame, lanes), height = view.height, { count, text } = ricochet.format;
-      if (this.exponents && this.below > 0) view.notes.push("Over all cases, " + count(this.below, "exponent lies", "exponents lie") + " below " + text(this.exponents.low) + " 1/s, outside the panel.");
-      if (lanes.length > mostLanes) view.notes.push(lanes.length + " starts and methods are too many for a band of regimes here: it stands in the views with fewer.");
+      const lanes = this.lanes(panel), view = this.draw(panel, frame, lanes), height = view.height,
+            {count, text} = ricochet.format;
+      if (this.exponents && this.below > 0)
+        view.notes.push(
+            "Over all cases, " + count(this.below, "exponent lies", "exponents lie") + " below " +
+            text(this.exponents.low) + " 1/s, outside the panel.");
+      if (lanes.length > mostLanes)
+        view.notes.push(
+            lanes.length +
+            " starts and methods are too many for a band of regimes here: it stands in the views with fewer.");
       if (frame.own) view.notes.push("Own vertical scale: its points reach far beyond those of the other charts.");
-      return { title: panel.title, cases: panel.cases, only, height, views: [view], notes: panel.cases.flatMap((one) => this.outcomes(one, panel)) };
+      return {
+        title: panel.title,
+        cases: panel.cases,
+        only,
+        height,
+        views: [view],
+        notes: panel.cases.flatMap((one) => this.outcomes(one, panel))
+      };
     }
     // "⊘ refused (3 orbits), between 0.11 and 0.12: the support passes the stop".
     outcomes(one, panel) {
-      const { orbits } = this, { text, count, mark } = ricochet.format, who = panel.cases.length > 1 ? this.methodName(one) + ": " : "";
-      const unfinished = orbits.chosen(one.id, undefined, panel.kind).filter((o) => this.unfinished(one.id, o)), cell = (name, o) => orbits.cell(one.id, name, o);
-      const out = one.partial ? [who + "partial: this case is still being worked on; what it has so far is drawn."] : [];
+      const {orbits} = this, {text, count, mark} = ricochet.format,
+            who = panel.cases.length > 1 ? this.methodName(one) + ": " : "";
+      const unfinished = orbits.chosen(one.id, undefined, panel.kind).filter((o) => this.unfinished(one.id, o)),
+            cell = (name, o) => orbits.cell(one.id, name, o);
+      const out =
+          one.partial ? [who + "partial: this case is still being worked on; what it has so far is drawn."] : [];
       for (const found of ricochet.groupBy(unfinished, (o) => [cell("status", o), cell("reason", o)]).values()) {
-        const status = cell("status", found[0]), reason = cell("reason", found[0]), range = new Interval().include(...found.map((o) => cell("parameter", o)));
-        const at = range.low === range.high ? "at " + text(range.low, 7) : "between " + text(range.low, 7) + " and " + text(range.high, 7);
-        out.push(mark(status) + " " + who + status + " (" + count(found.length, "orbit", "orbits") + "), " + at + (reason ? ": " + reason : ""));
+        const status = cell("status", found[0]), reason = cell("reason", found[0]),
+              range = new Interval().include(...found.map((o) => cell("parameter", o)));
+        const at = range.low === range.high ? "at " + text(range.low, 7) :
+                                              "between " + text(range.low, 7) + " and " + text(range.high, 7);
+        out.push(
+            mark(status) + " " + who + status + " (" + count(found.length, "orbit", "orbits") + "), " + at +
+            (reason ? ": " + reason : ""));
       }
       return out;
     }
 
     draw(panel, frame, lanes) {
-      const { orbits } = this, withBand = lanes.length <= mostLanes, grid = [], x = [], y = [ricochet.valueAxis(tip, frame.range, true), ricochet.gutterAxis()];
+      const {orbits} = this, withBand = lanes.length <= mostLanes, grid = [], x = [],
+            y = [ricochet.valueAxis(tip, frame.range, true), ricochet.gutterAxis()];
       let top = 10;
-      const place = (height, gap) => { const index = grid.push({ left: 74, right: 14, top, height }) - 1; top += height + gap; return index; };
+      const place = (height, gap) => {
+        const index = grid.push({left: 74, right: 14, top, height}) - 1;
+        top += height + gap;
+        return index;
+      };
       place(panel.byMethod || this.cases.length === 1 ? 380 : 270, 16);
       const growth = this.exponents ? place(110, 8) : -1;
       const band = withBand ? place(Math.max(10, lanes.length * (lanes.length > 6 ? 8 : 12)), 6) : -1;
@@ -110,11 +188,17 @@
       out.option.grid = grid;
       diagramPanels.edgeMarks(this, out, panel);
       if (growth >= 0) {
-        const axis = y.push({ ...ricochet.valueAxis(["exponent", "1/s"], this.exponents, true), gridIndex: growth, splitNumber: 3 }) - 1;
+        const axis =
+            y.push(
+                {...ricochet.valueAxis(["exponent", "1/s"], this.exponents, true), gridIndex: growth, splitNumber: 3}) -
+            1;
         diagramPanels.zeroLine(this, out, growth, axis);
         sources.push(() => diagramPanels.exponents(this, panel, growth, axis));
       }
-      if (band >= 0) diagramPanels.regimes(this, out, lanes, band, y.push(bandAxis(band, lanes.map((lane) => lane.name), panel.cases.length === 1 && lanes.length <= 6)) - 1);
+      if (band >= 0)
+        diagramPanels.regimes(
+            this, out, lanes, band,
+            y.push(bandAxis(band, lanes.map((lane) => lane.name), panel.cases.length === 1 && lanes.length <= 6)) - 1);
       if (verdict >= 0) diagramPanels.verdictBand(this, out, verdict, y.push(bandAxis(verdict, ["verdict"], true)) - 1);
       out.option.dataZoom[0].xAxisIndex = grid.map((_, g) => g);
       out.option.tooltip.formatter = this.tooltip(out);
@@ -122,7 +206,8 @@
       out.sources = () => (made = made || sources.flatMap((make) => make()));
       out.pick = (chart, option, hidden, at, pointsOnly) => this.pick(out, chart, option, hidden, at, pointsOnly);
       out.open = (found) => ricochet.showOrbit(orbits, found.id, found.orbit);
-      out.hover = (found) => orbits.words(found.id, found.orbit, tip, found.value) + '<div class="fine">click: its orbit</div>';
+      out.hover = (found) =>
+          orbits.words(found.id, found.orbit, tip, found.value) + '<div class="fine">click: its orbit</div>';
       out.height = top - 6 + 48;
       return out;
     }
@@ -132,10 +217,11 @@
         const slack = range.low === 0 ? 1 : 0.01 * Math.abs(range.low);
         range = new Interval(range.low - slack, range.high + slack);
       }
-      const logarithmic = ricochet.logarithmicSweep(this.parameters), out = ricochet.axisOf(logarithmic, this.orbits.parameter, range, false);
+      const logarithmic = ricochet.logarithmicSweep(this.parameters),
+            out = ricochet.axisOf(logarithmic, this.orbits.parameter, range, false);
       if (!logarithmic) {
         const slack = 0.012 * (range.high - range.low);
-        Object.assign(out, { min: range.low - slack, max: range.high + slack });
+        Object.assign(out, {min: range.low - slack, max: range.high + slack});
         ricochet.withoutEnds(out);
       }
       out.gridIndex = grid;
@@ -146,38 +232,55 @@
       return out;
     }
     tooltip(view) {
-      const { escape, shown, unit } = ricochet.format;
+      const {escape, shown, unit} = ricochet.format;
       return (given) => {
-        const [p] = [].concat(given), { id, orbit, text } = (p && p.value) || {}, x = p && ricochet.cell(p, "x");
+        const [p] = [].concat(given), {id, orbit, text} = (p && p.value) || {}, x = p && ricochet.cell(p, "x");
         if (x === undefined) return "";
         if (id !== undefined && !text) return this.orbits.words(id, orbit, tip);
         const row = '</div><div class="tip-row">' + escape(p.seriesName);
-        if (text) return "<div>" + escape(view.x[0]) + " = " + shown(x, 8) + row + '</div><div class="tip-text">' + escape(text) + "</div>";
-        return "<div>" + escape(view.x[0]) + " = " + shown(x, 9) + escape(unit(view.x)) + row + "<b>" + shown(ricochet.cell(p, "y"), 8) + "</b></div>";
+        if (text)
+          return "<div>" + escape(view.x[0]) + " = " + shown(x, 8) + row + '</div><div class="tip-text">' +
+              escape(text) + "</div>";
+        return "<div>" + escape(view.x[0]) + " = " + shown(x, 9) + escape(unit(view.x)) + row + "<b>" +
+            shown(ricochet.cell(p, "y"), 8) + "</b></div>";
       };
     }
     // The orbit of the mark or of the cell of the band of regimes at a place of the chart.
     pick(view, chart, option, hidden, at, pointsOnly) {
-      const grid = option.grid.findIndex((_, k) => chart.containPixel({ gridIndex: k }, at));
+      const grid = option.grid.findIndex((_, k) => chart.containPixel({gridIndex: k}, at));
       if (grid < 0) return null;
       const found = ricochet.handDrawn.nearest(chart, option, view.sources(), hidden, grid, at, pointsOnly ? 7 : 14);
-      if (found) return { id: found.source.id, orbit: found.source.orbits[found.index], value: found.source.what === "points" ? found.value : undefined };
+      if (found)
+        return {
+          id: found.source.id,
+          orbit: found.source.orbits[found.index],
+          value: found.source.what === "points" ? found.value : undefined
+        };
       // Cells of all regimes are the rows of one table.
-      const band = option.series.find((series) => !pointsOnly && series.type === "custom" && series.xAxisIndex === grid && !series.silent);
+      const band = option.series.find(
+          (series) => !pointsOnly && series.type === "custom" && series.xAxisIndex === grid && !series.silent);
       if (!band) return null;
-      const rows = option.dataset[option.dataset[band.datasetIndex].fromDatasetIndex].source, place = chart.convertFromPixel({ xAxisIndex: grid, yAxisIndex: band.yAxisIndex }, at);
+      const rows = option.dataset[option.dataset[band.datasetIndex].fromDatasetIndex].source,
+            place = chart.convertFromPixel({xAxisIndex: grid, yAxisIndex: band.yAxisIndex}, at);
       const cell = rows.find((row) => row.from <= place[0] && place[0] <= row.to && row.row === Math.round(place[1]));
-      if (cell && cell.orbit !== undefined && !hidden.has(this.orbits.groups[cell.group][0])) return { id: cell.id, orbit: cell.orbit };
+      if (cell && cell.orbit !== undefined && !hidden.has(this.orbits.groups[cell.group][0]))
+        return {id: cell.id, orbit: cell.orbit};
       return null;
     }
 
     legend(charts) {
-      const { groups, kinds } = this.orbits, used = new Set(charts.flatMap((chart) => chart.views[0].option.series.flatMap((series) => series.tags || [])));
-      const { swatch } = ricochet, mark = (name, colour, symbol) => out.push(swatch(name, colour, symbol, "Marks"));
+      const {groups, kinds} = this.orbits,
+                     used = new Set(charts.flatMap(
+                         (chart) => chart.views[0].option.series.flatMap((series) => series.tags || [])));
+      const {swatch} = ricochet, mark = (name, colour, symbol) => out.push(swatch(name, colour, symbol, "Marks"));
       const out = this.groups.map((group) => swatch(...groups[group], "rect", "Regime"));
-      if (this.kinds.length > 1) out.push(...this.kinds.map((kind) => swatch(kinds[kind][0], "#555555", kinds[kind][1], "Start")));
-      if (this.cases.length > 1) out.push(...this.cases.map((one) => swatch(this.methodName(one), this.colourOf(one), "roundRect", "Method (overlaid)")));
-      for (const [word, colour] of diagramPanels.verdicts) if (used.has(word)) out.push(swatch(word, colour, "rect", "Verdict"));
+      if (this.kinds.length > 1)
+        out.push(...this.kinds.map((kind) => swatch(kinds[kind][0], "#555555", kinds[kind][1], "Start")));
+      if (this.cases.length > 1)
+        out.push(...this.cases.map(
+            (one) => swatch(this.methodName(one), this.colourOf(one), "roundRect", "Method (overlaid)")));
+      for (const [word, colour] of diagramPanels.verdicts)
+        if (used.has(word)) out.push(swatch(word, colour, "rect", "Verdict"));
       if (used.has("located change")) mark("located change", diagramPanels.dark, "triangle-down");
       if (this.exponents && this.mostExponents > 1) mark("further exponents", ricochet.faint, "circle");
       if (this.exponents && this.twins) mark("twin check", diagramPanels.dark, "cross");
@@ -186,8 +289,13 @@
   }
 
   const bandAxis = (grid, names, labels) => ({
-    type: "category", gridIndex: grid, data: names, inverse: true, axisLine: { show: false }, axisTick: { show: false },
-    axisLabel: { show: labels, interval: 0, fontSize: 10, color: "#5c5c5c", margin: 6 },
+    type: "category",
+    gridIndex: grid,
+    data: names,
+    inverse: true,
+    axisLine: {show: false},
+    axisTick: {show: false},
+    axisLabel: {show: labels, interval: 0, fontSize: 10, color: "#5c5c5c", margin: 6},
   });
 
   ricochet.answeredBy("diagram");

@@ -1,14 +1,18 @@
-// Errors against the step and against the number of elements, log–log, one view per kind of error, one curve per method: the fitted slope over the points
-// that follow it, the error floor, points at or below it in grey, cases without an error as marks along the upper edge.
+// Errors against the step and against the number of elements, log–log, one view per kind of error, one curve per
+// method: the fitted slope over the points that follow it, the error floor, points at or below it in grey, cases
+// without an error as marks along the upper edge.
 {
-  const { numberOf, Interval, errors } = ricochet;
-  const follows = 2;          // factor within which a point follows the fitted line
-  const mostBeside = 3;       // charts beside an answer
+  const {numberOf, Interval, errors} = ricochet;
+  const follows = 2;     // factor within which a point follows the fitted line
+  const mostBeside = 3;  // charts beside an answer
 
   // All cases; for elements, those at the smallest step of their method.
   function casesFor(view, refined) {
     if (refined === "step") return view.all;
-    const step = (one) => { const value = numberOf(one, "step"); return value === null ? Infinity : value; };
+    const step = (one) => {
+      const value = numberOf(one, "step");
+      return value === null ? Infinity : value;
+    };
     return view.group(view.all, view.varyingWithout(["step", "elements"])).flatMap((group) => {
       const smallest = Math.min(...group.cases.map(step));
       return group.cases.filter((one) => step(one) === smallest);
@@ -17,40 +21,62 @@
 
   class ErrorFigure {
     constructor(data, refined) {
-      const { view } = data, byStep = refined === "step", cases = casesFor(view, refined);
-      Object.assign(this, { data, refined, byStep, x: byStep ? ["step h", "s"] : ["elements", "1"] });
+      const {view} = data, byStep = refined === "step", cases = casesFor(view, refined);
+      Object.assign(this, {data, refined, byStep, x: byStep ? ["step h", "s"] : ["elements", "1"]});
       this.error = data.finder("errors", ["error"]);
       this.order = data.finder("orders", ["refined", "error"], [refined]);
       this.line = data.finder("order_lines", ["refined", "error"], [refined]);
-      this.curves = new ricochet.MethodCurves(view, cases, refined, { ignored: byStep ? [] : ["step"] });
+      this.curves = new ricochet.MethodCurves(view, cases, refined, {ignored: byStep ? [] : ["step"]});
       this.xRange = new Interval().include(...cases.map((one) => numberOf(one, refined)));
       const most = Math.max(0, ...this.curves.facets.map((facet) => {
         const stacks = ricochet.groupBy(facet.cases.filter((one) => one.status !== "done"), (one) => [this.place(one)]);
         return Math.max(0, ...Array.from(stacks.values(), (stack) => stack.length));
       }));
-      this.gutter = most > 0 ? Math.min(0.5, 0.05 + ricochet.markHeight * most) : 0;   // share of the frame's height that marks take
+      this.gutter = most > 0 ? Math.min(0.5, 0.05 + ricochet.markHeight * most) :
+                               0;  // share of the frame's height that marks take
     }
-    place(one) { const value = numberOf(one, this.refined); return value === null ? this.xRange.low : value; }
+    place(one) {
+      const value = numberOf(one, this.refined);
+      return value === null ? this.xRange.low : value;
+    }
     // Rows of the table for cases that have an error, each at its place.
     rows(cases, error) {
-      const found = cases.filter((one) => numberOf(one, this.refined) !== null).map((one) => ({ case: one.id, at: this.place(one), ...this.error(one, [error]) }));
-      return found.filter((row) => Number.isFinite(row.value)).map((row) => ({ ...row, floor: row.floor || 0 }));
+      const found = cases.filter((one) => numberOf(one, this.refined) !== null)
+                        .map((one) => ({case: one.id, at: this.place(one), ...this.error(one, [error])}));
+      return found.filter((row) => Number.isFinite(row.value)).map((row) => ({...row, floor: row.floor || 0}));
     }
 
     figure() {
-      const { curves, byStep } = this, cases = curves.facets.flatMap((facet) => facet.cases);
-      const kinds = errors.kinds(this.data.rows("errors")).map((error) => ({ error, range: this.range(this.rows(cases, error)) })).filter(({ range }) => !range.empty);
+      const {curves, byStep} = this, cases = curves.facets.flatMap((facet) => facet.cases);
+      const kinds = errors.kinds(this.data.rows("errors"))
+                        .map((error) => ({error, range: this.range(this.rows(cases, error))}))
+                        .filter(({range}) => !range.empty);
       if (!kinds.length) return null;
-      const charts = curves.charts((facet) => kinds.map(({ error, range }) => this.chart(error, facet, range)));
-      const caption = curves.colours() + " The pale band under a curve is its fitted order, drawn over the points that stay within a factor of " + follows +
-        " of it; the number at its end is the order. Grey points are at or below the error floor, which is how far apart two references are." + (byStep ? "" : " Each method at its smallest step.");
+      const charts = curves.charts((facet) => kinds.map(({error, range}) => this.chart(error, facet, range)));
+      const caption = curves.colours() +
+          " The pale band under a curve is its fitted order, drawn over the points that stay within a factor of " +
+          follows +
+          " of it; the number at its end is the order. Grey points are at or below the error floor, which is how far " +
+          "apart two references are." + (byStep ? "" : " Each method at its smallest step.");
       // The answer on orders is shown by the error that it speaks of.
-      const [first] = this.data.rows("answers"), said = first && first.form === "order" ? kinds.findIndex(({ error }) => "error." + error === first.measure) : -1;
-      if (said >= 0 && charts.length <= mostBeside && (byStep || !this.data.view.varies("step"))) ricochet.answeredFirst("error-" + this.refined);
+      const [first] = this.data.rows("answers"),
+            said =
+                first && first.form === "order" ? kinds.findIndex(({error}) => "error." + error === first.measure) : -1;
+      if (said >= 0 && charts.length <= mostBeside && (byStep || !this.data.view.varies("step")))
+        ricochet.answeredFirst("error-" + this.refined);
       return {
-        atFirst: Math.max(0, said), id: "error-" + this.refined, title: byStep ? "Errors against the step" : "Errors against the number of elements", caption, views: kinds.map(({ error }) => error), charts,
+        atFirst: Math.max(0, said),
+        id: "error-" + this.refined,
+        title: byStep ? "Errors against the step" : "Errors against the number of elements",
+        caption,
+        views: kinds.map(({error}) => error),
+        charts,
         legend: curves.legend().concat(ricochet.drawnNames(charts).has(errors.floorName) ? [errors.floorEntry] : []),
-        measured: { key: "errors", along: this.refined, values: errors.measured(kinds, (one, error) => this.error(one, [error])) },
+        measured: {
+          key: "errors",
+          along: this.refined,
+          values: errors.measured(kinds, (one, error) => this.error(one, [error]))
+        },
       };
     }
     range(rows) {
@@ -62,49 +88,70 @@
     }
 
     chart(error, facet, range) {
-      const quantity = errors.quantity(error), y = ricochet.logAxis(quantity, range, true), lowest = y.min, { exact, text, count } = ricochet.format;
+      const quantity = errors.quantity(error), y = ricochet.logAxis(quantity, range, true), lowest = y.min,
+            {exact, text, count} = ricochet.format;
       y.max = y.max * Math.pow(y.max / y.min, this.gutter / (1 - this.gutter));
-      const out = ricochet.view(this.x, quantity, ricochet.logAxis(this.x, this.xRange, false), [y, ricochet.gutterAxis()]), mark = ricochet.outcomeMarks();
+      const out = ricochet.view(
+                this.x, quantity, ricochet.logAxis(this.x, this.xRange, false), [y, ricochet.gutterAxis()]),
+            mark = ricochet.outcomeMarks();
       out.option.grid.right = 78;
       const ends = [];
-      const ofCase = (curve, find) => curve.cases.map((one) => find(one, [this.refined, error])).find(Boolean), all = [], zeros = [];
+      const ofCase = (curve, find) => curve.cases.map((one) => find(one, [this.refined, error])).find(Boolean),
+            all = [], zeros = [];
       for (const curve of facet.curves) {
-        const said = orderText(ofCase(curve, this.order)), line = ofCase(curve, this.line), done = curve.cases.filter((one) => one.status === "done");
-        const rows = this.rows(done, error).map((row) => ({ ...row, text: pointText(row, quantity, said) }));
+        const said = orderText(ofCase(curve, this.order)), line = ofCase(curve, this.line),
+              done = curve.cases.filter((one) => one.status === "done");
+        const rows = this.rows(done, error).map((row) => ({...row, text: pointText(row, quantity, said)}));
         all.push(...rows);
         zeros.push(...rows.filter((row) => !(row.value > 0)).map((row) => curve.name + " at " + exact(row.at)));
         if (line) {
-          ends.push({ line, place: Math.log(line.to) / Math.log(this.xRange.high / this.xRange.low), height: Math.log(Math.max(line.error_to, lowest)) / Math.log(y.max / y.min), series: out.option.series.length });
-          ricochet.draw(out, lineRows(line, said), { x: "at", y: "error" }, slope(curve, line));
+          ends.push({
+            line,
+            place: Math.log(line.to) / Math.log(this.xRange.high / this.xRange.low),
+            height: Math.log(Math.max(line.error_to, lowest)) / Math.log(y.max / y.min),
+            series: out.option.series.length
+          });
+          ricochet.draw(out, lineRows(line, said), {x: "at", y: "error"}, slope(curve, line));
         }
-        ricochet.draw(out, rows.filter((row) => row.value > 0), { x: "at", y: "value" }, errors.curve(curve));
-        ricochet.drawMarks(out, curve, curve.cases.filter((one) => !done.includes(one)).map((one) => mark(one, this.place(one))));
+        ricochet.draw(out, rows.filter((row) => row.value > 0), {x: "at", y: "value"}, errors.curve(curve));
+        ricochet.drawMarks(
+            out, curve, curve.cases.filter((one) => !done.includes(one)).map((one) => mark(one, this.place(one))));
       }
       labelTogether(ends, out.option.series);
       // The highest at each place.
-      const floors = all.filter((row) => row.floor > 0 && all.every((other) => other.at !== row.at || other.floor <= row.floor)).sort((a, b) => a.at - b.at);
-      const seen = floors.filter((row, k) => row.floor >= lowest && (k === 0 || floors[k - 1].at !== row.at)).map(({ at, floor }) => ({ at, floor, text: text(floor, 3) }));
-      if (seen.length) ricochet.draw(out, seen, { x: "at", y: "floor" }, floorArea(seen.length === 1));
+      const floors =
+          all.filter((row) => row.floor > 0 && all.every((other) => other.at !== row.at || other.floor <= row.floor))
+              .sort((a, b) => a.at - b.at);
+      const seen = floors.filter((row, k) => row.floor >= lowest && (k === 0 || floors[k - 1].at !== row.at))
+                       .map(({at, floor}) => ({at, floor, text: text(floor, 3)}));
+      if (seen.length) ricochet.draw(out, seen, {x: "at", y: "floor"}, floorArea(seen.length === 1));
       else if (floors.length) out.notes.push("The error floor is below this frame.");
       if (zeros.length) out.notes.push(ricochet.unseenZeros + zeros.join(", ") + ".");
       const without = facet.cases.filter((one) => one.status === "done").length - all.length;
-      if (without) out.notes.push(count(without, "finished case has", "finished cases have") + " no such error: the notes say why.");
+      if (without)
+        out.notes.push(
+            count(without, "finished case has", "finished cases have") + " no such error: the notes say why.");
       return out;
     }
   }
 
   function orderText(row) {
     if (!row) return "";
-    const { order } = ricochet.format, known = row.order !== null && row.low !== null && row.high !== null;
-    return (known ? "order " + order(row.order) + " [" + order(row.low) + ", " + order(row.high) + "], " : "no order, ") + row.verdict;
+    const {order} = ricochet.format, known = row.order !== null && row.low !== null && row.high !== null;
+    return (known ? "order " + order(row.order) + " [" + order(row.low) + ", " + order(row.high) + "], " :
+                    "no order, ") +
+        row.verdict;
   }
-  function pointText({ value, floor }, quantity, said) {
-    const { text, unit } = ricochet.format;
-    return text(value, 5) + unit(quantity) + (floor > 0 ? (value <= floor ? ", at or below the floor of " : ", floor ") + text(floor, 3) : "") + (said ? "; " + said : "");
+  function pointText({value, floor}, quantity, said) {
+    const {text, unit} = ricochet.format;
+    return text(value, 5) + unit(quantity) +
+        (floor > 0 ? (value <= floor ? ", at or below the floor of " : ", floor ") + text(floor, 3) : "") +
+        (said ? "; " + said : "");
   }
-  const lineRows = (line, text) => [{ at: line.from, error: line.error_from, text }, { at: line.to, error: line.error_to, text }];
+  const lineRows =
+      (line, text) => [{at: line.from, error: line.error_from, text}, {at: line.to, error: line.error_to, text}];
   // Ends of lines whose labels would lie on each other share one.
-  const labelWidth = 0.3, labelHeight = 0.085;   // of a chart
+  const labelWidth = 0.3, labelHeight = 0.085;  // of a chart
   const cut = (list, along, gap) => list.sort((a, b) => a[along] - b[along]).reduce((groups, one) => {
     const last = groups[groups.length - 1];
     if (last && one[along] - last[last.length - 1][along] < gap) last.push(one);
@@ -112,23 +159,39 @@
     return groups;
   }, []);
   function labelTogether(ends, series) {
-    const { order } = ricochet.format;
+    const {order} = ricochet.format;
     for (const same of cut(ends, "place", labelWidth).flatMap((column) => cut(column, "height", labelHeight))) {
-      const orders = same.map(({ line }) => line.order), low = order(Math.min(...orders)), high = order(Math.max(...orders)), middle = same[same.length >> 1];
-      for (const one of same) if (one !== middle) delete series[one.series].endLabel;
-      if (same.length > 1) Object.assign(series[middle.series].endLabel, { formatter: low === high ? low : low + " to " + high, color: ricochet.ink });
+      const orders = same.map(({line}) => line.order), low = order(Math.min(...orders)),
+            high = order(Math.max(...orders)), middle = same[same.length >> 1];
+      for (const one of same)
+        if (one !== middle) delete series[one.series].endLabel;
+      if (same.length > 1)
+        Object.assign(
+            series[middle.series].endLabel, {formatter: low === high ? low : low + " to " + high, color: ricochet.ink});
     }
   }
-  const slope = ({ name, colour }, { order }) => ({
-    type: "line", name, symbol: "none", z: 1, color: colour, lineStyle: { color: ricochet.lighten(colour, 0.72), width: 7, cap: "round" }, labelLayout: { moveOverlap: "shiftY" },
-    endLabel: { show: true, formatter: ricochet.format.order(order), color: colour, fontSize: 11, distance: 8 },
+  const slope = ({name, colour}, {order}) => ({
+    type: "line",
+    name,
+    symbol: "none",
+    z: 1,
+    color: colour,
+    lineStyle: {color: ricochet.lighten(colour, 0.72), width: 7, cap: "round"},
+    labelLayout: {moveOverlap: "shiftY"},
+    endLabel: {show: true, formatter: ricochet.format.order(order), color: colour, fontSize: 11, distance: 8},
   });
   const floorArea = (alone) => ({
-    ...errors.floorLine, symbol: alone ? "rect" : "none", symbolSize: [24, 1.5], areaStyle: { color: "#000000", opacity: 0.05, origin: "start" },
+    ...errors.floorLine,
+    symbol: alone ? "rect" : "none",
+    symbolSize: [24, 1.5],
+    areaStyle: {color: "#000000", opacity: 0.05, origin: "start"},
   });
 
   ricochet.figure("errors", (data) => {
     if (!data.rows("errors").length) return [];
-    return ["step", "elements"].filter((refined) => data.view.varies(refined)).map((refined) => new ErrorFigure(data, refined).figure()).filter(Boolean);
+    return ["step", "elements"]
+        .filter((refined) => data.view.varies(refined))
+        .map((refined) => new ErrorFigure(data, refined).figure())
+        .filter(Boolean);
   });
 }

@@ -4,39 +4,78 @@
 
   // The kind of error that tells the methods apart most: its values, above their floors, span the most.
   function telling(rows) {
-    const span = (error) => { const values = rows.filter((row) => row.error === error && row.value > row.floor).map((row) => row.value); return values.length ? Math.max(...values) / Math.min(...values) : 0; };
+    const span = (error) => {
+      const values = rows.filter((row) => row.error === error && row.value > row.floor).map((row) => row.value);
+      return values.length ? Math.max(...values) / Math.min(...values) : 0;
+    };
     return ricochet.distinct(rows.map((row) => row.error)).sort((a, b) => span(b) - span(a))[0];
   }
 
   ricochet.figure("work-front", (data) => {
-    const { view } = data, known = data.rows("work_points").filter((row) => row.none === "" && row.value > 0 && row.seconds > 0 && data.byId.has(row.case)), said = data.rows("answers").filter((row) => row.form === "cheapest"), named = said.length ? said[0].measure.replace(/^error\./, "") : "", error = known.some((row) => row.error === named) ? named : telling(known);
+    const {view} = data,
+          known = data.rows("work_points")
+                      .filter((row) => row.none === "" && row.value > 0 && row.seconds > 0 && data.byId.has(row.case)),
+          said = data.rows("answers").filter((row) => row.form === "cheapest"),
+          named = said.length ? said[0].measure.replace(/^error\./, "") : "",
+          error = known.some((row) => row.error === named) ? named : telling(known);
     if (!error) return [];
-    const scene = view.varyingWithout(["mass", "contact", "time", "march", "elements", "step"]), scenes = view.group(known.map((row) => data.byId.get(row.case)), scene), [first] = scenes;
-    const methods = view.varying.filter((column) => column !== "elements" && column !== "step" && !scene.includes(column)), label = (one) => ricochet.shorten(view.label(one, methods) || "the one method");
-    const text = ricochet.format.text, rows = known.filter((row) => row.error === error && first.cases.includes(data.byId.get(row.case))).map((row) => {
-      const one = data.byId.get(row.case), name = label(one);
-      return { case: row.case, value: row.value, seconds: row.seconds, name, shown: row.on_front ? name : beaten, text: view.label(one) + ": " + text(row.value, 3) + ", " + text(row.seconds, 3) + " s" };
-    });
-    const front = rows.filter((row) => row.shown !== beaten).sort((a, b) => a.value - b.value), names = ricochet.distinct(front.map((row) => row.shown)).slice(0, mostNames), legend = [];
-    const x = ricochet.errors.quantity(error), y = ["run time", "s"], range = (column) => new ricochet.Interval().include(...rows.map((row) => row[column]));
-    const out = ricochet.view(x, y, ricochet.logAxis(x, range("value"), false), ricochet.logAxis(y, range("seconds"), true));
-    ricochet.draw(out, front, { x: "value", y: "seconds" }, { ...ricochet.line("Pareto front", "#E8D95A", 9), lineStyle: { width: 9, color: "#E8D95A", cap: "round" } });
-    ricochet.draw(out, rows, { x: "value", y: "seconds" }, ricochet.dot(beaten, grey, "circle", 5, 2), { shown: beaten });
+    const scene = view.varyingWithout(["mass", "contact", "time", "march", "elements", "step"]),
+          scenes = view.group(known.map((row) => data.byId.get(row.case)), scene), [first] = scenes;
+    const methods =
+              view.varying.filter((column) => column !== "elements" && column !== "step" && !scene.includes(column)),
+          label = (one) => ricochet.shorten(view.label(one, methods) || "the one method");
+    const text = ricochet.format.text,
+          rows =
+              known.filter((row) => row.error === error && first.cases.includes(data.byId.get(row.case))).map((row) => {
+                const one = data.byId.get(row.case), name = label(one);
+                return {
+                  case: row.case,
+                  value: row.value,
+                  seconds: row.seconds,
+                  name,
+                  shown: row.on_front ? name : beaten,
+                  text: view.label(one) + ": " + text(row.value, 3) + ", " + text(row.seconds, 3) + " s"
+                };
+              });
+    const front = rows.filter((row) => row.shown !== beaten).sort((a, b) => a.value - b.value),
+          names = ricochet.distinct(front.map((row) => row.shown)).slice(0, mostNames), legend = [];
+    const x = ricochet.errors.quantity(error), y = ["run time", "s"],
+          range = (column) => new ricochet.Interval().include(...rows.map((row) => row[column]));
+    const out =
+        ricochet.view(x, y, ricochet.logAxis(x, range("value"), false), ricochet.logAxis(y, range("seconds"), true));
+    ricochet.draw(
+        out, front, {x: "value", y: "seconds"},
+        {...ricochet.line("Pareto front", "#E8D95A", 9), lineStyle: {width: 9, color: "#E8D95A", cap: "round"}});
+    ricochet.draw(out, rows, {x: "value", y: "seconds"}, ricochet.dot(beaten, grey, "circle", 5, 2), {shown: beaten});
     names.forEach((name, k) => {
-      ricochet.draw(out, rows, { x: "value", y: "seconds" }, ricochet.dot(name, ricochet.methodColours[k % ricochet.methodColours.length], ricochet.symbol(k), 10, 4), { shown: name });
+      ricochet.draw(
+          out, rows, {x: "value", y: "seconds"},
+          ricochet.dot(name, ricochet.methodColours[k % ricochet.methodColours.length], ricochet.symbol(k), 10, 4),
+          {shown: name});
       legend.push(ricochet.swatch(name, ricochet.methodColours[k % ricochet.methodColours.length], ricochet.symbol(k)));
     });
     // Those that the sentences name.
-    const chosen = new Set(said.flatMap((row) => row.methods.split(" "))), ringed = error === named ? rows.filter((row) => chosen.has(row.case)) : [];
+    const chosen = new Set(said.flatMap((row) => row.methods.split(" "))),
+          ringed = error === named ? rows.filter((row) => chosen.has(row.case)) : [];
     if (ringed.length) {
-      ricochet.draw(out, ringed, { x: "value", y: "seconds" }, { ...ricochet.dot(answered, "#222222", "circle", 17, 5), itemStyle: { color: "transparent", borderColor: "#222222", borderWidth: 1.4 } });
+      ricochet.draw(out, ringed, {x: "value", y: "seconds"}, {
+        ...ricochet.dot(answered, "#222222", "circle", 17, 5),
+        itemStyle: {color: "transparent", borderColor: "#222222", borderWidth: 1.4}
+      });
       legend.push(ricochet.swatch(answered, "#222222", "circle"));
     }
     if (rows.some((row) => row.shown === beaten)) legend.push(ricochet.swatch(beaten, grey, "circle"));
     if (scenes.length > 1) out.notes.push("Of " + scenes.length + " scenes the first: " + first.label + ".");
     return [{
-      id: "work-front", title: "Which methods nothing beats", views: [error], legend, charts: [{ title: "all methods", height: 360, views: [out], notes: [] }],
-      caption: "Left and low is better; a point per method and step. The band joins the cases that no other is both faster and more precise than, in " + error + (error === named ? ", the error that the answer speaks of. Rings: what it names." : ", the error that tells most."),
+      id: "work-front",
+      title: "Which methods nothing beats",
+      views: [error],
+      legend,
+      charts: [{title: "all methods", height: 360, views: [out], notes: []}],
+      caption: "Left and low is better; a point per method and step. The band joins the cases that no other is both " +
+          "faster and more precise than, in " + error +
+          (error === named ? ", the error that the answer speaks of. Rings: what it names." :
+                             ", the error that tells most."),
     }];
   });
 }

@@ -1,82 +1,105 @@
-// Goes into a copy of a report: draws every figure in every view, reads back what the chart library then holds, works the page's controls, and promises
-// all of it as `probed`.
+// Goes into a copy of a report: draws every figure in every view, reads back what the chart library then holds, works
+// the page's controls, and promises all of it as `probed`.
 (() => {
   "use strict";
   const errors = [];
   window.addEventListener("error", (e) => errors.push(String(e.message)));
   window.addEventListener("unhandledrejection", (e) => errors.push(String(e.reason)));
-  document.addEventListener("securitypolicyviolation", (e) => errors.push("policy: " + e.violatedDirective + " " + e.blockedURI));
+  document.addEventListener(
+      "securitypolicyviolation", (e) => errors.push("policy: " + e.violatedDirective + " " + e.blockedURI));
   const all = (selector, from) => Array.from((from || document).querySelectorAll(selector));
-  const mostItems = 3000;   // of a series that are read back one by one
+  const mostItems = 3000;  // of a series that are read back one by one
 
   // Pixels with a hue: grey is axes and text.
   function coloured(slot) {
     const layers = all("canvas", slot.element), canvas = layers[0];
     if (!canvas || !canvas.width || !canvas.height) return 0;
-    const copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height }), context = copy.getContext("2d", { willReadFrequently: true });
+    const copy = Object.assign(document.createElement("canvas"), {width: canvas.width, height: canvas.height}),
+          context = copy.getContext("2d", {willReadFrequently: true});
     for (const layer of layers) context.drawImage(layer, 0, 0);
     const data = context.getImageData(0, 0, copy.width, copy.height).data;
     let count = 0;
-    for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 0 && Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) > 24) ++count;
+    for (let i = 0; i < data.length; i += 4)
+      if (data[i + 3] > 0 &&
+          Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) > 24)
+        ++count;
     return count;
   }
 
-  // Pairs of words of a chart that lie on each other, read from what is painted. Single marks may: where they stand says something.
+  // Pairs of words of a chart that lie on each other, read from what is painted. Single marks may: where they stand
+  // says something.
   function collisions(chart) {
     const boxes = [], out = [];
     for (const part of chart.getZr().storage.getDisplayList(true)) {
-      if (part.type !== "tspan" || part.invisible || !part.style.text || part.style.text.trim().length < 2 || part.style.opacity === 0) continue;
+      if (part.type !== "tspan" || part.invisible || !part.style.text || part.style.text.trim().length < 2 ||
+          part.style.opacity === 0)
+        continue;
       // Without a font of all scripts the library takes lines for lower than they are painted.
       const rect = part.getBoundingRect().clone(), size = 0.9 * parseFloat(/[\d.]+px/.exec(part.style.font)[0]);
-      if (rect.height < size) { rect.y -= 0.5 * (size - rect.height); rect.height = size; }
+      if (rect.height < size) {
+        rect.y -= 0.5 * (size - rect.height);
+        rect.height = size;
+      }
       if (part.transform) rect.applyTransform(part.transform);
       boxes.push([part.style.text, rect.x + 1, rect.y + 1, rect.x + rect.width - 1, rect.y + rect.height - 1]);
     }
     boxes.forEach(([name, left, top, right, bottom], k) => {
-      for (const [other, low, high, far, deep] of boxes.slice(k + 1)) if (left < far && low < right && top < deep && high < bottom) out.push(name + " | " + other);
+      for (const [other, low, high, far, deep] of boxes.slice(k + 1))
+        if (left < far && low < right && top < deep && high < bottom) out.push(name + " | " + other);
     });
     return out;
   }
 
   // ---- what the library holds ---------------------------------------------------------------------------------------
-  const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined && from[name] !== null).map((name) => [name, from[name]]));
-  // A point as the library has it: where it lies, the words of its row, and where it looks unlike a row with nothing to tell.
+  const pick = (from, names) => Object.fromEntries(
+      names.filter((name) => from[name] !== undefined && from[name] !== null).map((name) => [name, from[name]]));
+  // A point as the library has it: where it lies, the words of its row, and where it looks unlike a row with nothing to
+  // tell.
   function itemOf(data, i, plain) {
     const along = (dimension) => {
-      const { ordinalMeta } = data.getDimensionInfo(dimension), value = data.get(dimension, i);
+      const {ordinalMeta} = data.getDimensionInfo(dimension), value = data.get(dimension, i);
       return ordinalMeta ? ordinalMeta.categories[value] : Number.isNaN(value) ? "-" : value;
     };
     // Sums of stacked bars are the library's own.
-    const dimensions = ["x", "y"].flatMap((axis) => data.mapDimensionsAll(axis)).filter((dimension) => !data.getDimensionInfo(dimension).isCalculationCoord);
-    const out = { value: dimensions.map(along), ...pick(data.getRawDataItem(i), ["text", "mark"]) };
-    const { fill } = data.getItemVisual(i, "style") || {}, size = data.getItemVisual(i, "symbolSize");
-    if (/^empty/.test(data.getItemVisual(i, "symbol"))) out.itemStyle = { color: "#ffffff" };
-    else if (fill !== (data.getVisual("style") || {}).fill) out.itemStyle = { color: fill };
+    const dimensions = ["x", "y"]
+                           .flatMap((axis) => data.mapDimensionsAll(axis))
+                           .filter((dimension) => !data.getDimensionInfo(dimension).isCalculationCoord);
+    const out = {value: dimensions.map(along), ...pick(data.getRawDataItem(i), ["text", "mark"])};
+    const {fill} = data.getItemVisual(i, "style") || {}, size = data.getItemVisual(i, "symbolSize");
+    if (/^empty/.test(data.getItemVisual(i, "symbol"))) out.itemStyle = {color: "#ffffff"};
+    else if (fill !== (data.getVisual("style") || {}).fill) out.itemStyle = {color: fill};
     if (String(size) !== String(plain)) out.symbolSize = size;
     return out;
   }
   const ofPlainRow = (setting) => (typeof setting === "function" ? setting({}) : setting);
   function seriesOf(series, model) {
-    const out = pick(series, ["type", "name", "tags", "color", "itemStyle", "lineStyle", "xAxisIndex", "yAxisIndex", "z", "sampling"]), data = model.getData();
-    Object.assign(out, { symbol: ofPlainRow(series.symbol), symbolSize: ofPlainRow(series.symbolSize) });
-    out.count = data.count();   // after the library's own thinning
+    const out = pick(
+              series,
+              ["type", "name", "tags", "color", "itemStyle", "lineStyle", "xAxisIndex", "yAxisIndex", "z", "sampling"]),
+          data = model.getData();
+    Object.assign(out, {symbol: ofPlainRow(series.symbol), symbolSize: ofPlainRow(series.symbolSize)});
+    out.count = data.count();  // after the library's own thinning
     out.given = model.getRawData().count();
-    out.data = out.given <= mostItems ? Array.from({ length: out.count }, (_, i) => itemOf(data, i, out.symbolSize)) : [];
+    out.data = out.given <= mostItems ? Array.from({length: out.count}, (_, i) => itemOf(data, i, out.symbolSize)) : [];
     if (series.endLabel && series.endLabel.show) out.endLabel = series.endLabel.formatter;
     if (series.markLine) out.markLine = series.markLine.data;
     if (series.markArea) out.markArea = series.markArea.data;
     return out;
   }
-  const seriesIn = (chart) => chart.getOption().series.map((series, k) => seriesOf(series, chart.getModel().getSeriesByIndex(k)));
+  const seriesIn = (chart) =>
+      chart.getOption().series.map((series, k) => seriesOf(series, chart.getModel().getSeriesByIndex(k)));
   function sourceOf(source) {
-    const out = Object.assign(pick(source, ["what", "id", "group", "tags", "colour", "grid"]), { count: source.orbits.length });
-    return Object.assign(out, source.what === "points" ? {} : { values: source.values });
+    const out =
+        Object.assign(pick(source, ["what", "id", "group", "tags", "colour", "grid"]), {count: source.orbits.length});
+    return Object.assign(out, source.what === "points" ? {} : {values: source.values});
   }
   function readBack(figure, slot) {
-    const view = figure.viewOf(slot), out = { coloured: 0, notes: [], series: [], sources: view.sources ? view.sources().map(sourceOf) : [] };
+    const view = figure.viewOf(slot),
+          out = {coloured: 0, notes: [], series: [], sources: view.sources ? view.sources().map(sourceOf) : []};
     if (!slot.chart) return out;
     slot.chart.getZr().flush();
-    const option = slot.chart.getOption(), axis = (one) => pick(one, ["name", "type", "min", "max", "gridIndex", "data", "show"]);
+    const option = slot.chart.getOption(),
+          axis = (one) => pick(one, ["name", "type", "min", "max", "gridIndex", "data", "show"]);
     if (!option || !option.series) return out;
     out.coloured = coloured(slot);
     out.xAxis = option.xAxis.map(axis);
@@ -87,7 +110,10 @@
     out.collisions = collisions(slot.chart);
     return out;
   }
-  const notesIn = (figure, index, view) => all("figure", figure.section)[index] ? all(":scope > ul.notes li, :scope > div[data-notes]:not([hidden]) li", all("figure", figure.section)[index]).map((li) => li.textContent) : [];
+  const notesIn = (figure, index, view) => all("figure", figure.section)[index] ?
+      all(":scope > ul.notes li, :scope > div[data-notes]:not([hidden]) li", all("figure", figure.section)[index])
+          .map((li) => li.textContent) :
+      [];
 
   // ---- what the page does -------------------------------------------------------------------------------------------
   function checkLegend(figure, first, out) {
@@ -95,11 +121,16 @@
     if (!legend) return;
     legend.click();
     const name = legend.dataset.name, named = (one) => one.name === name || (one.tags || []).includes(name);
-    out.hidden = figure.slots.every((s) => !s.chart || !figure.visible(s) || s.drawn.series.filter(named).every((one) => s.chart.getOption().legend[0].selected[one.name] === false));
+    out.hidden = figure.slots.every(
+        (s) => !s.chart || !figure.visible(s) ||
+            s.drawn.series.filter(named).every((one) => s.chart.getOption().legend[0].selected[one.name] === false));
     legend.click();
     if (!first || !figure.viewOf(first).sources) return;
     // Without any entry of the legend nothing coloured is left, and with all of them everything is back.
-    const full = coloured(first), redraw = () => { figure.draw(first); first.chart.getZr().flush(); };
+    const full = coloured(first), redraw = () => {
+      figure.draw(first);
+      first.chart.getZr().flush();
+    };
     buttons.forEach((b) => figure.hidden.add(b.dataset.name));
     redraw();
     out.hidden = out.hidden && coloured(first) < full / 10;
@@ -108,9 +139,11 @@
     out.hidden = out.hidden && coloured(first) === full;
   }
   function checkZoom(figure, first, last, out) {
-    const range = first.chart.getOption().xAxis[0], low = range.min || 0, wide = range.max - low, from = low + 0.25 * wide, to = low + 0.5 * wide;
-    first.chart.dispatchAction({ type: "dataZoom", dataZoomId: "along-x", startValue: from, endValue: to });
-    const zoom = last.chart.getOption().dataZoom[0], axes = last.chart.getOption().xAxis, pixel = (k) => last.chart.convertToPixel({ xAxisIndex: k }, from);
+    const range = first.chart.getOption().xAxis[0], low = range.min || 0, wide = range.max - low,
+          from = low + 0.25 * wide, to = low + 0.5 * wide;
+    first.chart.dispatchAction({type: "dataZoom", dataZoomId: "along-x", startValue: from, endValue: to});
+    const zoom = last.chart.getOption().dataZoom[0], axes = last.chart.getOption().xAxis,
+          pixel = (k) => last.chart.convertToPixel({xAxisIndex: k}, from);
     out.linked = Math.abs(zoom.startValue - from) < 1e-6 * wide && Math.abs(zoom.endValue - to) < 1e-6 * wide;
     out.aligned = axes.every((axis, k) => Math.abs(pixel(k) - pixel(0)) < 0.5);
     figure.reset();
@@ -118,38 +151,70 @@
   }
   // A click on a drawn point opens that very orbit.
   function checkPanel(figure, slot, view) {
-    const source = view.sources().find((one) => one.what === "points" && one.values.length), middle = source.orbits.length >> 1, parameter = source.values[2 * middle];
-    figure.pick(slot, slot.chart.convertToPixel({ xAxisIndex: 0, yAxisIndex: 0 }, [parameter, source.values[2 * middle + 1]]));
-    const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown(), charts = panel ? ricochet.sidePanel.charts() : [];
-    const out = { opened: Boolean(panel), point: [parameter, source.values[2 * middle + 1]], charts: charts.map(seriesIn), orbit: Boolean(shown) && shown.id === source.id && ricochet.data.page.orbits.cases[shown.id].columns.parameter[shown.orbit] === parameter,
-      canvases: panel ? all("canvas", panel).length : 0, command: panel ? panel.querySelector("pre").textContent : "", facts: panel ? all("dt", panel).length : 0 };
+    const source = view.sources().find((one) => one.what === "points" && one.values.length),
+          middle = source.orbits.length >> 1, parameter = source.values[2 * middle];
+    figure.pick(
+        slot, slot.chart.convertToPixel({xAxisIndex: 0, yAxisIndex: 0}, [parameter, source.values[2 * middle + 1]]));
+    const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown(),
+          charts = panel ? ricochet.sidePanel.charts() : [];
+    const out = {
+      opened: Boolean(panel),
+      point: [parameter, source.values[2 * middle + 1]],
+      charts: charts.map(seriesIn),
+      orbit: Boolean(shown) && shown.id === source.id &&
+          ricochet.data.page.orbits.cases[shown.id].columns.parameter[shown.orbit] === parameter,
+      canvases: panel ? all("canvas", panel).length : 0,
+      command: panel ? panel.querySelector("pre").textContent : "",
+      facts: panel ? all("dt", panel).length : 0
+    };
     ricochet.sidePanel.close();
-    return Object.assign(out, { closed: !ricochet.sidePanel.panel() });
+    return Object.assign(out, {closed: !ricochet.sidePanel.panel()});
   }
   // A click on a branch opens its orbit, one whose portrait the page carries.
   function checkBranch(figure, slot) {
-    const { page } = ricochet.data, [id] = Object.keys(page.branches.cases), branches = new ricochet.Branches(ricochet.data), rows = Array.from(branches.portrayed(id).keys()), row = rows[rows.length >> 1];
+    const {page} = ricochet.data, [id] = Object.keys(page.branches.cases),
+          branches = new ricochet.Branches(ricochet.data), rows = Array.from(branches.portrayed(id).keys()),
+          row = rows[rows.length >> 1];
     if (row === undefined) return null;
     const column = (name) => branches.column(id, name)[row];
-    figure.pick(slot, slot.chart.convertToPixel({ xAxisIndex: 0, yAxisIndex: 0 }, [column("parameter"), column("tip")]));
-    const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown() || {}, charts = panel ? ricochet.sidePanel.charts() : [];
-    const out = { opened: Boolean(panel), has: branches.portrayed(shown.id).has(shown.orbit), charts: charts.map(seriesIn), commands: panel ? all("pre", panel).map((pre) => pre.textContent) : [], text: panel ? panel.textContent : "",
-      tables: panel ? all("table", panel).map((table) => table.rows.length) : [], arc: String(branches.column(shown.id, "arc")[shown.orbit]), name: branches.branch(shown.id, shown.orbit).name };
+    figure.pick(slot, slot.chart.convertToPixel({xAxisIndex: 0, yAxisIndex: 0}, [column("parameter"), column("tip")]));
+    const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown() || {},
+          charts = panel ? ricochet.sidePanel.charts() : [];
+    const out = {
+      opened: Boolean(panel),
+      has: branches.portrayed(shown.id).has(shown.orbit),
+      charts: charts.map(seriesIn),
+      commands: panel ? all("pre", panel).map((pre) => pre.textContent) : [],
+      text: panel ? panel.textContent : "",
+      tables: panel ? all("table", panel).map((table) => table.rows.length) : [],
+      arc: String(branches.column(shown.id, "arc")[shown.orbit]),
+      name: branches.branch(shown.id, shown.orbit).name
+    };
     ricochet.sidePanel.close();
     return out;
   }
   // A click in an image of basins opens the cell that lies there.
   function checkCell(figure, slot) {
-    const { xs, ys } = ricochet.data.page.basins, column = xs.length >> 1, row = ys.length >> 2;
-    figure.pick(slot, slot.chart.convertToPixel({ xAxisIndex: 0, yAxisIndex: 0 }, [xs[column], ys[row]]));
+    const {xs, ys} = ricochet.data.page.basins, column = xs.length >> 1, row = ys.length >> 2;
+    figure.pick(slot, slot.chart.convertToPixel({xAxisIndex: 0, yAxisIndex: 0}, [xs[column], ys[row]]));
     const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown();
-    const out = { opened: Boolean(panel), cell: Boolean(shown) && shown.column === column && shown.row === row, command: panel ? panel.querySelector("pre").textContent : "", lines: panel ? all("p", panel).length : 0, wanted: xs[column] + "," + ys[row] };
+    const out = {
+      opened: Boolean(panel),
+      cell: Boolean(shown) && shown.column === column && shown.row === row,
+      command: panel ? panel.querySelector("pre").textContent : "",
+      lines: panel ? all("p", panel).length : 0,
+      wanted: xs[column] + "," + ys[row]
+    };
     ricochet.sidePanel.close();
     return out;
   }
   // A map has a cell for every case; a click on one of its rows draws the charts of that row.
   function checkMap(figure) {
-    const before = ricochet.figures.length, out = { rows: all(".map tbody tr", figure.section).length, cells: all("td[data-case]", figure.section).length, marks: all("td[data-case]", figure.section).filter((cell) => cell.textContent).length };
+    const before = ricochet.figures.length, out = {
+      rows: all(".map tbody tr", figure.section).length,
+      cells: all("td[data-case]", figure.section).length,
+      marks: all("td[data-case]", figure.section).filter((cell) => cell.textContent).length
+    };
     all("[data-row]", figure.section)[0].click();
     out.charts = ricochet.figures.slice(before).map((one) => one.description.charts.length);
     ricochet.figures.slice(before).forEach(ricochet.unmount);
@@ -157,10 +222,18 @@
   }
   // Another overlay makes the figure anew in its place, and back.
   function checkOverlay(figure) {
-    const place = () => ricochet.figures.find((one) => one.section.id === figure.section.id), pick = (k) => { const [choice] = all("[data-choice]", place().section); choice.selectedIndex = k; choice.dispatchEvent(new Event("change")); };
+    const place = () => ricochet.figures.find((one) => one.section.id === figure.section.id), pick = (k) => {
+      const [choice] = all("[data-choice]", place().section);
+      choice.selectedIndex = k;
+      choice.dispatchEvent(new Event("change"));
+    };
     const first = figure.description.charts.length;
     pick(1);
-    const next = place(), out = { charts: next.description.charts.length, names: next.description.legend.map((entry) => entry.name), anew: next !== figure && next.section.isConnected && !figure.section.isConnected };
+    const next = place(), out = {
+      charts: next.description.charts.length,
+      names: next.description.legend.map((entry) => entry.name),
+      anew: next !== figure && next.section.isConnected && !figure.section.isConnected
+    };
     pick(0);
     out.back = place().description.charts.length === first;
     return out;
@@ -170,28 +243,46 @@
     const [button] = all(".why");
     if (!button) return null;
     button.click();
-    const note = document.getElementById(button.getAttribute("aria-controls")), out = { label: button.getAttribute("aria-label"), text: note ? note.textContent : "" };
+    const note = document.getElementById(button.getAttribute("aria-controls")),
+          out = {label: button.getAttribute("aria-label"), text: note ? note.textContent : ""};
     button.click();
-    return Object.assign(out, { closed: !all(".meaning").length, count: all(".why").length });
+    return Object.assign(out, {closed: !all(".meaning").length, count: all(".why").length});
   }
   // A click on a drawn point, or on a curve, of a case opens that case.
   function checkDoor(figure, slot) {
     for (const series of slot.drawn.series) {
       if (series.datasetIndex === undefined || slot.drawn.legend.selected[series.name] === false) continue;
-      const { source, fromDatasetIndex } = slot.drawn.dataset[series.datasetIndex], rows = source || slot.drawn.dataset[fromDatasetIndex].source, columns = !Array.isArray(rows);
-      const cell = (name) => (i) => (columns ? rows[name][i] : rows[i][name]), x = cell(series.encode.x), y = cell(series.encode.y), count = columns ? rows[series.encode.x].length : rows.length;
-      const isDrawn = (i) => (columns ? series.case : rows[i].case) && Number.isFinite(y(i)) && (columns || !source || source === rows);
-      const at = Array.from({ length: count }, (_, i) => i).filter(isDrawn), i = at[at.length >> 1];
+      const {source, fromDatasetIndex} = slot.drawn.dataset[series.datasetIndex],
+                     rows = source || slot.drawn.dataset[fromDatasetIndex].source, columns = !Array.isArray(rows);
+      const cell = (name) => (i) => (columns ? rows[name][i] : rows[i][name]), x = cell(series.encode.x),
+            y = cell(series.encode.y), count = columns ? rows[series.encode.x].length : rows.length;
+      const isDrawn = (i) =>
+          (columns ? series.case : rows[i].case) && Number.isFinite(y(i)) && (columns || !source || source === rows);
+      const at = Array.from({length: count}, (_, i) => i).filter(isDrawn), i = at[at.length >> 1];
       if (i === undefined) continue;
-      const pixel = slot.chart.convertToPixel({ xAxisIndex: series.xAxisIndex || 0, yAxisIndex: series.yAxisIndex || 0 }, [x(i), y(i)]);
+      const pixel = slot.chart.convertToPixel(
+          {xAxisIndex: series.xAxisIndex || 0, yAxisIndex: series.yAxisIndex || 0}, [x(i), y(i)]);
       if (!pixel.every(Number.isFinite)) continue;
       figure.pick(slot, pixel);
-      const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown() || {}, text = panel ? panel.textContent : "";
+      const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown() || {},
+            text = panel ? panel.textContent : "";
       // Curves of other cases may pass through the same pixel.
-      const sourceOf = ({ source: own, fromDatasetIndex: from }) => own || sourceOf(slot.drawn.dataset[from]);
-      const there = slot.drawn.series.filter((one) => one.datasetIndex !== undefined).flatMap((one) => { const own = sourceOf(slot.drawn.dataset[one.datasetIndex]); return Array.isArray(own) ? own.map((row) => row.case) : [one.case]; });
-      const out = { opened: Boolean(panel), id: shown.id || "", one_of: there.includes(shown.id), says_id: text.includes("case " + shown.id), facts: panel ? all("dt", panel).length : 0,
-        plots: ricochet.sidePanel.charts().length, headings: panel ? all("h4", panel).map((h) => h.textContent) : [], commands: panel ? all("pre", panel).map((pre) => pre.textContent) : [], text };
+      const sourceOf = ({source: own, fromDatasetIndex: from}) => own || sourceOf(slot.drawn.dataset[from]);
+      const there = slot.drawn.series.filter((one) => one.datasetIndex !== undefined).flatMap((one) => {
+        const own = sourceOf(slot.drawn.dataset[one.datasetIndex]);
+        return Array.isArray(own) ? own.map((row) => row.case) : [one.case];
+      });
+      const out = {
+        opened: Boolean(panel),
+        id: shown.id || "",
+        one_of: there.includes(shown.id),
+        says_id: text.includes("case " + shown.id),
+        facts: panel ? all("dt", panel).length : 0,
+        plots: ricochet.sidePanel.charts().length,
+        headings: panel ? all("h4", panel).map((h) => h.textContent) : [],
+        commands: panel ? all("pre", panel).map((pre) => pre.textContent) : [],
+        text
+      };
       ricochet.sidePanel.close();
       return out;
     }
@@ -199,16 +290,21 @@
   }
   // A row of the table opens its case by Enter; › goes to the next; Escape closes and gives the focus back.
   function checkRowDoor() {
-    const table = document.getElementById("cases"), row = table && Array.from(table.tBodies[0].rows).find((one) => one.dataset.case);
+    const table = document.getElementById("cases"),
+          row = table && Array.from(table.tBodies[0].rows).find((one) => one.dataset.case);
     if (!row) return null;
-    const press = (target, key) => target.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
+    const press = (target, key) =>
+        target.dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true, cancelable: true}));
     row.focus();
     press(row, "Enter");
-    const { sidePanel } = ricochet, shown = sidePanel.shown(), out = { opened: Boolean(shown) && shown.id === row.dataset.case };
+    const {sidePanel} = ricochet, shown = sidePanel.shown(),
+          out = {opened: Boolean(shown) && shown.id === row.dataset.case};
     if (!out.opened) return out;
-    const next = sidePanel.panel().querySelector('[aria-label="next case"]'), index = ricochet.data.byId.get(row.dataset.case).index;
+    const next = sidePanel.panel().querySelector('[aria-label="next case"]'),
+          index = ricochet.data.byId.get(row.dataset.case).index;
     next.click();
-    out.next = index + 1 < ricochet.data.cases.length ? sidePanel.shown().id === ricochet.data.cases[index + 1].id : next.disabled;
+    out.next = index + 1 < ricochet.data.cases.length ? sidePanel.shown().id === ricochet.data.cases[index + 1].id :
+                                                        next.disabled;
     press(document.body, "Escape");
     out.closed = !sidePanel.panel();
     out.focus = document.activeElement === row;
@@ -216,19 +312,23 @@
   }
   // The film: what the slider's place shows is the state of that instant, the map has its marks, and playing goes on.
   async function checkFilm() {
-    const { film } = ricochet;
+    const {film} = ricochet;
     if (!film) return null;
     film.load();
     const slider = film.time, last = Number(slider.max), places = [0, last >> 2, last >> 1, last], states = [];
     for (const place of places) {
       slider.value = String(place);
       slider.dispatchEvent(new Event("input"));
-      const { films } = film.state(), { one } = film.films[0].shots, curve = ricochet.data.curve(one, "tip_displacement");
+      const {films} = film.state(), {one} = film.films[0].shots, curve = ricochet.data.curve(one, "tip_displacement");
       let sample = -1;
-      if (curve) curve.x.forEach((t, i) => { if (Math.abs(t - films[0].t) <= 1e-6 * curve.x[curve.x.length - 1]) sample = i; });
-      states.push({ place, ...films[0], curve: sample < 0 ? null : curve.y[sample], said: film.now.textContent });
+      if (curve)
+        curve.x.forEach((t, i) => {
+          if (Math.abs(t - films[0].t) <= 1e-6 * curve.x[curve.x.length - 1]) sample = i;
+        });
+      states.push({place, ...films[0], curve: sample < 0 ? null : curve.y[sample], said: film.now.textContent});
     }
-    const key = (name) => film.stage.dispatchEvent(new KeyboardEvent("keydown", { key: name, bubbles: true, cancelable: true }));
+    const key = (name) =>
+        film.stage.dispatchEvent(new KeyboardEvent("keydown", {key: name, bubbles: true, cancelable: true}));
     film.go(1);
     key("ArrowRight");
     const stepped = film.state().k;
@@ -239,40 +339,84 @@
     key(" ");
     const playing = film.state().playing;
     // Until it has moved, or has had time to.
-    await new Promise((done) => { const until = performance.now() + 5000; (function look() { film.state().k > back || performance.now() > until ? done() : requestAnimationFrame(look); })(); });
+    await new Promise((done) => {
+      const until = performance.now() + 5000;
+      (function
+           look() { film.state().k > back || performance.now() > until ? done() : requestAnimationFrame(look); })();
+    });
     const moved = film.state().k;
-    if (film.state().playing) key(" ");   // unless it came to its end
-    const hue = (canvas) => { const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data; let count = 0; for (let i = 0; i < data.length; i += 4) if (data[i + 3] && Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) > 24) ++count; return count; };
-    const maps = film.maps.map((map) => { const { one } = map.shots; return { id: one.id, marks: Number(map.canvas.dataset.marks), impacts: one.measures.impacts, coloured: hue(map.canvas) }; });
-    return { states, stepped, back, playing, moved, stopped: !film.state().playing, maps, stage: hue(film.stage), scale: film.scale.textContent, cases: film.cases.length };
+    if (film.state().playing) key(" ");  // unless it came to its end
+    const hue = (canvas) => {
+      const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+      let count = 0;
+      for (let i = 0; i < data.length; i += 4)
+        if (data[i + 3] &&
+            Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) > 24)
+          ++count;
+      return count;
+    };
+    const maps = film.maps.map((map) => {
+      const {one} = map.shots;
+      return {
+        id: one.id,
+        marks: Number(map.canvas.dataset.marks),
+        impacts: one.measures.impacts,
+        coloured: hue(map.canvas)
+      };
+    });
+    return {
+      states,
+      stepped,
+      back,
+      playing,
+      moved,
+      stopped: !film.state().playing,
+      maps,
+      stage: hue(film.stage),
+      scale: film.scale.textContent,
+      cases: film.cases.length
+    };
   }
   function checkFigure(figure, controls) {
-    const { description } = figure, views = Math.max(1, all("[data-view]", figure.section).length);
-    const out = { id: description.id, title: description.title, caption: figure.section.querySelector(".caption").textContent, views: description.views, linked_along: Boolean(description.linked),
-      legend: all(".legend button[aria-pressed=true]", figure.section).map((b) => b.dataset.name), entries: description.legend.map((entry) => pick(entry, ["name", "colour", "symbol", "heading"])),
-      charts: description.charts.map((chart) => Object.assign(pick(chart, ["title", "only"]), { views: [] })) };
+    const {description} = figure, views = Math.max(1, all("[data-view]", figure.section).length);
+    const out = {
+      id: description.id,
+      title: description.title,
+      caption: figure.section.querySelector(".caption").textContent,
+      views: description.views,
+      linked_along: Boolean(description.linked),
+      legend: all(".legend button[aria-pressed=true]", figure.section).map((b) => b.dataset.name),
+      entries: description.legend.map((entry) => pick(entry, ["name", "colour", "symbol", "heading"])),
+      charts: description.charts.map((chart) => Object.assign(pick(chart, ["title", "only"]), {views: []}))
+    };
     const links = all("nav a").map((a) => a.getAttribute("href"));
     out.anchored = links.includes("#" + figure.section.id);
     if (description.map) out.map = checkMap(figure);
     for (let view = 0; view < views; ++view) {
-      if (figure.view !== view) figure.show(view);   // what stands beside the answer may begin with another
+      if (figure.view !== view) figure.show(view);  // what stands beside the answer may begin with another
       figure.drawAll();
-      for (const slot of figure.slots) if (figure.visible(slot)) out.charts[slot.index].views.push(Object.assign(readBack(figure, slot), { notes: notesIn(figure, slot.index) }));
+      for (const slot of figure.slots)
+        if (figure.visible(slot))
+          out.charts[slot.index].views.push(
+              Object.assign(readBack(figure, slot), {notes: notesIn(figure, slot.index)}));
     }
-    description.charts.forEach((chart, index) => { if (!chart.views.length) out.charts[index].notes = notesIn(figure, index); });
+    description.charts.forEach((chart, index) => {
+      if (!chart.views.length) out.charts[index].notes = notesIn(figure, index);
+    });
     if (views > 1) figure.show(0);
     if (!controls) return out;
     const seen = figure.slots.filter((slot) => figure.visible(slot) && slot.chart), first = seen[0];
     checkLegend(figure, first, out);
     // A chart whose curves all ended early has a shorter axis of its own.
     const end = (slot) => slot.chart.getOption().xAxis[0].max;
-    if (description.linked && first) checkZoom(figure, first, seen.filter((slot) => end(slot) === end(first)).pop(), out);
+    if (description.linked && first)
+      checkZoom(figure, first, seen.filter((slot) => end(slot) === end(first)).pop(), out);
     if (!first) return out;
     out.svg = ricochet.picture(figure, first, "svg").size;
     out.png = ricochet.picture(figure, first, "png").size;
     const sample = first.chart.getModel().getSeries().find((series) => series.getData().count());
-    out.tooltip = sample ? figure.option(first).tooltip.formatter([{ ...sample.getDataParams(0), marker: "" }]) : "";
-    const apart = figure.viewOf(first).pick;   // has a panel of its own
+    out.tooltip = sample ? figure.option(first).tooltip.formatter([{...sample.getDataParams(0), marker: ""}]) : "";
+    const apart = figure.viewOf(first).pick;  // has a panel of its own
     out.door = apart ? null : seen.map((slot) => checkDoor(figure, slot)).find(Boolean) || null;
     if (description.id === "diagram") out.panel = checkPanel(figure, first, figure.viewOf(first));
     if (description.id === "branches") out.branch = checkBranch(figure, first);
@@ -283,8 +427,12 @@
   function checkTable() {
     const table = document.getElementById("cases");
     if (!table) return null;
-    const body = table.tBodies[0], order = () => Array.from(body.rows, (r) => r.cells[0].textContent).join(), visible = () => Array.from(body.rows).filter((r) => !r.hidden).length;
-    const words = document.getElementById("filter"), say = (text) => { words.value = text; words.dispatchEvent(new Event("input")); };
+    const body = table.tBodies[0], order = () => Array.from(body.rows, (r) => r.cells[0].textContent).join(),
+          visible = () => Array.from(body.rows).filter((r) => !r.hidden).length;
+    const words = document.getElementById("filter"), say = (text) => {
+      words.value = text;
+      words.dispatchEvent(new Event("input"));
+    };
     let sorts = body.rows.length < 2;
     for (const header of all("thead button", table)) {
       header.click();
@@ -295,22 +443,39 @@
     say("no row says this");
     const filtered = visible();
     say("");
-    return { rows: body.rows.length, sorts, filtered, restored: visible() };
+    return {rows: body.rows.length, sorts, filtered, restored: visible()};
   }
   // Numbers written as the page writes them, for comparison with the program's own.
   function checkWords(given) {
-    const { text, exact } = ricochet.format, { roundOutwards, wholeDecades, Interval } = ricochet;
-    return given.map(([low, high]) => ({ text: text(low), exact: exact(low), round: pick(roundOutwards(new Interval(low, high), 0), ["low", "high"]), decades: low > 0 ? pick(wholeDecades(new Interval(low, high)), ["low", "high"]) : null }));
+    const {text, exact} = ricochet.format, {roundOutwards, wholeDecades, Interval} = ricochet;
+    return given.map(([low, high]) => ({
+                       text: text(low),
+                       exact: exact(low),
+                       round: pick(roundOutwards(new Interval(low, high), 0), ["low", "high"]),
+                       decades: low > 0 ? pick(wholeDecades(new Interval(low, high)), ["low", "high"]) : null
+                     }));
   }
 
   window.probed = new Promise((done) => window.addEventListener("load", async () => {
-    const asked = JSON.parse(document.documentElement.dataset.asked), size = () => ({ height: document.documentElement.scrollHeight, nodes: all("*").length });
+    const asked = JSON.parse(document.documentElement.dataset.asked),
+          size = () => ({height: document.documentElement.scrollHeight, nodes: all("*").length});
     let out = null;
     try {
       const opened = size();
       ricochet.later.fillAll();
-      out = { opened, ...size(), explained: checkExplained(), answer: all("#answer-figure .figure").map((section) => section.dataset.figure), figures: ricochet.figures.slice().map((figure) => checkFigure(figure, asked.controls)), row: asked.controls ? checkRowDoor() : null, film: await checkFilm(), table: checkTable(), words: checkWords(asked.numbers || []), canvases: all("canvas").length };
+      out = {
+        opened,
+        ...size(),
+        explained: checkExplained(),
+        answer: all("#answer-figure .figure").map((section) => section.dataset.figure),
+        figures: ricochet.figures.slice().map((figure) => checkFigure(figure, asked.controls)),
+        row: asked.controls ? checkRowDoor() : null,
+        film: await checkFilm(),
+        table: checkTable(),
+        words: checkWords(asked.numbers || []),
+        canvases: all("canvas").length
+      };
     } catch (e) { errors.push(String((e && e.stack) || e)); }
-    done(Object.assign({ errors }, out));
+    done(Object.assign({errors}, out));
   }));
 })();
