@@ -17,9 +17,9 @@
 #include <vector>
 
 /// \file
-/// The ABI tag of a plugin: the *name* of a symbol, so that a host reads it from the file's symbol table before any
-/// code of the library runs. Fields, in order: contract version, Eigen version, Eigen's alignment limits, libstdc++
-/// string ABI. The sizes of types stand beside it (RICOCHET_LAYOUTS).
+/// The ABI tag of a plugin. It is the *name* of a symbol: a host reads it from the file's symbol table before any code
+/// of the library runs. Fields, in order: contract version, Eigen version, Eigen's alignment limits, libstdc++ string
+/// ABI. The sizes of types stand beside it (RICOCHET_LAYOUTS).
 #ifndef RICOCHET_ABI_CONTRACT
 #define RICOCHET_ABI_CONTRACT 7
 #endif
@@ -31,8 +31,8 @@
   RICOCHET_ABI_JOIN(RICOCHET_ABI_CONTRACT, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MAX_ALIGN_BYTES, \
                     EIGEN_MAX_STATIC_ALIGN_BYTES, _GLIBCXX_USE_CXX11_ABI)
 
-/// The sizes of the types that cross between program and plugin. A plugin exports for each one an array of chars as
-/// large as the type: its size stands in the symbol table, so a host compares it before any code of the library runs.
+/// The sizes of the types that cross between program and plugin. A plugin exports for each type an array of chars as
+/// large as the type. The size stands in the symbol table, so a host compares it before any code of the library runs.
 /// One more field, or a debugging standard library, is then told instead of met as garbage.
 
 /// X(name of the symbol, type), those of the standard library first: a type that holds them differs as well.
@@ -87,8 +87,9 @@ using Map = std::map<std::string, double>;
 /// "Stage" → 296 bytes.
 using Layout = std::map<std::string, std::uint64_t>;
 
-/// Compares a plugin's sizes with the program's; returns "layout: Stage: expected 296 bytes, found 304" for the first
-/// that differs or is missing, in the order of RICOCHET_LAYOUTS, or nothing.
+/// Compares a plugin's sizes with the program's, in the order of RICOCHET_LAYOUTS. Returns "layout: Stage: expected 296
+/// bytes, found 304" for the first that differs or is missing. Types that the program does not know come last. Nothing
+/// where all agree.
 std::optional<std::string> layout_mismatch(const Layout& plugin);
 
 }  // namespace ricochet

@@ -28,8 +28,8 @@ struct ContactStructure {
   SparseMatrix stiffness;               ///< in: K; out: K', symmetric positive (semi)definite, n × n, both triangles
 };
 
-/// Columns of the Delassus operator W = H S⁻¹ Hᵀ (m × m, SPD or semidefinite, m/N), computed when first asked for: the
-/// first time a column costs one solve with S, then it is a lookup.
+/// Columns of the Delassus operator W = H S⁻¹ Hᵀ (m × m, SPD or semidefinite, m/N), computed when first asked for. The
+/// first time a column costs one solve with S. Later it is a lookup.
 class DelassusColumns {
  public:
   virtual ~DelassusColumns() = default;
@@ -103,8 +103,8 @@ struct ReducedProblem {
   }
 };
 
-/// Slopes of a compliant law at one point: δp = −stiffness δg − viscosity δu − before δg⁻, on the side that is in
-/// contact, in the frame of (5). All ≥ 0 for a law that does not soften.
+/// Slopes of a compliant law at one point: δp = −stiffness δg − viscosity δu − before δg⁻. They are those of the side
+/// that is in contact, in the frame of (5). All ≥ 0 for a law that does not soften.
 struct ContactSlopes {
   double stiffness = 0;  ///< N/m
   double viscosity = 0;  ///< N s/m
@@ -157,8 +157,8 @@ class ContactLaw {
 
   // A `set` below is the number of a parameter set: the lane, or after prepare_points() that of the point in its lane.
 
-  /// Distance before the stop at which the law begins to act (m ≥ 0): the bounds that solve() sees are shifted by it;
-  /// depth and penetration stay measured at the stop.
+  /// Distance before the stop at which the law begins to act (m ≥ 0). The bounds that solve() sees are shifted by it.
+  /// Depth and penetration stay measured at the stop.
   virtual double layer(int /*set*/) const { return 0; }
   /// Finds p for each touched lane. No allocation here.
   virtual void solve(ReducedProblem& problem) = 0;
@@ -167,16 +167,17 @@ class ContactLaw {
 
   // What analyses ask: flights, exponents, spectra, references, `plan` and `describe`.
 
-  /// Of a compliant law that is linear as long as a point pushes: its slopes then, the same at every depth δ > 0 beyond
-  /// the stop (and depth before δ⁻ > 0, where that has a slope), with p = stiffness δ + viscosity δ̇ + before δ⁻ and the
-  /// dissipation viscosity δ̇². None: not linear, or not told.
+  /// The slopes of a compliant law that is linear as long as a point pushes; none: not linear, or not told. They are
+  /// the same at every depth δ > 0 beyond the stop (and depth before δ⁻ > 0, where that has a slope). The force is p =
+  /// stiffness δ + viscosity δ̇ + before δ⁻, the dissipation viscosity δ̇².
   virtual std::optional<ContactSlopes> linear_slopes(int /*set*/) const { return std::nullopt; }
   /// Whether slopes() are known: tangents use them; without, exponents of a compliant law are those of twins.
   virtual bool offers_slopes() const { return false; }
   /// Slopes at the last solve of a point in contact.
   virtual ContactSlopes slopes(int /*point*/, int /*lane*/) const { return {}; }
   /// Of a law that reads the measure before the step: whether its force at rest is the discrete gradient of its
-  /// potential, p (δ − δ⁻) = U(δ) − U(δ⁻), whatever the step; a damper's force comes on top, and is dissipation.
+  /// potential. That is p (δ − δ⁻) = U(δ) − U(δ⁻), whatever the step. A damper's force comes on top, and is
+  /// dissipation.
   virtual bool conserves_energy() const { return false; }
   /// Whether a problem of that many points is solved in closed form: then no search is needed, and `plan` says so.
   virtual bool closed_form(int /*points*/) const { return false; }

@@ -6,7 +6,7 @@ namespace ricochet {
 
 std::array<double, 4> shape_values(FiniteElementSpace::Basis basis, double length, double xi) {
   if (basis == FiniteElementSpace::Basis::linear) return {1 - xi, xi, 0, 0};
-  // Factored so that the values at ξ = 0 and ξ = 1 are exactly 0 or 1: a stop on a node then gives the nodal row.
+  // So factored, the values at ξ = 0 and ξ = 1 are exactly 0 or 1. A stop on a node then gives the nodal row.
   const double eta = 1 - xi;
   return {eta * eta * (1 + 2 * xi), length * xi * eta * eta, xi * xi * (3 - 2 * xi), -length * xi * xi * eta};
 }

@@ -11,8 +11,8 @@ namespace ricochet {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// The mass of a structure that is given by its matrices, or marched in its modes, and has no elements, and what else
-/// is known of its dofs.
+/// The mass of a structure without elements, given by its matrices or marched in its modes. What else is known of its
+/// dofs stands beside it.
 struct GivenMass {
   SparseMatrix mass;            ///< M, n × n, both triangles, positive semidefinite
   SparseMatrix stiffness = {};  ///< K, n × n: dofs that share an entry are neighbours
@@ -29,10 +29,15 @@ struct GivenMass {
 /// The displacement space, as mass strategies need it: elements with local shape functions, and point masses.
 ///
 /// Basis on an element [a, a+ℓ], ξ = (x−a)/ℓ in [0,1]:
-///   hermite  (4 functions, dofs w_a, w'_a, w_b, w'_b): 1−3ξ²+2ξ³, ℓ(ξ−2ξ²+ξ³), 3ξ²−2ξ³, ℓ(ξ³−ξ²)
-///   linear   (2 functions): 1−ξ, ξ
-/// With shear deformation, φ = 12EI/(kGAℓ²) > 0, the dofs are (w, θ) and the functions those of a beam loaded at its
-/// ends: w: (1+φ)⁻¹ [1−3ξ²+2ξ³+φ(1−ξ), ℓ(ξ−2ξ²+ξ³+φ(ξ−ξ²)/2), 3ξ²−2ξ³+φξ, ℓ(ξ³−ξ²−φ(ξ−ξ²)/2)].
+///
+///     hermite  (4 functions, dofs w_a, w'_a, w_b, w'_b): 1−3ξ²+2ξ³, ℓ(ξ−2ξ²+ξ³), 3ξ²−2ξ³, ℓ(ξ³−ξ²)
+///     linear   (2 functions): 1−ξ, ξ
+///
+/// With shear deformation, φ = 12EI/(kGAℓ²) > 0, the dofs are (w, θ). The functions are those of a beam loaded at its
+/// ends:
+///
+///     w: (1+φ)⁻¹ [1−3ξ²+2ξ³+φ(1−ξ), ℓ(ξ−2ξ²+ξ³+φ(ξ−ξ²)/2), 3ξ²−2ξ³+φξ, ℓ(ξ³−ξ²−φ(ξ−ξ²)/2)]
+///
 /// Dofs eliminated by a support, at an end or between, are −1. Lengths in m, line density ρS in kg/m; elements need not
 /// be equal.
 struct FiniteElementSpace {
@@ -54,9 +59,9 @@ struct FiniteElementSpace {
   std::vector<Element> elements;  ///< ordered in x
   std::vector<PointMass> point_masses;
   bool left_fixed = false, right_fixed = false;  ///< displacement imposed at the ends: velocities vanish there too
-  /// Where a stop may push: the dofs of the columns of H that are not zero, in order, each once (of a contact point on
-  /// a node, its displacement; of one inside an element, all dofs of that element). Empty where no stop stands. For
-  /// strategies that leave such dofs without inertia; whether a contact law acts there is not known here.
+  /// Where a stop may push: the dofs whose columns of H are not zero, in order, each once. A contact point on a node
+  /// gives its displacement, one inside an element all dofs of that element. Empty where no stop stands. For strategies
+  /// that leave such dofs without inertia; whether a contact law acts there is not known here.
   std::vector<int> contact_dofs;
   std::optional<GivenMass> given;  ///< of matrices that are given: then there are no elements
   /// Of a beam in two planes, the same elements as they bend across (along z), with dofs of their own. A mass strategy
@@ -86,12 +91,14 @@ struct GaussPoint {
 const std::array<GaussPoint, 4>& gauss_points();
 
 /// The mass matrix, symmetric positive semidefinite, in one of three forms; the matrices of the others stay empty
-/// (0×0).
-///   assembled:  M as a sparse n × n matrix (both triangles stored)
-///   factored:   M = Bᵀ C_v⁻¹ B with B (N_v × n), B_ij = ∫ρS ψ_i φ_j, C_v (N_v × N_v, SPD) = ∫ρS ψψ, when C_v⁻¹ is full
-///               and M must never be formed on the marching path
-///   inverse:    M⁻¹ as a sparse n × n matrix, SPD (both triangles stored), when M is full: an explicit stage is then a
-///               product with it
+/// (0×0):
+///
+///     assembled:  M as a sparse n × n matrix (both triangles stored)
+///     factored:   M = Bᵀ C_v⁻¹ B with B (N_v × n), B_ij = ∫ρS ψ_i φ_j, C_v (N_v × N_v, SPD) = ∫ρS ψψ
+///     inverse:    M⁻¹ as a sparse n × n matrix, SPD (both triangles stored)
+///
+/// Factored serves where C_v⁻¹ is full and M must never be formed on the marching path. Inverse serves where M is full:
+/// an explicit stage is then a product with it.
 struct Inertia {
   SparseMatrix mass;           ///< M
   SparseMatrix coupling;       ///< B
@@ -126,13 +133,13 @@ class MassStrategy {
 /// given, M itself.
 SparseMatrix consistent_mass(const FiniteElementSpace& space);
 
-/// Rank of a symmetric positive semidefinite A (n × n), rows and columns scaled by D = diag(A)^{-1/2} first so that no
-/// unit matters: how many eigenvalues of D A D are above 1e-11. By Sylvester's law of inertia these are the positive
-/// pivots of D A D − 1e-11 I = L Δ Lᵀ, at the cost of one sparse factorisation in the order given.
+/// Rank of a symmetric positive semidefinite A (n × n): how many eigenvalues of D A D are above 1e-11. The scales D =
+/// diag(A)^{-1/2} make units count for nothing. By Sylvester's law of inertia the rank is the number of positive pivots
+/// of D A D − 1e-11 I = L Δ Lᵀ. It costs one sparse factorisation in the order given.
 int semidefinite_rank(const SparseMatrix& A);
 
-/// Rank of B (any shape): that of B̂ B̂ᵀ, its columns scaled to length 1; singular values below 3e-6 of the largest row
-/// count as zero.
+/// Rank of B (any shape): that of B̂ B̂ᵀ, where B̂ has the columns of B scaled to length 1. Singular values below 3e-6
+/// count as zero, with the rows of B̂ scaled to length 1 as well.
 int row_rank(const SparseMatrix& B);
 
 }  // namespace ricochet

@@ -11,8 +11,8 @@ namespace {
 
 using namespace free_motion;
 
-// Marches a mass until its velocity stays, under one effort of 1 N found by stage `source` of the first step; by one of
-// the start rule where it is negative.
+// Marches a mass, under one effort of 1 N, until its velocity stays. The effort is found by stage `source` of the first
+// step; a negative `source` is a stage of the start rule.
 double settled_momentum(const StepPlan& plan, UnitMass mass, const StageEfforts& efforts, std::ptrdiff_t source) {
   constexpr int most_steps = 4096;
   const auto stages = static_cast<std::ptrdiff_t>(plan.stages.size());

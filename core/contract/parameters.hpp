@@ -23,7 +23,7 @@ struct Range {
 };
 
 /// What a parameter is to whoever does not know its plugin. A reference needs the restitution of a scheme and the
-/// stiffness of a law, and a stop may have its own; they are found by role, never by key. Of a law, `stiffness` is in
+/// stiffness of a law, and a stop may have its own. They are found by role, never by key. Of a law, `stiffness` is in
 /// N/m and `damping` in N s/m.
 enum class ParameterRole { none, restitution, stiffness, damping };
 

@@ -9,10 +9,10 @@
 ///     static void register_all(ricochet::Registry& registry) { registry.add_time({...}, ...); }
 ///     RICOCHET_PLUGIN(time, central_difference, register_all)
 ///
-/// The macro leaves three things in the library's symbol table, readable without running any of its code: the ABI tag
-/// the sizes of the contract's types (both abi.hpp), and the role and name provided ('-' written '_'),
-/// so that a host opens only libraries that a study names. A library that provides several methods adds
-/// RICOCHET_PROVIDES(role, name) for each further one.
+/// The macro leaves three things in the library's symbol table, readable without running any of its code. They are the
+/// ABI tag, the sizes of the contract's types (both abi.hpp), and the role and name provided ('-' written '_'). So a
+/// host opens only libraries that a study names. A library that provides several methods adds RICOCHET_PROVIDES(role,
+/// name) for each further one.
 ///
 /// Where RICOCHET_SHARES_LIBRARY is defined, the macro leaves the name and a function register_ROLE_NAME(). One file of
 /// such a library calls these functions and ends with RICOCHET_LIBRARY.

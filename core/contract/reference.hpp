@@ -9,7 +9,7 @@
 
 /// \file
 /// A reference: the motion itself, found by another road than time stepping, with an estimate of how well it is known.
-/// Everything that a study compares is a SampledMotion: what a scheme marched and what a reference knows are read at
+/// Everything that a study compares is a SampledMotion. What a scheme marched and what a reference knows are read at
 /// the same times and places, and only then subtracted.
 namespace ricochet {
 
@@ -21,8 +21,8 @@ struct SampleGrid {
 };
 
 /// The beginning or the end of contact on one side: a phase during which at least one point of that stop is touched.
-/// Contact that is there at t = 0 does not begin, and has an end alone: of points that lie beyond their stop at the
-/// start, or on it without moving into it.
+/// Contact that is there at t = 0 has an end, but no beginning. Its points lie beyond their stop at the start, or on it
+/// without moving into it.
 struct ContactEvent {
   double time = 0;      ///< s
   int side = -1;        ///< −1 lower stop, +1 upper stop
@@ -86,7 +86,7 @@ struct ReferenceProblem {
 /// What a reference found.
 struct ReferenceMotion {
   SampledMotion motion;
-  /// The same motion at a coarser setting of the reference itself (half the modes, a looser tolerance): the gap of the
+  /// The same motion at a coarser setting of the reference itself (half the modes, a looser tolerance). The gap of the
   /// two is how well it is known. Empty vectors where the reference is a closed form.
   SampledMotion coarser;
   std::string how;                 ///< one sentence: what was computed, with which settings
@@ -95,8 +95,8 @@ struct ReferenceMotion {
 
 using ReferenceOrRefusal = std::variant<ReferenceMotion, Refusal>;
 
-/// The motion as a map: from a state x at t = 0 to that at a later time. x is relative to the support, so that x → −x
-/// goes with the opposite support. Not to be shared between threads.
+/// The motion as a map: from a state x at t = 0 to that at a later time. State x is relative to the support, so that x
+/// → −x goes with the opposite support. Not to be shared between threads.
 class ReferenceMap {
  public:
   struct Image {

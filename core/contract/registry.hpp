@@ -18,11 +18,12 @@ namespace ricochet {
 template <class Interface>
 using Maker = std::function<std::unique_ptr<Interface>(const Parameters&)>;
 
-/// The same factory, whose objects answer for what they do: every function runs inside a PluginCallScope; whatever it
-/// throws (but an InputError or a PluginError, which already say what to do) arrives as a PluginFault that names
-/// plugin, file and function; and so does an answer that the contract forbids: no object, an ill-formed plan, a refusal
-/// without a sentence, a mass that is none (check_inertia), a motion that does not fit its grid. The registry puts
-/// every factory through this, so that nobody holds an unguarded object.
+/// The same factory, whose objects answer for what they do. Every function runs inside a PluginCallScope. An InputError
+/// or a PluginError passes: it says already what to do. Any other exception arrives as a PluginFault that names plugin,
+/// file and function.
+/// So does an answer that the contract forbids: no object, an ill-formed plan, a refusal without a sentence, numbers or
+/// sizes that cannot be. Other such answers are a mass that check_inertia() finds wrong and a motion that does not fit
+/// its grid. The registry puts every factory through this, so that nobody holds an unguarded object.
 Maker<MassStrategy> guarded(PluginIdentity plugin, Maker<MassStrategy> make);
 Maker<ContactLaw> guarded(PluginIdentity plugin, Maker<ContactLaw> make, std::vector<ParameterSpec> declared = {});
 Maker<TimeScheme> guarded(PluginIdentity plugin, Maker<TimeScheme> make);

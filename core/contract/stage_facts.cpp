@@ -53,8 +53,8 @@ class Accelerated {
   std::array<double, 2> speeds_{};
 };
 
-// Where in time the momentum of a plan stands after a step, in steps: found under the force F = t from its increase
-// over a step, to which no start rule and no first-order error of the positions contributes.
+// Where in time the momentum of a plan stands after a step, in steps. It is found under the force F = t, from the
+// increase of the velocity. No start rule and no first-order error of the positions contributes to that.
 double momentum_place(const StepPlan& plan, double h, double last_step) {
   UnitMass mass(plan, 0, 0);
   std::array<double, 3> speeds{};
@@ -83,8 +83,8 @@ void add_level(Levels& levels, double at, double weight) {
   levels.push_back({at, weight});
 }
 
-// The share that moves with the new position stands where that stands; what is left, at the place where it is found on
-// a motion at constant speed.
+// The share of c that moves with the new position stands where that stands. The rest stands where it is found on a
+// motion at constant speed.
 Levels levels_of(const Uniform& motion, const Stage& stage, const StageFacts& facts, const Combination& c) {
   const Combination& position = stage.update[0];
   double share = position.z != 0 ? c.z / position.z : position.w != 0 ? c.w / position.w : 0.0;

@@ -4,8 +4,8 @@
 #include <vector>
 
 /// \file
-/// What follows from the numbers of a plan and need not be declared, found by marching a free unit mass: when each
-/// stage stands, what it moves the position by, at which levels its stops are, what momentum its effort gives.
+/// What follows from the numbers of a plan and need not be declared. It is found by marching a free unit mass. Of each
+/// stage: when it stands, what it moves the position by, its levels of stops, the momentum that its effort gives.
 namespace ricochet {
 
 /// One stage. Times are in steps, from the time when the step begins.
@@ -19,15 +19,15 @@ struct StageFacts {
 /// A plan with what was left to be derived filled in, and the facts of its stages.
 struct DerivedPlan {
   StepPlan plan;  ///< levels of stops complete
-  /// The step that the plan was made for, s: what a free mass at 1 m/s moves by. 0 where some S has no M: then nothing
-  /// is derived, each stage stands at the end of the step, and so does what was left out.
+  /// The step that the plan was made for, s: what a free mass at 1 m/s moves by. 0 where an S that solves something, or
+  /// an R, has no M. Nothing is derived then: each stage stands at the end of the step, and so does what was left out.
   double h = 0;
   std::vector<StageFacts> start, stages;
-  /// Where plan.velocity stands after a step, in steps: 0 at its end, −½ where it is a mean over the step (of half the
-  /// last sub-step where there are several).
+  /// Where plan.velocity stands after a step, in steps. 0: at its end. −½: it is a mean over the step. Of several
+  /// sub-steps it is a mean over the last one: minus half of its length.
   double velocity_offset = 0;
-  /// Of a plan whose step is one stage, and its start one at the most: the slot that holds what the position moved by
-  /// in the last of them; −1: none does.
+  /// The slot that holds what the position moved by in the latest stage; −1: none does. Looked for only where the step
+  /// has one stage, and its start one at the most.
   int increment_slot = -1;
 };
 
@@ -37,12 +37,12 @@ double step_of(const StepPlan& plan);
 /// Fills in what a well-formed plan leaves out.
 DerivedPlan derive(StepPlan plan);
 
-/// What is wrong with the motion of a free unit mass at rest or at constant speed, or with levels, velocity and test
-/// displacements measured on it; "" when nothing is. For check_plan(), which has looked at sizes before.
+/// What is wrong with the motion of a free unit mass at rest or at constant speed; "" when nothing is. Wrong as well:
+/// levels, velocity or test displacements measured on it. For check_plan(), which has looked at sizes before.
 std::string inconsistent_motion(const StepPlan& plan);
 
-/// Weights of efforts in the equations of one stage: π₀, π₁, … in that of z, none where the stage reads no contact, and
-/// ι in that of w.
+/// Weights of efforts in the equations of one stage. `weights`: π₀, π₁, … in that of z, none where the stage reads no
+/// contact. `impulse`: ι in that of w.
 struct StageEffort {
   std::vector<double> weights;
   double impulse = 0;  ///< 0 where the stage has no impulse
@@ -51,9 +51,9 @@ struct StageEffort {
 using StageEfforts = std::vector<StageEffort>;
 StageEfforts stage_efforts(const std::vector<Stage>& stages, const std::optional<Evaluation>& evaluation);
 
-/// The momentum (N s per N, hence seconds) that one effort of 1 N, found once by each stage, finally gives to a free
-/// mass: h in a plan of one stage, (h/3, 2h/3) in Bathe's two, 0 for a stage that only projects. Not finite where the
-/// velocity never settles.
+/// The momentum (N s per N, hence seconds) that one effort of 1 N finally gives to a free mass. Each stage finds that
+/// effort once, for a number of its own. A plan of one stage has h, Bathe's two have (h/3, 2h/3), a stage that only
+/// projects has 0. Not finite where the velocity never settles.
 std::vector<double> momentum_weights(const StepPlan& plan, const StageEfforts& efforts);
 /// The same of an effort that a stage of the start rule finds; `start`: the weights of its stages.
 double start_momentum(const StepPlan& plan, std::size_t stage, const StageEfforts& start, const StageEfforts& efforts);

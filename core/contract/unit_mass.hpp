@@ -12,7 +12,8 @@ struct UnitMass {
 
   /// From displacement and velocity, before the start rule.
   UnitMass(const StepPlan& plan, double displacement, double velocity);
-  /// The unknown of a stage under a constant force and a weighted effort Σ π_k p₋ₖ (N), fed with w; 0 where S has no M.
+  /// The unknown of a stage under a constant force and a weighted effort Σ π_k p₋ₖ (N), fed with w. It is 0 where S has
+  /// no M.
   double unknown(const Stage& stage, double force, double effort, double w = 0) const;
   /// w of a stage under the effort ι p (N); 0 where it has no impulse, or R no M.
   static double jump(const Stage& stage, double effort);
