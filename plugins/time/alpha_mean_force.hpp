@@ -5,8 +5,8 @@
 /// α-methods whose contact is left out of the acceleration: velocities jump, p is the mean force of the step.
 namespace ricochet {
 
-/// Newmark's step at β = γ/2 in the unknown z = q_{n+1} − q*, q* = q + h v + (½−β)h² a and k = (1−γ)h, before that of
-/// the acceleration a of the structure alone (structure_acceleration):
+/// Newmark's step at β = γ/2 in the unknown z = q_{n+1} − q*, with q* = q + h v + (½−β)h² a and k = (1−γ)h. The
+/// acceleration a of the structure alone comes after it (structure_acceleration):
 ///
 ///     (2/h² M + 2γ/h C + γK) z = γ(F(t+h) − C(v + k a) − K q*) + Hᵀp,   y = H q_{n+1}
 ///     q ← q* + z,   v ← v + k a + (2/h) z

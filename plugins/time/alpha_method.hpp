@@ -82,8 +82,8 @@ struct AlphaMethod {
     return {q + now() * h * v, at(now()), v, at(0), {1}, std::nullopt, {}, impulse};
   }
 
-  /// The same with velocities that jump by w and positions by (h/2)w, R w = Hᵀp; q_{n+1} and v_{n+1} in the equation of
-  /// z are those after the jump. A spring is one of the forces: no w.
+  /// The same with velocities that jump by w and positions by (h/2)w, R w = Hᵀp. In the equation of z, q_{n+1} and
+  /// v_{n+1} are those after the jump. A spring is one of the forces: no w.
   Stage jumping_step(double h, const OperatorWeights& R) const {
     using namespace plan_algebra;
     Stage stage = step(h);
@@ -119,13 +119,14 @@ struct AlphaMethod {
     for (Stage& stage : plan.stages) stage.update.push_back(&stage == &plan.stages[0] ? update : kept);
   }
 
-  /// With ε = α_f − α_m > 0, γ = ½ + ε, β = ¼(1+ε)² and σ ← (ε Δq − α_m σ)/(1−α_m) in a slot of its own, a in the last
-  /// one before it, Δq of the first stage:
+  /// With ε = α_f − α_m > 0, γ = ½ + ε, β = ¼(1+ε)². A new slot holds σ ← (ε Δq − α_m σ)/(1−α_m), the last slot before
+  /// it holds a. Increment Δq is that of the first stage. The energy
   ///
   ///     E = ½|v|²_M + ½|q|²_K + ⅛ε²h²|a|²_M + ((½−α_f)/2ε)|σ|²_K
   ///     −ΔE = ¼ε³h²|Δa|²_M + ((½−α_f)(½−α_m)/ε)|Δσ|²_K
   ///
-  /// of the undamped free structure never grows: what is added to plan.energy here. The first line alone where ε = 0.
+  /// of the undamped free structure never grows. What it has beside ½|v|²_M + ½|q|²_K is added to plan.energy here;
+  /// where ε = 0 nothing is.
   void add_filtered_energy(StepPlan& plan, double h) const {
     const double shift = force - mass;
     if (shift == 0) return;

@@ -5,11 +5,10 @@ namespace {
 using namespace ricochet;
 using namespace plan_algebra;
 
-/// Chung and Hulbert's scheme, the α-method with both weights: α_m = (2ρ−1)/(ρ+1), α_f = ρ/(ρ+1), γ = ½ − α_m + α_f,
-/// β = ¼(1 − α_m + α_f)². At ρ = 1 both weights are ½: the trapezium on accelerations, whose energy is ½|v|²_M +
-/// ½|q|²_K and whose test displacement is q_{n+1} − q_n; contact then gives p(bound − H q_n) ≤ 0. Below ρ = 1 the
-/// energy has the filtered increment σ (alpha_method.hpp), and the scheme answers a load with its past as well: no
-/// balance is known.
+/// Chung and Hulbert's scheme, the α-method with both its weights: α_m = (2ρ−1)/(ρ+1), α_f = ρ/(ρ+1), γ = ½ − α_m +
+/// α_f, β = ¼(1 − α_m + α_f)². At ρ = 1 both weights are ½: the trapezium on accelerations. Its energy is ½|v|²_M +
+/// ½|q|²_K, its test displacement q_{n+1} − q_n, and contact gives p(bound − H q_n) ≤ 0. Below ρ = 1 the energy has the
+/// filtered increment σ (alpha_method.hpp). No balance is known there: the scheme answers a load with its past as well.
 PlanOrRefusal generalised_alpha(const Parameters& p, double h, const ProblemFacts& facts) {
   AlphaMethod method = AlphaMethod::chung_hulbert(p.real("rho_inf"));
   method.weighted_contact = p.word("contact") == "weighted";

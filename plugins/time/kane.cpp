@@ -7,18 +7,18 @@ namespace {
 using namespace ricochet;
 using namespace plan_algebra;
 
-/// Kane, Repetto, Ortiz and Marsden's Newmark, contact implicit whatever β and γ: velocities jump by w, positions by
-/// (h/2)w, p is the mean force of the step, z = a_{n+1} the acceleration of the structure alone. With k = (1−γ)h and
-/// c = (½−β)h²,
+/// Kane, Repetto, Ortiz and Marsden's Newmark, contact implicit whatever β and γ. Velocities jump by w, positions by
+/// (h/2)w. Effort p is the mean force of the step, z = a_{n+1} the acceleration of the structure alone. With k = (1−γ)h
+/// and c = (½−β)h²,
 ///
 ///     (M + γhC + βh²K) z = F(t+h) − C(v + k a) − K(q + h v + c a) − (C + (h/2)K) w,     R w = Hᵀp
 ///     q ← q + h v + c a + βh² z + (h/2)w,   v ← v + k a + γh z + w,   a ← z,   y = H q_{n+1}
 ///
-/// Energy (free): E = ½|v|²_M + ½|q|²_K + ½εh²|a|²_M, ε = β − γ/2; a step takes (γ−½)(|Δq|²_K + εh²|Δa|²_M). Contact
-/// gives p(bound − H q_n) ≤ 0 with R = (M + εh²K)/h (`energy`), since M Δa + K Δq = ΔF − C Δv, and besides εh w·(CΔv −
-/// ΔF), for which no work form is declared. R = M/h gives −εh²Δa·Hᵀp more, of either sign (`mass`). At β = γ/2 both are
-/// the same, the balance is whole and no second unknown is needed (newmark_mean_step), at (¼, ½) no acceleration:
-/// z = v_{n+1} − v_n, (M/h + ½C + h/4 K) z = ½F(t) + ½F(t+h) − C v − K(q + h/2 v) + Hᵀp.
+/// Energy (free): E = ½|v|²_M + ½|q|²_K + ½εh²|a|²_M, ε = β − γ/2. A step takes (γ−½)(|Δq|²_K + εh²|Δa|²_M). With
+/// `energy`, R = (M + εh²K)/h, contact gives p(bound − H q_n) ≤ 0, since M Δa + K Δq = ΔF − C Δv. Besides it gives
+/// εh w·(CΔv − ΔF), for which no work form is declared. R = M/h (`mass`) gives −εh²Δa·Hᵀp more, of either sign. At
+/// β = γ/2 both are the same, the balance is whole and no second unknown is needed (newmark_mean_step). At (¼, ½) no
+/// acceleration is: z = v_{n+1} − v_n, (M/h + ½C + h/4 K) z = ½F(t) + ½F(t+h) − C v − K(q + h/2 v) + Hᵀp.
 PlanOrRefusal kane(const Parameters& p, double h, const ProblemFacts& facts) {
   const AlphaMethod newmark = AlphaMethod::newmark(p.real("beta"), p.real("gamma"));
   const double epsilon = newmark.beta - newmark.gamma / 2;

@@ -10,9 +10,9 @@ using namespace plan_algebra;
 ///     (M/h + ½C + h/4 K) z = F(t+h/2) − C v − K(q + h/2 v) + Hᵀp
 ///     q ← q + h v + h/2 z,   v ← v + z
 ///
-/// and on the points that have reached a stop at t_n and do not leave it, the persistency condition
-/// 0 ≤ p ⊥ v_n + v_{n+1} ≥ 0 against the stop, that is p (g_{n+1} − g_n) = 0: Newton's law with e = 1. Invariant:
-/// ½|v|²_M + ½|q|²_K, kept through contact as well; test displacement q_{n+1} − q_n.
+/// Persistency condition, on the points that have reached a stop at t_n: 0 ≤ p ⊥ v_n + v_{n+1} ≥ 0 against the stop.
+/// That is p (g_{n+1} − g_n) = 0, Newton's law with e = 1. Invariant: ½|v|²_M + ½|q|²_K, kept through contact as well;
+/// test displacement q_{n+1} − q_n.
 PlanOrRefusal laursen_chawla(const Parameters&, double h, const ProblemFacts& facts) {
   if (facts.contact && facts.mass_kernel_dimension > 0)
     return Refusal{

@@ -10,8 +10,8 @@ using namespace plan_algebra;
 ///     (M/h + ½C + h/4 K) z = F(t+h/2) − C v − K(q + h/2 v) + Hᵀp
 ///     q ← q + h v + h/2 z,   v ← v + z,   y = H q_{n+1} (end) or H(q_n + q_{n+1})/2 (middle)
 ///
-/// Invariant (undamped, free): ½|v|²_M + ½|q|²_K; test displacement q_{n+1} − q_n = h(v + z/2), which the effort meets
-/// whole: with the constraint at the end contact gives p(bound − H q_n) ≤ 0.
+/// Invariant (undamped, free): ½|v|²_M + ½|q|²_K. The effort meets the test displacement q_{n+1} − q_n = h(v + z/2)
+/// whole. With the constraint at the end contact gives p(bound − H q_n) ≤ 0.
 PlanOrRefusal midpoint(const Parameters& p, double h, const ProblemFacts&) {
   const bool in_the_middle = p.word("constraint") == "middle";
   const auto [q] = slots<1>();

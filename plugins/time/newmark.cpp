@@ -14,8 +14,8 @@ using namespace plan_algebra;
 ///     (M + γhC + βh²K) z = F(t+h) − C(v + (1−γ)h a) − K(q + h v + (½−β)h² a) + Hᵀp
 ///     q ← q + h v + (½−β)h² a + βh² z,   v ← v + (1−γ)h a + γh z,   a ← z,   y = H q_{n+1}
 ///
-/// Energy (undamped, free): E = ½|v|²_M + ½|q|²_K + ½(β−γ/2)h²|a|²_M, of which a step takes
-/// (γ−½)(|Δq|²_K + (β−γ/2)h²|Δa|²_M); test displacement q_{n+1} − q_n with the equations of both ends, γ and 1−γ.
+/// Energy (undamped, free): E = ½|v|²_M + ½|q|²_K + ½(β−γ/2)h²|a|²_M. A step takes (γ−½)(|Δq|²_K + (β−γ/2)h²|Δa|²_M) of
+/// it. Test displacement q_{n+1} − q_n with the equations of both ends, weighted by γ and 1−γ.
 PlanOrRefusal newmark(const Parameters& p, double h, const ProblemFacts& facts) {
   const double beta = p.real("beta"), gamma = p.real("gamma"), shift = beta - gamma / 2;
   const bool unconditional = 2 * beta >= gamma, damps = gamma != 0.5;

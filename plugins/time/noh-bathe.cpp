@@ -14,7 +14,7 @@ using namespace plan_algebra;
 ///     stage 2, z = a₁:    M z = F(t+h) − C(v + d a) − K(q + d v + d²/2 a) + Hᵀp
 ///                         q ← q + d v + d²/2 a,   v ← v + d((½ + q₁) a + q₀ b + q₂ z),   b ← a,   a ← z
 ///
-/// An effort moves the next known position, t + h for stage 1 and t + h + c for stage 2: that one is kept between the
+/// An effort moves the next known position: t + h for stage 1, t + h + c for stage 2. That one is kept between the
 /// stops.
 PlanOrRefusal noh_bathe(const Parameters& parameters, double h, const ProblemFacts& facts) {
   if (facts.mass_kernel_dimension > 0) return needs_mass("an acceleration");

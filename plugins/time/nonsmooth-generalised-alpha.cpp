@@ -5,18 +5,18 @@ namespace {
 using namespace ricochet;
 using namespace plan_algebra;
 
-/// The generalised-α scheme whose velocities jump, coupled: the α-method (alpha_method.hpp, with Chung and Hulbert's
-/// α_m, α_f, β, γ) carries the smooth motion, a jump w = h M⁻¹Hᵀp the contact, p the mean force of the step. With
+/// The generalised-α scheme whose velocities jump, coupled. The α-method (alpha_method.hpp, Chung and Hulbert's α_m,
+/// α_f, β, γ) carries the smooth motion, a jump w = h M⁻¹Hᵀp the contact. Effort p is the mean force of the step. With
 /// k = (1−γ)h, c = (½−β)h², f = 1−α_f, z = a_{n+1} the smooth acceleration, position `half` is
 ///
 ///     v ← v + k a + γh z + w,   q ← q + h v + c a + βh² z + (h/2)w,   a ← z,   y = H v_{n+1}
 ///     (1−α_m) M z + f(C v_{n+1} + K q_{n+1}) = f F(t+h) + α_f(F(t) − C v − K q) − α_m M a
 ///
-/// `beta` moves positions by (β/γ)h w (coupled_plan); `projected` then puts them between the stops, M z = h²Hᵀp′,
+/// `beta` moves positions by (β/γ)h w (coupled_plan). `projected` then puts them between the stops, M z = h²Hᵀp′,
 /// before its last stage. A side is closed where q + h v + ½h² a passes it, and rebounds by e. With `half` a jump
-/// leaves Δq = h(v_n + v_{n+1})/2 + ¼ε²h²Δa as it is in free motion: the energy of the α-method falls as there, and
-/// contact gives (h/2) p·H(v_n + v_{n+1}) ≤ 0, whatever ρ∞. At ρ∞ = 1 `half` and `beta` are the same, and their balance
-/// (½|v|²_M + ½|q|²_K, test displacement Δq) is whole; below, what a load does to the filter is left out.
+/// leaves Δq = h(v_n + v_{n+1})/2 + ¼ε²h²Δa as in free motion. So the energy of the α-method falls as there, and
+/// contact gives (h/2) p·H(v_n + v_{n+1}) ≤ 0, whatever ρ∞. At ρ∞ = 1 `half` and `beta` are the same. Their balance
+/// (½|v|²_M + ½|q|²_K, test displacement Δq) is whole; below, none is known: a load moves the filter σ too.
 PlanOrRefusal nonsmooth_generalised_alpha(const Parameters& p, double h, const ProblemFacts& facts) {
   if (facts.mass_kernel_dimension > 0)
     return needs_mass("a velocity that jumps",

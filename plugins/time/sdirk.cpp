@@ -15,9 +15,9 @@ using namespace plan_algebra;
 ///     M aᵢ + C Vᵢ + K Qᵢ = F(t + cᵢh) + Hᵀp,          c = (γ, s + γ)
 ///     q ← q + h(b₁V₁ + b₂V₂),   v ← v + h(b₁a₁ + b₂a₂)
 ///
-/// Order 2: γ = 1 − 1/√2, s = b₁ = 1 − γ, b₂ = γ: the second stage is the end of the step, high frequencies are gone in
-/// one step. Order 3: γ = (3 + √3)/6, s = 1 − 2γ, b₁ = b₂ = ½: they keep √3 − 1 of their amplitude, with the sign
-/// changed. Q₁ and q_{n+1} are kept between the stops. No energy in M and K alone is known.
+/// Order 2: γ = 1 − 1/√2, s = b₁ = 1 − γ, b₂ = γ. The second stage is the end of the step. High frequencies are gone in
+/// one step. Order 3: γ = (3 + √3)/6, s = 1 − 2γ, b₁ = b₂ = ½. High frequencies keep √3 − 1 of their amplitude, with
+/// the sign changed. Q₁ and q_{n+1} are kept between the stops. No energy in M and K alone is known.
 PlanOrRefusal sdirk(const Parameters& p, double h, const ProblemFacts&) {
   const bool third = p.integer("order") == 3;
   const double gamma = third ? (3 + std::sqrt(3.0)) / 6 : 1 - std::sqrt(0.5), reach = gamma * h;

@@ -35,8 +35,8 @@ inline ParameterSpec restitution_parameter() {
 ///
 ///     M a₀ = F(0) − C v₀ − K q₀   (+ Hᵀp so that q₀ + d v₀ + d²/2 a₀ does not pass the stop of t + `bound` h).
 ///
-/// On the kernel of a singular mass a₀ is not defined: `stiffening` K is added to M there, an O(h²) change of a₀ on the
-/// regular modes.
+/// Where the mass is singular a₀ is not defined on its kernel. Then `stiffening` K is added to M, an O(h²) change of a₀
+/// on the regular modes.
 inline Stage initial_acceleration(double d, double bound, double stiffening) {
   using namespace plan_algebra;
   const auto [q, v] = slots<2>();
@@ -122,8 +122,8 @@ inline void balance_mean_force(Stage& stage, const Combination& end, const Combi
   stage.work = {.displacement = end - slots<1>()[0], .rate = mean_rate, .load = when, .support = at(1) - at(0)};
 }
 
-/// The trapezium from q, v to `end`, `end_rate`, with F̄ = F(t+h/2) (`middle`) or the mean of both ends, and the
-/// positions of its end between the stops:
+/// The trapezium from q, v to `end`, `end_rate`. The load F̄ is F(t+h/2) (`middle`) or the mean of both ends. Positions
+/// of its end lie between the stops:
 ///
 ///     M z/h + C (v + end_rate)/2 + K (q + end)/2 = F̄ + Hᵀp,   q ← end,   v ← end_rate,   y = H q_{n+1}
 ///

@@ -81,8 +81,8 @@ struct ThreeLevel {
     const Combination first = q + d + 0.5 * z, rate = d / h;
     Stage stage;
     stage.matrix = M / (h * h) + beta * K;
-    // There is no q₋₁ that contact may lean on: e = 0 holds q₁, e > 0 lets (q₁ − q₀)/h rebound with −e v₀ where the
-    // free q₁ passes the stop.
+    // There is no q₋₁ that contact may lean on. With e = 0 contact holds q₁. With e > 0 (q₁ − q₀)/h rebounds with −e v₀
+    // where the free q₁ passes the stop.
     stage.impact = ImpactMeasure{first, at(1)};
     if (e > 0) stage.impact = {rate + 0.5 / h * z, at(0.5), VelocityGate{first, at(1), rate, at(0), e}};
     stage.update = {first, d + 0.5 * z};
