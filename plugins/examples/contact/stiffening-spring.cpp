@@ -1,5 +1,5 @@
 // A contact law in one file: springs that stiffen as they are pressed. Put your force, its slope and its energy in
-// place of the three functions; the rest holds for any force that grows with the depth ever faster (or linearly).
+// place of the three functions. The rest holds for any force that grows with the depth, linearly or ever faster.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -59,8 +59,8 @@ class Law final : public ContactLaw {
     return {.stiffness = slopes_[static_cast<std::size_t>(point) * springs_.size() + static_cast<std::size_t>(lane)]};
   }
   std::string how_solved() const override { return "Newton's method point by point, Gauss–Seidel over the points"; }
-  // Not overridden here: linear_slopes(), of a law that is linear; reads_rate(), for a law that damps; layer(), for one
-  // that acts before the stop; memory_per_point(), for one that remembers; closed_form().
+  // Not overridden here: linear_slopes(), of a law that is linear; reads_rate(), for a law that damps; closed_form().
+  // Nor are layer(), for a law that acts before the stop, and memory_per_point(), for one that remembers.
 
  private:
   const Spring& spring(int lane) const { return springs_[static_cast<std::size_t>(lane)]; }

@@ -8,8 +8,10 @@ using namespace ricochet;
 
 /// m q'' + c q' + k q = 0. With δ = c/(2m) and ω² = k/m − δ²,
 ///
-///     q  = e^{−δt} (q₀ C + (v₀ + δ q₀) S),     C = cos ωt, S = sin(ωt)/ω; hyperbolic where ω² < 0, 1 and t where it is
-///     0 q' = e^{−δt} (v₀ C − (δ v₀ + k/m q₀) S)
+///     q  = e^{−δt} (q₀ C + (v₀ + δ q₀) S),     C = cos ωt, S = sin(ωt)/ω
+///     q' = e^{−δt} (v₀ C − (δ v₀ + k/m q₀) S)
+///
+/// C and S are hyperbolic where ω² < 0, and 1 and t where ω² = 0.
 class Reference final : public ReferenceSolver {
  public:
   // of_the_mesh() is not overridden: this reference is of the scene, and is asked once for all meshes.
@@ -47,8 +49,9 @@ class Reference final : public ReferenceSolver {
         motion.strain.push_back(0);
       }
     }
-    // motion.events: impacts and releases, in order; this motion has none.
-    // found.coarser: the same motion at a coarser setting; the gap is how well it is known. A closed form has none.
+    // The impacts and releases of a motion go into motion.events, in order; this motion has none.
+    // The same motion at a coarser setting goes into found.coarser. The gap of both is how well it is known. A closed
+    // form has none.
     found.how = "closed form of the free oscillator";
     return found;
   }

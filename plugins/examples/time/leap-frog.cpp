@@ -7,8 +7,8 @@ namespace {
 using namespace ricochet;
 using namespace ricochet::plan_algebra;
 
-/// The step S z = b + Hᵀp, with d_n = q_n − q_{n−1} and the unknown z = q_{n+1} − 2q_n + q_{n−1} (kept, not q_{n−1}:
-/// differences of positions would lose 1/h² in round-off):
+/// The step S z = b + Hᵀp, with d_n = q_n − q_{n−1} and the unknown z = q_{n+1} − 2q_n + q_{n−1}. The scheme keeps d_n,
+/// not q_{n−1}: differences of positions would lose 1/h² in round-off.
 ///
 ///     (M/h² + C/(2h)) z = F(t) − C d_n/h − K q_n + Hᵀp,     q_{n+1} = q_n + d_n + z,     d_{n+1} = d_n + z
 ///     y = H(q_{n+1} + e q_{n−1})/(1+e) = H[q_n + (1−e)/(1+e) d_n + z/(1+e)]
@@ -24,9 +24,9 @@ Stage step(double h, double e) {
   stage.history = -(K * q) - C * (d / h);
   // F(t), the load at the beginning of the step; at(0.5) is its middle, at(1) its end.
   stage.load = at(0);
-  // y, what a rigid law holds between the stops. Left out: `bound`, the times at which it reads the stops (found from
-  // y: 1/(1+e) at t + h, e/(1+e) at t − h); `gate`, for laws at velocity level; `effort`, the weights of p, p₋₁, … in
-  // the equation ({1}).
+  // y, what a rigid law holds between the stops. Left out are `bound`, `gate` and `effort`. `bound`: the times at which
+  // y reads the stops, found from y: 1/(1+e) at t + h, e/(1+e) at t − h. `gate`: for laws at velocity level. `effort`:
+  // the weights of p, p₋₁, … in the equation ({1}).
   stage.impact = ImpactMeasure{.value = (next + e * before) / (1 + e)};
   // g and u, what a compliant law reads: displacement and rate at the end of the step, or where the step begins. The
   // ways `averaged` and `conserving` are not offered: a law that asks for them is refused with a sentence.
@@ -46,8 +46,8 @@ Stage start(double h, double e) {
   const Combination first = q + d + 0.5 * z, rate = d / h;
   Stage stage = step(h, e);
   stage.matrix = M / (h * h);
-  // No q₋₁ was marched that a stop could lean on. e = 0 holds q₁; e > 0 closes the sides that the free q₁ passes, and
-  // lets (q₁ − q₀)/h rebound with −e v₀.
+  // No q₋₁ was marched that a stop could lean on. With e = 0 the stop holds q₁. With e > 0 the sides that the free q₁
+  // passes are closed, and (q₁ − q₀)/h rebounds with −e v₀.
   stage.impact = ImpactMeasure{.value = first};
   if (e > 0) {
     stage.impact->value = rate + 0.5 / h * z;
