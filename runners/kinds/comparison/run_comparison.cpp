@@ -5,7 +5,7 @@
 #include <ricochet/measure/motion/motion_errors.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 
-#include "runners/kinds/trajectory/contact_rows.hpp"
+#include "runners/kinds/trajectory/stop_tables.hpp"
 #include "runners/march/load_changes.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"

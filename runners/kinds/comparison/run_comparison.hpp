@@ -1,6 +1,6 @@
 #pragma once
 #include "runners/kinds/comparison/references.hpp"
-#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/kinds/trajectory/trajectory.hpp"
 
 namespace ricochet {
 
