@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "runners/kinds/bifurcation/run_bifurcation.hpp"
+#include "runners/kinds/bifurcation/bifurcation.hpp"
 #include "runners/kinds/continuation/branch_orbits.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/run/study_cases.hpp"

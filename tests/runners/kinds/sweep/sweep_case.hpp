@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/kinds/bifurcation/run_bifurcation.hpp"
+#include "runners/kinds/bifurcation/bifurcation.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"
 #include "runners/table/text.hpp"
