@@ -14,7 +14,6 @@
 #include "runners/kinds/trajectory/stop_tables.hpp"
 #include "runners/kinds/trajectory/trajectory.hpp"
 #include "runners/study/fields.hpp"
-#include "runners/kinds/tables_of_cases.hpp"
 
 namespace ricochet {
 

@@ -9,8 +9,6 @@
 #include "runners/kinds/stored_study.hpp"
 #include "runners/kinds/sweep/sweep.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
-#include "runners/kinds/sweep/sweep_study.hpp"
-#include "runners/kinds/tables_of_cases.hpp"
 
 namespace ricochet {
 namespace {

@@ -15,7 +15,6 @@
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/store.hpp"
 #include "runners/study/check_object.hpp"
-#include "runners/kinds/sweep/sweep_study.hpp"
 
 namespace ricochet {
 namespace {

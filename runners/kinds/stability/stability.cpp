@@ -15,7 +15,6 @@
 #include "runners/study/fields.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/table_reader.hpp"
-#include "runners/kinds/tables_of_cases.hpp"
 
 namespace ricochet {
 namespace {

@@ -37,13 +37,13 @@ struct AskedOutputs {
 /// The key itself.
 Field outputs_key();
 
-/// Throws InputError for spectra of what is not there, a rate that the steps do not reach, a segment that the window
-/// does not hold, and observed measures of stops that the study does not ask for.
+/// Throws InputError for spectra of what is not there, a rate that the steps do not reach, and a segment that the
+/// window does not hold. Observed measures of stops that the study does not ask for are refused as well.
 void check_outputs(const Json& study);
 
 AskedOutputs asked_outputs(const StudyCase& study_case);
 
-/// A spectrum as one lane marches. Displacements are sampled at k/rate, straight between steps; a force is its impulse
+/// A spectrum as one lane marches. Displacements are sampled at k/rate, straight between steps. A force is its impulse
 /// over 1/rate divided by that, so that an impact of any shortness keeps its momentum; positive upwards.
 class SpectrumTaker final : public ContactListener {
  public:

@@ -8,7 +8,7 @@
 
 #include "runners/answers/uncertainty.hpp"
 #include "runners/kinds/all_kinds.hpp"
-#include "runners/kinds/tables_of_cases.hpp"
+#include "runners/kinds/kind.hpp"
 #include "runners/kinds/trajectory/energy_tables.hpp"
 #include "runners/kinds/trajectory/outputs.hpp"
 #include "runners/kinds/trajectory/page/page.hpp"

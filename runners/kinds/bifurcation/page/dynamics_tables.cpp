@@ -10,7 +10,6 @@
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
-#include "runners/kinds/sweep/sweep_summaries.hpp"
 
 namespace ricochet::report {
 namespace {

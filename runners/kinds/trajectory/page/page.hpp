@@ -12,7 +12,7 @@ namespace ricochet::report {
 
 KindPage trajectory_page();
 
-/// What the energy of each case ends at, told from its start: |E(T)/E(0) − 1|, whether it was a gain, and whether
+/// What the energy of each case ends at, told from its start: |E(T)/E(0) − 1|, and whether it was a gain. Then whether
 /// nothing but contact changes energies in this study.
 Table energy_changes(const CaseView& view);
 
@@ -32,8 +32,8 @@ Table shock_points(const CaseView& view);
 /// them by, for a figure.
 Table spectrum_bands(const CaseView& view);
 
-/// Measures with what methods, step and mesh leave open, at most eight rows, for the page that a file keeps: those that
-/// the study observes first, then others of its stops. "" of a study without contact.
+/// Measures with what methods, step and mesh leave open, at most eight rows, for the page that a file keeps. Those that
+/// the study observes come first, then others of its stops. "" of a study without contact.
 std::string summary_measures_html(const CaseView& view);
 
 }  // namespace ricochet::report
