@@ -153,4 +153,8 @@ const Kind* find_kind(const std::string& name);
 /// What reports of this kind show; nothing of their own where there is none of this name.
 report::KindPage page_of(const std::string& kind);
 
+/// Appends the tables that cases carry to results.derived, each row behind its case's axes. `left_out` (may be empty)
+/// names those that the kind derives itself.
+void collect_tables(StudyResults& results, const std::function<bool(const std::string& table)>& left_out = {});
+
 }  // namespace ricochet

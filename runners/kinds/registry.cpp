@@ -1,8 +1,14 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <new>
+#include <ricochet/contract/errors.hpp>
 
 #include "runners/kinds/all_kinds.hpp"
-#include "runners/kinds/tables_of_cases.hpp"
+#include "runners/kinds/kind.hpp"
 #include "runners/kinds/trajectory/stop_measures.hpp"
+#include "runners/store/record_values.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
@@ -84,6 +90,43 @@ std::vector<std::string> standing_measures(const std::string& kind) {
   if (const Kind* known = find_kind(kind); known && known->measures_stand())
     for (const MeasureInfo& info : known->measures) names.emplace_back(info.name);
   return names;
+}
+
+CaseRecord run_guarded(const CaseRunner& cases, const StudyCase& study_case, const std::atomic<bool>& stop) {
+  CaseRecord record;
+  const auto fail = [&](std::string reason) {
+    record = CaseRecord{};
+    record.status = "failed";
+    record.reason = std::move(reason);
+  };
+  try {
+    record = cases.run(study_case, stop);
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const InputError& error) {
+    fail(error.pointer().empty() ? error.what() : fmt::format("at {}: {}", error.pointer(), error.what()));
+  } catch (const std::bad_alloc&) {
+    fail("not enough memory");
+  } catch (const std::exception& error) {
+    fail(error.what());
+  } catch (const Refusal& refusal) {
+    fail(refusal.sentence);
+  } catch (...) {
+    fail("an exception that carries no message");
+  }
+  record.id = study_case.id;
+  record.axes = study_case.axes;
+  return record;
+}
+
+void collect_tables(StudyResults& results, const std::function<bool(const std::string&)>& left_out) {
+  for (const CaseRecord& record : results.cases)
+    for (const Table& own : record.tables) {
+      if (left_out && left_out(own.name)) continue;
+      Table* found = find_table(results.derived, own.name);
+      if (!found) found = &results.derived.emplace_back(table_of_cases(results, own));
+      append_rows(results, record, own, *found);
+    }
 }
 
 }  // namespace ricochet

@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "runners/kinds/kind.hpp"
-#include "runners/kinds/tables_of_cases.hpp"
 #include "runners/run/answers_table.hpp"
 #include "runners/run/choice_effects.hpp"
 #include "runners/run/study_runner.hpp"

@@ -6,7 +6,6 @@
 
 #include "runners/command/command.hpp"
 #include "runners/kinds/kind.hpp"
-#include "runners/kinds/tables_of_cases.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/fields.hpp"
 #include "runners/table/table_reader.hpp"

@@ -1,5 +1,3 @@
-#include "runners/kinds/basins/basin_answers.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"
+#include "runners/kinds/basins/basins.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/study/axis_meaning.hpp"
 

@@ -1,11 +1,10 @@
-#include "runners/kinds/basins/basin_tables.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <ricochet/measure/attractors/basin_grid.hpp>
 #include <set>
 
+#include "runners/kinds/basins/basins.hpp"
 #include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/store/record_values.hpp"

@@ -1,3 +1,5 @@
+#include "runners/kinds/basins/basins.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,11 +8,8 @@
 #include <iostream>
 
 #include "runners/kinds/all_kinds.hpp"
-#include "runners/kinds/basins/basin_answers.hpp"
-#include "runners/kinds/basins/basin_tables.hpp"
 #include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/basins/page/page.hpp"
-#include "runners/kinds/basins/run_basins.hpp"
 #include "runners/kinds/sweep/march_point.hpp"
 #include "runners/kinds/sweep/sweep.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"

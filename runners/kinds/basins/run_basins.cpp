@@ -1,5 +1,3 @@
-#include "runners/kinds/basins/run_basins.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <ricochet/measure/attractors/branches.hpp>
 #include <ricochet/measure/attractors/grid_refinement.hpp>
 
+#include "runners/kinds/basins/basins.hpp"
 #include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/sweep/orbit_checkpoints.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"

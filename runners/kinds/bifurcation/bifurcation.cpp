@@ -1,3 +1,5 @@
+#include "runners/kinds/bifurcation/bifurcation.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,9 +9,7 @@
 #include <ricochet/measure/orbits/impact_jump.hpp>
 
 #include "runners/kinds/all_kinds.hpp"
-#include "runners/kinds/bifurcation/bifurcation_answers.hpp"
 #include "runners/kinds/bifurcation/page/page.hpp"
-#include "runners/kinds/bifurcation/run_bifurcation.hpp"
 #include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/kinds/sweep/forced_scenes.hpp"
 #include "runners/kinds/sweep/march_point.hpp"

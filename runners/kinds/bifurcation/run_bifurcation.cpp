@@ -1,5 +1,3 @@
-#include "runners/kinds/bifurcation/run_bifurcation.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <ricochet/measure/stability/contact_spring.hpp>
 #include <ricochet/measure/stability/linear_response.hpp>
 
+#include "runners/kinds/bifurcation/bifurcation.hpp"
 #include "runners/kinds/sweep/orbit_checkpoints.hpp"
 #include "runners/kinds/sweep/orbit_exponents.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"

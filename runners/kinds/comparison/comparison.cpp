@@ -10,10 +10,8 @@
 #include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/kinds/comparison/references.hpp"
-#include "runners/kinds/comparison/run_comparison.hpp"
-#include "runners/kinds/tables_of_cases.hpp"
-#include "runners/kinds/trajectory/contact_rows.hpp"
-#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/kinds/kind.hpp"
+#include "runners/kinds/trajectory/stop_tables.hpp"
 #include "runners/kinds/trajectory/trajectory.hpp"
 #include "runners/study/fields.hpp"
 

@@ -20,7 +20,7 @@ void check_comparison(const Json& resolved);
 /// The settings of a comparing case: reference, errors, horizon, repeats (where the kind times), budget.
 Json comparison_settings(const Json& resolved);
 
-/// Runs cases against references that are computed once; a study none of whose scenes has one is refused before
+/// Runs cases against references that are computed once. A study none of whose scenes has one is refused before
 /// anything runs.
 CaseRunner compare_cases(const RunContext& context);
 
@@ -56,4 +56,34 @@ class ComparisonKind : public Kind {
   virtual void costs(StudyResults&) const {}
 };
 
+class References;
+
+/// Runs one case of kind `convergence` or `work-precision` and compares it with its references.
+///
+/// Measures: error.NAME and floor.NAME for each error of the study (see motion_errors.hpp) against the first reference
+/// that applies. The floor is the larger of that reference's own gap and its distance to the other references. Further
+/// horizon (s), and declared_order where the scheme declares one for such a run. Status `refused` when no reference
+/// applies.
+CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry, References& references,
+                          const std::atomic<bool>& stop);
+
+/// Marching time of one case alone, s of processor: set-up apart, nothing observed, no sample taken. None when the case
+/// does not reach its end.
+std::optional<double> time_case(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop);
+
 }  // namespace ricochet
+
+// What reports of the comparing kinds share: errors along the step and along the elements, and their orders.
+namespace ricochet::report {
+
+KindPage comparison_page();
+
+/// Where errors follow their fitted order, with the ends of that line. It is the longest run of points above their
+/// floor within a factor of two of e = C x^p. Axes as in `orders`.
+Table order_lines(const CaseView& view);
+
+/// How many orders are confirmed, refuted and undecided; methods × errors with orders and verdicts. Then every order
+/// with its interval and reason, what is not confirmed first. Empty without the table `orders`.
+std::string orders_html(const CaseView& view);
+
+}  // namespace ricochet::report

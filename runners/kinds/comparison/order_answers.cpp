@@ -10,7 +10,6 @@
 #include "runners/answers/set_names.hpp"
 #include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
-#include "runners/kinds/comparison/order_runs.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet {

@@ -1,4 +1,3 @@
-#include "runners/kinds/comparison/order_runs.hpp"
 
 #include <algorithm>
 

@@ -1,11 +1,11 @@
-#include "runners/kinds/comparison/run_comparison.hpp"
-
 #include <fmt/format.h>
 
 #include <ricochet/measure/motion/motion_errors.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 
-#include "runners/kinds/trajectory/contact_rows.hpp"
+#include "runners/kinds/comparison/comparison.hpp"
+#include "runners/kinds/comparison/references.hpp"
+#include "runners/kinds/trajectory/stop_tables.hpp"
 #include "runners/march/load_changes.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"

@@ -1,5 +1,3 @@
-#include "runners/kinds/continuation/branch_point.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +8,9 @@
 #include <ricochet/measure/orbits/branch.hpp>
 
 #include "runners/kinds/continuation/branch_tables.hpp"
+#include "runners/kinds/continuation/continuation.hpp"
 #include "runners/kinds/continuation/continued_map.hpp"
+#include "runners/kinds/kind.hpp"
 #include "runners/kinds/stored_study.hpp"
 #include "runners/kinds/sweep/march_point.hpp"
 #include "runners/kinds/trajectory/snapshot_taker.hpp"

@@ -1,16 +1,14 @@
+#include "runners/kinds/continuation/continuation.hpp"
+
 #include "runners/kinds/all_kinds.hpp"
-#include "runners/kinds/continuation/branch_point.hpp"
-#include "runners/kinds/continuation/continuation_answers.hpp"
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continuation_tables.hpp"
 #include "runners/kinds/continuation/page/page.hpp"
 #include "runners/kinds/continuation/point_tables.hpp"
-#include "runners/kinds/continuation/reference_case.hpp"
-#include "runners/kinds/continuation/run_continuation.hpp"
+#include "runners/kinds/kind.hpp"
 #include "runners/kinds/stored_study.hpp"
-#include "runners/kinds/sweep/sweep_study.hpp"
+#include "runners/kinds/sweep/sweep.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
-#include "runners/kinds/tables_of_cases.hpp"
 
 namespace ricochet {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"
+#include "runners/kinds/continuation/continuation.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/table/table_reader.hpp"
@@ -237,6 +238,24 @@ void PointSpeaker::say_nothing(say::Answer& answer) const {
       if (note.empty() && !row.note.empty()) note = row.note;
   answer.say(note.empty() ? "No periodic orbit was found." : "No periodic orbit was found: " + note + ".",
              Clause{.form = "status", .status = "none"});
+}
+
+answers::Answer continuation_answer(const answers::Compared& study) {
+  answers::Answer answer;
+  const PointSpeaker speaker(study);
+  if (speaker.known()) {
+    speaker.say_points(answer);
+    speaker.say_unconfirmed(answer);
+    speaker.say_shifts(answer);
+    speaker.say_absent(answer);
+    speaker.say_turns(answer);
+  } else {
+    speaker.say_nothing(answer);
+  }
+  constexpr std::size_t most = 6;
+  answer.keep(most);
+  for (answers::Sentence& one : answers::ended(study)) answer.say(std::move(one));
+  return answer;
 }
 
 }  // namespace ricochet

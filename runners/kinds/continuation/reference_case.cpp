@@ -1,5 +1,3 @@
-#include "runners/kinds/continuation/reference_case.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 
 #include "runners/kinds/comparison/references.hpp"
 #include "runners/kinds/continuation/branch_tables.hpp"
+#include "runners/kinds/continuation/continuation.hpp"
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continued_map.hpp"
 #include "runners/kinds/continuation/first_orbit.hpp"

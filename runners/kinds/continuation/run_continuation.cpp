@@ -1,5 +1,3 @@
-#include "runners/kinds/continuation/run_continuation.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,10 +10,10 @@
 
 #include "runners/kinds/continuation/branch_checkpoints.hpp"
 #include "runners/kinds/continuation/branch_tables.hpp"
+#include "runners/kinds/continuation/continuation.hpp"
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continued_map.hpp"
 #include "runners/kinds/continuation/first_orbit.hpp"
-#include "runners/kinds/continuation/reference_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"
 

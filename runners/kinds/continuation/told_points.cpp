@@ -1,10 +1,9 @@
-#include "runners/kinds/continuation/told_points.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
 
+#include "runners/kinds/continuation/point_speaker.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet {

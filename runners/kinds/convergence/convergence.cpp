@@ -1,7 +1,6 @@
 #include "runners/kinds/all_kinds.hpp"
 #include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/comparison/comparison_answers.hpp"
-#include "runners/kinds/comparison/page/page.hpp"
 
 namespace ricochet {
 

@@ -1,4 +1,3 @@
-#include "runners/kinds/stability/run_stability.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +12,6 @@
 #include <ricochet/scene/stop_parameters.hpp>
 
 #include "runners/kinds/stability/stability.hpp"
-#include "runners/kinds/stability/stability_roots.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"

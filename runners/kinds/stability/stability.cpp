@@ -7,12 +7,7 @@
 
 #include "runners/kinds/all_kinds.hpp"
 #include "runners/kinds/kind.hpp"
-#include "runners/kinds/stability/page/page.hpp"
-#include "runners/kinds/stability/run_stability.hpp"
-#include "runners/kinds/stability/stability_answers.hpp"
-#include "runners/kinds/stability/stability_roots.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
-#include "runners/kinds/tables_of_cases.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"

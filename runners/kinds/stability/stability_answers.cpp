@@ -1,5 +1,3 @@
-#include "runners/kinds/stability/stability_answers.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +7,7 @@
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"
-#include "runners/kinds/stability/stability_roots.hpp"
+#include "runners/kinds/stability/stability.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"

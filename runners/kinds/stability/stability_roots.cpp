@@ -1,6 +1,7 @@
-#include "runners/kinds/stability/stability_roots.hpp"
-
 #include <algorithm>
+#include <ricochet/measure/stability/stability.hpp>
+
+#include "runners/kinds/stability/stability_tables.hpp"
 
 namespace ricochet {
 namespace {

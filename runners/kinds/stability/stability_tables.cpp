@@ -7,7 +7,6 @@
 #include <map>
 #include <ricochet/measure/stability/stability.hpp>
 
-#include "runners/kinds/stability/stability_roots.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <ricochet/measure/attractors/diagram_attractors.hpp>
 
-#include "runners/kinds/sweep/sweep_summaries.hpp"
+#include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {

@@ -1,9 +1,8 @@
-#include "runners/kinds/sweep/study_diagram.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <ricochet/measure/attractors/diagram.hpp>
 
+#include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/store/record_values.hpp"
 

@@ -2,13 +2,12 @@
 
 #include <numbers>
 
+#include "runners/kinds/kind.hpp"
 #include "runners/kinds/stored_study.hpp"
 #include "runners/kinds/sweep/block_orders.hpp"
 #include "runners/kinds/sweep/diagram_tables.hpp"
-#include "runners/kinds/sweep/sweep_study.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
-#include "runners/kinds/tables_of_cases.hpp"
 #include "runners/march/load_changes.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/store/record_values.hpp"

@@ -1,5 +1,3 @@
-#include "runners/kinds/sweep/sweep_study.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <set>
 
 #include "runners/json/json_text.hpp"
+#include "runners/kinds/sweep/sweep.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/study/check_object.hpp"
 

@@ -1,11 +1,10 @@
-#include "runners/kinds/sweep/sweep_summaries.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <ricochet/measure/attractors/opinions.hpp>
 
-#include "runners/kinds/sweep/study_diagram.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
+#include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/in_order_met.hpp"
 

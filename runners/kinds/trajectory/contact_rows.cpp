@@ -1,11 +1,10 @@
-#include "runners/kinds/trajectory/contact_rows.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
 #include "runners/kinds/trajectory/stop_measures.hpp"
+#include "runners/kinds/trajectory/stop_tables.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {

@@ -1,5 +1,3 @@
-#include "runners/kinds/trajectory/drawn_rows.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include <ricochet/scene/planes.hpp>
 #include <ricochet/scene/structure/node_layout.hpp>
 
+#include "runners/kinds/trajectory/snapshot_taker.hpp"
 #include "runners/study/body_places.hpp"
 
 namespace ricochet {

@@ -1,5 +1,3 @@
-#include "runners/kinds/trajectory/run_case.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,9 +9,10 @@
 #include <ricochet/measure/energy/energy_audit.hpp>
 #include <ricochet/measure/motion/row_readings.hpp>
 
-#include "runners/kinds/trajectory/contact_rows.hpp"
-#include "runners/kinds/trajectory/orbit_taker.hpp"
+#include "runners/kinds/trajectory/outputs.hpp"
 #include "runners/kinds/trajectory/snapshot_taker.hpp"
+#include "runners/kinds/trajectory/stop_tables.hpp"
+#include "runners/kinds/trajectory/trajectory.hpp"
 #include "runners/kinds/trajectory/window_means.hpp"
 #include "runners/march/load_changes.hpp"
 #include "runners/march/prepare_case.hpp"

@@ -5,8 +5,6 @@
 #include <ricochet/engine/flight/step_interval.hpp>
 #include <ricochet/scene/supports.hpp>
 
-#include "runners/kinds/trajectory/drawn_rows.hpp"
-
 namespace ricochet {
 namespace {
 

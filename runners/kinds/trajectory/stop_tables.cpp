@@ -7,8 +7,8 @@
 #include <numeric>
 #include <ricochet/measure/statistics/block_bootstrap.hpp>
 
-#include "runners/kinds/trajectory/octave_measures.hpp"
-#include "runners/kinds/trajectory/orbit_taker.hpp"
+#include "runners/kinds/trajectory/outputs.hpp"
+#include "runners/kinds/trajectory/stop_measures.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {

@@ -2,7 +2,6 @@
 #include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
-#include "runners/kinds/comparison/run_comparison.hpp"
 #include "runners/kinds/work-precision/page/page.hpp"
 #include "runners/study/fields.hpp"
 

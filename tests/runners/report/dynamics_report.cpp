@@ -4,9 +4,7 @@
 #include <cstring>
 #include <set>
 
-#include "runners/kinds/basins/page/basins.hpp"
 #include "runners/kinds/basins/page/page.hpp"
-#include "runners/kinds/bifurcation/page/orbit_data.hpp"
 #include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/store/record_values.hpp"

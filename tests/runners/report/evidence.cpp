@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "runners/kinds/comparison/page/page.hpp"
+#include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/work-precision/page/page.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/effects.hpp"

@@ -1,7 +1,7 @@
 // What the report of kind `stability` tells is what the cases' tables hold.
 #include <catch2/catch.hpp>
 
-#include "runners/kinds/stability/page/page.hpp"
+#include "runners/kinds/stability/stability.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/report/report.hpp"
 #include "runners/run/finish_run.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/kinds/sweep/sweep_summaries.hpp"
+#include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/store/record_values.hpp"
 
 /// \file

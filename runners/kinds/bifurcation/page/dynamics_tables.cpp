@@ -1,5 +1,3 @@
-#include "runners/kinds/bifurcation/page/dynamics_tables.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,12 +7,30 @@
 
 #include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
-#include "runners/kinds/sweep/sweep_summaries.hpp"
+#include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
 
 namespace ricochet::report {
 namespace {
+
+/// What some numbers reach; empty until a finite one is included.
+struct Interval {
+  double low = 0, high = 0;
+  bool empty() const { return !(low <= high); }
+  static Interval nothing() { return {1, -1}; }
+  void include(double value) {
+    if (!std::isfinite(value)) return;
+    if (empty()) low = high = value;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  void include(const Interval& other) {
+    if (other.empty()) return;
+    include(other.low);
+    include(other.high);
+  }
+};
 
 std::string value_text(double value, const Quantity& parameter) {
   return number_text(value, 7) + (parameter.unit.empty() ? "" : " " + parameter.unit);

@@ -1,5 +1,3 @@
-#include "runners/kinds/bifurcation/page/orbit_data.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/store/record_values.hpp"
 

@@ -5,7 +5,6 @@
 #include <optional>
 #include <ricochet/measure/statistics/quantiles.hpp>
 
-#include "runners/kinds/bifurcation/page/orbit_data.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/report/case_view.hpp"
 

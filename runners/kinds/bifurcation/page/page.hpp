@@ -1,4 +1,8 @@
 #pragma once
+#include <string>
+
+#include "runners/report/case_view.hpp"
+#include "runners/report/curve_data.hpp"
 #include "runners/report/kind_page.hpp"
 
 /// \file
@@ -21,5 +25,28 @@ std::string dynamics_answer_html(const CaseView& view);
 
 /// Attractors, shifts of located changes, agreement of regimes between methods as a heat map, all located changes.
 std::string dynamics_tables_html(const CaseView& view);
+
+/// How many numbers of sections and portraits a page may carry.
+struct PageBudget {
+  size_t points = 400'000;     ///< of all sections together, shared evenly by the cases that need it
+  size_t portraits = 600'000;  ///< samples of all portraits together
+};
+
+/// Writes the section points of all cases into the page, as blocks ID/points/orbit, …/u and …/v of equal length. They
+/// are the row in the case's `values`, tip displacement (m) and tip velocity (m/s). Of orbits that repeat (periodic, no
+/// contact), points that coincide to 1/4000 of the case's extent in both are written once. Where the budget does not
+/// hold the rest, each of the other orbits keeps an even choice. Returns a sentence on what was left out, "" when
+/// nothing was.
+std::string put_points(const CaseView& view, CurveData& curves, const PageBudget& budget = {});
+
+/// The same for stored portraits: ID/portrait/orbit, …/t (s), …/u and …/v. Where the budget does not hold them all,
+/// every k-th orbit that has one keeps its own whole.
+std::string put_portraits(const CaseView& view, CurveData& curves, const PageBudget& budget = {});
+
+/// What the page's script knows of the orbits of each case: every column of `values`, the group that colours it, the
+/// kind of its start. Then the interval of the parameter that it stands for, half-way to its neighbours of the same
+/// start, and the range of the section's displacements. Writes the points and portraits as well; `said` tells what was
+/// left out.
+nlohmann::ordered_json orbit_data(const CaseView& view, CurveData& curves);
 
 }  // namespace ricochet::report

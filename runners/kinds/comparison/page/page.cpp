@@ -1,11 +1,10 @@
-#include "runners/kinds/comparison/page/page.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"

@@ -1,5 +1,3 @@
-#include "runners/kinds/continuation/page/branch_data.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,8 +5,9 @@
 #include <map>
 
 #include "runners/kinds/continuation/branch_orbits.hpp"
+#include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continuation_tables.hpp"
-#include "runners/kinds/continuation/points_beneath.hpp"
+#include "runners/kinds/continuation/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/table/table_reader.hpp"
 #include "runners/table/text.hpp"

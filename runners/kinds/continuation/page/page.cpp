@@ -8,7 +8,6 @@
 #include <numeric>
 #include <tuple>
 
-#include "runners/kinds/continuation/page/branch_data.hpp"
 #include "runners/kinds/continuation/point_speaker.hpp"
 #include "runners/kinds/continuation/point_tables.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"

@@ -1,4 +1,6 @@
 #pragma once
+#include "runners/report/case_view.hpp"
+#include "runners/report/curve_data.hpp"
 #include "runners/report/kind_page.hpp"
 
 /// \file
@@ -18,5 +20,13 @@ std::string point_methods_html(const CaseView& view);
 Table point_levels(const CaseView& view);
 /// The fitted orders as lines over the sizes: one row per name, refinement and method whose order is told.
 Table point_lines(const CaseView& view);
+
+/// What the page's script knows of the branches of each case: their names, periods and symmetry, and blocks of equal
+/// length. ID/branch/… are the number of the branch, parameter, tip displacement (m) and velocity (m/s), arc (m). Then
+/// come the count of unstable multipliers, special point (0: none), real and imaginary parts of the multipliers. Of
+/// more than `rows` rows an even choice of each branch is kept, with special points and changes of stability; `said`
+/// tells so. Portraits are blocks ID/orbit/…: place of the row, first sample, stops of the tip; samples u and v; runs
+/// of contact.
+nlohmann::ordered_json branch_data(const CaseView& view, CurveData& curves);
 
 }  // namespace ricochet::report

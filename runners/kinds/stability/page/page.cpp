@@ -1,11 +1,12 @@
-#include "runners/kinds/stability/page/page.hpp"
-
 #include <fmt/format.h>
 
 #include <set>
 
+#include "runners/kinds/stability/stability.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
+#include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/kind_page.hpp"
 
 namespace ricochet::report {
 

@@ -1,5 +1,3 @@
-#include "runners/kinds/trajectory/page/stops.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include "runners/answers/compared.hpp"
 #include "runners/answers/limits.hpp"
 #include "runners/answers/uncertainty.hpp"
+#include "runners/kinds/trajectory/page/page.hpp"
 #include "runners/kinds/trajectory/stop_tables.hpp"
 #include "runners/report/html.hpp"
 #include "runners/table/in_order_met.hpp"

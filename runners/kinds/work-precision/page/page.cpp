@@ -6,8 +6,8 @@
 #include <iterator>
 #include <numeric>
 
+#include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
-#include "runners/kinds/comparison/page/page.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
 

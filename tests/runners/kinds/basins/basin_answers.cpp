@@ -1,8 +1,7 @@
 // What a study of basins answers: where starts end, which choice moves the border, what is undecided.
-#include "runners/kinds/basins/basin_answers.hpp"
-
 #include <catch2/catch.hpp>
 
+#include "runners/kinds/basins/basins.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 
 using namespace ricochet;

@@ -1,11 +1,10 @@
 // Kind `basins`, from the study's text to the cells of its grid.
-#include "runners/kinds/basins/run_basins.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 #include <ricochet/loader/catalogue.hpp>
 
+#include "runners/kinds/basins/basins.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"

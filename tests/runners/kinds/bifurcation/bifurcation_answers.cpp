@@ -1,8 +1,7 @@
 // What a study of diagrams answers: who has the reference's diagram, how it converges, which motions there are.
-#include "runners/kinds/bifurcation/bifurcation_answers.hpp"
-
 #include <catch2/catch.hpp>
 
+#include "runners/kinds/bifurcation/bifurcation.hpp"
 #include "tests/runners/report/synthetic_dynamics.hpp"
 
 using namespace ricochet;

@@ -1,9 +1,8 @@
 // What a case of kind `bifurcation` leaves: starts, classes, exponents, sections, refinement, and rows for what went
 // wrong.
-#include "runners/kinds/bifurcation/run_bifurcation.hpp"
-
 #include <set>
 
+#include "runners/kinds/bifurcation/bifurcation.hpp"
 #include "tests/runners/kinds/sweep/sweep_case.hpp"
 
 using namespace ricochet;

@@ -1,12 +1,11 @@
 // An orbit of a branch that is solved again: its row, its neighbours, its motion.
-#include "runners/kinds/continuation/branch_point.hpp"
-
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 
-#include "runners/kinds/bifurcation/run_bifurcation.hpp"
+#include "runners/kinds/bifurcation/bifurcation.hpp"
 #include "runners/kinds/continuation/branch_orbits.hpp"
+#include "runners/kinds/continuation/continuation.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/run/study_cases.hpp"
 #include "tests/runners/kinds/continuation/tube_study.hpp"

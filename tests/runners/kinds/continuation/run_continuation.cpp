@@ -3,7 +3,7 @@
 #include <map>
 #include <ricochet/measure/orbits/branch.hpp>
 
-#include "runners/kinds/bifurcation/run_bifurcation.hpp"
+#include "runners/kinds/bifurcation/bifurcation.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "tests/runners/kinds/continuation/tube_study.hpp"
 #include "tests/runners/kinds/sweep/sweep_case.hpp"

@@ -1,10 +1,9 @@
 // Which special points an answer tells: those where stable orbits end.
-#include "runners/kinds/continuation/told_points.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "runners/answers/compared.hpp"
+#include "runners/kinds/continuation/point_speaker.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/run/finish_run.hpp"
 #include "runners/table/table_reader.hpp"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "runners/kinds/continuation/continuation.hpp"
 #include "runners/kinds/continuation/continuation_tables.hpp"
-#include "runners/kinds/continuation/run_continuation.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"

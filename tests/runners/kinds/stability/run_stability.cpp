@@ -1,10 +1,9 @@
 // Kind `stability`, from the study's text to the rows of its tables.
-#include "runners/kinds/stability/run_stability.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <ricochet/loader/catalogue.hpp>
 
+#include "runners/kinds/stability/stability.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"
 #include "runners/table/text.hpp"

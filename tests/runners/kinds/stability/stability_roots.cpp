@@ -1,6 +1,7 @@
-#include "runners/kinds/stability/stability_roots.hpp"
-
 #include <catch2/catch.hpp>
+#include <ricochet/measure/stability/stability.hpp>
+
+#include "runners/kinds/stability/stability_tables.hpp"
 
 using namespace ricochet;
 

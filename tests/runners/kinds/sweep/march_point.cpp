@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <ricochet/loader/catalogue.hpp>
 
-#include "runners/kinds/bifurcation/run_bifurcation.hpp"
+#include "runners/kinds/bifurcation/bifurcation.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/study/load_study.hpp"
 

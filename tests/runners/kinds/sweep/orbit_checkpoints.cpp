@@ -4,9 +4,10 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "tests/runners/kinds/sweep/same_settling.hpp"
+#include "tests/runners/kinds/sweep/sweep_case.hpp"
 
 using namespace ricochet;
+using namespace ricochet::testing;
 
 namespace {
 

@@ -4,8 +4,7 @@
 #include "runners/kinds/sweep/orbit_checkpoints.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
-#include "runners/kinds/trajectory/run_case.hpp"
-#include "tests/runners/kinds/sweep/same_settling.hpp"
+#include "runners/kinds/trajectory/trajectory.hpp"
 #include "tests/runners/kinds/sweep/sweep_case.hpp"
 
 using namespace ricochet;

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <ricochet/measure/orbits/random_state.hpp>
 
-#include "runners/kinds/basins/run_basins.hpp"
+#include "runners/kinds/basins/basins.hpp"
 #include "runners/kinds/sweep/forced_scenes.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "tests/runners/kinds/sweep/sweep_case.hpp"

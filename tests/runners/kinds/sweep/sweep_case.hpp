@@ -2,10 +2,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <ricochet/loader/catalogue.hpp>
+#include <ricochet/measure/orbits/recurrence.hpp>
 #include <string>
 #include <vector>
 
-#include "runners/kinds/bifurcation/run_bifurcation.hpp"
+#include "runners/kinds/bifurcation/bifurcation.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"
 #include "runners/table/text.hpp"
@@ -126,6 +127,12 @@ inline CaseRecord run_sweep(const Json& text, int workers = 0) {
   if (workers > 0) context.blocks = &blocks;
   const std::atomic<bool> stop = false;
   return run_bifurcation(opened.first(), *opened.registry, context, stop);
+}
+
+/// Whether two settlings have seen the same, bit for bit.
+inline bool same_settling(const Settling& a, const Settling& b) {
+  return a.scale == b.scale && a.tolerance == b.tolerance && a.longest == b.longest && a.ring == b.ring &&
+         a.repeats == b.repeats && a.periods == b.periods;
 }
 
 }  // namespace ricochet::testing

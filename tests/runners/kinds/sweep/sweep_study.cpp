@@ -1,8 +1,7 @@
-#include "runners/kinds/sweep/sweep_study.hpp"
-
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "runners/kinds/sweep/sweep.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "tests/runners/study/study_fixture.hpp"

@@ -3,7 +3,7 @@
 #include <ricochet/loader/catalogue.hpp>
 #include <vector>
 
-#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/kinds/trajectory/trajectory.hpp"
 #include "runners/study/load_study.hpp"
 #include "tests/refusals.hpp"
 

@@ -1,6 +1,4 @@
 // impacts.csv, stops.csv and the extremes between samples say the same as the measures of their case.
-#include "runners/kinds/trajectory/contact_rows.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -9,7 +7,8 @@
 #include <set>
 
 #include "runners/kinds/kind.hpp"
-#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/kinds/trajectory/stop_tables.hpp"
+#include "runners/kinds/trajectory/trajectory.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"

@@ -1,10 +1,9 @@
 // Measures with what is open, on the page that a file keeps.
-#include "runners/kinds/trajectory/page/summary_measures.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/uncertainty.hpp"
+#include "runners/kinds/trajectory/page/page.hpp"
 
 using namespace ricochet;
 using Catch::Matchers::Contains;

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "runners/kinds/trajectory/orbit_taker.hpp"
+#include "runners/kinds/trajectory/outputs.hpp"
 #include "tests/runners/report/browser/browser.hpp"
 
 using namespace ricochet;

@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "runners/kinds/basins/page/basins.hpp"
 #include "runners/kinds/basins/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "tests/runners/report/browser/browser.hpp"

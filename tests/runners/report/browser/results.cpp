@@ -5,7 +5,7 @@
 #include <fstream>
 #include <set>
 
-#include "runners/kinds/basins/page/basins.hpp"
+#include "runners/kinds/basins/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/run/finish_run.hpp"
 #include "runners/store/store.hpp"
@@ -203,7 +203,7 @@ TEST_CASE("reports of studies of every kind draw what their tables hold, and eve
     pages.push_back(ran.emplace(kind, run(kind)).first->second.page);
   }
   const browser::Json said = read_back("results", pages);
-  const std::map<std::string, std::string> answers = {{"trajectory", "refined"}, {"convergence", "error-step"},
+  const std::map<std::string, std::string> answers = {{"trajectory", "refined"},        {"convergence", "error-step"},
                                                       {"work-precision", "work-front"}, {"stability", "limit-dots"},
                                                       {"bifurcation", "diagram"},       {"basins", "basins"}};
   for (const auto& [kind, one] : ran) {

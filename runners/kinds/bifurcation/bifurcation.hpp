@@ -1,9 +1,12 @@
 #pragma once
 #include <ricochet/contract/registry.hpp>
 
+#include "runners/answers/answer.hpp"
 #include "runners/march/case_context.hpp"
 #include "runners/march/prepare_case.hpp"
 
+/// \file
+/// Cases of kind `bifurcation`, and what they answer.
 namespace ricochet {
 
 /// What would run for a case of kind `bifurcation`.
@@ -15,5 +18,9 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
 /// marched, diverges or fails is a row with its reason; the case is done when any value is.
 CaseRecord run_bifurcation(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                            const std::atomic<bool>& stop);
+
+/// What a bifurcation study says: which methods give the diagram of the reference, and how it converges in the step.
+/// Then where the motion is the same whatever the numerics, which motions these are, and where they change.
+answers::Answer bifurcation_answer(const answers::Compared& study);
 
 }  // namespace ricochet

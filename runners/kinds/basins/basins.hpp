@@ -1,16 +1,20 @@
 #pragma once
 #include <ricochet/contract/registry.hpp>
 
+#include "runners/answers/answer.hpp"
 #include "runners/march/case_context.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/store/record.hpp"
 
+/// \file
+/// Cases of kind `basins`, their tables, and what they answer.
 namespace ricochet {
 
 /// What would run for a case of kind `basins`.
 CasePlan plan_basins(const StudyCase& study_case, const Registry& registry);
 
-/// Runs one case of kind `basins`: the orbit of every cell of the grid from the scene's own initial state, as lanes, or
-/// of the cells that GridRefinement asks for.
+/// Runs one case of kind `basins`: orbits from the scene's own initial state, as lanes. They are those of every cell of
+/// the grid, or of the cells that GridRefinement asks for.
 ///
 /// Table `cells`, a cell numbered by its row, x first, both ascending: x, y, class, period, attractor, marched, source,
 /// status, reason. `attractor` is the end within the case, from 1 in the order met; derive_basins() numbers it over all
@@ -21,4 +25,18 @@ CasePlan plan_basins(const StudyCase& study_case, const Registry& registry);
 CaseRecord run_basins(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                       const std::atomic<bool>& stop);
 
+/// What a study of basins says: which share of the starts ends in which motion, whether methods move the border, and
+/// whether it is fractal.
+answers::Answer basins_answer(const answers::Compared& study);
+
 }  // namespace ricochet
+
+namespace ricochet::dynamics {
+
+/// Appends the tables of kind `basins` to results.derived: cells, attractors, basin_fractions, basin_differences,
+/// basin_uncertainty (see runners/kinds/sweep/sweep_tables.hpp). Which cells end alike is told by one rule
+/// (core/measure/attractors/attractors.hpp), by which the cases refined their grids as well. A motion and its mirror
+/// image are one attractor.
+void derive_basins(StudyResults& results);
+
+}  // namespace ricochet::dynamics

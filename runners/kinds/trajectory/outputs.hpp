@@ -3,15 +3,47 @@
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/contact/shocks.hpp>
 #include <ricochet/measure/contact/stop_contacts.hpp>
+#include <ricochet/measure/contact/stop_places.hpp>
 #include <ricochet/measure/contact/stop_statistics.hpp>
+#include <ricochet/measure/statistics/running_moments.hpp>
 #include <ricochet/measure/statistics/welch.hpp>
+#include <string>
 #include <vector>
 
-#include "runners/kinds/trajectory/output_keys.hpp"
+#include "runners/study/fields.hpp"
+#include "runners/study/study.hpp"
+#include "runners/table/number_type.hpp"
 
+/// \file
+/// What `outputs` of a trajectory asks for beside the measures of each case, and what takes it as the case marches.
 namespace ricochet {
 
-/// A spectrum as one lane marches. Displacements are sampled at k/rate, straight between steps; a force is its impulse
+struct AskedSpectrum {
+  std::string of;      ///< a stop or a point
+  bool force = false;  ///< of the force there, else of the displacement
+};
+
+struct AskedOutputs {
+  bool any = false;
+  WindowParts window;     ///< that of the study, else the whole run
+  bool windowed = false;  ///< whether the study gives one
+  std::optional<ShockRule> shocks;
+  int classes = 10;  ///< of histograms of shocks
+  std::vector<AskedSpectrum> spectra;
+  double rate = 0, segment = 0;  ///< Hz, s
+  int segment_samples() const;
+};
+
+/// The key itself.
+Field outputs_key();
+
+/// Throws InputError for spectra of what is not there, a rate that the steps do not reach, and a segment that the
+/// window does not hold. Observed measures of stops that the study does not ask for are refused as well.
+void check_outputs(const Json& study);
+
+AskedOutputs asked_outputs(const StudyCase& study_case);
+
+/// A spectrum as one lane marches. Displacements are sampled at k/rate, straight between steps. A force is its impulse
 /// over 1/rate divided by that, so that an impact of any shortness keeps its momentum; positive upwards.
 class SpectrumTaker final : public ContactListener {
  public:
@@ -71,5 +103,34 @@ class OutputWatch final : public StepObserver {
   std::optional<ShockRecorder> shocks_;
   std::vector<SpectrumTaker> spectra_;
 };
+
+/// Where a place is within its clearance, at equal fractions of the window, on whole steps.
+class OrbitTaker final : public StepObserver {
+ public:
+  static constexpr int most_samples = 2000;  ///< of each clearance
+
+  OrbitTaker(const Marcher& marcher, const WindowParts& window, long long steps);
+
+  /// Whether there is any clearance.
+  bool any() const { return !stops_.empty(); }
+  void stage_solved(const Marcher&, const StageView&) override {}
+  void step_done(Marcher& marcher) override;
+  NumberTable finish() const;
+
+ private:
+  long long step_of(long long k) const { return from_ + (to_ - from_) * k / count_; }
+
+  StopList list_;
+  StopPlaces places_;
+  std::vector<int> stops_;
+  long long from_ = 0, to_ = 0, count_ = 1, next_ = 0;
+  std::vector<double> t_, values_;  // of each sample u₁, u₂ of each clearance
+};
+
+/// Columns of `orbits`.
+struct OrbitColumns {
+  const Series *stop = nullptr, *t = nullptr, *first = nullptr, *second = nullptr, *radius = nullptr;
+};
+const NumberType<OrbitColumns>& orbits_type();
 
 }  // namespace ricochet
