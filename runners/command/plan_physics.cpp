@@ -1,5 +1,3 @@
-#include "runners/command/plan_physics.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <numbers>
 #include <ricochet/measure/stability/structure_physics.hpp>
 
+#include "runners/command/subcommand.hpp"
 #include "runners/march/table_steps.hpp"
 #include "runners/run/plan_cases.hpp"
 #include "runners/study/body_keys.hpp"

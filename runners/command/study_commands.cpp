@@ -1,5 +1,3 @@
-#include "runners/command/study_commands.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
