@@ -6,7 +6,7 @@
 #include <ricochet/measure/stability/structure_physics.hpp>
 
 #include "runners/command/subcommand.hpp"
-#include "runners/march/table_steps.hpp"
+#include "runners/march/load_changes.hpp"
 #include "runners/run/plan_cases.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/table/in_order_met.hpp"
