@@ -15,7 +15,6 @@
 #include "runners/run/stop_signal.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/atomic_file.hpp"
-#include "runners/store/environments.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/store.hpp"
 #include "runners/table/text.hpp"
