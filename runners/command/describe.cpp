@@ -11,7 +11,7 @@
 #include "runners/command/subcommand.hpp"
 #include "runners/plan_files/plan_file.hpp"
 #include "runners/study/check_object.hpp"
-#include "runners/study/study_schema.hpp"
+#include "runners/study/load_study.hpp"
 #include "runners/table/text.hpp"
 
 namespace ricochet {

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <ricochet/scene/scene.hpp>
 #include <vector>
 
 #include "runners/study/study.hpp"
@@ -14,5 +15,9 @@ std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, const Json& sce
 /// Throws InputError at /mesh/modes for more modes than the structure has dofs on one of the meshes.
 void check_bases(const std::vector<std::optional<BasisSpec>>& bases, const Json& mesh, const StructureSpec& structure,
                  int coarsest);
+
+/// Throws InputError at /scene/structure for matrices of more than 20 000 dofs, with the time of a step that the cost
+/// model predicts.
+void check_size(const StructureSpec& structure);
 
 }  // namespace ricochet

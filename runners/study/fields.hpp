@@ -32,7 +32,7 @@ struct Field {
     scalar,    ///< a number, whole number, boolean or word, as `spec` declares
     text,      ///< any string
     formula,   ///< a number or a formula in `variables`; where there is a nested object, also a list of such objects
-    place,     ///< one place of the structure (check_place.hpp)
+    place,     ///< one place of the structure (check_place.cpp)
     named,     ///< an object of any names, each with a text
     bodies,    ///< an object of any names, each with a nested object (body_keys.hpp)
     files,     ///< the folder of the files that a study names, and their digests

@@ -12,7 +12,7 @@
 #include <ricochet/scene/planes.hpp>
 #include <ricochet/scene/structure/node_layout.hpp>
 
-#include "runners/study/body_places.hpp"
+#include "runners/study/body_keys.hpp"
 
 namespace ricochet {
 namespace {
