@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "runners/report/html.hpp"
-#include "runners/report/scene_values.hpp"
 #include "runners/report/sketch_pieces.hpp"
 #include "runners/study/body_keys.hpp"
 

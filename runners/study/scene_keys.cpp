@@ -134,8 +134,6 @@ InitialSpec read_initial(const Json& scene, StudyFiles* files) {
   return spec;
 }
 
-using namespace keys;
-
 namespace {
 
 Field fields_of_point() {
@@ -241,8 +239,6 @@ bool is_of_each(const Field& field, const Json& value, const std::string& pointe
     throw InputError(pointer, quote(value) + " says no name; expected " + word + "[NAME]");
   return false;
 }
-
-using namespace keys;
 
 namespace {
 
