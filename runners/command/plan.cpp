@@ -7,7 +7,6 @@
 
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
-#include "runners/run/forecast.hpp"
 #include "runners/run/plan_cases.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/record_values.hpp"

@@ -86,8 +86,6 @@ TEST_CASE("fingerprint: the content hash is the SHA-1 of a version 5 UUID") {
   CHECK(program_hash().size() == 32);
 }
 
-using namespace ricochet;
-
 TEST_CASE("arithmetics: a case keeps that of the run that computed it, also aside and when it is saved again") {
   const ScratchFolder folder;
   StudyResults results = sample_results();

@@ -175,8 +175,6 @@ TEST_CASE("a stop has parameters and a motion of its own, and lists of its numbe
 
 // Where bodies are drawn: what meets stands across, what would overlap does not.
 
-using namespace ricochet;
-
 TEST_CASE("a body stands across from what it meets, above what goes upwards to it") {
   const std::vector<BodyShape> bodies = {{0, 0.5, false}, {0, 0.04, false}};
   const auto above = body_places(bodies, {{0, 1, 0.25, 0.02, true}});
