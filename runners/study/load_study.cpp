@@ -9,7 +9,6 @@
 
 #include "runners/json/json_text.hpp"
 #include "runners/study/axis_meaning.hpp"
-#include "runners/study/bases.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/study/check_object.hpp"
 #include "runners/study/histories.hpp"
