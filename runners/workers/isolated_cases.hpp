@@ -17,7 +17,6 @@
 
 #include "runners/kinds/kind.hpp"
 #include "runners/march/case_context.hpp"
-#include "runners/workers/worker.hpp"
 #include "runners/workers/worker_messages.hpp"
 
 namespace ricochet {

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "runners/workers/worker.hpp"
+#include "runners/workers/worker_messages.hpp"
 
 namespace ricochet {
 
