@@ -66,8 +66,8 @@ struct ParameterSet {
 };
 
 /// The values a method is tried with. First its defaults; of a parameter without one the middle of its range, else 1e5.
-/// Then one parameter at a time: the ends and the middle of bounded ranges (just inside an open end), a hundredth and a
-/// hundredfold of an unbounded default, each word, both truths.
+/// Then one parameter at a time. Of a bounded range the ends (just inside an open one) and the middle. Of an unbounded
+/// default a hundredth and a hundredfold. Each word, both truths.
 std::vector<ParameterSet> parameter_sets(const std::vector<ParameterSpec>& specs);
 
 /// A method with one set of values.

@@ -33,8 +33,8 @@ struct LaneProblem {
 /// A block of lanes before a law, and what the law answers. Nothing allocates between asking and answer.
 class LawBench {
  public:
-  /// Makes and prepares the law for `points` points and `lanes` lanes; one that changes the problem for those of a beam
-  /// with stops at so many nodes, ten at most. Throws Refused.
+  /// Makes and prepares the law for `points` points and `lanes` lanes. A law that changes the problem gets those of a
+  /// beam with stops at so many nodes, ten at most. Throws Refused.
   LawBench(const Law& law, int points, int lanes);
   ContactLaw& law() { return *law_; }
   const ContactLaw& law() const { return *law_; }
@@ -57,7 +57,7 @@ class LawBench {
 };
 
 /// The answer of the law at one point whose measure no effort moves: p at depth δ beyond the lower (side −1) or upper
-/// (+1) stop, with the point's speed u and, one step before, the depth δ⁻. Not `answered`: the law has no force there,
+/// (+1) stop. The point has the speed u and, one step before, the depth δ⁻. Not `answered`: the law has no force there,
 /// as a barrier beyond its stop.
 struct PointAnswer {
   double effort = 0, dissipation = 0;

@@ -41,8 +41,8 @@ Verdict contact_gains_as_declared(const Scheme& scheme);
 /// The same, in the order of the report.
 const std::vector<Check<TimeScheme>>& scheme_checks();
 
-/// The plan of a marcher evaluated anew beside it, with dense matrices and nothing of the engine but the efforts that
-/// its law found: S, b, weighted efforts, updates; then whether those efforts answer the measures found here.
+/// The plan of a marcher evaluated anew beside it, with dense matrices: S, b, weighted efforts, updates. Of the engine
+/// it takes nothing but the efforts that its law found. Then it asks whether those answer the measures found here.
 class DenseMarch final : public StepObserver {
  public:
   explicit DenseMarch(const Marcher& marcher);

@@ -128,11 +128,11 @@ struct OpenStudy {
 /// again as a StudyError that names file, line and pointer.
 int with_study(const Arguments& arguments, const std::function<int(const OpenStudy&)>& use);
 
-/// What a reader should know of the plugins before the study runs: methods of the study that a later library provides
-/// too ("time 'newmark' of FILE is shadowed by FILE"), and plugin folders that are none. One sentence each.
+/// What a reader should know of the plugins before the study runs, a sentence each. Methods of the study that a later
+/// library provides too ("time 'newmark' of FILE is shadowed by FILE"), and plugin folders that are none.
 std::vector<std::string> plugin_warnings(const OpenStudy& open);
 
-/// What the structures of these cases are, for a person to see a slip of units at a glance: their numbers, first
+/// What the structures of these cases are, for a person to see a slip of units at a glance. Their numbers, first
 /// frequencies, damping ratios, how many steps the study makes of a period, and which modes its steps resolve. On the
 /// finest mesh with the first mass matrix; at most a few structures; then their contacts (plan_contacts.cpp). "" where
 /// nothing would run.

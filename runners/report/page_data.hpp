@@ -58,9 +58,9 @@ class CurveChoice {
 /// Of a study of many cases only the ledger.
 nlohmann::ordered_json panel_data(const CaseView& view, CurveData& blocks);
 
-/// The snapshots of the cases that have some, as the player reads them: by case the places, points and stops, the units
-/// of the counts and the names of its blocks. Where all of them together would make the page big, of each case every
-/// second instant, every third, … is left: `stride`; forces are then the mean over the longer time.
+/// The snapshots of the cases that have some, as the player reads them. By case the places, points and stops, the units
+/// of the counts and the names of its blocks. Where all of them would make the page big, every second instant of each
+/// case, every third, … is left: `stride`. Forces are then the mean over the longer time.
 nlohmann::ordered_json snapshot_data(const CaseView& view, CurveData& blocks);
 
 /// All cases with status, reason and every measure: sortable, filterable; units in the header, the measure's text as
@@ -77,7 +77,7 @@ std::string notes_html(const CaseView& view);
 /// Compiler, processor, libraries, and the resolved study.
 std::string environment_html(const CaseView& view);
 
-/// The derived tables of the results as folded HTML tables that a click on a header sorts; the first rows of each, and
+/// The derived tables of the results as folded HTML tables that a click on a header sorts. The first rows of each, and
 /// how many more its CSV file has. Empty where nothing was derived.
 std::string derived_tables_html(const StudyResults& results);
 

@@ -23,8 +23,8 @@ std::optional<double> number_at(const nlohmann::ordered_json& object, const char
 /// A place as a study writes it, in words: "x = 0.5 m", "N3 uy", "point plate1".
 std::string place_words(const nlohmann::ordered_json& place);
 
-/// The scene of a resolved study, read leniently: what a study varies stands there as a list, and what cannot be read
-/// is left out of the drawing rather than being an error.
+/// The scene of a resolved study, read leniently. What a study varies stands there as a list. What cannot be read is
+/// left out of the drawing rather than being an error.
 class SceneValues {
  public:
   /// `structure`: where what /scene/structure means here stands, of one body of several.

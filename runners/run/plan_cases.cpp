@@ -131,7 +131,7 @@ PlanOutcome CasePlanner::plan_in_child(const StudyCase& study_case) {
 
 namespace {
 
-// Processor time of a run that is no case's: the program and its plugins opened, the report written; and of each case:
+// Processor time of a run that is no case's: the program and its plugins opened, the report written. And of each case:
 // its fingerprint, its row in the store, its curve, its share of tables and page.
 constexpr double each_run = 0.15, each_case = 1.6e-3;
 

@@ -79,8 +79,9 @@ struct ProgressState {
   std::string waits_for;  ///< a case that takes far longer than predicted; then no time is promised
 };
 
-/// What a case costs, learnt from those that finished: a predicted seconds and b, for being a case at all (its rows are
-/// written, its report is drawn). Least squares of relative errors; until anything is known, as predicted and a little.
+/// What a case costs, learnt from those that finished: a predicted seconds and b. b is for being a case at all (its
+/// rows are written, its report is drawn). Least squares of relative errors; until anything is known, as predicted and
+/// a little.
 class CaseCost {
  public:
   CaseCost();
@@ -102,8 +103,8 @@ std::string progress_text(const ProgressState& state);
 /// "[######------] " and the text, at most `width` characters.
 std::string progress_bar(const ProgressState& state, int width);
 
-/// Tells a person how far a run is: on a terminal a bar redrawn in place five times a second, otherwise a plain line
-/// now and then. Safe from several threads; nothing else may print to `out` while it lives.
+/// Tells a person how far a run is. On a terminal it is a bar redrawn in place five times a second, otherwise a plain
+/// line now and then. Safe from several threads; nothing else may print to `out` while it lives.
 class Progress {
  public:
   /// `elsewhere`: told the same every few seconds, by a thread of its own; must not throw.
@@ -163,7 +164,7 @@ std::string interrupted_text(const std::filesystem::path& folder, const StudyRes
 inline constexpr int kInterrupted = 130;
 
 /// While it lives, SIGINT, SIGTERM and SIGUSR1 (which schedulers send before a time limit) set `requested()` instead of
-/// ending the program; a second SIGINT or SIGTERM ends it at once with code 130. SIGXFSZ is ignored, so that a file
+/// ending the program. A second SIGINT or SIGTERM ends it at once with code 130. SIGXFSZ is ignored, so that a file
 /// size limit is an error of the write that meets it. The former handlers come back at the end. One at a time per
 /// process.
 class StopSignal {

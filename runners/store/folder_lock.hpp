@@ -28,9 +28,9 @@ std::string utc_time();
 /// This process, now.
 RunIdentity this_run();
 
-/// The right to write in a results folder, for one process at a time: flock(2) on FOLDER/results.lock, which the kernel
-/// gives back however the process ends. The file says who holds it and is removed at the end. A later start of the same
-/// job of a scheduler does not wait for an earlier one that is still there: it puts a file of its own in its place, and
+/// The right to write in a results folder, for one process at a time: flock(2) on FOLDER/results.lock. The kernel gives
+/// it back however the process ends. The file says who holds it and is removed at the end. A later start of the same
+/// job of a scheduler does not wait for an earlier one that is still there. It puts a file of its own in its place, and
 /// the store tells the earlier one (store.hpp). Throws StoreError when another process holds it (naming that process)
 /// or the folder is not writable.
 class FolderLock {

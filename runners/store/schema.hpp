@@ -35,9 +35,9 @@ void guarded(const std::filesystem::path& file, const SQLite::Database* database
 /// blob.
 void make_views(SQLite::Database& database, const StudyResults& results);
 
-// Cases of earlier versions of a study: kept in the store beside those that are asked for, by fingerprint, with their
-// measures, curves and tables and the environment they ran in, seen by nobody until they are asked for again. Each
-// call is made inside a transaction.
+// Cases of earlier versions of a study are kept in the store beside those that are asked for, by fingerprint. They have
+// their measures, curves, tables and environment, and are seen by nobody until they are asked for again. Each call is
+// made inside a transaction.
 
 /// Moves these cases, of this environment, aside.
 void set_aside(SQLite::Database& database, const std::vector<std::string>& ids, const Environment& environment);

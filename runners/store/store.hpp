@@ -39,9 +39,9 @@ class Epoch {
   long long number_ = 0;  // 0: none yet
 };
 
-/// Writes that follow each other closely reach the disk together: making one durable takes a few ms, whatever it holds,
+/// Writes that follow each other closely reach the disk together. Making one durable takes a few ms, whatever it holds,
 /// and a study may have thousands of cases of less than one. A write is durable when it returns, unless one became so
-/// less than half a second before; then it is at the end of that half second, or when enough waits. Readers of the file
+/// less than half a second before. Then it is at the end of that half second, or when enough waits. Readers of the file
 /// see what is durable.
 ///
 /// Every function is called with `mutex` locked, which belongs to whoever uses the database. What a write throws takes

@@ -78,8 +78,8 @@ struct BodyPlace {
   int row = 0;
 };
 
-/// Bodies so that the first stop of each with those before it stands across from its partner, the one that goes upwards
-/// in the row beneath. Bodies that would overlap in a row take others; bodies that meet none stand above all.
+/// Bodies so that the first stop of each with those before it stands across from its partner. The one that goes upwards
+/// is in the row beneath. Bodies that would overlap in a row take others; bodies that meet none stand above all.
 std::vector<BodyPlace> body_places(const std::vector<BodyShape>& bodies, const std::vector<BodyMeeting>& meetings);
 
 /// Whether every body moves along its axis: then rows go to the right, and each holds one.

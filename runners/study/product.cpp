@@ -178,8 +178,8 @@ const PluginManual& require_method(Role role, const std::string& name, const std
   message += names.empty() ? " (no " + std::string(role_phrase(role)) +
                                  " was found at all; `ricochet doctor` shows the plugin folders)"
                            : " (found: " + quoted_list(names) + ")";
-  // Where a file that cannot serve is meant for this method, or tells nothing of itself and no name is near, the file
-  // is the fault, not the study.
+  // The file is the fault, not the study, where one that cannot serve is meant for this method. Also where it tells
+  // nothing of itself and no name is near.
   const Unusable* meant = catalogue.unusable_provider(role, name);
   std::vector<const Unusable*> suspects;
   for (const Unusable& file : catalogue.unusable())

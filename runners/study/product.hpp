@@ -85,9 +85,9 @@ struct MethodOptions {
 MethodOptions read_methods(Role role, const Json& value, const std::string& pointer, Catalogue& catalogue,
                            Registry& registry, const std::filesystem::path& folder = {});
 
-/// The bases of modes that a study marches in, out of its `mesh`: mesh.modes times mesh.residual; one that is empty
-/// where all dofs march. `modal`: whether the structure is described by modes, whose residual may be left out alone.
-/// Throws InputError at /mesh/residual for a residual of no modes.
+/// The bases of modes that a study marches in, out of its `mesh`: mesh.modes times mesh.residual. One is empty where
+/// all dofs march. `modal`: whether the structure is described by modes, whose residual may be left out alone. Throws
+/// InputError at /mesh/residual for a residual of no modes.
 std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, const Json& scene, bool modal);
 
 /// Throws InputError at /mesh/modes for more modes than the structure has dofs on one of the meshes.

@@ -17,8 +17,8 @@
 
 namespace ricochet {
 
-/// Carries bytes between the processes of a run on several machines, numbered 0 … size − 1 (its ranks): whole, and in
-/// order between any two of them. A rank may vanish without a word.
+/// Carries bytes between the processes of a run on several machines, numbered 0 … size − 1 (its ranks). They come
+/// whole, and in order between any two of them. A rank may vanish without a word.
 class Transport {
  public:
   struct Packet {
@@ -57,9 +57,9 @@ Message host_message(const std::string& bytes);
 HostFacts host_facts(const std::string& bytes);
 WorkerEnd worker_end(const std::string& bytes);
 
-/// The coordinator's side of the agents: a WorkerHost for each of the other ranks. A machine of which nothing is heard
-/// for `silence` seconds, those not counted in which this process was stopped itself, or which says what is no message,
-/// is lost, with all its workers, and is not asked again.
+/// The coordinator's side of the agents: a WorkerHost for each of the other ranks. A machine is lost, with all its
+/// workers, where nothing is heard of it for `silence` seconds, or where it says what is no message. Seconds in which
+/// this process was stopped itself do not count. A lost machine is not asked again.
 class RemoteHosts {
  public:
   /// Told once of each machine that is lost, and why: "does not answer any more".
