@@ -1,10 +1,9 @@
-#include "runners/answers/choice_sentences.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
 
+#include "runners/answers/measure_answer.hpp"
 #include "runners/answers/set_names.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"

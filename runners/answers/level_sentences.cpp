@@ -4,7 +4,7 @@
 #include <map>
 #include <ricochet/measure/statistics/tiers.hpp>
 
-#include "runners/answers/choice_sentences.hpp"
+#include "runners/answers/measure_answer.hpp"
 #include "runners/answers/set_names.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"

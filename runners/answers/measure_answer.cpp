@@ -1,3 +1,5 @@
+#include "runners/answers/measure_answer.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,9 +10,7 @@
 #include <ricochet/measure/statistics/tiers.hpp>
 
 #include "runners/answers/answer.hpp"
-#include "runners/answers/choice_sentences.hpp"
 #include "runners/answers/set_names.hpp"
-#include "runners/answers/tier_speaker.hpp"
 #include "runners/answers/uncertainty.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"

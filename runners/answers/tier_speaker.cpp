@@ -1,11 +1,11 @@
-#include "runners/answers/tier_speaker.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <ricochet/measure/statistics/quantiles.hpp>
+
+#include "runners/answers/measure_answer.hpp"
 
 namespace ricochet::answers {
 

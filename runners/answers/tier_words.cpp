@@ -6,7 +6,7 @@
 #include <map>
 #include <ricochet/measure/statistics/quantiles.hpp>
 
-#include "runners/answers/tier_speaker.hpp"
+#include "runners/answers/measure_answer.hpp"
 #include "runners/study/axis_meaning.hpp"
 
 namespace ricochet::answers {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "runners/answers/choice_sentences.hpp"
 #include "runners/answers/limits.hpp"
+#include "runners/answers/measure_answer.hpp"
 
 namespace ricochet::answers {
 namespace {

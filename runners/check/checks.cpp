@@ -6,9 +6,9 @@
 #include <cmath>
 #include <ricochet/contract/plugin_call.hpp>
 
+#include "runners/check/bench.hpp"
 #include "runners/check/law_checks.hpp"
 #include "runners/check/mass_checks.hpp"
-#include "runners/check/reference_scenes.hpp"
 #include "runners/check/scheme_checks.hpp"
 
 namespace ricochet::checking {

@@ -1,10 +1,10 @@
-#include "runners/check/dense_march.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <ricochet/kernels/dense_solvers.hpp>
+
+#include "runners/check/scheme_checks.hpp"
 
 namespace ricochet::checking {
 namespace {

@@ -1,11 +1,10 @@
-#include "runners/check/law_bench.hpp"
-
 #include <cmath>
 #include <limits>
 #include <ricochet/contact_solvers/box_problem.hpp>
 
 #include "runners/check/allocation_count.hpp"
 #include "runners/check/bench.hpp"
+#include "runners/check/law_checks.hpp"
 
 namespace ricochet::checking {
 namespace {

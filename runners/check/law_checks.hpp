@@ -1,9 +1,81 @@
 #pragma once
-#include "runners/check/law_bench.hpp"
+#include <Eigen/Core>
+#include <random>
+#include <ricochet/contract/contact_law.hpp>
+#include <vector>
+
+#include "runners/check/checks.hpp"
 
 /// \file
 /// What is looked at in a contact law.
 namespace ricochet::checking {
+
+// Contact problems to which a law is put directly, without scheme or structure.
+
+using Law = Subject<ContactLaw>;
+
+/// A dense Delassus operator.
+class DenseDelassus final : public DelassusColumns {
+ public:
+  explicit DenseDelassus(Eigen::MatrixXd matrix) : matrix_(std::move(matrix)) {}
+  const double* column(int j) override { return matrix_.col(j).data(); }
+  const Eigen::MatrixXd& matrix() const { return matrix_; }
+
+ private:
+  Eigen::MatrixXd matrix_;
+};
+
+/// What one lane asks: m numbers each.
+struct LaneProblem {
+  Eigen::VectorXd free, lower, upper, rate, before, effort;
+};
+
+/// A block of lanes before a law, and what the law answers. Nothing allocates between asking and answer.
+class LawBench {
+ public:
+  /// Makes and prepares the law for `points` points and `lanes` lanes. A law that changes the problem gets those of a
+  /// beam with stops at so many nodes, ten at most. Throws Refused.
+  LawBench(const Law& law, int points, int lanes);
+  ContactLaw& law() { return *law_; }
+  const ContactLaw& law() const { return *law_; }
+  /// How far before a stop the law acts.
+  double layer() const { return law_->layer(0); }
+
+  /// Asks the law: `touched` lanes of `problems` (one per lane). The law's memory is forgotten before.
+  void solve(DenseDelassus& W, double reach, double rate_reach, const std::vector<LaneProblem>& problems,
+             const std::vector<int>& touched);
+  Eigen::VectorXd effort(int lane) const;
+  const LaneOutcome& outcome(int lane) const { return outcomes_[static_cast<std::size_t>(lane)]; }
+  long allocations() const { return allocations_; }  ///< of the last solve
+
+ private:
+  std::unique_ptr<ContactLaw> law_;
+  int points_, lanes_;
+  std::vector<double> free_, lower_, upper_, rate_, before_, effort_, memory_;
+  std::vector<LaneOutcome> outcomes_;
+  long allocations_ = 0;
+};
+
+/// The answer of the law at one point whose measure no effort moves: p at depth δ beyond the lower (side −1) or upper
+/// (+1) stop. The point has the speed u and, one step before, the depth δ⁻. Not `answered`: the law has no force there,
+/// as a barrier beyond its stop.
+struct PointAnswer {
+  double effort = 0, dissipation = 0;
+  bool answered = true;
+  ContactSlopes slopes;
+};
+PointAnswer at_point(LawBench& bench, int side, double depth, double speed, double before);
+/// Whether the law acts before its stop and has no force beyond it.
+bool is_barrier(LawBench& bench);
+
+/// A lane with a random measure between random stops, m points of size 1e-2 m. `two_sided`: both stops, so near that
+/// points touch both; else the lower one alone.
+LaneProblem random_lane(std::mt19937& random, int points, bool two_sided);
+/// W = A Aᵀ/m + a little, of size `flexibility` m/N.
+DenseDelassus random_delassus(std::mt19937& random, int points, double flexibility);
+
+/// m/N at which the law is asked: the inverse of its stiffness, found from what one point answers; 1e-4 where rigid.
+double flexibility_of(const Law& law);
 
 // Rigid laws.
 Verdict complementarity_holds(const Law& law);
@@ -25,7 +97,7 @@ Verdict solve_allocates_nothing(const Law& law);
 Verdict lanes_are_independent(const Law& law);
 Verdict untouched_lanes_are_left_alone(const Law& law);
 Verdict warm_start_changes_nothing(const Law& law);
-Verdict points_have_own_sets(const Law& law);  // law_points.cpp
+Verdict points_have_own_sets(const Law& law);
 
 const std::vector<Check<ContactLaw>>& law_checks();
 

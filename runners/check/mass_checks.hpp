@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <ricochet/contract/mass_strategy.hpp>
 
-#include "runners/check/parameter_values.hpp"
+#include "runners/check/checks.hpp"
 
 /// \file
 /// Displacement spaces on which masses are checked: a beam or a bar of unit length and density, fixed or free at each

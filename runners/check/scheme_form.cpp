@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "runners/check/dense_march.hpp"
 #include "runners/check/scheme_checks.hpp"
 
 namespace ricochet::checking {

@@ -1,8 +1,12 @@
-#include "runners/check/verdict.hpp"
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <exception>
 #include <ricochet/loader/child.hpp>
+
+#include "runners/check/checks.hpp"
 
 namespace ricochet::checking {
 namespace {
@@ -106,6 +110,122 @@ CheckResult run_check(const std::string& name, const std::vector<Trial>& trials,
     result.sentences = {outcome.sentence()};
   if (hangs) *hangs = outcome.end == ChildOutcome::End::timeout;
   return result;
+}
+
+namespace {
+
+using Type = ParameterSpec::Type;
+
+bool bounded(const Range& range) {
+  return std::isfinite(range.low) && std::isfinite(range.high);
+}
+
+ParameterValue number(const ParameterSpec& spec, double x) {
+  if (spec.type == Type::integer) return static_cast<long long>(std::llround(x));
+  return x;
+}
+double as_real(const ParameterValue& value) {
+  if (const auto* whole = std::get_if<long long>(&value)) return static_cast<double>(*whole);
+  return std::get<double>(value);
+}
+
+ParameterValue first_value(const ParameterSpec& spec) {
+  if (spec.fallback) return *spec.fallback;
+  switch (spec.type) {
+    case Type::word:
+      return spec.words.empty() ? std::string() : spec.words.front();
+    case Type::boolean:
+      return false;
+    case Type::real:
+    case Type::integer:
+      break;
+  }
+  constexpr double stiffness_like = 1e5;
+  if (bounded(spec.range)) return number(spec, 0.5 * (spec.range.low + spec.range.high));
+  return number(spec, spec.range.contains(stiffness_like) ? stiffness_like : spec.range.low + 1);
+}
+
+std::vector<ParameterValue> further_values(const ParameterSpec& spec) {
+  std::vector<ParameterValue> values;
+  if (spec.type == Type::word)
+    for (const std::string& word : spec.words) values.emplace_back(word);
+  if (spec.type == Type::boolean) values = {true, false};
+  if (spec.type != Type::real && spec.type != Type::integer) return values;
+  const Range& range = spec.range;
+  if (bounded(range)) {
+    const double width = range.high - range.low, inside = spec.type == Type::integer ? 1 : 1e-3 * width;
+    values = {number(spec, range.low + (range.low_open ? inside : 0)), number(spec, range.low + 0.5 * width),
+              number(spec, range.high - (range.high_open ? inside : 0))};
+  } else {
+    const double base = as_real(first_value(spec));
+    for (const double factor : {0.01, 100.0}) values.push_back(number(spec, base * factor));
+    if (std::isfinite(range.low) && !range.low_open) values.push_back(number(spec, range.low));
+    if (std::isfinite(range.high) && !range.high_open) values.push_back(number(spec, range.high));
+  }
+  return values;
+}
+
+std::string value_text(const ParameterValue& value) {
+  if (const auto* word = std::get_if<std::string>(&value)) return *word;
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  return fmt::format("{:g}", as_real(value));
+}
+
+ParameterSet described(const std::vector<ParameterSpec>& specs, Parameters values) {
+  std::string text;
+  for (const ParameterSpec& spec : specs)
+    text += (text.empty() ? "" : ", ") + spec.key + " " + value_text(values.values().at(spec.key));
+  return {std::move(values), std::move(text)};
+}
+
+}  // namespace
+
+std::vector<ParameterSet> parameter_sets(const std::vector<ParameterSpec>& specs) {
+  constexpr std::size_t most_sets = 24;
+  Parameters base;
+  for (const ParameterSpec& spec : specs) base.set(spec.key, first_value(spec));
+  std::vector<ParameterSet> sets = {described(specs, base)};
+  for (const ParameterSpec& spec : specs)
+    for (const ParameterValue& value : further_values(spec)) {
+      if (check_parameter(spec, value)) continue;
+      Parameters values = base;
+      values.set(spec.key, value);
+      ParameterSet set = described(specs, std::move(values));
+      const bool known =
+          std::any_of(sets.begin(), sets.end(), [&](const ParameterSet& other) { return other.text == set.text; });
+      if (!known && sets.size() < most_sets) sets.push_back(std::move(set));
+    }
+  return sets;
+}
+
+Verdict manual_complete(const PluginManual& manual) {
+  const auto lacks = [](const std::string& what) { return fails("the manual has no " + what); };
+  if (manual.summary.empty()) return lacks("summary: one line for `ricochet list`");
+  if (manual.text.empty()) return lacks("text: one paragraph for `ricochet describe`");
+  if (manual.source.empty()) return lacks("source: author, year, equation");
+  for (const ParameterSpec& spec : manual.parameters) {
+    if (spec.text.empty()) return lacks("sentence about the parameter " + spec.key);
+    if (spec.unit.empty()) return lacks("unit of the parameter " + spec.key + " (\"1\" when it has none)");
+    if (spec.type == Type::word && spec.words.empty()) return lacks("words for the parameter " + spec.key);
+  }
+  return fine();
+}
+
+std::string poor_refusal(const std::string& sentence, const PluginManual& manual) {
+  constexpr std::size_t shortest = 20;
+  if (sentence.size() < shortest)
+    return fmt::format("it refuses with \"{}\": {} characters name neither cause nor remedy", sentence,
+                       sentence.size());
+  std::string lower = sentence;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::vector<std::string> words = {"mass",       "damp",      "step",    "element",   "mesh", "stop",
+                                    "contact",    "load",      "support", "structure", "beam", "bar",
+                                    "oscillator", "reference", "law",     "initial"};
+  for (const ParameterSpec& spec : manual.parameters) words.push_back(spec.key);
+  for (const std::string& word : words)
+    if (lower.find(word) != std::string::npos) return {};
+  return "its refusal names no parameter and nothing of the problem, hence no remedy: \"" + sentence + "\"";
 }
 
 }  // namespace ricochet::checking

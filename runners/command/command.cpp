@@ -11,7 +11,7 @@
 #include "runners/run/environment.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/atomic_file.hpp"
-#include "runners/workers/worker_service.hpp"
+#include "runners/workers/worker_process.hpp"
 
 namespace ricochet {
 namespace {

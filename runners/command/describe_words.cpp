@@ -1,10 +1,9 @@
-#include "runners/command/describe_words.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <ostream>
 
+#include "runners/command/subcommand.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/fields.hpp"
 #include "runners/study/study_kind.hpp"

@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "runners/command/command.hpp"
-#include "runners/command/examples.hpp"
 #include "runners/command/subcommand.hpp"
 
 namespace ricochet {

@@ -6,9 +6,7 @@
 #include <ostream>
 
 #include "runners/command/command.hpp"
-#include "runners/command/plan_physics.hpp"
-#include "runners/command/study_commands.hpp"
-#include "runners/run/forecast.hpp"
+#include "runners/command/subcommand.hpp"
 #include "runners/run/plan_cases.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/record_values.hpp"

@@ -1,5 +1,3 @@
-#include "runners/command/plan_physics.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +5,8 @@
 #include <numbers>
 #include <ricochet/measure/stability/structure_physics.hpp>
 
-#include "runners/march/table_steps.hpp"
+#include "runners/command/subcommand.hpp"
+#include "runners/march/load_changes.hpp"
 #include "runners/run/plan_cases.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/table/in_order_met.hpp"

@@ -5,7 +5,6 @@
 #include <regex>
 
 #include "runners/command/command.hpp"
-#include "runners/command/study_commands.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/store/fingerprint.hpp"
 

@@ -1,5 +1,3 @@
-#include "runners/command/study_commands.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +14,6 @@
 #include "runners/report/summary_page.hpp"
 #include "runners/run/compare_studies.hpp"
 #include "runners/run/finish_run.hpp"
-#include "runners/run/league.hpp"
 #include "runners/run/run_study.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/read_store.hpp"

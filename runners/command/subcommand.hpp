@@ -1,10 +1,15 @@
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <iosfwd>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <ricochet/contract/parameters.hpp>
 #include <ricochet/loader/catalogue.hpp>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -12,6 +17,9 @@
 #include "runners/study/study.hpp"
 
 namespace ricochet {
+
+class CasePlanner;
+struct PlannedCase;
 
 /// The command was used wrongly (exit code 2); the message says how it is used.
 class UsageError : public std::runtime_error {
@@ -106,5 +114,53 @@ int command_point(const Arguments& arguments, std::ostream& out);
 int command_case(const Arguments& arguments, std::ostream& out);
 int command_schema(const Arguments& arguments, std::ostream& out);
 int command_doctor(const Arguments& arguments, std::ostream& out);
+
+// What they share.
+
+/// A study with the plugins that it opened.
+struct OpenStudy {
+  Study study;
+  Catalogue catalogue;
+  Registry registry;
+};
+
+/// Loads the study that the first operand names and hands it over. An InputError, from loading or from `use`, is thrown
+/// again as a StudyError that names file, line and pointer.
+int with_study(const Arguments& arguments, const std::function<int(const OpenStudy&)>& use);
+
+/// What a reader should know of the plugins before the study runs, a sentence each. Methods of the study that a later
+/// library provides too ("time 'newmark' of FILE is shadowed by FILE"), and plugin folders that are none.
+std::vector<std::string> plugin_warnings(const OpenStudy& open);
+
+/// What the structures of these cases are, for a person to see a slip of units at a glance. Their numbers, first
+/// frequencies, damping ratios, how many steps the study makes of a period, and which modes its steps resolve. On the
+/// finest mesh with the first mass matrix; at most a few structures; then their contacts (plan_contacts.cpp). "" where
+/// nothing would run.
+std::string physics_text(const std::vector<PlannedCase>& cases, const CasePlanner& planner, const Registry& registry);
+
+/// A value of an axis as a person reads it: words bare, numbers in their shortest form, null as "none".
+std::string plain(const nlohmann::ordered_json& value);
+
+// The manual of what a study or its results call by a name and no plugin provides.
+
+/// "number", "whole number", "true or false", "word".
+const char* type_word(const ParameterSpec& spec);
+/// The range of a number, the words of a word.
+std::string admissible_values(const ParameterSpec& spec);
+
+/// Prints what is known of a structure, a cross-section, a kind of study (text and keys), a measure or an error (unit
+/// and meaning). False where nothing is called so.
+bool describe_word(const std::string& name, std::ostream& out);
+
+/// The structures, cross-sections and kinds.
+std::vector<std::string> words_of_studies();
+/// The measures and the errors.
+std::vector<std::string> words_of_results();
+
+/// A file of plugins/examples/ROLE, carried inside the program (see examples.cmake).
+struct ExampleFile {
+  std::string_view role, name, text;
+};
+std::span<const ExampleFile> example_files();
 
 }  // namespace ricochet

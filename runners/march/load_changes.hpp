@@ -43,4 +43,12 @@ class GapWatch {
 /// Empty where no load is a formula in t.
 std::vector<std::string> load_changes(const SceneSpec& scene, double step, long long steps);
 
+/// What the step of a case makes of its tables and spectra, a sentence each. Told are tables with many steps between
+/// entries, and spectra whose highest line has fewer than five steps in its period.
+std::vector<std::string> table_notes(const StudyCase& study_case);
+
+/// Tables of a scene whose entries, Δ apart, resolve nothing above 1/2Δ, a sentence each. Told where the structure has
+/// a mode of one of these pulsations (rad/s, in order) above.
+std::vector<std::string> coarse_tables(const SceneSpec& scene, const std::vector<double>& pulsations);
+
 }  // namespace ricochet

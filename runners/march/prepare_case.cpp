@@ -8,8 +8,8 @@
 #include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 
+#include "runners/march/load_changes.hpp"
 #include "runners/march/seconds.hpp"
-#include "runners/march/table_steps.hpp"
 
 namespace ricochet {
 namespace {

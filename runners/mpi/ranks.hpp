@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/workers/host_messages.hpp"
+#include "runners/workers/machines.hpp"
 
 namespace ricochet {
 

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "runners/mpi/ranks.hpp"
-#include "runners/workers/host_messages.hpp"
+#include "runners/workers/machines.hpp"
 #include "runners/workers/worker_process.hpp"
 
 namespace ricochet {

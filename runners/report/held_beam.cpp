@@ -1,10 +1,9 @@
-#include "runners/report/held_beam.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "runners/report/html.hpp"
+#include "runners/report/sketch_pieces.hpp"
 
 namespace ricochet::report {
 namespace {

@@ -38,4 +38,12 @@ std::vector<std::string_view> scripts(std::initializer_list<const char*> names);
 /// say.
 std::vector<Table> page_tables(const StudyResults& results, const KindPage& page);
 
+// How much of each measure's variance is owed to each choice, from the table `effects`. Every kind's page has it.
+
+/// What the shares of each measure's variance say, as a sentence, with what they leave out.
+Table effects_said(const CaseView& view);
+
+/// One sentence to quote per measure, what the shares leave out, and the table of shares. Empty without the table.
+std::string effects_html(const CaseView& view);
+
 }  // namespace ricochet::report

@@ -6,7 +6,6 @@
 #include <map>
 
 #include "runners/report/curve_data.hpp"
-#include "runners/report/panel_data.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/study_tables.hpp"

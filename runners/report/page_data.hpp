@@ -4,7 +4,9 @@
 #include <string>
 
 #include "runners/report/case_view.hpp"
+#include "runners/report/curve_data.hpp"
 #include "runners/report/kind_page.hpp"
+#include "runners/store/record.hpp"
 
 namespace ricochet::report {
 
@@ -46,5 +48,37 @@ class CurveChoice {
   std::string where_;
   std::set<std::string> ids_;
 };
+
+/// What the panel of a case shows that no figure of the page has, bounded so that the page stays small:
+///
+///     ledger     columns, and their numbers by case, in six digits
+///     impacts    columns, and by case the first rows; the number of all of them is a measure of the case
+///     portraits  by case the names of blocks with tip displacement and velocity, a few hundred points of the curve
+///
+/// Of a study of many cases only the ledger.
+nlohmann::ordered_json panel_data(const CaseView& view, CurveData& blocks);
+
+/// The snapshots of the cases that have some, as the player reads them. By case the places, points and stops, the units
+/// of the counts and the names of its blocks. Where all of them would make the page big, every second instant of each
+/// case, every third, … is left: `stride`. Forces are then the mean over the longer time.
+nlohmann::ordered_json snapshot_data(const CaseView& view, CurveData& blocks);
+
+/// All cases with status, reason and every measure: sortable, filterable; units in the header, the measure's text as
+/// its tooltip and in a list below. `all`: results of which the view may hold a part; they decide whether there are
+/// files of curves.
+std::string case_table_html(const CaseView& view, const StudyResults& all);
+
+/// What `compile` left out of the cases, the same item and reason put together.
+std::string left_out_html(const CaseView& view);
+
+/// The notes of the cases, put together.
+std::string notes_html(const CaseView& view);
+
+/// Compiler, processor, libraries, and the resolved study.
+std::string environment_html(const CaseView& view);
+
+/// The derived tables of the results as folded HTML tables that a click on a header sorts. The first rows of each, and
+/// how many more its CSV file has. Empty where nothing was derived.
+std::string derived_tables_html(const StudyResults& results);
 
 }  // namespace ricochet::report

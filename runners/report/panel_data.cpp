@@ -1,5 +1,3 @@
-#include "runners/report/panel_data.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "runners/report/page_data.hpp"
 #include "runners/store/snapshots.hpp"
 #include "runners/table/table_reader.hpp"
 

@@ -9,12 +9,11 @@
 
 #include "runners/report/assets.hpp"
 #include "runners/report/case_view.hpp"
-#include "runners/report/effects.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/kind_page.hpp"
 #include "runners/report/page_data.hpp"
 #include "runners/report/scene_sketch.hpp"
 #include "runners/report/summary_page.hpp"
-#include "runners/report/tables.hpp"
 
 namespace ricochet {
 namespace report {

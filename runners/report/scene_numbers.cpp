@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include "runners/report/held_beam.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/scene_sketch.hpp"
-#include "runners/report/scene_values.hpp"
+#include "runners/report/sketch_pieces.hpp"
 
 namespace ricochet::report {
 namespace {

@@ -7,9 +7,8 @@
 #include <tuple>
 
 #include "runners/report/html.hpp"
-#include "runners/report/scene_values.hpp"
 #include "runners/report/sketch_pieces.hpp"
-#include "runners/study/body_places.hpp"
+#include "runners/study/body_keys.hpp"
 
 namespace ricochet::report {
 namespace {

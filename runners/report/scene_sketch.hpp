@@ -1,5 +1,6 @@
 #pragma once
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,5 +14,57 @@ std::string scene_svg(const nlohmann::ordered_json& study);
 
 /// Its numbers, SI: {"L", "1.501 m"}, {"EI", "33.8 N m²"}, … What the study varies is said as "from … to … (8 values)".
 std::vector<std::pair<std::string, std::string>> scene_numbers(const nlohmann::ordered_json& study);
+
+/// A number, the first of a list; nothing for what is none.
+std::optional<double> first_number(const nlohmann::ordered_json* value);
+/// The number of an object at a key.
+std::optional<double> number_at(const nlohmann::ordered_json& object, const char* key);
+
+/// A place as a study writes it, in words: "x = 0.5 m", "N3 uy", "point plate1".
+std::string place_words(const nlohmann::ordered_json& place);
+
+/// The scene of a resolved study, read leniently. What a study varies stands there as a list. What cannot be read is
+/// left out of the drawing rather than being an error.
+class SceneValues {
+ public:
+  /// `structure`: where what /scene/structure means here stands, of one body of several.
+  explicit SceneValues(const nlohmann::ordered_json& study, std::string structure = "/scene/structure")
+      : study_(study), structure_(std::move(structure)) {}
+
+  /// The same scene as each of its bodies sees it, by name; of one structure that, without a name.
+  std::vector<std::pair<std::string, SceneValues>> bodies() const;
+  /// What stands at a pointer; null where nothing does.
+  const nlohmann::ordered_json* at(const std::string& pointer) const;
+  std::string word(const std::string& pointer) const;
+  /// The number there, the first of a list; nothing for what is none.
+  std::optional<double> number(const std::string& pointer) const;
+  /// It with its unit; of several "from … to … (8 values)"; "" for nothing and for a lone 0.
+  std::string text(const std::string& pointer, const std::string& unit) const;
+
+  /// A stop: its places as a study writes them, and how far it lies from rest.
+  struct Stop {
+    nlohmann::ordered_json at, to = {};          ///< to: null for the ground
+    std::optional<double> lower, upper, radius;  ///< radius: of a clearance
+    std::string name = {};                       ///< where it has one
+  };
+  /// The stops, of a list all; else at most twelve places of a structure this long; none where there is no contact.
+  std::vector<Stop> stops(double length) const;
+  /// Name of each stop that has one, and its place and bounds in words.
+  std::vector<std::pair<std::string, std::string>> named_stops() const;
+  /// EI (N m²) and ρS (kg/m) of a beam; nothing where its section varies or is none.
+  struct Section {
+    double EI, rhoS;
+  };
+  std::optional<Section> section() const;
+
+ private:
+  /// Where a pointer leads in the study.
+  std::string real(const std::string& pointer) const;
+  /// The values that a sweep gives to this place.
+  std::vector<double> swept(const std::string& pointer) const;
+
+  const nlohmann::ordered_json& study_;
+  std::string structure_;
+};
 
 }  // namespace ricochet::report

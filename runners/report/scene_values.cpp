@@ -1,5 +1,3 @@
-#include "runners/report/scene_values.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <ricochet/scene/scene.hpp>
 
 #include "runners/report/html.hpp"
+#include "runners/report/scene_sketch.hpp"
 
 namespace ricochet::report {
 namespace {

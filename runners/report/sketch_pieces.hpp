@@ -1,15 +1,59 @@
 #pragma once
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "runners/report/scene_values.hpp"
-#include "runners/report/sketch_lines.hpp"
+#include "runners/report/scene_sketch.hpp"
 
 /// \file
 /// A structure as a sketch draws it: its strokes, and where its places lie. One piece for each body of a scene.
 namespace ricochet::report {
+
+// The strokes that sketches of scenes are made of, as SVG; places in pixels.
+
+std::string line(double x1, double y1, double x2, double y2, const char* classes);
+std::string path(const std::string& d, const char* classes);
+/// An arrow along x or y, its head at the second end; `both`: one at each.
+std::string arrow(double x1, double y1, double x2, double y2, bool both = false);
+std::string circle(double x, double y, double radius, const char* classes);
+/// A face across the direction (dx, dy), hatched on the side that nothing enters.
+std::string face(double x, double y, double dx, double dy);
+/// A wall whose face stands at x; hatched to its left (or right).
+std::string wall(double x, double from, double to, double side);
+
+/// The texts of a sketch: one that would cover another goes down (or up) until it does not.
+class Labels {
+ public:
+  std::string operator()(double x, double y, const std::string& text, const char* anchor = "middle", double away = -1);
+  /// From where to where they reach, with `from` and `to`, pixels.
+  std::array<double, 2> reach(double from, double to) const;
+
+ private:
+  struct Box {
+    double left, right, low;
+  };
+  std::vector<Box> boxes_;
+};
+
+// What holds a beam that says it itself, drawn: clamps, pins, guides, springs, point masses, spans.
+
+/// Where the beam lies in the drawing, in pixels; measure: the height of its spans, 0 for none.
+struct BeamFrame {
+  double left, span, rest, measure;
+};
+
+struct HeldBeam {
+  bool given = false;     ///< whether the scene has supports of its own
+  bool measured = false;  ///< whether `spans` says the lengths
+  std::string svg, masses, spans;
+};
+HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& frame, Labels& label);
+
+/// Supports, sections and masses in words: name and text, for the table beside the drawing.
+std::vector<std::pair<std::string, std::string>> held_beam_words(const SceneValues& scene);
 
 /// A place of a drawing, pixels, and where its displacement points; `front` and `back`: how far what moves reaches that
 /// way, and the other. A circle round it has the axes `ring`.

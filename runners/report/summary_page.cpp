@@ -7,7 +7,6 @@
 #include "runners/report/assets.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/scene_sketch.hpp"
-#include "runners/store/environments.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/study_tables.hpp"

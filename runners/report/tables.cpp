@@ -1,5 +1,3 @@
-#include "runners/report/tables.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/page_data.hpp"
 #include "runners/report/summary_page.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/study_tables.hpp"

@@ -9,7 +9,7 @@
 #include "runners/report/case_view.hpp"
 #include "runners/report/summary_page.hpp"
 #include "runners/run/choice_effects.hpp"
-#include "runners/store/environments.hpp"
+#include "runners/store/fingerprint.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"
 

@@ -7,7 +7,7 @@
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
 #include "runners/run/compare_studies.hpp"
-#include "runners/store/environments.hpp"
+#include "runners/store/fingerprint.hpp"
 #include "runners/table/text.hpp"
 
 namespace ricochet {

@@ -17,10 +17,8 @@
 #endif
 
 #include "runners/march/study_identity.hpp"
-#include "runners/run/build_facts.hpp"
-#include "runners/store/environments.hpp"
 #include "runners/store/fingerprint.hpp"
-#include "runners/store/run_identity.hpp"
+#include "runners/store/folder_lock.hpp"
 #include "runners/workers/allowed_processors.hpp"
 
 namespace ricochet {

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "runners/store/record.hpp"
@@ -9,5 +10,11 @@ namespace ricochet {
 /// Program, commit, compiler, flags, processor, cores that may be used, instruction sets, digest of the arithmetic,
 /// kernel, libraries, plugin libraries (with a hash of their bytes), time started (UTC).
 Environment describe_environment(const std::vector<std::filesystem::path>& plugin_libraries);
+
+/// How this program was built; the words that CMake gave, "unknown" where it was built without.
+struct BuildFacts {
+  std::string version, commit, type, flags;
+};
+BuildFacts build_facts();
 
 }  // namespace ricochet

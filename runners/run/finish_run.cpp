@@ -7,16 +7,20 @@
 #include <regex>
 #include <string_view>
 
+#include "runners/answers/answer.hpp"
 #include "runners/kinds/kind.hpp"
-#include "runners/run/answers_table.hpp"
+#include "runners/report/case_view.hpp"
+#include "runners/report/html.hpp"
+#include "runners/report/summary_page.hpp"
 #include "runners/run/choice_effects.hpp"
 #include "runners/run/study_runner.hpp"
-#include "runners/run/summary.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/store.hpp"
 #include "runners/store/study_tables.hpp"
 #include "runners/table/in_order_met.hpp"
+#include "runners/table/table_reader.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 
@@ -136,6 +140,146 @@ int export_tables(const std::filesystem::path& folder, const std::filesystem::pa
           fmt::format("curves: not written, for more than {} cases have one; --curves writes them all into one file\n",
                       kMostCurveFiles));
   });
+}
+
+namespace {
+
+constexpr const char* status_asked = "status";
+
+std::vector<std::string> asked(const StudyResults& results) {
+  const auto given = results.study.find("observe");
+  const bool list = given != results.study.end() && given->is_array();
+  return list ? given->get<std::vector<std::string>>() : std::vector<std::string>{};
+}
+
+bool answers_itself(const StudyResults& results) {
+  const Kind* kind = find_kind(results.kind);
+  return kind && kind->answers_itself();
+}
+
+}  // namespace
+
+std::vector<std::string> observed_measures(const StudyResults& results) {
+  std::vector<std::string> names = asked(results);
+  std::erase(names, status_asked);
+  const Kind* kind = find_kind(results.kind);
+  if (names.empty() && kind) names = kind->observed(results);
+  std::erase_if(names, [&](const std::string& name) {
+    return std::none_of(results.cases.begin(), results.cases.end(),
+                        [&](const CaseRecord& one) { return one.status == "done" && measure(one, name); });
+  });
+  return names;
+}
+
+Table answers_table(const StudyResults& results) {
+  if (answers_itself(results)) return find_kind(results.kind)->answers(results).table();
+  const std::vector<std::string> names = asked(results);
+  const bool status_first = !names.empty() && names.front() == status_asked;
+  return answers::measure_answer(answers::Compared(results), observed_measures(results), status_first).table();
+}
+
+std::vector<Table> evidence_tables(const StudyResults& results) {
+  if (answers_itself(results)) return {};
+  const answers::Compared study(results);
+  const std::vector<std::string> measures = observed_measures(results);
+  return {answers::limits_table(study, measures), answers::refinements_table(study, measures),
+          answers::differences_table(study, measures)};
+}
+
+std::string evidence_text(const StudyResults& results) {
+  const std::vector<std::string> measures =
+      answers_itself(results) ? std::vector<std::string>{} : observed_measures(results);
+  return measures.empty() ? "" : answers::evidence_text(answers::Compared(results), measures.front());
+}
+
+namespace {
+
+std::string cell(const CaseRecord& record, const std::string& column) {
+  return axis(record, column).text();
+}
+
+// What is wrong with the finished cases, and with how many of them.
+std::map<std::string, int> contradictions(const StudyResults& results) {
+  std::map<std::string, int> found;
+  const Kind* kind = find_kind(results.kind);
+  if (kind)
+    for (const CaseRecord& record : results.cases)
+      if (const std::string wrong = kind->contradiction(record); !wrong.empty()) ++found[wrong];
+  return found;
+}
+
+int count(const StudyResults& results, const char* status) {
+  return static_cast<int>(std::count_if(results.cases.begin(), results.cases.end(), [&](const CaseRecord& record) {
+    return !record.partial && record.status == status;
+  }));
+}
+
+}  // namespace
+
+std::string outcome_text(const CaseRecord& record, const std::string& kind) {
+  if (record.partial) return record.reason;
+  if (record.status == "done") {
+    const Kind* known = find_kind(kind);
+    const std::string own = known ? known->outcome(record) : "";
+    std::string text = own.empty() ? "done" : "done: " + own;
+    if (!record.reason.empty()) text += (own.empty() ? ": " : "; ") + record.reason;
+    return text;
+  }
+  return record.reason.empty() ? record.status : fmt::format("{}: {}", record.status, record.reason);
+}
+
+std::string answer_text(const StudyResults& results) {
+  constexpr std::size_t most = report::most_answer_lines;
+  const std::vector<std::string> lines = report::answer_lines(results);
+  std::string out = results.question.empty() ? "" : results.question + "\n";
+  for (std::size_t k = 0; k < std::min(lines.size(), most); ++k) out += "  " + lines[k] + "\n";
+  if (lines.size() > most) out += fmt::format("  {} more in the report\n", lines.size() - most);
+  return out;
+}
+
+std::string case_table(const StudyResults& results) {
+  std::vector<std::string> header;
+  for (const std::string& name : results.columns) {
+    const auto differs = [&](const CaseRecord& record) {
+      return cell(record, name) != cell(results.cases.front(), name);
+    };
+    if (std::any_of(results.cases.begin(), results.cases.end(), differs)) header.push_back(name);
+  }
+  const std::vector<std::string> axes = header;
+  if (axes.empty()) header.emplace_back("case");
+  header.emplace_back("outcome");
+  TextTable table(header);
+  for (const CaseRecord& record : results.cases) {
+    std::vector<std::string> line;
+    for (const std::string& name : axes) line.push_back(cell(record, name));
+    if (axes.empty()) line.push_back(record.id);
+    line.push_back(outcome_text(record, results.kind));
+    table.add(std::move(line));
+  }
+  return table.text();
+}
+
+std::string totals_text(const StudyResults& results) {
+  std::vector<std::string> parts;
+  for (const auto& [status, number] : report::status_counts(results))
+    parts.push_back(fmt::format("{} {}", number, status));
+  if (const auto number = std::count_if(results.cases.begin(), results.cases.end(),
+                                        [](const CaseRecord& record) { return record.partial; }))
+    parts.push_back(fmt::format("{} under way", number));
+  const std::size_t cases = results.cases.size();
+  std::string text =
+      fmt::format("{}{} case{}", results.part.whole() ? "" : results.part.text() + ": ", cases, cases == 1 ? "" : "s");
+  if (!parts.empty()) text += fmt::format(": {}", fmt::join(parts, ", "));
+  for (const auto& [wrong, number] : contradictions(results)) text += fmt::format("; in {} {}", number, wrong);
+  if (const int missing = results.expected_cases - static_cast<int>(cases); missing > 0)
+    text += fmt::format("; {} not run yet", missing);
+  return text;
+}
+
+int results_exit_code(const StudyResults& results) {
+  constexpr int some_failed = 3;
+  return !contradictions(results).empty() || count(results, "diverged") + count(results, "failed") > 0 ? some_failed
+                                                                                                       : 0;
 }
 
 }  // namespace ricochet

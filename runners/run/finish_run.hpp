@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "runners/run/outputs.hpp"
 #include "runners/store/record.hpp"
@@ -41,5 +42,36 @@ StudyResults write_folder(Store& store, const std::filesystem::path& folder, con
 /// Says the answer, the totals (`how` they came about) and where the report is; returns the exit code.
 int tell_results(std::FILE* out, const StudyResults& results, const std::filesystem::path& folder,
                  const std::string& how, bool table = false);
+
+/// answers: what the study says to its question, in the order in which it is read. Of a kind that answers itself its
+/// rows; else one row per choice and observed measure.
+Table answers_table(const StudyResults& results);
+
+/// What the answer rests on: limits and differences of the observed measures; of a kind that answers itself its own.
+std::vector<Table> evidence_tables(const StudyResults& results);
+
+/// The same for a terminal, of the measure that is observed first: at most twelve lines.
+std::string evidence_text(const StudyResults& results);
+
+/// The measures that a study observes: its key "observe", else what its kind asks of such results; those that some
+/// finished case has.
+std::vector<std::string> observed_measures(const StudyResults& results);
+
+/// The outcome of one case in words, or the status and its reason: "done: energy 12.3 J → 11.9 J (−3.2 %), 14 impacts,
+/// 0.42 µs/step". A kind of study may have more to say of a finished case (Kind::outcome).
+std::string outcome_text(const CaseRecord& record, const std::string& kind);
+
+/// The question and the sentences of the answer, a few at most, each on a line of its own; how many more there are.
+std::string answer_text(const StudyResults& results);
+
+/// One line per case: the axes that vary in aligned columns under their names, then the outcome.
+std::string case_table(const StudyResults& results);
+
+/// "48 cases: 40 done, 4 refused, 2 diverged, 2 failed".
+std::string totals_text(const StudyResults& results);
+
+/// 0, or 3 when a case diverged or failed, or its integration without contact is not what its spectrum says. Refused
+/// and excluded cases did what the study asks.
+int results_exit_code(const StudyResults& results);
 
 }  // namespace ricochet

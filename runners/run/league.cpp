@@ -1,5 +1,3 @@
-#include "runners/run/league.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/kinds/trajectory/energy_tables.hpp"
+#include "runners/run/compare_studies.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"

@@ -15,7 +15,7 @@
 #include "runners/run/finish_run.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/atomic_file.hpp"
-#include "runners/store/environments.hpp"
+#include "runners/store/fingerprint.hpp"
 #include "runners/store/folder_lock.hpp"
 #include "runners/store/read_store.hpp"
 #include "runners/store/record_values.hpp"

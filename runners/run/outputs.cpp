@@ -10,7 +10,6 @@
 #include "runners/kinds/kind.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/record_values.hpp"
-#include "runners/table/dictionary.hpp"
 #include "runners/table/text.hpp"
 
 namespace ricochet {
@@ -25,6 +24,29 @@ std::set<std::string> told_tables(const std::filesystem::path& dictionary) {
         !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == std::string::npos)
       names.insert(name);
   return names;
+}
+
+/// dictionary: what every column of these tables means. A row without a column says what a row of the table stands
+/// for. The dictionary itself is listed last.
+Table dictionary_of(const std::vector<Table>& tables) {
+  Table dictionary{"dictionary",
+                   "One column of one table of this folder, or what a row of the table stands for.",
+                   {{"table", "",
+                     "Name of the table, that of its file without .csv; curves are the files in curves/, or in an "
+                     "export curves.csv."},
+                    {"column", "", "Name of the column; empty where the line is about the rows of the table."},
+                    {"unit", "", "Its unit: SI, 1 for ratios and counts, empty for words and truth values."},
+                    {"meaning", "", "What the cells mean."}},
+                   {}};
+  const auto list = [&](const Table& table) {
+    dictionary.rows.push_back({table.name, "", "", table.text});
+    for (const Column& column : table.columns)
+      dictionary.rows.push_back({table.name, column.name, column.unit, column.text});
+  };
+  for (const Table& table : tables) list(table);
+  // A copy: the rows grow while it is listed.
+  list(Table{dictionary.name, dictionary.text, dictionary.columns, {}});
+  return dictionary;
 }
 
 /// The tables of one folder, each written as CSV and remembered for the dictionary.

@@ -1,5 +1,3 @@
-#include "runners/run/progress.hpp"
-
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 
@@ -8,6 +6,7 @@
 
 #include "runners/march/seconds.hpp"
 #include "runners/run/finish_run.hpp"
+#include "runners/run/study_runner.hpp"
 #include "runners/table/text.hpp"
 
 namespace ricochet {

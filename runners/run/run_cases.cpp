@@ -11,7 +11,7 @@
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/run/finish_run.hpp"
-#include "runners/run/forecast.hpp"
+#include "runners/run/plan_cases.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/table/in_order_met.hpp"
 

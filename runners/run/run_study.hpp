@@ -7,7 +7,7 @@
 
 #include "runners/march/prepare_case.hpp"
 #include "runners/study/study.hpp"
-#include "runners/workers/worker.hpp"
+#include "runners/workers/worker_messages.hpp"
 
 namespace ricochet {
 

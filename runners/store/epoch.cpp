@@ -1,5 +1,3 @@
-#include "runners/store/epoch.hpp"
-
 #include <SQLiteCpp/Column.h>
 #include <SQLiteCpp/Statement.h>
 #include <fmt/format.h>
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/store.hpp"
 
 namespace ricochet {
 namespace {

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runners/store/atomic_file.hpp"
-#include "runners/store/environments.hpp"
+#include "runners/store/fingerprint.hpp"
 #include "runners/store/number_rows.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/schema.hpp"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "runners/store/folder_lock.hpp"
 #include "runners/store/record.hpp"
-#include "runners/store/run_identity.hpp"
 #include "runners/store/store.hpp"
 #include "runners/study/study.hpp"
 

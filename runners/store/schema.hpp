@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "runners/store/record.hpp"
 
@@ -32,5 +34,21 @@ void guarded(const std::filesystem::path& file, const SQLite::Database* database
 /// view of curves, nor of tables of numbers (impacts): their series are packed, and SQL cannot read doubles out of a
 /// blob.
 void make_views(SQLite::Database& database, const StudyResults& results);
+
+// Cases of earlier versions of a study are kept in the store beside those that are asked for, by fingerprint. They have
+// their measures, curves, tables and environment, and are seen by nobody until they are asked for again. Each call is
+// made inside a transaction.
+
+/// Moves these cases, of this environment, aside.
+void set_aside(SQLite::Database& database, const std::vector<std::string>& ids, const Environment& environment);
+
+/// Whether a case of this fingerprint is kept aside.
+bool is_aside(SQLite::Database& database, const std::string& fingerprint);
+
+/// Moves the case of this fingerprint back, to its place in the study's order. Returns the environment it ran in.
+Environment bring_back(SQLite::Database& database, const std::string& fingerprint, int position);
+
+/// The number of cases that are kept aside.
+int count_aside(SQLite::Database& database);
 
 }  // namespace ricochet

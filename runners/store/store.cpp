@@ -9,13 +9,12 @@
 #include <ctime>
 #include <numeric>
 
-#include "runners/store/aside.hpp"
 #include "runners/store/atomic_file.hpp"
-#include "runners/store/environments.hpp"
+#include "runners/store/fingerprint.hpp"
+#include "runners/store/folder_lock.hpp"
 #include "runners/store/number_rows.hpp"
 #include "runners/store/read_store.hpp"
 #include "runners/store/record_values.hpp"
-#include "runners/store/run_identity.hpp"
 #include "runners/store/schema.hpp"
 
 namespace ricochet {

@@ -7,8 +7,7 @@
 
 #include "runners/json/json_text.hpp"
 #include "runners/study/body_keys.hpp"
-#include "runners/study/check_place.hpp"
-#include "runners/study/observed_keys.hpp"
+#include "runners/study/scene_keys.hpp"
 
 namespace ricochet {
 namespace {

@@ -1,8 +1,7 @@
-#include "runners/study/check_place.hpp"
-
 #include <algorithm>
 
 #include "runners/json/json_text.hpp"
+#include "runners/study/check_object.hpp"
 
 namespace ricochet {
 namespace {

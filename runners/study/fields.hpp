@@ -32,7 +32,7 @@ struct Field {
     scalar,    ///< a number, whole number, boolean or word, as `spec` declares
     text,      ///< any string
     formula,   ///< a number or a formula in `variables`; where there is a nested object, also a list of such objects
-    place,     ///< one place of the structure (check_place.hpp)
+    place,     ///< one place of the structure (check_place.cpp)
     named,     ///< an object of any names, each with a text
     bodies,    ///< an object of any names, each with a nested object (body_keys.hpp)
     files,     ///< the folder of the files that a study names, and their digests
@@ -46,21 +46,21 @@ struct Field {
     excludes,  ///< partial matches with a reason
   };
   Form form = Form::scalar;
-  ParameterSpec spec;                     ///< key, unit, text; for scalars also type, range, words
-  std::optional<Json> fallback;           ///< what an absent key means; none: the study must give it
-  bool axis = false;                      ///< a list here is an axis of the cross product
-  bool nullable = false;                  ///< null is a value (an absent stop, no limit)
-  std::string variables;                  ///< for formulas: a subset of "xt"
-  Role role = Role::mass;                 ///< for methods
-  bool marched = false;                   ///< for references: marched_reference is one as well
-  std::vector<ObjectForm> nested;         ///< one entry for Form::object, objects, starts and such formulas
-  std::size_t count = 0;                  ///< for Form::objects; 3 for Form::numbers: a direction
-  std::vector<ObjectForm> listed = {};    ///< of Form::object: a list of such objects is possible as well, one value
-  bool or_flag = false;                   ///< of a word: true and false as well
-  bool per_body = false;                  ///< of Form::scalar: an object of such numbers by body as well
-  bool plain = false;                     ///< of Form::place: a number is x
-  bool node_alone = false;                ///< of Form::place: a node may stand without component
-  std::vector<ObjectForm> given = {};     ///< an object that may stand for a formula or text; of an object, that of a body
+  ParameterSpec spec;                   ///< key, unit, text; for scalars also type, range, words
+  std::optional<Json> fallback;         ///< what an absent key means; none: the study must give it
+  bool axis = false;                    ///< a list here is an axis of the cross product
+  bool nullable = false;                ///< null is a value (an absent stop, no limit)
+  std::string variables;                ///< for formulas: a subset of "xt"
+  Role role = Role::mass;               ///< for methods
+  bool marched = false;                 ///< for references: marched_reference is one as well
+  std::vector<ObjectForm> nested;       ///< one entry for Form::object, objects, starts and such formulas
+  std::size_t count = 0;                ///< for Form::objects; 3 for Form::numbers: a direction
+  std::vector<ObjectForm> listed = {};  ///< of Form::object: a list of such objects is possible as well, one value
+  bool or_flag = false;                 ///< of a word: true and false as well
+  bool per_body = false;                ///< of Form::scalar: an object of such numbers by body as well
+  bool plain = false;                   ///< of Form::place: a number is x
+  bool node_alone = false;              ///< of Form::place: a node may stand without component
+  std::vector<ObjectForm> given = {};  ///< an object that may stand for a formula or text; of an object, that of a body
   std::vector<std::string> of_each = {};  ///< of Form::words: words that a name in brackets may follow
   bool repeats = false;                   ///< of Form::numbers: one number may stand several times
   bool quiet = false;  ///< absent or its default, it is not written out: older studies keep their identity

@@ -7,7 +7,7 @@
 #include <ricochet/scene/history/random_load.hpp>
 
 #include "runners/json/json_text.hpp"
-#include "runners/study/plane_keys.hpp"
+#include "runners/study/scene_keys.hpp"
 #include "runners/study/study_files.hpp"
 
 namespace ricochet {

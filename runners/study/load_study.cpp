@@ -9,16 +9,12 @@
 
 #include "runners/json/json_text.hpp"
 #include "runners/study/axis_meaning.hpp"
-#include "runners/study/bases.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/study/check_object.hpp"
 #include "runners/study/histories.hpp"
-#include "runners/study/plane_keys.hpp"
 #include "runners/study/product.hpp"
-#include "runners/study/read_methods.hpp"
 #include "runners/study/read_scene.hpp"
-#include "runners/study/scene_size.hpp"
-#include "runners/study/structure_layout.hpp"
+#include "runners/study/scene_keys.hpp"
 #include "runners/study/study_kind.hpp"
 
 namespace ricochet {

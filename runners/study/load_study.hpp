@@ -19,4 +19,9 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
 /// The error as a person reads it: "FILE:LINE: at /json/pointer: what is wrong; what was expected".
 std::string explain(const InputError& error, const std::filesystem::path& file);
 
+/// The JSON Schema (draft-07) of a study: every object closed, each key with its meaning, unit, range and default. It
+/// has the parameters of every method that `registry` holds. What a schema cannot say (formulas, stops that cross,
+/// excludes that match nothing) is left to load_study().
+Json study_schema(const Registry& registry);
+
 }  // namespace ricochet

@@ -4,8 +4,15 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
+#include <ricochet/engine/cost_model.hpp>
+#include <ricochet/scene/bodies.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
 
 #include "runners/json/json_text.hpp"
+#include "runners/plan_files/plan_file.hpp"
+#include "runners/study/body_keys.hpp"
 #include "runners/study/check_object.hpp"
 
 namespace ricochet {
@@ -142,6 +149,196 @@ void apply_excludes(const Json& excludes, Study& study) {
   if (std::all_of(study.cases.begin(), study.cases.end(),
                   [](const StudyCase& study_case) { return study_case.excluded.has_value(); }))
     throw InputError("/exclude", "every case is excluded; nothing would run");
+}
+
+namespace {
+
+const char* role_phrase(Role role) {
+  switch (role) {
+    case Role::mass:
+      return "mass strategy";
+    case Role::contact:
+      return "contact law";
+    case Role::time:
+      return "time scheme";
+    case Role::reference:
+      break;
+  }
+  return "reference";
+}
+
+const PluginManual& require_method(Role role, const std::string& name, const std::string& pointer, Catalogue& catalogue,
+                                   Registry& registry) {
+  if (catalogue.require(role, name, registry)) return *registry.manual(role, name);
+  std::vector<std::string> names = catalogue.names(role);
+  for (const std::string& known : registry.names(role))
+    if (std::find(names.begin(), names.end(), known) == names.end()) names.push_back(known);
+  std::string message = std::string("no plugin provides the ") + role_phrase(role) + " \"" + shortened(name) + "\"" +
+                        did_you_mean(name, names);
+  message += names.empty() ? " (no " + std::string(role_phrase(role)) +
+                                 " was found at all; `ricochet doctor` shows the plugin folders)"
+                           : " (found: " + quoted_list(names) + ")";
+  // The file is the fault, not the study, where one that cannot serve is meant for this method. Also where it tells
+  // nothing of itself and no name is near.
+  const Unusable* meant = catalogue.unusable_provider(role, name);
+  std::vector<const Unusable*> suspects;
+  for (const Unusable& file : catalogue.unusable())
+    if (meant ? &file == meant : file.meant.empty()) suspects.push_back(&file);
+  if (suspects.empty()) throw InputError(pointer, message);
+  if (!meant && !nearest_name(name, names).empty())
+    throw InputError(pointer, message + "; `ricochet doctor` tells of plugin files that cannot serve");
+  message =
+      "at " + pointer + ": " + message +
+      (suspects.size() == 1 ? "; this file was found and cannot serve:" : "; these files were found and cannot serve:");
+  for (const Unusable* file : suspects) message += "\n  " + file->file.string() + ": " + file->reason;
+  throw PluginError(message);
+}
+
+Json as_object(const Json& entry, const std::string& pointer) {
+  if (entry.is_string()) return Json{{"name", entry}};
+  if (!entry.is_object())
+    throw InputError(pointer,
+                     "expected the name of a method or an object {\"name\": …, parameters}, found " + quote(entry));
+  return entry;
+}
+
+std::string name_of(const Json& entry, const std::string& pointer) {
+  const auto name = entry.find("name");
+  if (name == entry.end()) {
+    for (const auto& [key, ignored] : entry.items())
+      if (nearest_name(key, {"name"}) == "name")
+        throw InputError(pointer_to(pointer, key), "unknown key \"" + shortened(key) + "\"; did you mean \"name\"?");
+    throw InputError(pointer_to(pointer, "name"), "missing; a method needs the name of its plugin");
+  }
+  if (!name->is_string())
+    throw InputError(pointer_to(pointer, "name"), "expected the name of one method, found " + quote(*name));
+  return name->get<std::string>();
+}
+
+ParameterValue to_value(const ParameterSpec& spec, const Json& value) {
+  switch (spec.type) {
+    case ParameterSpec::Type::real:
+      return value.get<double>();
+    case ParameterSpec::Type::integer:
+      return value.get<long long>();
+    case ParameterSpec::Type::boolean:
+      return value.get<bool>();
+    case ParameterSpec::Type::word:
+      break;
+  }
+  return value.get<std::string>();
+}
+
+}  // namespace
+
+MethodOptions read_methods(Role role, const Json& value, const std::string& pointer, Catalogue& catalogue,
+                           Registry& registry, const std::filesystem::path& folder) {
+  MethodOptions result;
+  result.resolved = Json::array();
+  const bool list = value.is_array();
+  if (list && value.empty())
+    throw InputError(pointer, "an empty list makes no cases; name at least one " + std::string(role_phrase(role)));
+  const std::size_t count = list ? value.size() : 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string here = list ? pointer_to(pointer, i) : pointer;
+    const Json& given = list ? value[i] : value;
+    Json entry = as_object(given, here);
+    std::optional<PlanSource> plan;
+    if (role == Role::time) plan = take_stated_plan(entry, here, folder, result.resolved, catalogue, registry);
+    const std::string name = name_of(entry, here);
+    const PluginManual& manual =
+        require_method(role, name, given.is_object() ? pointer_to(here, "name") : here, catalogue, registry);
+    std::vector<Axis> axes;
+    Json complete = check_object(method_form(manual), entry, here, axes);
+    std::shared_ptr<const std::string> content;
+    if (plan) {
+      content = std::make_shared<const std::string>(plan->plan.dump());
+      complete["plan"] = std::move(plan->plan);
+    }
+    result.resolved.push_back(complete);
+
+    Product product;
+    for (const Axis& axis : axes) product.add(axis.values.size());
+    product.refuse_above(largest_study, here);
+    for (; !product.ended(); product.next()) {
+      MethodOption option;
+      option.choice.name = name;
+      option.choice.plan = content;
+      option.places.push_back(here);
+      option.axes.emplace_back(role_name(role), name);
+      Json scalars = complete;
+      for (std::size_t a = 0; a < axes.size(); ++a) {
+        const std::string key = axes[a].pointer.substr(here.size() + 1);
+        scalars[key] = axes[a].values[product[a]];
+        option.places.push_back(pointer_to(axes[a].pointer, product[a]));
+      }
+      for (const ParameterSpec& spec : manual.parameters) {
+        option.axes.emplace_back(std::string(role_name(role)) + "." + spec.key, scalars[spec.key]);
+        option.choice.parameters.set(spec.key, to_value(spec, scalars[spec.key]));
+      }
+      result.options.push_back(std::move(option));
+    }
+  }
+  return result;
+}
+
+std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, const Json& scene, bool modal) {
+  if (!mesh.contains("modes") && !mesh.contains("residual")) return {std::nullopt};
+  if (!mesh.contains("modes") && !modal)
+    throw InputError("/mesh/residual", "there is no mesh.modes whose residual it could be; expected modes too");
+  std::vector<std::optional<BasisSpec>> bases;
+  const Json counts = mesh.value("modes", Json(nullptr));
+  for (const Json& modes : counts.is_array() ? counts : Json::array({counts}))
+    for (const std::string& residual : one_or_each<std::string>(mesh.value("residual", Json("stops"))))
+      if (modes.is_object()) {
+        const std::vector<int> each = of_bodies(modes, scene, "/mesh/modes");
+        if (std::find(each.begin(), each.end(), 0) != each.end())
+          throw InputError("/mesh/modes", "says no number for one of the bodies; expected one for each");
+        bases.push_back(BasisSpec{std::accumulate(each.begin(), each.end(), 0), residual == "stops", each});
+      } else if (!modes.is_null())
+        bases.push_back(BasisSpec{modes.get<int>(), residual == "stops"});
+      else if (modal && residual != "stops")
+        bases.push_back(BasisSpec{0, false});
+      else if (std::find(bases.begin(), bases.end(), std::nullopt) == bases.end())
+        bases.emplace_back();
+  return bases;
+}
+
+void check_bases(const std::vector<std::optional<BasisSpec>>& bases, const Json& mesh, const StructureSpec& structure,
+                 int coarsest) {
+  const bool any = std::any_of(bases.begin(), bases.end(), [](const auto& basis) { return basis.has_value(); });
+  const int dofs = any ? make_space(structure, coarsest).dofs : 0;
+  if (any && bodies_of(structure)) return;  // told by the body that has fewer
+  for (const std::optional<BasisSpec>& basis : bases) {
+    if (!basis || basis->modes <= dofs) continue;
+    const Json& counts = mesh.at("modes");
+    std::string pointer = "/mesh/modes";
+    for (std::size_t i = 0; counts.is_array() && i < counts.size(); ++i)
+      if (counts[i] == basis->modes) pointer = pointer_to("/mesh/modes", i);
+    throw InputError(
+        pointer,
+        fmt::format("{} modes; the structure has {} degrees of freedom{}", basis->modes, dofs,
+                    std::holds_alternative<AssembledSpec>(structure) ? "" : fmt::format(" on {} elements", coarsest)));
+  }
+}
+
+void check_size(const StructureSpec& structure) {
+  constexpr int most_dofs = 20000;
+  const auto* spec = std::get_if<AssembledSpec>(&structure);
+  if (!spec || spec->structure->dofs() <= most_dofs) return;
+  const int n = spec->structure->dofs();
+  SemiDiscrete problem;
+  const JoinedBodies* bodies = bodies_of(structure);
+  problem.space = make_space(structure, bodies ? bodies->mesh : 1);
+  problem.stiffness = spec->structure->stiffness;
+  problem.inertia.mass = spec->structure->mass;
+  problem.position = Eigen::VectorXd::Zero(n);
+  problem.contact.resize(0, n);
+  const double seconds = std::min(predict_cost(OperatorKind::band, problem, {}, 1).step_seconds,
+                                  predict_cost(OperatorKind::sparse, problem, {}, 1).step_seconds);
+  throw InputError("/scene/structure", fmt::format("{} dofs without mesh.modes: a march takes {:.2g} s per step; "
+                                                   "expected at most {}, or mesh.modes",
+                                                   n, seconds, most_dofs));
 }
 
 }  // namespace ricochet

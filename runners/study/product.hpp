@@ -1,8 +1,13 @@
 #pragma once
 #include <cstddef>
+#include <filesystem>
+#include <optional>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/loader/catalogue.hpp>
+#include <ricochet/scene/scene.hpp>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "runners/study/study.hpp"
@@ -59,5 +64,38 @@ class CaseIds {
 /// left out when every axis named has (one of) the value(s) given. Throws InputError for an unknown axis, a value that
 /// no case has, a combination that matches nothing, a missing reason, and when nothing remains.
 void apply_excludes(const Json& excludes, Study& study);
+
+/// One method of one role, every list of parameters expanded.
+struct MethodOption {
+  MethodChoice choice;
+  std::vector<std::pair<std::string, Json>> axes;  ///< "time": name, then "time.beta": value, …, in the plugin's order
+  std::vector<std::string> places;                 ///< JSON pointers that chose it: the entry, then list elements
+};
+
+struct MethodOptions {
+  std::vector<MethodOption> options;  ///< in the study's order
+  Json resolved;                      ///< a list of complete objects
+};
+
+/// Reads the methods of a role: a name, an object {name, parameters…}, or a list of either. Opens the libraries named,
+/// and only these. Throws InputError for an unknown name, parameter or value. Throws PluginError when the library that
+/// provides the name fails, or the only file meant to provide it cannot serve. Also when the name is near no other, and
+/// files were found that tell nothing of themselves. A scheme that the study states itself (plan_file.hpp) is
+/// read relative to `folder`; its resolved object holds the plan.
+MethodOptions read_methods(Role role, const Json& value, const std::string& pointer, Catalogue& catalogue,
+                           Registry& registry, const std::filesystem::path& folder = {});
+
+/// The bases of modes that a study marches in, out of its `mesh`: mesh.modes times mesh.residual. One is empty where
+/// all dofs march. `modal`: whether the structure is described by modes, whose residual may be left out alone. Throws
+/// InputError at /mesh/residual for a residual of no modes.
+std::vector<std::optional<BasisSpec>> bases_of(const Json& mesh, const Json& scene, bool modal);
+
+/// Throws InputError at /mesh/modes for more modes than the structure has dofs on one of the meshes.
+void check_bases(const std::vector<std::optional<BasisSpec>>& bases, const Json& mesh, const StructureSpec& structure,
+                 int coarsest);
+
+/// Throws InputError at /scene/structure for matrices of more than 20 000 dofs, with the time of a step that the cost
+/// model predicts.
+void check_size(const StructureSpec& structure);
 
 }  // namespace ricochet

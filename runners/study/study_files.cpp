@@ -10,7 +10,7 @@
 #include <set>
 
 #include "runners/study/histories.hpp"
-#include "runners/study/initial_keys.hpp"
+#include "runners/study/scene_keys.hpp"
 
 namespace ricochet {
 namespace {

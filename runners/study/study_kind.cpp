@@ -2,9 +2,7 @@
 
 #include "runners/study/fields.hpp"
 #include "runners/study/histories.hpp"
-#include "runners/study/initial_keys.hpp"
-#include "runners/study/observed_keys.hpp"
-#include "runners/study/plane_keys.hpp"
+#include "runners/study/scene_keys.hpp"
 
 namespace ricochet {
 

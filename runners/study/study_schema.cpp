@@ -1,5 +1,3 @@
-#include "runners/study/study_schema.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,8 +7,9 @@
 #include <set>
 
 #include "runners/plan_files/plan_file.hpp"
-#include "runners/study/check_place.hpp"
+#include "runners/study/check_object.hpp"
 #include "runners/study/fields.hpp"
+#include "runners/study/load_study.hpp"
 
 namespace ricochet {
 namespace {

@@ -1,7 +1,10 @@
 #include "runners/table/table.hpp"
 
 #include <algorithm>
+#include <array>
+#include <functional>
 
+#include "runners/table/table_reader.hpp"
 #include "runners/table/text.hpp"
 
 namespace ricochet {
@@ -61,6 +64,52 @@ void describe(std::vector<Column>& columns, const std::vector<Column>& declared)
 void describe(Table& table, const Table& declared) {
   table.text = declared.text;
   describe(table.columns, declared.columns);
+}
+
+std::size_t TableReader::column(std::string_view name) const {
+  if (const std::size_t place = column_if_any(name); place != absent) return place;
+  throw TableError("the table " + table_->name + " has no column " + std::string(name));
+}
+
+std::size_t TableReader::column_if_any(std::string_view name) const {
+  return find_column(table_->columns, name).value_or(absent);
+}
+
+const Cell& TableReader::cell(std::size_t row, std::size_t column) const {
+  static const Cell nothing;
+  const Row& cells = table_->rows.at(row);
+  return column < cells.size() ? cells[column] : nothing;
+}
+
+const Table* find_table(const std::vector<Table>& tables, std::string_view name) {
+  const auto found = std::find_if(tables.begin(), tables.end(), [&](const Table& table) { return table.name == name; });
+  return found == tables.end() ? nullptr : &*found;
+}
+
+Table* find_table(std::vector<Table>& tables, std::string_view name) {
+  return const_cast<Table*>(find_table(std::as_const(tables), name));
+}
+
+/// Short texts that a thread made lately, by their hash.
+struct RecentWords {
+  static constexpr std::size_t longest = 32;
+  std::array<SharedWords, 64> made{};
+};
+
+SharedWords::SharedWords(std::string text) {
+  if (text.size() > RecentWords::longest) {
+    body_ = new Body(std::move(text));
+    return;
+  }
+  thread_local RecentWords recent;
+  SharedWords& same = recent.made[std::hash<std::string>{}(text) % recent.made.size()];
+  if (!same.body_ || same.text() != text) {
+    SharedWords fresh;
+    fresh.body_ = new Body(std::move(text));
+    same = std::move(fresh);
+  }
+  body_ = same.body_;
+  body_->owners.fetch_add(1, std::memory_order_relaxed);
 }
 
 }  // namespace ricochet

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -12,11 +13,44 @@
 #include <variant>
 #include <vector>
 
-#include "runners/table/shared_words.hpp"
-
 /// \file
 /// What every result is before it is shown: rows of typed cells under columns that say their unit and their meaning.
 namespace ricochet {
+
+/// A text that its copies share, as wide as a pointer. A thread that makes the same short text again and again (a
+/// status, a class of motion) makes it once.
+class SharedWords {
+ public:
+  explicit SharedWords(std::string text);
+  SharedWords(const SharedWords& other) noexcept : body_(other.body_) {
+    if (body_) body_->owners.fetch_add(1, std::memory_order_relaxed);
+  }
+  SharedWords(SharedWords&& other) noexcept : body_(std::exchange(other.body_, nullptr)) {}
+  SharedWords& operator=(SharedWords other) noexcept {
+    std::swap(body_, other.body_);
+    return *this;
+  }
+  ~SharedWords() {
+    if (body_ && body_->owners.fetch_sub(1, std::memory_order_acq_rel) == 1) delete body_;
+  }
+
+  /// Not of one that was moved from.
+  const std::string& text() const { return body_->text; }
+  friend bool operator==(const SharedWords& a, const SharedWords& b) {
+    return a.body_ == b.body_ || a.text() == b.text();
+  }
+
+ private:
+  struct Body {
+    explicit Body(std::string words) : text(std::move(words)) {}
+    const std::string text;
+    std::atomic<long> owners{1};
+  };
+  SharedWords() = default;
+  friend struct RecentWords;
+
+  Body* body_ = nullptr;
+};
 
 /// One entry of a table: nothing, a truth value, a whole number, a number or a text. Made from any of these without
 /// being named, so that a row is written as it reads: {0.1, "closed", true, nullptr}. A number that is not finite is

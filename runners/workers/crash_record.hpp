@@ -1,5 +1,10 @@
 #pragma once
+#include <pthread.h>
+
+#include <atomic>
+#include <chrono>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -23,6 +28,55 @@ class CrashGuard {
   ~CrashGuard();
   CrashGuard(const CrashGuard&) = delete;
   CrashGuard& operator=(const CrashGuard&) = delete;
+};
+
+/// A call of a plugin's function that has not returned yet.
+struct LongCall {
+  std::string role, plugin, function;  ///< "contact", "contact 'x' (file)", "solve"
+  double seconds = 0;                  ///< since it was first seen
+  double counted_seconds = 0;          ///< processor time of its thread, at least a tenth of `seconds`
+  /// "plugin contact 'x' (file), solve() has not returned for 12 s".
+  std::string text() const;
+};
+
+/// Watches the calls of plugins' functions that the thread makes which constructs it; one per process. overdue() is
+/// asked by another thread: the watched one answers in a signal handler (SIGURG).
+class CallWatch {
+ public:
+  CallWatch();
+  ~CallWatch();
+  CallWatch(const CallWatch&) = delete;
+  CallWatch& operator=(const CallWatch&) = delete;
+
+  /// The call under way; none between calls. What the thread said last stands until it answers again.
+  std::optional<LongCall> overdue();
+
+ private:
+  struct Answer;
+  static void on_question(int);
+  bool answered() const;
+  void note_answer();
+
+  static inline std::atomic<Answer*> asked_{nullptr};
+  const std::unique_ptr<Answer> answer_;
+  const pthread_t thread_;
+  // Of the call that the last answer named; serial 0: none.
+  unsigned long long serial_ = 0;
+  LongCall call_;
+  std::chrono::steady_clock::time_point seen_;
+  double processor_ = 0, processor_then_ = 0;  // of the thread, at the last answer and when the call was first seen
+};
+
+/// Room for this thread's signal handlers where its own stack has run out.
+class HandlerStack {
+ public:
+  HandlerStack();
+  ~HandlerStack();
+  HandlerStack(const HandlerStack&) = delete;
+  HandlerStack& operator=(const HandlerStack&) = delete;
+
+ private:
+  std::unique_ptr<char[]> memory_;
 };
 
 }  // namespace ricochet

@@ -13,7 +13,6 @@
 #include "runners/march/seconds.hpp"
 #include "runners/march/study_identity.hpp"
 #include "runners/workers/worker_messages.hpp"
-#include "runners/workers/worker_pool.hpp"
 #include "runners/workers/worker_process.hpp"
 
 namespace ricochet {

@@ -1,5 +1,3 @@
-#include "runners/workers/remote_hosts.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "runners/march/seconds.hpp"
+#include "runners/workers/machines.hpp"
 
 namespace ricochet {
 namespace {

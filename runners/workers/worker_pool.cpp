@@ -1,9 +1,9 @@
-#include "runners/workers/worker_pool.hpp"
-
 #include <algorithm>
 #include <chrono>
 #include <set>
 #include <string>
+
+#include "runners/workers/isolated_cases.hpp"
 
 namespace ricochet {
 

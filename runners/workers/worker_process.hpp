@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "runners/workers/worker.hpp"
+#include "runners/workers/worker_messages.hpp"
 
 namespace ricochet {
 
@@ -85,5 +85,10 @@ class LocalHost : public WorkerHost {
 
 /// Descriptors that a worker is born with.
 inline constexpr int kWorkerChannel = 3, kWorkerCrashRecord = 4;
+
+/// The life of a worker. It opens the study that it is sent, then does what it is asked to, case by case, until the
+/// other end of its channel closes. What cases keep and look for is the coordinator's. Returns its exit code; ends the
+/// process itself where a plugin's function does not come back.
+int serve_as_worker();
 
 }  // namespace ricochet

@@ -1,5 +1,3 @@
-#include "runners/workers/worker_service.hpp"
-
 #include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -22,7 +20,6 @@
 #include "runners/march/study_identity.hpp"
 #include "runners/plan_files/plan_file.hpp"
 #include "runners/study/load_study.hpp"
-#include "runners/workers/call_watch.hpp"
 #include "runners/workers/crash_record.hpp"
 #include "runners/workers/worker_messages.hpp"
 #include "runners/workers/worker_process.hpp"

@@ -3,8 +3,7 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "runners/check/parameter_values.hpp"
-#include "runners/check/verdict.hpp"
+#include "runners/check/checks.hpp"
 
 using namespace ricochet;
 using namespace ricochet::checking;

@@ -56,7 +56,7 @@ std::vector<std::string> includes(const Source& source) {
   return result;
 }
 
-/// Names of sources in the comments of a file: "(epoch.hpp)", "runners/store/epoch.hpp".
+/// Names of sources in the comments of a file: "(store.hpp)", "runners/store/store.hpp".
 std::vector<std::string> named_sources(const std::string& text) {
   static const std::regex name(R"(([a-z_\-]+)\.(hpp|cpp)\b)");
   std::vector<std::string> result;

@@ -1,6 +1,6 @@
 // A stage with a second unknown, R w = ι Hᵀp: what is marched is the plan, whatever operator, law, mass and other
 // lanes.
-#include "runners/check/dense_march.hpp"
+#include "runners/check/scheme_checks.hpp"
 #include "tests/allocations.hpp"
 #include "tests/marching.hpp"
 

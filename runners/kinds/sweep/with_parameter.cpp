@@ -15,8 +15,8 @@
 #include "runners/store/record_values.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/study/check_object.hpp"
-#include "runners/study/plane_keys.hpp"
 #include "runners/study/read_scene.hpp"
+#include "runners/study/scene_keys.hpp"
 
 namespace ricochet {
 namespace {

@@ -11,7 +11,7 @@
 #include <ricochet/scene/structure/node_layout.hpp>
 
 #include "runners/kinds/trajectory/snapshot_taker.hpp"
-#include "runners/study/body_places.hpp"
+#include "runners/study/body_keys.hpp"
 
 namespace ricochet {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/run/answers_table.hpp"
+#include "runners/run/finish_run.hpp"
 #include "runners/table/table_reader.hpp"
 
 /// \file

@@ -1,7 +1,7 @@
-#include "runners/command/describe_words.hpp"
-
 #include <catch2/catch.hpp>
 #include <sstream>
+
+#include "runners/command/subcommand.hpp"
 
 using namespace ricochet;
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "runners/command/describe_words.hpp"
+#include "runners/command/subcommand.hpp"
 #include "tests/runners/command/page_figures.hpp"
 #include "tests/runners/scratch_folder.hpp"
 

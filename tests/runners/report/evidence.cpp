@@ -7,7 +7,7 @@
 #include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/work-precision/page/page.hpp"
 #include "runners/report/case_view.hpp"
-#include "runners/report/effects.hpp"
+#include "runners/report/kind_page.hpp"
 #include "tests/runners/report/evidence_results.hpp"
 
 using namespace ricochet;

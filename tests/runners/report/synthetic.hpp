@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "runners/kinds/trajectory/energy_tables.hpp"
-#include "runners/run/answers_table.hpp"
+#include "runners/run/finish_run.hpp"
 #include "runners/store/record.hpp"
 
 /// \file

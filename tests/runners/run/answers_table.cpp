@@ -1,6 +1,4 @@
 // What a study of trajectories answers: tiers of methods, choices by what they move, cases without a result.
-#include "runners/run/answers_table.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <regex>
 
 #include "runners/run/choice_effects.hpp"
+#include "runners/run/finish_run.hpp"
 #include "runners/table/table_reader.hpp"
 
 using namespace ricochet;

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "runners/store/environments.hpp"
+#include "runners/store/fingerprint.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;

@@ -1,6 +1,4 @@
 // Laws of a forecast, and no figure: machines differ.
-#include "runners/run/forecast.hpp"
-
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <functional>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "runners/kinds/kind.hpp"
+#include "runners/run/plan_cases.hpp"
 #include "runners/study/load_study.hpp"
 #include "tests/runners/run/fake_study.hpp"
 #include "tests/runners/scratch_folder.hpp"

@@ -1,6 +1,6 @@
-#include "runners/run/league.hpp"
-
 #include <catch2/catch.hpp>
+
+#include "runners/run/compare_studies.hpp"
 
 using namespace ricochet;
 

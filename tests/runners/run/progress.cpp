@@ -1,7 +1,6 @@
-#include "runners/run/progress.hpp"
-
 #include <catch2/catch.hpp>
 
+#include "runners/run/study_runner.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;

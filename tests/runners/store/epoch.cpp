@@ -1,6 +1,4 @@
 // Two runs that both believe a folder to be theirs: the later one has it, the earlier one changes nothing any more.
-#include "runners/store/epoch.hpp"
-
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <errno.h>
 #include <unistd.h>

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "runners/march/table_steps.hpp"
+#include "runners/march/load_changes.hpp"
 #include "tests/runners/scratch_folder.hpp"
 #include "tests/runners/study/study_fixture.hpp"
 

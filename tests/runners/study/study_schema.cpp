@@ -1,5 +1,3 @@
-#include "runners/study/study_schema.hpp"
-
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -7,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "runners/study/load_study.hpp"
 #include "tests/runners/study/study_fixture.hpp"
 
 using namespace ricochet;

@@ -8,7 +8,6 @@
 #include "runners/march/study_identity.hpp"
 #include "runners/workers/isolated_cases.hpp"
 #include "runners/workers/machines.hpp"
-#include "runners/workers/remote_hosts.hpp"
 #include "tests/runners/run/fake_study.hpp"
 #include "tests/runners/workers/scripted_network.hpp"
 

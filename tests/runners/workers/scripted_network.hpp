@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/workers/host_messages.hpp"
+#include "runners/workers/machines.hpp"
 #include "tests/runners/workers/scripted_worker.hpp"
 
 namespace ricochet::tests {

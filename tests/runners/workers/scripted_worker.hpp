@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "runners/workers/worker.hpp"
 #include "runners/workers/worker_messages.hpp"
 
 /// \file
