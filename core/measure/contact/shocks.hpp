@@ -1,6 +1,5 @@
 #pragma once
 #include <ricochet/measure/contact/contact_instants.hpp>
-#include <ricochet/measure/statistics/counted_values.hpp>
 #include <ricochet/measure/statistics/running_moments.hpp>
 #include <vector>
 

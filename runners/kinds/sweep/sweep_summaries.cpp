@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ricochet/measure/attractors/opinions.hpp>
+#include <ricochet/measure/attractors/diagram.hpp>
 
 #include "runners/kinds/sweep/study_diagram.hpp"
 #include "runners/store/record_values.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <ricochet/measure/statistics/third_octaves.hpp>
+#include <ricochet/measure/statistics/spectra.hpp>
 
 #include "runners/json/json_text.hpp"
 #include "runners/store/record_values.hpp"

@@ -4,7 +4,7 @@
 #include <ricochet/measure/contact/shocks.hpp>
 #include <ricochet/measure/contact/stop_contacts.hpp>
 #include <ricochet/measure/contact/stop_statistics.hpp>
-#include <ricochet/measure/statistics/welch.hpp>
+#include <ricochet/measure/statistics/spectra.hpp>
 #include <vector>
 
 #include "runners/kinds/trajectory/output_keys.hpp"

@@ -1,7 +1,7 @@
 // Identities of attractors: within a value, along the parameter, over cases; and the choice behind a difference.
 #include <catch2/catch.hpp>
 #include <random>
-#include <ricochet/measure/attractors/branches.hpp>
+#include <ricochet/measure/attractors/attractors.hpp>
 #include <ricochet/measure/statistics/choices.hpp>
 
 using namespace ricochet;

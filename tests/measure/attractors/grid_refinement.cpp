@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
-#include <ricochet/measure/attractors/grid_refinement.hpp>
+#include <ricochet/measure/attractors/basin_grid.hpp>
 
 using namespace ricochet;
 

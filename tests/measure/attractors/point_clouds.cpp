@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <random>
-#include <ricochet/measure/attractors/point_clouds.hpp>
+#include <ricochet/measure/attractors/attractors.hpp>
 
 using namespace ricochet;
 

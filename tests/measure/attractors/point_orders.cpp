@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
-#include <ricochet/measure/attractors/point_orders.hpp>
+#include <ricochet/measure/attractors/match_points.hpp>
 
 using namespace ricochet;
 

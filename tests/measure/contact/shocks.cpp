@@ -2,7 +2,7 @@
 #include <numbers>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/contact/shocks.hpp>
-#include <ricochet/measure/statistics/welch.hpp>
+#include <ricochet/measure/statistics/spectra.hpp>
 
 #include "tests/allocations.hpp"
 #include "tests/marching.hpp"
