@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <ricochet/scene/discrete_problem.hpp>
+#include <ricochet/contract/reference.hpp>
+#include <ricochet/scene/observed_rows.hpp>
 
 #include "runners/check/bench.hpp"
 

@@ -4,7 +4,7 @@
 #include <ricochet/engine/flight/step_interval.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 #include <ricochet/scene/assembly.hpp>
-#include <ricochet/scene/discrete_problem.hpp>
+#include <ricochet/scene/observed_rows.hpp>
 
 namespace ricochet {
 namespace {

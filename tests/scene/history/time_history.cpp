@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/scene/history/piecewise_cubic.hpp>
+#include <ricochet/scene/history/time_history.hpp>
 
 #include "tests/refusals.hpp"
 

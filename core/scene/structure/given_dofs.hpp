@@ -1,6 +1,6 @@
 #pragma once
 #include <ricochet/contract/mass_strategy.hpp>
-#include <ricochet/scene/files/dof_table.hpp>
+#include <ricochet/scene/files/text_file.hpp>
 #include <vector>
 
 namespace ricochet {
@@ -21,5 +21,10 @@ struct TranslatedMass {
   std::array<double, 3> whole{}, diagonal{};
 };
 TranslatedMass translated_mass(const DofTable& table, const SparseMatrix& mass);
+
+/// An order of the rows of a symmetric pattern (n × n, both triangles) in which its band is narrow. Reverse
+/// Cuthill–McKee (Cuthill and McKee 1969; George 1971) begins each component at a node at the end of a longest path.
+/// The order given stays where it is as narrow. Row i of the new order is row out[i] of the matrix.
+std::vector<int> narrow_order(const SparseMatrix& pattern);
 
 }  // namespace ricochet

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/scene/history/piecewise_cubic.hpp>
+#include <ricochet/scene/history/time_history.hpp>
 #include <utility>
 
 namespace ricochet {
