@@ -1,6 +1,6 @@
 // Forms of combinations are those of the vectors written out.
 #include <limits>
-#include <ricochet/kernels/combined_form.hpp>
+#include <ricochet/kernels/quadratic_form.hpp>
 
 #include "tests/scene/working_set.hpp"
 

@@ -3,7 +3,7 @@
 #include <random>
 #include <ricochet/contract/abi.hpp>
 #include <ricochet/contract/step_plan.hpp>
-#include <ricochet/loader/library_symbols.hpp>
+#include <ricochet/loader/catalogue.hpp>
 
 #include "tests/runners/scratch_folder.hpp"
 

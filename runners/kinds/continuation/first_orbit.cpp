@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ricochet/measure/orbits/reference_orbits.hpp>
+#include <ricochet/measure/orbits/stepped_map.hpp>
 
 #include "runners/kinds/continuation/stored_orbit.hpp"
 #include "runners/kinds/kind.hpp"

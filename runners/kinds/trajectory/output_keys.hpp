@@ -1,6 +1,6 @@
 #pragma once
 #include <optional>
-#include <ricochet/measure/contact/shocks.hpp>
+#include <ricochet/measure/contact/stop_statistics.hpp>
 #include <ricochet/measure/statistics/running_moments.hpp>
 #include <string>
 #include <vector>

@@ -1,7 +1,6 @@
 #pragma once
 #include <optional>
 #include <ricochet/engine/marcher.hpp>
-#include <ricochet/measure/contact/shocks.hpp>
 #include <ricochet/measure/contact/stop_contacts.hpp>
 #include <ricochet/measure/contact/stop_statistics.hpp>
 #include <ricochet/measure/statistics/spectra.hpp>

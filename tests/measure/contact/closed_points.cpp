@@ -1,6 +1,6 @@
 // What closes, opens and changes its side, whatever the number of stages that ask.
 #include <catch2/catch.hpp>
-#include <ricochet/measure/contact/closed_points.hpp>
+#include <ricochet/measure/contact/contact_instants.hpp>
 
 #include "tests/allocations.hpp"
 

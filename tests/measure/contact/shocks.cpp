@@ -1,7 +1,7 @@
 // Shocks: what the rule joins and leaves out, and those of a mass on two springs in closed form.
 #include <numbers>
 #include <ricochet/measure/contact/impact_recorder.hpp>
-#include <ricochet/measure/contact/shocks.hpp>
+#include <ricochet/measure/contact/stop_statistics.hpp>
 #include <ricochet/measure/statistics/spectra.hpp>
 
 #include "tests/allocations.hpp"

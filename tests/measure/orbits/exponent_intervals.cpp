@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
-#include <ricochet/measure/orbits/exponents.hpp>
+#include <ricochet/measure/orbits/lyapunov.hpp>
 
 using namespace ricochet;
 

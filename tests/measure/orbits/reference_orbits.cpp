@@ -1,7 +1,7 @@
 // Branches of the continuous beam: its first contact in closed form, its fold and its torus whatever the modes.
 #include <complex>
-#include <ricochet/measure/orbits/reference_orbits.hpp>
 #include <ricochet/measure/orbits/special_points.hpp>
+#include <ricochet/measure/orbits/stepped_map.hpp>
 
 #include "tests/plugins/reference/continuous_beam.hpp"
 

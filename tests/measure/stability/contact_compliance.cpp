@@ -1,7 +1,7 @@
 // What a contact law gives way follows from the law, not from the names of its parameters.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <ricochet/measure/stability/contact_spring.hpp>
+#include <ricochet/measure/stability/linear_response.hpp>
 
 #include "tests/marching.hpp"
 

@@ -1,7 +1,7 @@
 // Where a motion without contact first touches a stop, along a parameter.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <ricochet/measure/stability/contact_spring.hpp>
+#include <ricochet/measure/stability/linear_response.hpp>
 
 using namespace ricochet;
 

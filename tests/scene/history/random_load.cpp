@@ -3,7 +3,7 @@
 #include <cmath>
 #include <complex>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/scene/history/random_load.hpp>
+#include <ricochet/scene/history/time_history.hpp>
 
 using namespace ricochet;
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <ricochet/engine/compile.hpp>
 #include <string>
 
@@ -10,5 +11,11 @@ Refusal refuse_flight(const std::string& cause);
 std::string why_grounded(const Program& program, const CompileOptions& options);
 /// Makes the tables of flights; why there are none, where there are none.
 std::string let_fly(Program& program, const CompileOptions& options);
+
+/// Why a scheme cannot take the restitutions that stops have of their own, or nothing.
+std::optional<Refusal> refuse_restitution(const Program& program);
+
+/// Says what stops have of their own that neither law nor scheme has a use for.
+void say_unused(Program& program);
 
 }  // namespace ricochet
