@@ -1,7 +1,6 @@
 #pragma once
 #include <complex>
 #include <ricochet/contract/stage_facts.hpp>
-#include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
 #include <vector>
 

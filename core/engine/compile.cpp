@@ -4,8 +4,7 @@
 #include <cmath>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/cost_model.hpp>
-#include <ricochet/engine/flight_choice.hpp>
-#include <ricochet/engine/own_parameters.hpp>
+#include <ricochet/engine/left_out.hpp>
 #include <ricochet/scene/stop_parameters.hpp>
 #include <stdexcept>
 

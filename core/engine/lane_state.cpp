@@ -5,7 +5,6 @@
 #include <cmath>
 #include <ricochet/engine/energy_bounds.hpp>
 #include <ricochet/engine/flight/lane_flight.hpp>
-#include <ricochet/engine/lane_state.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
 #include <ricochet/kernels/floating_point.hpp>

@@ -2,7 +2,7 @@
 #include <ricochet/engine/march_model.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
 #include <ricochet/kernels/flight_kernels.hpp>
-#include <ricochet/scene/basis/lowest_modes.hpp>
+#include <ricochet/scene/basis/modal_basis.hpp>
 
 namespace ricochet {
 namespace {

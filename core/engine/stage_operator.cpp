@@ -2,7 +2,6 @@
 #include <cmath>
 #include <ricochet/engine/stage_operator.hpp>
 #include <ricochet/kernels/band_ldlt.hpp>
-#include <ricochet/kernels/node_band.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
 
 namespace ricochet {

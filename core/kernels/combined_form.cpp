@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <ricochet/kernels/combined_form.hpp>
 #include <ricochet/kernels/flight_kernels.hpp>
 #include <ricochet/kernels/instruction_set.hpp>
 #include <ricochet/kernels/lane_kernels.hpp>
+#include <ricochet/kernels/quadratic_form.hpp>
 
 namespace ricochet {
 namespace {

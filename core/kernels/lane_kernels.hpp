@@ -79,7 +79,7 @@ struct SquareSum {
 struct NodeStep {
   int nodes = 0;
   bool border = false;
-  /// Per node, as node_band.hpp packs them: K, shape and L of the rows; 1/D and Lᵀ of them.
+  /// Per node, as NodeBand packs them: K, shape and L of the rows; 1/D and Lᵀ of them.
   const double* down = nullptr;
   const double* up = nullptr;
   const double* K = nullptr;      ///< T = 1 alone: K by diagonals, 7 × 2 nodes, as in BandStep

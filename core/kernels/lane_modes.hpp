@@ -1,5 +1,4 @@
 #pragma once
-#include <ricochet/kernels/lane_squares.hpp>
 #include <ricochet/kernels/lane_vectors.hpp>
 #include <type_traits>
 

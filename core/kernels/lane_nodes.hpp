@@ -1,7 +1,6 @@
 #pragma once
-#include <ricochet/kernels/lane_squares.hpp>
+#include <ricochet/kernels/band_ldlt.hpp>
 #include <ricochet/kernels/lane_vectors.hpp>
-#include <ricochet/kernels/node_band.hpp>
 
 /// \file
 /// The free step by nodes, see NodeStep. What a node's rows need of their neighbours stays in registers, so that a pass

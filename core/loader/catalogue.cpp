@@ -9,7 +9,6 @@
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/loader/child.hpp>
 #include <ricochet/loader/float_control.hpp>
-#include <ricochet/loader/library_symbols.hpp>
 #include <sstream>
 
 namespace ricochet {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <ricochet/loader/library_symbols.hpp>
+#include <ricochet/loader/catalogue.hpp>
 #include <stdexcept>
 
 namespace ricochet {

@@ -4,7 +4,6 @@
 #include <array>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
-#include <ricochet/scene/equilibrium.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/stop_parameters.hpp>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/bodies.hpp>
-#include <ricochet/scene/moved_supports.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/planes.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>

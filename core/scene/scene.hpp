@@ -4,7 +4,7 @@
 #include <optional>
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/scene/formula.hpp>
-#include <ricochet/scene/history/piecewise_cubic.hpp>
+#include <ricochet/scene/history/time_history.hpp>
 #include <ricochet/scene/place.hpp>
 #include <string>
 #include <utility>

@@ -6,11 +6,10 @@
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/scene/assembly.hpp>
-#include <ricochet/scene/basis/shared_bases.hpp>
+#include <ricochet/scene/basis/modal_basis.hpp>
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
-#include <ricochet/scene/equilibrium.hpp>
 #include <ricochet/scene/massless_part.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/planes.hpp>

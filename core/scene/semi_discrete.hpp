@@ -7,7 +7,7 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/clearances.hpp>
-#include <ricochet/scene/history/support_motions.hpp>
+#include <ricochet/scene/history/time_history.hpp>
 #include <ricochet/scene/observed_rows.hpp>
 #include <ricochet/scene/scene.hpp>
 #include <string>
@@ -185,5 +185,22 @@ Eigen::MatrixXd dense_mass(const Inertia& inertia);
 
 /// M x, through the factors or the inverse where M is not formed. For set-up, not for the marching loop.
 Eigen::VectorXd apply_mass(const Inertia& inertia, const Eigen::VectorXd& x);
+
+/// A structure at rest under its load and its stops:
+///
+///     K q = F + Gᵀ p,     p the force of the contact law at G q + lift, at rest
+///
+/// of a rigid law lower ≤ G q + lift ≤ upper ⊥ p. Where K is singular, as the limit of K + εD, D its diagonal: stops
+/// that push hold the rigid motions.
+struct Equilibrium {
+  Eigen::VectorXd position;  ///< q, n
+  Eigen::VectorXd pushed;    ///< Gᵀ p, n
+};
+
+/// `load` F (n), `lift` (m): what supports move the contact points by, less the motion of their stops. `law`: prepared
+/// for one lane; null: no stops. Throws InputError at /scene/initial/equilibrium where nothing balances the load, or
+/// the law finds no force.
+Equilibrium equilibrium(const SemiDiscrete& problem, const Eigen::VectorXd& load, const Eigen::VectorXd& lift,
+                        ContactLaw* law);
 
 }  // namespace ricochet

@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 #include <cmath>
-#include <ricochet/contact_solvers/pointwise_contact.hpp>
+#include <ricochet/contact_solvers/pointwise_solver.hpp>
 #include <ricochet/contract/plugin.hpp>
 #include <vector>
 

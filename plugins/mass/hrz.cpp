@@ -1,4 +1,3 @@
-#include "given_diagonal.hpp"
 #include "lumped_diagonal.hpp"
 
 namespace {

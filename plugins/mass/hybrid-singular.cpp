@@ -2,8 +2,7 @@
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/contract/plugin.hpp>
 
-#include "massless_residual.hpp"
-#include "rotary_inertia.hpp"
+#include "without_inertia.hpp"
 
 namespace {
 

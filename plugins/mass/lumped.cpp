@@ -1,5 +1,5 @@
 #include "lumped_diagonal.hpp"
-#include "rotary_inertia.hpp"
+#include "without_inertia.hpp"
 
 namespace {
 

@@ -1,8 +1,7 @@
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/contract/plugin.hpp>
 
-#include "massless_residual.hpp"
-#include "rotary_inertia.hpp"
+#include "without_inertia.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <ricochet/contract/plugin_call.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
-#include <ricochet/scene/discrete_problem.hpp>
+#include <ricochet/scene/observed_rows.hpp>
 
 namespace ricochet::checking {
 namespace {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
 
 #include "runners/check/scheme_checks.hpp"

@@ -2,8 +2,8 @@
 
 #include <ostream>
 #include <ricochet/loader/child.hpp>
-#include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
+#include <ricochet/measure/stability/step_map.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <sstream>
 

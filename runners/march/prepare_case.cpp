@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/stability.hpp>
+#include <ricochet/measure/stability/step_map.hpp>
 
 #include "runners/march/load_changes.hpp"
 #include "runners/march/seconds.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 #include <ricochet/contract/registry.hpp>
-#include <ricochet/scene/named_formulas.hpp>
+#include <ricochet/scene/formula.hpp>
 #include <string>
 #include <utility>
 #include <vector>

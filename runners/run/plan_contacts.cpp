@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 #include <ricochet/contract/contact_law.hpp>
-#include <ricochet/measure/stability/contact_spring.hpp>
+#include <ricochet/measure/stability/linear_response.hpp>
 #include <ricochet/scene/basis/modal_basis.hpp>
 #include <set>
 

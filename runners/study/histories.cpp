@@ -4,7 +4,7 @@
 
 #include <cmath>
 #include <numbers>
-#include <ricochet/scene/history/random_load.hpp>
+#include <ricochet/scene/history/time_history.hpp>
 
 #include "runners/json/json_text.hpp"
 #include "runners/study/scene_keys.hpp"

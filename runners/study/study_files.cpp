@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ricochet/scene/files/csv_file.hpp>
 #include <ricochet/scene/files/text_file.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
-#include <ricochet/scene/structure/modal_structure.hpp>
 #include <set>
 
 #include "runners/study/histories.hpp"

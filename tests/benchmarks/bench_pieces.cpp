@@ -10,7 +10,7 @@
 #include <numbers>
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/measure/orbits/branch.hpp>
-#include <ricochet/measure/orbits/shoot.hpp>
+#include <ricochet/measure/orbits/periodic_map.hpp>
 
 #include "tests/benchmarks/reference_beam.hpp"
 #include "tests/benchmarks/thread_clock.hpp"

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <ricochet/contact_solvers/box_problem.hpp>
-#include <ricochet/contact_solvers/pointwise_contact.hpp>
+#include <ricochet/contact_solvers/pointwise_solver.hpp>
 #include <ricochet/contract/contact_law.hpp>
 
 #include "runners/check/allocation_count.hpp"

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 #include <ricochet/contract/abi.hpp>
-#include <ricochet/loader/library_symbols.hpp>
+#include <ricochet/loader/catalogue.hpp>
 #include <string>
 
 using namespace ricochet;

@@ -1,6 +1,6 @@
 // Several bodies that meet at stops: against one of them, against each alone, against a published motion.
 #include <ricochet/scene/bodies.hpp>
-#include <ricochet/scene/history/piecewise_cubic.hpp>
+#include <ricochet/scene/history/time_history.hpp>
 
 #include "tests/marching.hpp"
 #include "tests/refusals.hpp"

@@ -2,8 +2,8 @@
 #include <ricochet/measure/contact/stop_contacts.hpp>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/clearances.hpp>
-#include <ricochet/scene/moved_supports.hpp>
-#include <ricochet/scene/structure/modal_structure.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
+#include <ricochet/scene/supports.hpp>
 
 #include "tests/engine/steady_motion.hpp"
 #include "tests/marching.hpp"

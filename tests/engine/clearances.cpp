@@ -4,7 +4,7 @@
 #include <ricochet/measure/contact/tangent_watch.hpp>
 #include <ricochet/scene/clearances.hpp>
 #include <ricochet/scene/named_stops.hpp>
-#include <ricochet/scene/structure/modal_structure.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/supports.hpp>
 
 #include "tests/engine/steady_motion.hpp"

@@ -1,6 +1,6 @@
 // States at rest under a load and the stops, and motions that begin there.
 #include <ricochet/scene/bodies.hpp>
-#include <ricochet/scene/history/piecewise_cubic.hpp>
+#include <ricochet/scene/history/time_history.hpp>
 
 #include "tests/marching.hpp"
 #include "tests/refusals.hpp"

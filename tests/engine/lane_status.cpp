@@ -1,7 +1,7 @@
 // Why an integration ended: a cause with its numbers; status and sentence follow from it, never the other way round.
 #include <catch2/catch.hpp>
 #include <limits>
-#include <ricochet/engine/lane_state.hpp>
+#include <ricochet/engine/marcher.hpp>
 #include <set>
 
 using namespace ricochet;

@@ -4,9 +4,9 @@
 #include <numbers>
 #include <ricochet/scene/basis/modal_basis.hpp>
 #include <ricochet/scene/beam.hpp>
-#include <ricochet/scene/discrete_problem.hpp>
-#include <ricochet/scene/history/piecewise_cubic.hpp>
-#include <ricochet/scene/structure/modal_structure.hpp>
+#include <ricochet/scene/history/time_history.hpp>
+#include <ricochet/scene/observed_rows.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/supports.hpp>
 
 #include "tests/marching.hpp"

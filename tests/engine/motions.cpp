@@ -2,7 +2,7 @@
 #include <Eigen/Eigenvalues>
 #include <array>
 #include <numbers>
-#include <ricochet/scene/history/random_load.hpp>
+#include <ricochet/scene/history/time_history.hpp>
 
 #include "tests/allocations.hpp"
 #include "tests/marching.hpp"

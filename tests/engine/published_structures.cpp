@@ -1,7 +1,7 @@
 // Structures whose motion other programs have published: two masses that meet between supports that move apart, three
 // beams in a row.
 #include <numbers>
-#include <ricochet/scene/history/piecewise_cubic.hpp>
+#include <ricochet/scene/history/time_history.hpp>
 
 #include "tests/marching.hpp"
 #include "tests/scene/structure/beam_files.hpp"

@@ -1,5 +1,5 @@
 // Motions of beams in two planes, and of places within clearances.
-#include <ricochet/measure/motion/row_readings.hpp>
+#include <ricochet/measure/contact/stop_places.hpp>
 
 #include "tests/marching.hpp"
 

@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <ricochet/kernels/band_ldlt.hpp>
 #include <ricochet/kernels/block.hpp>
-#include <ricochet/kernels/combined_form.hpp>
-#include <ricochet/kernels/node_band.hpp>
+#include <ricochet/kernels/quadratic_form.hpp>
 
 #include "tests/instruction_sets.hpp"
 

@@ -2,7 +2,7 @@
 #include <bit>
 #include <cmath>
 #include <ricochet/engine/flight/closed_steps.hpp>
-#include <ricochet/engine/flight/step_rows.hpp>
+#include <ricochet/engine/flight/flight_motion.hpp>
 #include <ricochet/engine/stage_state.hpp>
 #include <ricochet/kernels/dense_solvers.hpp>
 

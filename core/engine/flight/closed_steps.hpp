@@ -1,8 +1,8 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <ricochet/engine/flight/flight_motion.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
-#include <ricochet/engine/flight/step_rows.hpp>
 #include <span>
 
 /// \file

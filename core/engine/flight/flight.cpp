@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <ricochet/engine/flight/flight.hpp>
-#include <ricochet/engine/flight/flight_memory.hpp>
+#include <ricochet/engine/flight/flight_set.hpp>
 #include <utility>
 
 namespace ricochet {

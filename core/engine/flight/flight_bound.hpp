@@ -1,6 +1,6 @@
 #pragma once
 #include <limits>
-#include <ricochet/engine/flight/step_rows.hpp>
+#include <ricochet/engine/flight/flight_motion.hpp>
 #include <string>
 #include <vector>
 

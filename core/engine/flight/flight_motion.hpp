@@ -1,7 +1,102 @@
 #pragma once
-#include <ricochet/engine/flight/step_rows.hpp>
+#include <Eigen/Core>
+#include <ricochet/engine/compile.hpp>
+#include <ricochet/engine/stage_operator.hpp>
+#include <vector>
 
 namespace ricochet {
+
+// One step as a matrix of a few numbers per mode. While no contact point opens or closes, a step is linear with
+// constant coefficients; over modes with φᵀKφ = 1 and φᵀMφ = μ, which diagonalise M, K and C = αK + ηM at once, it
+// falls into
+//
+//     x⁺ = x + D x + B e,     e⁺ = e + R e          x: the s slots of one mode;  e: what drives it (1)
+//
+// with e = (A sin(ωt + ψ), A cos(ωt + ψ), 1) at the beginning of the step, as far as the scene has them. What is kept
+// is the change D of a step, not I + D: of small steps I + D would forget the frequency.
+
+/// What drives a motion beside its own state.
+struct FlightDrive {
+  bool harmonic = false;  ///< A sin(ωt + ψ) and A cos(ωt + ψ), m
+  bool constant = false;  ///< 1
+  double angle = 0;       ///< ωh
+  int count() const { return (harmonic ? 2 : 0) + (constant ? 1 : 0); }
+  /// Where 1 stands among them.
+  int one() const { return harmonic ? 2 : 0; }
+  /// R of k steps, count() × count().
+  Eigen::MatrixXd change(double steps) const;
+};
+
+/// A stage over r modes.
+struct FlightStage {
+  FoldedStage folded;
+  std::vector<Combination> update;  ///< one per slot
+  Eigen::MatrixXd force;            ///< r × drives: what they add to b
+};
+
+/// Rows of one step over (x, e), mode by mode: s + drives numbers each.
+class StepRows {
+ public:
+  StepRows(const std::vector<FlightStage>& stages, int slots, const Eigen::VectorXd& mass, const FlightDrive& drive);
+
+  int modes() const { return static_cast<int>(maps_.size()); }
+  int slots() const { return slots_; }
+  int stages() const { return static_cast<int>(maps_.front().size()) - 1; }
+  int width() const { return slots_ + drive_.count(); }
+  const FlightDrive& drive() const { return drive_; }
+
+  /// Of Σ_j c_j x_j + c_z z before stage `stage` and with its unknown; `stage` = number of stages: after the step.
+  Eigen::RowVectorXd of(int mode, int stage, const Combination& c) const;
+  /// (D B): s × width.
+  const Eigen::MatrixXd& change(int mode) const { return maps_[static_cast<std::size_t>(mode)].back().change; }
+
+ private:
+  struct StageMap {
+    Eigen::MatrixXd change;      // of the slots since the step began, s × width
+    Eigen::RowVectorXd unknown;  // z
+  };
+  Eigen::RowVectorXd slot(const StageMap& map, int j) const;
+
+  int slots_;
+  FlightDrive drive_;
+  std::vector<std::vector<StageMap>> maps_;  // of each mode: before each stage, and after the last
+};
+
+// What stands on the right of a step, over what drives it.
+
+/// `factor` times a combination of levels of the clamp's motion, over e.
+Eigen::RowVectorXd harmonic(const PhaseWeights& phase, const FlightDrive& drive, double factor = 1);
+
+/// A load over e, in the coordinates of the integration (rows × drives): of the clamp's inertia, and of a distributed
+/// load that is constant in time.
+Eigen::MatrixXd load_over_drive(const Program& program, const Levels& levels, const FlightDrive& drive);
+
+/// The weight of slot j; trailing ones may be left out.
+inline double weight_at(const std::vector<double>& weights, int j) {
+  return static_cast<std::size_t>(j) < weights.size() ? weights[static_cast<std::size_t>(j)] : 0.0;
+}
+
+/// Weights of all slots a plan may have, then that of z.
+std::vector<double> slot_weights(const Combination& c);
+
+/// What an effort of 1 N along one row of modes does to a step, over modes with φᵀKφ = 1 and φᵀMφ = μ: the effort that
+/// stage `stage` found `ago` steps before, as far as the stages of this step weigh it, the slots zero where it begins.
+class EffortResponse {
+ public:
+  EffortResponse(const Program& program, int stage, int ago, const Eigen::VectorXd& row);
+
+  /// Whether no stage of this step weighs it.
+  bool none() const { return none_; }
+  /// Σ_j c_j x_j + c_z z before stage `at` and with its unknown; `at` = number of stages: after the step. One per mode.
+  Eigen::VectorXd of(int at, const Combination& c) const;
+  /// The slots after the step, modes × slots.
+  const Eigen::MatrixXd& change() const { return slots_.back(); }
+
+ private:
+  bool none_ = true;
+  std::vector<Eigen::MatrixXd> slots_;    // before each stage, and after the last
+  std::vector<Eigen::VectorXd> unknown_;  // of each stage
+};
 
 /// (D B) of a step becomes that of two, by (2); `turn`: R of the step.
 void double_change(Eigen::MatrixXd& change, int slots, const Eigen::MatrixXd& turn);

@@ -1,8 +1,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <ricochet/engine/flight/flight_motion.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
-#include <ricochet/engine/flight/step_rows.hpp>
 #include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
 #include <ricochet/kernels/flight_kernels.hpp>

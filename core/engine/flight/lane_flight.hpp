@@ -1,6 +1,6 @@
 #pragma once
 #include <algorithm>
-#include <ricochet/engine/flight/step_interval.hpp>
+#include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/stage_state.hpp>
 #include <vector>
 

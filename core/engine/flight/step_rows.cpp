@@ -1,5 +1,5 @@
 #include <cmath>
-#include <ricochet/engine/flight/step_rows.hpp>
+#include <ricochet/engine/flight/flight_motion.hpp>
 
 namespace ricochet {
 

@@ -4,8 +4,8 @@
 #include <deque>
 #include <map>
 #include <numeric>
+#include <ricochet/measure/attractors/attractors.hpp>
 #include <ricochet/measure/attractors/basin_grid.hpp>
-#include <ricochet/measure/attractors/branches.hpp>
 #include <set>
 #include <stdexcept>
 #include <utility>

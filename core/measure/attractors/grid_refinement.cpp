@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <ricochet/measure/attractors/grid_refinement.hpp>
+#include <ricochet/measure/attractors/basin_grid.hpp>
 #include <utility>
 
 namespace ricochet {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ricochet/measure/attractors/opinions.hpp>
+#include <ricochet/measure/attractors/diagram.hpp>
 #include <string>
 
 namespace ricochet {

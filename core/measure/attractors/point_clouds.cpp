@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 #include <random>
-#include <ricochet/measure/attractors/point_clouds.hpp>
+#include <ricochet/measure/attractors/attractors.hpp>
 
 namespace ricochet {
 namespace {

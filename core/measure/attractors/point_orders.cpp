@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/measure/attractors/point_orders.hpp>
+#include <ricochet/measure/attractors/match_points.hpp>
 #include <ricochet/measure/motion/orders.hpp>
 #include <stdexcept>
 

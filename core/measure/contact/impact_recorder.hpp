@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <limits>
 #include <ricochet/engine/marcher.hpp>
-#include <ricochet/measure/contact/closed_points.hpp>
 #include <ricochet/measure/contact/contact_instants.hpp>
 #include <ricochet/measure/contact/start_contact.hpp>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/contact/contact_instants.hpp>
-#include <ricochet/measure/motion/row_readings.hpp>
+#include <ricochet/measure/contact/stop_places.hpp>
 #include <ricochet/measure/statistics/running_moments.hpp>
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/engine/flight/step_interval.hpp>
+#include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
 
 namespace ricochet {

@@ -1,6 +1,6 @@
 #pragma once
 #include <algorithm>
-#include <ricochet/measure/contact/closed_points.hpp>
+#include <ricochet/measure/contact/contact_instants.hpp>
 #include <ricochet/measure/contact/start_contact.hpp>
 #include <ricochet/measure/energy/stage_works.hpp>
 #include <vector>

@@ -3,8 +3,8 @@
 #include <ricochet/contract/step_plan.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/kernels/block.hpp>
-#include <ricochet/kernels/combined_form.hpp>
 #include <ricochet/kernels/lane_kernels.hpp>
+#include <ricochet/kernels/quadratic_form.hpp>
 #include <vector>
 
 namespace ricochet {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <ricochet/measure/orbits/branch.hpp>
-#include <ricochet/measure/orbits/shoot.hpp>
+#include <ricochet/measure/orbits/periodic_map.hpp>
 #include <utility>
 
 namespace ricochet {

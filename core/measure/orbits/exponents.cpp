@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/measure/orbits/exponents.hpp>
+#include <ricochet/measure/orbits/lyapunov.hpp>
 
 namespace ricochet {
 namespace {

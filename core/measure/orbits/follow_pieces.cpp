@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/measure/orbits/follow_pieces.hpp>
+#include <ricochet/measure/orbits/branch.hpp>
 #include <utility>
 
 namespace ricochet {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <ricochet/measure/orbits/shoot.hpp>
+#include <ricochet/measure/orbits/periodic_map.hpp>
 #include <ricochet/measure/orbits/stepped_map.hpp>
 #include <utility>
 

@@ -3,6 +3,7 @@
 #include <complex>
 #include <optional>
 #include <ricochet/measure/orbits/periodic_map.hpp>
+#include <ricochet/measure/orbits/set_steps.hpp>
 #include <vector>
 
 namespace ricochet {
@@ -39,5 +40,12 @@ Outside outside(const std::vector<std::complex<double>>& multipliers);
 /// belong to.
 Eigen::MatrixXd half_step_derivative(PeriodicMap& map, const SetSequence& sets, const MapClock& clock, double parameter,
                                      const PeriodicMap::Measures& measures);
+
+/// Roots of modulus 1 (to 1e-7) that the step of a program has on displacements without mass, all points open: M φ = 0.
+/// `sets`: of that program.
+std::vector<std::complex<double>> massless_roots(const Program& program, const SetSteps& sets);
+
+/// The multipliers that roots of modulus 1 have after so many steps of a map that changes the sign or not: sign · rⁿ.
+std::vector<std::complex<double>> after_steps(std::vector<std::complex<double>> roots, long long steps, double sign);
 
 }  // namespace ricochet

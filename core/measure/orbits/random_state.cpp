@@ -3,7 +3,7 @@
 #include <limits>
 #include <random>
 #include <ricochet/engine/march_model.hpp>
-#include <ricochet/measure/orbits/random_state.hpp>
+#include <ricochet/measure/orbits/section_march.hpp>
 
 namespace ricochet {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <ricochet/engine/flight/step_interval.hpp>
+#include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/measure/orbits/section_march.hpp>
 
 namespace ricochet {

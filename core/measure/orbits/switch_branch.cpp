@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/kernels/eigenvalues.hpp>
-#include <ricochet/measure/orbits/massless_roots.hpp>
-#include <ricochet/measure/orbits/switch_branch.hpp>
+#include <ricochet/measure/orbits/multipliers.hpp>
+#include <ricochet/measure/orbits/special_points.hpp>
 
 namespace ricochet {
 

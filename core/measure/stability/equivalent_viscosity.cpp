@@ -4,7 +4,6 @@
 #include <complex>
 #include <ricochet/kernels/eigenvalues.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
-#include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/equivalent_viscosity.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
 #include <ricochet/measure/stability/structure_physics.hpp>

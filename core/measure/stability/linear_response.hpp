@@ -1,7 +1,10 @@
 #pragma once
 #include <complex>
+#include <functional>
 #include <optional>
+#include <ricochet/contract/contact_law.hpp>
 #include <ricochet/engine/compile.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
 #include <vector>
 
 namespace ricochet {
@@ -21,5 +24,38 @@ std::optional<LinearResponse> linear_response(const SemiDiscrete& problem, const
 /// How far the periodic motion without contact goes beyond the nearer stop, over the steps of a period: < 0 where it
 /// stays between the stops, 0 at grazing. m.
 double overlap(const LinearResponse& response, const LaneSpec& lane);
+
+/// A spring behind a stop and the mass that it turns back.
+struct ContactSpring {
+  double stiffness = 0, mass = 0;  ///< κ, N/m; m, kg
+  double pulsation = 0;            ///< rad/s, of the mass on it and on the structure behind it
+};
+
+/// What a spring κ behind a point of contact turns back, the last one where none is said: the mode that has most of its
+/// energy in that spring,
+///
+///     M φ = μ (K + κ hᵀh) φ,   φᵀ(K + κ hᵀh) φ = 1,   κ (h φ)² largest:   m = κ μ,   ω = 1/√μ,
+///
+/// a dense problem of n dofs. Nothing where it has no points, no modes are found, or that one has no mass.
+std::optional<ContactSpring> contact_spring(const SemiDiscrete& problem, double stiffness, int point = -1);
+
+/// How much a contact law gives way, m/N: 0 for a rigid law; 1/κ of one that declares a constant stiffness κ; of any
+/// other the secant d²/2U(d) of the energy U that it stores at the depth `depth` (m). Nothing for a compliant law that
+/// says neither. It follows from the law alone, whatever its parameters are called. The law is prepared for one point.
+std::optional<double> contact_compliance(ContactLaw& law, const Parameters& parameters, double depth);
+
+/// A value of a parameter at which the periodic motion without contact touches a stop for the first time.
+struct Grazing {
+  bool opens_below = false;  ///< whether the motion is without contact below the value
+  double value = 0, low = 0, high = 0;
+  int steps = 0;  ///< halvings made
+};
+
+/// Zeros of the overlap of a motion with its stops along a parameter. `overlap` (< 0: no contact, see
+/// linear_response.hpp; nothing where it is not known) is looked at in about 17 of the values (ascending); where its
+/// sign changes from one to the next, the zero is bisected to 1e-12 of its size, at most 60 times. Two zeros between
+/// two of these values are not seen.
+std::vector<Grazing> find_grazings(const std::vector<double>& values,
+                                   const std::function<std::optional<double>(double value)>& overlap);
 
 }  // namespace ricochet

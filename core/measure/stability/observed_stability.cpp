@@ -10,8 +10,8 @@
 #include <numbers>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
-#include <ricochet/measure/stability/no_contact.hpp>
 #include <ricochet/measure/stability/observed_stability.hpp>
+#include <ricochet/measure/stability/structure_physics.hpp>
 
 namespace ricochet {
 namespace {

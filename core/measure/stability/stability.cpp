@@ -5,7 +5,6 @@
 #include <complex>
 #include <numbers>
 #include <ricochet/kernels/dense_solvers.hpp>
-#include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
 #include <ricochet/measure/stability/structure_physics.hpp>

@@ -5,7 +5,6 @@
 #include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
-#include <ricochet/measure/stability/no_contact.hpp>
 #include <ricochet/measure/stability/structure_physics.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/basis/modal_basis.hpp>

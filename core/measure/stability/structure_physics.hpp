@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <ricochet/contract/contact_law.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <string>
 #include <variant>
@@ -11,6 +12,14 @@
 /// \file
 /// What a structure is before any step is chosen, so that a slip of units is seen.
 namespace ricochet {
+
+/// What stops do is not asked: no contact at all.
+class NoContact final : public ContactLaw {
+ public:
+  bool absent() const override { return true; }
+  void prepare(int, std::span<const Parameters>) override {}
+  void solve(ReducedProblem&) override {}
+};
 
 /// Above so many dofs, modes cost more than marching.
 constexpr int most_modal_dofs = 1200;

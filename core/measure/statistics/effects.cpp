@@ -5,7 +5,6 @@
 #include <cmath>
 #include <random>
 #include <ricochet/measure/statistics/effects.hpp>
-#include <ricochet/measure/statistics/factorial_table.hpp>
 #include <stdexcept>
 
 namespace ricochet {

@@ -6,7 +6,6 @@
 #include <map>
 #include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/measure/statistics/effects.hpp>
-#include <ricochet/measure/statistics/factorial_table.hpp>
 #include <set>
 #include <utility>
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <ricochet/kernels/eigenvalues.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
-#include <ricochet/scene/basis/lowest_modes.hpp>
+#include <ricochet/scene/basis/modal_basis.hpp>
 #include <vector>
 
 namespace ricochet {

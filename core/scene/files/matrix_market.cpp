@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/scene/files/matrix_market.hpp>
 #include <ricochet/scene/files/text_file.hpp>
 #include <vector>
 

@@ -7,9 +7,8 @@
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/files/text_file.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
-#include <ricochet/scene/structure/band_order.hpp>
+#include <ricochet/scene/structure/given_dofs.hpp>
 #include <ricochet/scene/structure/node_layout.hpp>
-#include <ricochet/scene/structure/rigid_motions.hpp>
 
 namespace ricochet {
 namespace {

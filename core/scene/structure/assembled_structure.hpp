@@ -2,8 +2,8 @@
 #include <Eigen/Core>
 #include <map>
 #include <memory>
-#include <ricochet/scene/files/dof_table.hpp>
-#include <ricochet/scene/files/matrix_market.hpp>
+#include <optional>
+#include <ricochet/scene/files/text_file.hpp>
 #include <ricochet/scene/place.hpp>
 #include <string>
 #include <vector>
@@ -29,7 +29,7 @@ struct AssembledFiles {
   std::vector<Influence> influences = {};
 };
 
-/// What a structure in modes has in the place of nodes (modal_structure.hpp).
+/// What a structure in modes has in the place of nodes (modal_structure()).
 struct ModalPart {
   int modes = 0;                   ///< the first dofs; those after them belong to the residual flexibility
   std::vector<int> attached = {};  ///< these
@@ -85,5 +85,24 @@ struct AssembledStructure {
 /// Checks the matrices and makes the structure. Throws FileError for an asymmetry above 1e-10, an indefinite matrix, a
 /// dof that nothing holds or moves, components without a unit of length, supports of a structure that they do not hold.
 AssembledStructure assemble_structure(const AssembledFiles& files);
+
+/// What a structure in modes is described by. Names of points are those of the first column.
+struct ModalFiles {
+  CsvFile modes;   ///< mode, frequency (Hz), mass (kg; kg m² of a mode of rotations), damping (ratio)
+  CsvFile shapes;  ///< point, then a column for each mode by its number: displacements of points, pushes of supports
+  std::optional<CsvFile> residual;       ///< point, then a column for each of these points: flexibility, m/N
+  std::optional<CsvFile> residual_mass;  ///< the same points: inertia of the static shapes, kg
+  std::optional<CsvFile> static_modes;   ///< point, then a column for each support: displacement while it moves by 1
+};
+
+/// The structure of modes in its own coordinates, q = (η, ζ), slowest mode first:
+///
+///     K = diag(m_k ω_k², Λ⁻¹),   M = diag(m_k, Vᵀ M_r V),   u(point i) = Σ_k Φ_ik η_k + Σ_l V_il ζ_l
+///
+/// with R = V Λ Vᵀ the residual flexibility and M_r its mass. A row of `shapes` called like a support, which
+/// `static_modes` names, is its participation Φᵀ(Mψ_j + M_fs e_j) in kg. `ratios` receives the damping of the elastic
+/// modes. Throws FileError for counts that differ, modes that stand twice or miss, frequencies below 0, masses not
+/// above 0, ratios not in ]−1, 1[, a residual that is not symmetric or not positive semidefinite, unknown points.
+AssembledStructure modal_structure(const ModalFiles& files, std::vector<double>& ratios);
 
 }  // namespace ricochet

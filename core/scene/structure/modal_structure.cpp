@@ -6,7 +6,7 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
 #include <ricochet/scene/files/text_file.hpp>
-#include <ricochet/scene/structure/modal_structure.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
 
 namespace ricochet {
 namespace {

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "first_fall.hpp"
 #include "linear_mode.hpp"
 
 /// \file

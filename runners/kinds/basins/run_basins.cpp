@@ -4,8 +4,7 @@
 #include <cmath>
 #include <map>
 #include <ricochet/measure/attractors/attractors.hpp>
-#include <ricochet/measure/attractors/branches.hpp>
-#include <ricochet/measure/attractors/grid_refinement.hpp>
+#include <ricochet/measure/attractors/basin_grid.hpp>
 
 #include "runners/kinds/basins/basins.hpp"
 #include "runners/kinds/basins/cell_scenes.hpp"

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <ricochet/measure/orbits/random_state.hpp>
-#include <ricochet/measure/stability/contact_spring.hpp>
+#include <ricochet/measure/orbits/section_march.hpp>
 #include <ricochet/measure/stability/linear_response.hpp>
 
 #include "runners/kinds/bifurcation/bifurcation.hpp"

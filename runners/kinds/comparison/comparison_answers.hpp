@@ -1,6 +1,6 @@
 #pragma once
 #include <optional>
-#include <ricochet/measure/statistics/order_run.hpp>
+#include <ricochet/measure/statistics/refinement.hpp>
 #include <string>
 #include <vector>
 

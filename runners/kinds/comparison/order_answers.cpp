@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ricochet/measure/statistics/order_run.hpp>
 #include <ricochet/measure/statistics/quantiles.hpp>
+#include <ricochet/measure/statistics/refinement.hpp>
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"

@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
+#include <ricochet/contract/reference.hpp>
 #include <ricochet/measure/motion/motion_errors.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
-#include <ricochet/scene/discrete_problem.hpp>
+#include <ricochet/scene/observed_rows.hpp>
 #include <ricochet/scene/supports.hpp>
 
 #include "runners/march/bytes.hpp"

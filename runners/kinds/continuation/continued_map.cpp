@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 #include <ricochet/measure/orbits/impact_jump.hpp>
-#include <ricochet/measure/orbits/massless_roots.hpp>
 #include <ricochet/measure/orbits/multipliers.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
 

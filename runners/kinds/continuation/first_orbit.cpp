@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <ricochet/measure/orbits/reference_orbits.hpp>
+#include <ricochet/measure/orbits/stepped_map.hpp>
 
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/stored_study.hpp"

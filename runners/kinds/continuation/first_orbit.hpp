@@ -1,6 +1,6 @@
 #pragma once
 #include <functional>
-#include <ricochet/measure/orbits/shoot.hpp>
+#include <ricochet/measure/orbits/periodic_map.hpp>
 #include <string>
 
 #include "runners/kinds/continuation/continued_map.hpp"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <ricochet/measure/orbits/reference_orbits.hpp>
 #include <ricochet/measure/orbits/special_points.hpp>
+#include <ricochet/measure/orbits/stepped_map.hpp>
 
 #include "runners/kinds/comparison/references.hpp"
 #include "runners/kinds/continuation/branch_tables.hpp"

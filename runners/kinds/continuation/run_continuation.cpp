@@ -4,8 +4,8 @@
 #include <cmath>
 #include <deque>
 #include <limits>
-#include <ricochet/measure/orbits/shoot.hpp>
-#include <ricochet/measure/orbits/switch_branch.hpp>
+#include <ricochet/measure/orbits/periodic_map.hpp>
+#include <ricochet/measure/orbits/special_points.hpp>
 #include <type_traits>
 
 #include "runners/kinds/continuation/branch_checkpoints.hpp"

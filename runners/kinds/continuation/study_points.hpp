@@ -3,7 +3,6 @@
 #include <map>
 #include <optional>
 #include <ricochet/measure/attractors/match_points.hpp>
-#include <ricochet/measure/attractors/point_orders.hpp>
 #include <string>
 #include <utility>
 #include <vector>

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/observed_stability.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
 #include <ricochet/measure/stability/stability.hpp>
+#include <ricochet/measure/stability/step_map.hpp>
 #include <ricochet/scene/stop_parameters.hpp>
 
 #include "runners/kinds/stability/stability.hpp"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <ricochet/measure/attractors/diagram_attractors.hpp>
+#include <ricochet/measure/attractors/diagram.hpp>
 
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/store/record_values.hpp"

@@ -2,7 +2,6 @@
 #include <optional>
 #include <ricochet/measure/attractors/attractors.hpp>
 #include <ricochet/measure/attractors/diagram.hpp>
-#include <ricochet/measure/attractors/opinions.hpp>
 #include <ricochet/measure/statistics/choices.hpp>
 #include <string>
 #include <utility>
@@ -130,8 +129,8 @@ namespace ricochet {
 // Clouds of section points live in (tip displacement, tip velocity), without unit. Each is divided by its standard
 // deviation over all section points of the study and the motions' places half a period later. A study of one orbit is
 // so measured against its motion. Clouds of more than 64 points are thinned evenly to that. See
-// core/measure/attractors: point_clouds.hpp (distances, their null), attractors.hpp (what counts as one attractor at
-// one value), branches.hpp (along the parameter) and basin_grid.hpp.
+// core/measure/attractors: attractors.hpp (distances, their null, what counts as one attractor at one value, along the
+// parameter) and basin_grid.hpp.
 //
 // *Reference case*: of the cases with the stiffest contact (a rigid one, where there is one; the law tells) the one
 // with the most steps per period, then the most elements, then the first of the study that has anything to compare

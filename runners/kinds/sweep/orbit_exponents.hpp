@@ -1,7 +1,7 @@
 #pragma once
 #include <atomic>
 #include <functional>
-#include <ricochet/measure/orbits/exponents.hpp>
+#include <ricochet/measure/orbits/lyapunov.hpp>
 #include <string>
 #include <vector>
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <optional>
 #include <ricochet/measure/orbits/judge_orbit.hpp>
-#include <ricochet/measure/stability/contact_spring.hpp>
 #include <ricochet/measure/stability/equivalent_viscosity.hpp>
+#include <ricochet/measure/stability/linear_response.hpp>
 #include <string>
 #include <utility>
 #include <vector>

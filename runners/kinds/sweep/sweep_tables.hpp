@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
 #include <optional>
-#include <ricochet/measure/attractors/diagram_attractors.hpp>
+#include <ricochet/measure/attractors/diagram.hpp>
 
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/table/number_type.hpp"

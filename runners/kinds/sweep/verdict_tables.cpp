@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <map>
-#include <ricochet/measure/attractors/opinions.hpp>
+#include <ricochet/measure/attractors/diagram.hpp>
 #include <set>
 
 #include "runners/kinds/sweep/diagram_tables.hpp"

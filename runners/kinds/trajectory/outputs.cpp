@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/engine/flight/step_interval.hpp>
+#include <ricochet/engine/flight/flight.hpp>
 
 #include "runners/json/json_text.hpp"
 

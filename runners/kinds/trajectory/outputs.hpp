@@ -1,12 +1,11 @@
 #pragma once
 #include <optional>
 #include <ricochet/engine/marcher.hpp>
-#include <ricochet/measure/contact/shocks.hpp>
 #include <ricochet/measure/contact/stop_contacts.hpp>
 #include <ricochet/measure/contact/stop_places.hpp>
 #include <ricochet/measure/contact/stop_statistics.hpp>
 #include <ricochet/measure/statistics/running_moments.hpp>
-#include <ricochet/measure/statistics/welch.hpp>
+#include <ricochet/measure/statistics/spectra.hpp>
 #include <string>
 #include <vector>
 

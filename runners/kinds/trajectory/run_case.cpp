@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ricochet/engine/flight/step_interval.hpp>
+#include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/contact/stop_contacts.hpp>
+#include <ricochet/measure/contact/stop_places.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
-#include <ricochet/measure/motion/row_readings.hpp>
 
 #include "runners/kinds/trajectory/outputs.hpp"
 #include "runners/kinds/trajectory/snapshot_taker.hpp"

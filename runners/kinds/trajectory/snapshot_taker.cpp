@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/engine/flight/step_interval.hpp>
+#include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/scene/supports.hpp>
 
 namespace ricochet {

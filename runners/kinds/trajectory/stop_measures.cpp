@@ -7,7 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <ricochet/measure/statistics/third_octaves.hpp>
+#include <ricochet/measure/statistics/spectra.hpp>
 #include <utility>
 
 #include "runners/json/json_text.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 #include <optional>
 #include <ricochet/measure/contact/impact_recorder.hpp>
-#include <ricochet/measure/contact/shocks.hpp>
 #include <ricochet/measure/contact/stop_statistics.hpp>
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // What a flight is made of: k steps at once, what bounds them, what they bring, and where there is none.
 #include <random>
-#include <ricochet/engine/flight/flight_memory.hpp>
-#include <ricochet/engine/flight/step_interval.hpp>
+#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight/flight_set.hpp>
 
 #include "tests/marching.hpp"
 

@@ -1,8 +1,7 @@
 // A diagram of several cases on types: who is the reference, who agrees, which change became which.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <ricochet/measure/attractors/diagram_attractors.hpp>
-#include <ricochet/measure/attractors/opinions.hpp>
+#include <ricochet/measure/attractors/diagram.hpp>
 
 using namespace ricochet;
 

@@ -1,5 +1,5 @@
 // Branches of the shaken tube: what one method follows, another one marches or solves.
-#include <ricochet/measure/orbits/shoot.hpp>
+#include <ricochet/measure/orbits/periodic_map.hpp>
 #include <ricochet/measure/orbits/special_points.hpp>
 #include <ricochet/measure/stability/linear_response.hpp>
 

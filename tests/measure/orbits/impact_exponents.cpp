@@ -2,7 +2,6 @@
 // are found event by event; and orbits that keep nothing of where they came from.
 #include <Eigen/Eigenvalues>
 #include <numbers>
-#include <ricochet/measure/orbits/exponents.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 #include <ricochet/measure/orbits/lyapunov.hpp>
 #include <ricochet/measure/orbits/section_march.hpp>

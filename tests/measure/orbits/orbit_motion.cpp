@@ -1,7 +1,7 @@
 // One period of an orbit, step by step, and its runs of contact.
 #include <ricochet/measure/orbits/branch.hpp>
 #include <ricochet/measure/orbits/orbit_motion.hpp>
-#include <ricochet/measure/orbits/shoot.hpp>
+#include <ricochet/measure/orbits/periodic_map.hpp>
 
 #include "tests/measure/orbits/shaken_tube.hpp"
 

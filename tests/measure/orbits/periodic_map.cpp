@@ -1,6 +1,6 @@
 // Steps by contact set against marched ones, Newton's method against settled orbits, multipliers against differences.
 #include <ricochet/measure/orbits/multipliers.hpp>
-#include <ricochet/measure/orbits/shoot.hpp>
+#include <ricochet/measure/orbits/periodic_map.hpp>
 
 #include "tests/measure/orbits/shaken_tube.hpp"
 

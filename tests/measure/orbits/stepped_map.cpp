@@ -1,9 +1,11 @@
 // Steps of arclength against pieces, and against impacts known in closed form.
+#include <complex>
 #include <ricochet/engine/lane_groups.hpp>
 #include <ricochet/measure/orbits/special_points.hpp>
 #include <ricochet/measure/orbits/stepped_map.hpp>
 
 #include "tests/measure/orbits/shaken_tube.hpp"
+#include "tests/plugins/reference/continuous_beam.hpp"
 
 using namespace ricochet;
 using namespace ricochet::testing;
@@ -75,4 +77,107 @@ TEST_CASE("steps of arclength follow the branch that pieces follow") {
     }
     CHECK(nearest < 1e-9);
   }
+}
+
+// Branches of the continuous beam: its first contact in closed form, its fold and its torus whatever the modes.
+
+namespace {
+
+constexpr double least = 0.066, largest = 0.103, solved_to = 1e-12, located = 2.5e-5;
+
+ReferenceOrbits beam_orbits(int modes, double at) {
+  return {[modes](double amplitude) {
+            return ReferenceOrbits::Scene{beam_map(continuous_beam(amplitude), modes),
+                                          2 * std::numbers::pi / beam_pulsation};
+          },
+          at, 1.0};
+}
+
+// Special points of the branch of symmetric orbits through the one that `periods` periods from rest lead to.
+std::vector<SpecialPoint> orbit_points(int modes, double at, int periods, int way, double to, double finer = 1) {
+  ReferenceOrbits map = beam_orbits(modes, at);
+  const MapClock clock{0, 1, true};
+  const ShotOrbit orbit = shoot(map, map.settle(at, periods), at, clock, solved_to);
+  REQUIRE(orbit.found);
+  ArcSteps limits{{std::min(least, to), std::max(at, to)}};
+  limits.tolerance = solved_to;
+  limits.located = located / finer;
+  limits.smooth = true;
+  StepFollower follower(map, clock, orbit.x, at, way, limits);
+  follower.advance(3000);
+  PointSearch search;
+  search.half = true;
+  search.prominence = 1e-5;
+  search.by_steps = true;
+  search.contacts = 1e-9 * (largest - least);
+  return special_points(follower.trace(), search);
+}
+
+std::vector<SpecialPoint> of_kind(const std::vector<SpecialPoint>& points, const std::string& kind) {
+  std::vector<SpecialPoint> own;
+  for (const SpecialPoint& point : points)
+    if (point.kind == kind) own.push_back(point);
+  return own;
+}
+
+// |u(L)| of the beam without stops over the amplitude of its clamp: EI(1 + iωα) w'''' = ρS ω² (1 + w), w clamped at 0.
+double response() {
+  const ReferenceProblem problem = continuous_beam(1);
+  const double omega = beam_pulsation;
+  const std::complex<double> stiffness = problem.stiffness * std::complex<double>(1, omega * problem.damping_stiffness);
+  const std::complex<double> k = std::pow(problem.inertia * omega * omega / stiffness, 0.25), z = k * beam_length;
+  // 1 + w = a cosh kx + b sinh kx + c cos kx + d sin kx: a + c = 1, b + d = 0, free end.
+  const auto cosh = std::cosh(z), sinh = std::sinh(z), cosine = std::cos(z), sine = std::sin(z);
+  // a cosh + b sinh − c cos − d sin = 0, a sinh + b cosh + c sin − d cos = 0 with c = 1 − a, d = −b.
+  const auto p = cosh + cosine, q = sinh + sine, r = sinh - sine;
+  const auto determinant = p * p - q * r;
+  const auto a = (cosine * p + sine * q) / determinant, b = (-sine * p - cosine * r) / determinant;
+  return std::abs(a * cosh + b * sinh + (1.0 - a) * cosine - b * sine);
+}
+
+}  // namespace
+
+TEST_CASE("an orbit of the continuous beam without contact is solved at once") {
+  ReferenceOrbits map = beam_orbits(20, 0.07);
+  const ShotOrbit free = shoot(map, Eigen::VectorXd::Zero(map.size()), 0.07, {0, 1, true}, solved_to);
+  REQUIRE(free.found);
+  CHECK(free.iterations == 1);
+}
+
+TEST_CASE("first contact of the continuous beam is its gap over its response, and its branch goes on from there") {
+  // Downwards from 0.08 m, over the folds near 0.0674, up to the graze and back to the end of the range.
+  const auto points = orbit_points(20, 0.08, 300, -1, least);
+  const auto grazes = of_kind(points, "contact");
+  REQUIRE_FALSE(grazes.empty());
+  CHECK(grazes.back().note == "first contact");
+  // Modes beyond 20 have 3e-9 of the response.
+  CHECK(grazes.back().parameter == Approx(beam_gap / response()).epsilon(0).margin(1e-9));
+  CHECK(points.back().note == "the range ends at 0.066");
+  bool lower_fold = false;
+  for (const SpecialPoint& fold : of_kind(points, "fold"))
+    lower_fold = lower_fold || std::abs(fold.parameter - 0.06745046843) < 1e-8;
+  CHECK(lower_fold);
+}
+
+TEST_CASE("the upper fold of the continuous beam lies at 0.1005653 m") {
+  double fold = 0;
+  for (const SpecialPoint& point : of_kind(orbit_points(16, 0.08, 300, 1, largest), "fold"))
+    if (point.parameter > 0.1) fold = point.parameter;
+  // With 12, 20 and 40 modes 0.10056532194, …286 and …292.
+  CHECK(fold == Approx(0.10056532292).epsilon(0).margin(1e-9));
+}
+
+TEST_CASE("the torus of the continuous beam is the same with twice the modes and steps four times finer") {
+  // 0.0849574 m; intervals are what a step of 1e-4 of the range leaves.
+  const auto torus = [](int modes, double finer) {
+    const auto found = of_kind(orbit_points(modes, 0.084, 300, 1, 0.0853, finer), "torus");
+    REQUIRE(found.size() == 1);
+    CHECK(found.front().low < found.front().parameter);
+    CHECK(found.front().parameter < found.front().high);
+    return found.front().parameter;
+  };
+  const double coarse = torus(20, 1);
+  CHECK(coarse == Approx(0.08495738).epsilon(0).margin(1e-8));
+  CHECK(torus(40, 1) == Approx(coarse).epsilon(0).margin(1e-8));
+  CHECK(torus(20, 4) == Approx(coarse).epsilon(0).margin(1e-8));
 }

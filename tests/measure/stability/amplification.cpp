@@ -1,5 +1,5 @@
 // What a plan does to one mode, against the closed forms of its scheme.
-#include <ricochet/measure/stability/amplification.hpp>
+#include <ricochet/measure/stability/step_map.hpp>
 
 #include "tests/amplification_roots.hpp"
 #include "tests/marching.hpp"

@@ -3,8 +3,8 @@
 // What the plan says of its step before anything runs, against closed forms, against marching, and against itself.
 #include <fmt/format.h>
 
-#include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/stability.hpp>
+#include <ricochet/measure/stability/step_map.hpp>
 #include <ricochet/measure/stability/structure_physics.hpp>
 
 #include "tests/amplification_roots.hpp"

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/stability.hpp>
+#include <ricochet/measure/stability/step_map.hpp>
 #include <ricochet/measure/stability/structure_physics.hpp>
 
 #include "tests/amplification_roots.hpp"

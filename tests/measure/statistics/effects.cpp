@@ -7,7 +7,6 @@
 #include <numeric>
 #include <random>
 #include <ricochet/measure/statistics/effects.hpp>
-#include <ricochet/measure/statistics/factorial_table.hpp>
 
 using namespace ricochet;
 

@@ -1,11 +1,8 @@
 // Whatever bytes a file has, it is read or told. RICOCHET_FUZZ sets the number of files.
 #include <cstdlib>
 #include <random>
-#include <ricochet/scene/files/csv_file.hpp>
-#include <ricochet/scene/files/dof_table.hpp>
-#include <ricochet/scene/files/matrix_market.hpp>
 #include <ricochet/scene/files/text_file.hpp>
-#include <ricochet/scene/structure/modal_structure.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
 
 #include "tests/scene/structure/beam_files.hpp"
 #include "tests/scene/working_set.hpp"

@@ -1,7 +1,4 @@
 // What files of matrices and tables give, and what each fault of them says.
-#include <ricochet/scene/files/csv_file.hpp>
-#include <ricochet/scene/files/dof_table.hpp>
-#include <ricochet/scene/files/matrix_market.hpp>
 #include <ricochet/scene/files/text_file.hpp>
 
 #include "tests/runners/scratch_folder.hpp"

@@ -1,7 +1,7 @@
 // A structure that is described by its modes: what is read of the tables, and what is refused.
 #include <Eigen/LU>
 #include <numbers>
-#include <ricochet/scene/structure/modal_structure.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
 
 #include "tests/scene/structure/beam_files.hpp"
 #include "tests/scene/working_set.hpp"

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include <numbers>
-#include <ricochet/measure/orbits/random_state.hpp>
+#include <ricochet/measure/orbits/section_march.hpp>
 
 #include "runners/kinds/basins/basins.hpp"
 #include "runners/kinds/sweep/forced_scenes.hpp"

@@ -1,0 +1,107 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ricochet/engine/cost_model.hpp>
+#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight/flight_set.hpp>
+#include <ricochet/engine/left_out.hpp>
+#include <ricochet/kernels/floating_point.hpp>
+#include <ricochet/scene/stop_parameters.hpp>
+
+namespace ricochet {
+namespace {
+
+// Bytes that nobody asks the machine for: what it has free is read from files.
+constexpr double small_tables = 16e6;
+
+double memory_for(double needed, const CompileOptions& options) {
+  if (options.memory) return *options.memory;
+  return needed > small_tables ? available_memory() : infinity;
+}
+
+}  // namespace
+
+Refusal refuse_flight(const std::string& cause) {
+  return Refusal{"the steps in which nothing happens cannot be left out (" + cause + "): march every step"};
+}
+
+std::string why_grounded(const Program& program, const CompileOptions& options) {
+  if (program.lanes.size() > 1) return "several lanes march as one block";
+  if (program.load && !program.load_constant) return "the load depends on time";
+  if (!program.problem->motions.empty()) return "supports or stops move by histories";
+  if (program.problem->damping.own()) return "the damping is not made of K and M";
+  if (!program.problem->held || !kind_applies(OperatorKind::modal, *program.problem))
+    return "the structure has no modes to fly by: it is not held, or has more than 1000 degrees of freedom";
+  if (options.kind != OperatorKind::automatic && options.kind != OperatorKind::modal)
+    return "another operator than the modal one is asked for";
+  const double needed = flight_bytes(program.problem->dofs(), static_cast<int>(program.plan.slots.size()),
+                                     program.contact ? program.problem->points() : 0, options.expected_steps);
+  const double there = memory_for(needed, options);
+  if (needed > there)
+    return fmt::format("the tables may take {:.3g} MB of memory, and there are {:.3g} MB", needed / 1e6, there / 1e6);
+  return "";
+}
+
+std::string let_fly(Program& program, const CompileOptions& options) {
+  if (program.contact) {
+    const Parameters parameters[] = {program.lanes.front().law};
+    prepare_law(*program.law, program.problem->points(), parameters, program.problem->own);
+  }
+  auto flight = std::make_shared<Flight>(program, program.farthest_layer(), options.expected_steps);
+  if (!flight->cause().empty()) return flight->cause();
+  program.flight = std::move(flight);
+  const std::string &closed = program.flight->closed_cause(), &steps = program.flight->steps_cause();
+  program.left_out.push_back(
+      {"steps in which no contact changes",
+       closed.empty() ? "open or closed, they are composed"
+       : steps.empty()
+           ? "those without contact are composed; with it (" + closed + ") they are made without a search or a reading"
+           : "those without contact are composed; with it (" + (program.law->reads() ? steps : closed) +
+                 ") every step is marched"});
+  return "";
+}
+
+// Of stops' own: by the gates of a rigid law.
+std::optional<Refusal> refuse_restitution(const Program& program) {
+  const int point = first_with(program.problem->own, ParameterRole::restitution);
+  if (point < 0 || program.law->absent() || program.law->reads()) return std::nullopt;
+  const std::string& name = program.problem->stops[static_cast<std::size_t>(point)];
+  bool gate = false;
+  for (const Stage& stage : program.plan.stages) gate = gate || (stage.impact && stage.impact->gate);
+  if (gate && program.tangents > 0)
+    return Refusal{
+        fmt::format("stop {} has a restitution of its own, and tangents know one for all stops: exponents "
+                    "are those of twins",
+                    name)};
+  if (gate || program.plan.facts.restitution == Restitution::ignored) return std::nullopt;
+  return Refusal{
+      fmt::format("the time scheme has one restitution in its step: leave restitution of stop {} out, or use a "
+                  "scheme that closes contact by velocities",
+                  name)};
+}
+
+// What stops have of their own that neither law nor scheme has a use for.
+void say_unused(Program& program) {
+  const SemiDiscrete& problem = *program.problem;
+  const auto say = [&](ParameterRole role, const char* reason) {
+    program.left_out.push_back({fmt::format("{} of stops", role_word(role)), reason});
+  };
+  if (!program.contact) return;
+  for (const UnusedParameter& unused : unused_by(*program.law, problem.own))
+    say(unused.role, program.law->reads() ? "the contact law has none" : "the contact law is rigid");
+  if (first_with(problem.own, ParameterRole::restitution) < 0) return;
+  bool gate = false;
+  for (const StageProgram& stage : program.stages) gate = gate || stage.gate;
+  if (!gate)
+    say(ParameterRole::restitution,
+        program.law->reads() ? "a compliant law rebounds by its own force" : "the time scheme has none");
+}
+
+double Program::farthest_layer() const {
+  double layer = 0;
+  if (contact)
+    for (int i = 0; i < (own_sets ? problem->points() : 1); ++i) layer = std::max(layer, law->layer(law_set(i, 0)));
+  return layer;
+}
+
+}  // namespace ricochet
