@@ -6,6 +6,7 @@
 #include <memory>
 #include <ricochet/contract/reference.hpp>
 #include <ricochet/scene/observed_rows.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
 
 #include "runners/check/bench.hpp"
 
