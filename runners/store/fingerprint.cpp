@@ -4,8 +4,6 @@
 #include <link.h>
 
 #include <algorithm>
-#include <boost/uuid/name_generator_sha1.hpp>
-#include <boost/uuid/nil_generator.hpp>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -47,13 +45,6 @@ Json content_of(const MethodChoice& method) {
   Json json = {{"name", method.name}, {"parameters", std::move(parameters)}};
   if (method.plan) json["plan"] = *method.plan;
   return json;
-}
-
-std::string content_hash(std::string_view content) {
-  const boost::uuids::name_generator_sha1 generator(boost::uuids::nil_uuid());
-  std::string text;
-  for (const auto byte : generator(content.data(), content.size())) text += fmt::format("{:02x}", byte);
-  return text;
 }
 
 std::string file_hash(const std::filesystem::path& file) {

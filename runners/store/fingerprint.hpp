@@ -1,18 +1,14 @@
 #pragma once
 #include <filesystem>
 #include <map>
+#include <ricochet/scene/files/text_file.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {
-
-/// 32 hexadecimal digits of the SHA-1 of `content` (as a version 5 UUID: 122 bits of it). Tells contents apart; no
-/// security is claimed.
-std::string content_hash(std::string_view content);
 
 /// A method with its parameters, as it is hashed.
 Json content_of(const MethodChoice& method);

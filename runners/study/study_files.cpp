@@ -82,7 +82,7 @@ const StudyFiles::File& StudyFiles::file(const std::string& name, const std::str
   } catch (const FileError& error) {
     throw InputError(pointer, error.what());
   }
-  const std::string digest = file_digest(one.content);
+  const std::string digest = content_hash(one.content);
   const Json digests = known_.is_object() ? known_.at("digests") : Json::object();
   const std::string before = one.digest.empty() ? digests.value(name, digest) : one.digest;
   if (before != digest) throw InputError(pointer, name + " has changed since the run began");

@@ -6,6 +6,7 @@
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/history/time_history.hpp>
 #include <ricochet/scene/observed_rows.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/supports.hpp>
 

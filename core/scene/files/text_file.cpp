@@ -122,7 +122,7 @@ std::string read_file(const std::filesystem::path& folder, const std::string& na
   return content;
 }
 
-std::string file_digest(std::string_view content) {
+std::string content_hash(std::string_view content) {
   const boost::uuids::name_generator_sha1 generator(boost::uuids::nil_uuid());
   std::string text;
   for (const auto byte : generator(content.data(), content.size())) text += fmt::format("{:02x}", byte);

@@ -14,6 +14,7 @@
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/observed_rows.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/supports.hpp>
 
 #include "runners/march/bytes.hpp"
