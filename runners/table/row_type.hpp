@@ -104,6 +104,22 @@ class RowType {
       use(r, std::move(record));
     }
   }
+  /// Changes rows in place: `use(Record&)` says whether a row stays. Cells of members that it leaves keep what they
+  /// hold.
+  template <class Use>
+  void change(Table& table, Use use) const {
+    std::vector<Row> kept;
+    each(table, [&](std::size_t r, Record&& record) {
+      const Row before = row(record);
+      if (!use(record)) return;
+      const Row after = row(record);
+      for (std::size_t k = 0; k < columns_.size(); ++k)
+        if (!(after[k] == before[k]))
+          if (const auto place = find_column(table.columns, columns_[k].name)) table.rows[r].at(*place) = after[k];
+      kept.push_back(std::move(table.rows[r]));
+    });
+    table.rows = std::move(kept);
+  }
 
  private:
   struct Field {

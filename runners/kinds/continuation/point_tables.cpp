@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "runners/store/record_values.hpp"
 
@@ -107,38 +108,23 @@ Table rows_of_cases(const StudyResults& results, const TableType<Record>& type, 
   return table;
 }
 
-/// Writes the names into the rows of all cases.
+/// Writes the names into the rows of all cases. Takes out folds without a name that steps may have invented: those
+/// whose parameter goes back by less than `least_fold`.
 void put_names(StudyResults& results, const StudyPoints& study) {
   const TableType<SpecialRow> type = special_points_type();
   Table* table = find_table(results.derived, type.name);
   if (!table) return;
-  const auto case_place = find_column(table->columns, case_name), place = find_column(table->columns, "name"),
-             branch = find_column(table->columns, "branch"), number = find_column(table->columns, "point");
-  if (!case_place || !place || !branch || !number) return;
-  const auto key = [](const std::string& id, const std::string& of, const std::string& point) {
-    return id + '\x1f' + of + '\x1f' + point;
-  };
-  std::map<std::string, std::string> names;
+  using Key = std::tuple<std::string, std::string, int>;
+  std::map<Key, std::string> names;
   for (const StudyPoint& one : study.points())
     if (one.name >= 0)
-      names[key(study.cases()[one.owner]->id, one.row.branch, Cell(one.row.point).text())] =
+      names[Key(study.cases()[one.owner]->id, one.row.branch, one.row.point)] =
           study.names()[static_cast<std::size_t>(one.name)].text;
-  for (Row& row : table->rows)
-    if (const auto found = names.find(key(row[*case_place].text(), row[*branch].text(), row[*number].text()));
-        found != names.end())
-      row[*place] = found->second;
-}
-
-/// Takes out folds that no other case confirms and that steps may have invented.
-void leave_out_folds(StudyResults& results, double least) {
-  Table* table = find_table(results.derived, special_points_type().name);
-  if (!table) return;
-  const auto kind = find_column(table->columns, "kind"), name = find_column(table->columns, "name"),
-             prominence = find_column(table->columns, "prominence");
-  if (!kind || !name || !prominence) return;
-  std::erase_if(table->rows, [&](const Row& row) {
-    return row[*kind].text() == "fold" && row[*name].text().empty() &&
-           row[*prominence].number().value_or(least) < least;
+  const double least = study.least_fold().value_or(0);
+  type.rows.change(*table, [&](SpecialRow& row) {
+    if (const auto found = names.find(Key(row.id, row.branch, row.point)); found != names.end())
+      row.name = found->second;
+    return row.kind != "fold" || !row.name.empty() || row.prominence.value_or(least) >= least;
   });
 }
 
@@ -240,7 +226,6 @@ void derive_points(StudyResults& results) {
   if (study.cases().empty()) return;
   const SweptColumns swept = swept_columns(results);
   put_names(results, study);
-  if (const auto least = study.least_fold()) leave_out_folds(results, *least);
   std::vector<PointOrderRow> orders;
   std::vector<PointLimitRow> limits;
   convergence_rows(study, orders, limits);
