@@ -1,12 +1,12 @@
 #pragma once
 #include <filesystem>
 #include <map>
-#include <ricochet/scene/files/text_file.hpp>
 #include <string>
 #include <vector>
 
 #include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 

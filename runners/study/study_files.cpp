@@ -9,6 +9,7 @@
 
 #include "runners/study/histories.hpp"
 #include "runners/study/scene_keys.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {

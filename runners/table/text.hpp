@@ -55,4 +55,8 @@ std::string duration_text(double seconds);
 /// A number of bytes in two digits: "950 B", "25 kB", "1.2 GB".
 std::string size_text(double bytes);
 
+/// 32 hexadecimal digits of the SHA-1 of `content` (as a version 5 UUID: 122 bits of it). Tells contents apart; no
+/// security is claimed.
+std::string content_hash(std::string_view content);
+
 }  // namespace ricochet

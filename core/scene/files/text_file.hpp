@@ -55,10 +55,6 @@ std::optional<long long> whole_number(std::string_view text);
 /// is larger than the limit (2 GiB, or RICOCHET_FILE_LIMIT bytes) or cannot be read.
 std::string read_file(const std::filesystem::path& folder, const std::string& name);
 
-/// 32 hexadecimal digits of the SHA-1 of `content` (as a version 5 UUID: 122 bits of it). Tells contents apart; no
-/// security is claimed.
-std::string content_hash(std::string_view content);
-
 /// A table in CSV: a header, then one row per line, cells separated by commas, spaces around them left out, no quotes.
 /// Empty lines say nothing.
 struct CsvFile {
