@@ -15,8 +15,8 @@ std::optional<double> as_number(const std::string& text);
 /// Whether a column is refined rather than chosen: step, steps_per_period, elements, modes.
 bool is_refinement(const std::string& column);
 
-/// A study as a comparison. A *choice* is a role with its parameters ("time"), or an axis of the scene; a *method* is
-/// one level of every choice that varies; what is left of a case is its step and its mesh.
+/// A study as a comparison. A *choice* is a role with its parameters ("time"), or an axis of the scene. A *method* is
+/// one level of every choice that varies. What is left of a case is its step and its mesh.
 class Compared {
  public:
   explicit Compared(const StudyResults& results);

@@ -58,12 +58,14 @@ bool keeps_energy(const StudyResults& results);
 /// The same of some of its cases.
 bool keeps_energy(const StudyResults& results, const Cases& cases);
 
-/// Whether the methods are told in tiers: at most a dozen in one scene, or any number where one direction is better;
-/// and nothing is asked to be compared. Otherwise choices are told by what they move.
+/// Whether the methods are told in tiers: always a single one, never where something is asked to be compared. Else they
+/// are where the measure is one of decades. So are at most a dozen methods in one scene, 120 where one direction is
+/// better. Otherwise choices are told by what they move.
 bool in_tiers(const Compared& study, const MeasureLimits& limits);
 
-/// What differences are shares of, one number for all methods that are compared: 1 of shares, the largest of the scale
-/// measure, else of the values themselves. 0 where nothing differs from zero.
+/// What differences are shares of, one number for all methods that are compared. It is 1 where the measure is a share
+/// (of 1, or of the energy brought in). Else it is the largest magnitude of the scale measure, or, without one, of the
+/// values themselves. 0 where nothing differs from zero.
 double scale_of(const MeasureWords& words, const std::vector<const Method*>& methods);
 
 /// The difference of two methods as it goes with the refinement: what moves both alike cancels.

@@ -28,8 +28,8 @@ std::string short_number(double value, int digits = 4);
 /// 0.5 as "½", 0.25 as "¼", 0.75 as "¾"; else short_number().
 std::string fraction_text(double value);
 
-/// A value as its uncertainty allows: to one digit of u, two where that begins with 1; near 100 % so that 100 − v keeps
-/// two digits. Without an uncertainty four digits.
+/// A value as its uncertainty u allows: to one digit of u, two where that begins with 1. Near 100 %, 100 − v keeps two
+/// digits. Without an uncertainty four digits.
 std::string value_text(const MeasureWords& measure, double value, std::optional<double> uncertainty,
                        bool with_unit = true);
 /// "83 to 87 %": both to one digit of half the width; one value where they are equal then.

@@ -25,8 +25,8 @@ const TableType<StopRange>& uncertainty_type();
 /// sampling half the 95 % interval of a mean over the parts of a window. The interval is blank of a single step.
 Table uncertainty_table(const Compared& study);
 
-/// Words whose numbers are thousandths or millionths where the unit is W or m and the largest value, `scale` (in the
-/// unit), is small: mW below 0.1 W, µW below 1e-4 W.
+/// Words whose numbers are thousandths or millionths where the unit is W or m: mW below 0.1 W, µW below 1e-4 W. `scale`
+/// is the largest value, in the unit.
 MeasureWords prefixed(MeasureWords words, double scale);
 
 /// The sentence of that row: the interval, the choice that decides it with what its levels give, and what step, mesh

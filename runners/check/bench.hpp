@@ -12,8 +12,8 @@
 #include "runners/check/checks.hpp"
 
 /// \file
-/// What plugins are checked on: a mass, laws and scenes of the checks themselves, so that a method never answers for
-/// the faults of another.
+/// What plugins are checked on: masses, laws and scenes of the checks themselves. A method never answers for the faults
+/// of another.
 namespace ricochet::checking {
 
 using Scheme = Subject<TimeScheme>;
@@ -32,8 +32,8 @@ std::unique_ptr<ContactLaw> springs(Evaluation evaluation, double stiffness);
 std::unique_ptr<ContactLaw> glued_spring(Evaluation evaluation, double stiffness, double damping);
 std::unique_ptr<ContactLaw> no_contact();
 
-/// One mass of 2 kg on 8 N/m (2 rad/s): free, damped (0.4 N s/m), loaded 3 cos(1.3 t + 0.4) N, on a support
-/// 0.2 sin(1.7 t + 0.3) m.
+/// One mass of 2 kg on 8 N/m (2 rad/s). The checks use it free, damped (0.4 N s/m), loaded 3 cos(1.3 t + 0.4) N, or on
+/// a support 0.2 sin(1.7 t + 0.3) m.
 struct OscillatorBench {
   double mass = 2, stiffness = 8, damping = 0, force = 0, support = 0;
   double position = 0, velocity = 0;  ///< absolute, m and m/s

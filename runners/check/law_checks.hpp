@@ -56,9 +56,9 @@ class LawBench {
   long allocations_ = 0;
 };
 
-/// The answer of the law at one point whose measure no effort moves: p at depth δ beyond the lower (side −1) or upper
-/// (+1) stop. The point has the speed u and, one step before, the depth δ⁻. Not `answered`: the law has no force there,
-/// as a barrier beyond its stop.
+/// The answer of the law at one point whose measure no effort moves. It is p at depth δ beyond the lower (side −1) or
+/// upper (+1) stop. The point has the speed u and, one step before, the depth δ⁻. Not `answered`: the law has no force
+/// there, as a barrier beyond its stop.
 struct PointAnswer {
   double effort = 0, dissipation = 0;
   bool answered = true;

@@ -5,8 +5,8 @@
 #include "runners/check/checks.hpp"
 
 /// \file
-/// Displacement spaces on which masses are checked: a beam or a bar of unit length and density, fixed or free at each
-/// end, with stops nowhere, at its free ends or at all nodes.
+/// Displacement spaces on which masses are checked: a beam or a bar of unit length and density. Each end is fixed or
+/// free. Stops are nowhere, at the free ends, or at all nodes.
 namespace ricochet::checking {
 
 using Mass = Subject<MassStrategy>;
@@ -35,8 +35,8 @@ InertiaOrRefusal ask_mass(const Mass& mass, const FiniteElementSpace& space);
 Eigen::MatrixXd dense(const Inertia& inertia, const FiniteElementSpace& space);
 /// K of EI = 1 or EA = 1.
 Eigen::MatrixXd unit_stiffness(const FiniteElementSpace& space);
-/// The spaces (of beams and bars, with any stops) that the strategy does not refuse; those of beams with a support
-/// between their ends behind the others.
+/// The spaces (of beams and bars, with any stops) that the strategy does not refuse. `accepted_pinned`: those of beams
+/// with a support between their ends.
 std::vector<SpaceBench> accepted(const Mass& mass, int elements);
 std::vector<SpaceBench> accepted_pinned(const Mass& mass, int elements);
 

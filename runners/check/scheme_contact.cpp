@@ -207,7 +207,8 @@ Verdict restitution_as_declared(const Scheme& scheme) {
   return fine(fmt::format("{}, e = {:g}: a free mass rebounds with {}", word(declared), e, range_text(*range)));
 }
 
-// As h → 0 the start that leans on contact does what the motion does: e v, and the stops' loss of ½ m v² (1 − e²).
+// As h → 0 a start at a stop does what the motion does. One that moves in rebounds with e v. Stops and scheme take ½ m
+// v² (1 − e²).
 Verdict start_at_a_stop(const Scheme& scheme) {
   const StepPlan plan = contact_plan(scheme, 0.01);
   if (!measures(plan)) return no_measure();

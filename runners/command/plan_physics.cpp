@@ -17,8 +17,8 @@ namespace {
 
 using Group = std::vector<const PlannedCase*>;
 
-// So many steps of a period are told apart from the motion itself by any scheme of order two: its phase is then off by
-// less than (2π/20)²/12 = 0.8 %.
+// A mode is resolved by so many steps per period. The frequency of the mid-point rule is then off by (2π/20)²/12 = 0.8
+// %.
 constexpr double enough_steps = 20;
 constexpr std::size_t most_structures = 3, most_modes = 3;
 

@@ -41,8 +41,9 @@ class SyntaxError : public InputError {
 };
 
 /// Parses a JSON text (RFC 8259). Keys that begin with // (remarks) and $schema (for editors) are left out, at every
-/// level. Throws SyntaxError for what is no JSON (what is wrong, the line, a caret under the place), a number that no
-/// double holds, nesting deeper than 100 levels, and InputError for a key given twice in one object.
+/// level. Throws SyntaxError (what is wrong, the line, a caret under the place) for what is no JSON. It throws the same
+/// for a number that no double holds, and for nesting deeper than 100 levels. Throws InputError for a key given twice
+/// in one object.
 Json parse_json(const std::string& text);
 
 /// Where the value of a JSON pointer stands in a valid JSON text: its key, or the element of a list. When the pointer

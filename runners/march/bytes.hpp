@@ -28,7 +28,7 @@ std::string to_bytes(const T& value, const std::string& mark) {
 }
 
 /// The value that to_bytes() was given. Throws std::runtime_error for bytes of another mark, and for those that are not
-/// whole, before anything in them is believed: a length that is wrong asks for no memory.
+/// whole. It does so before it reads any length in them: a wrong one asks for no memory.
 template <class T>
 T from_bytes(const std::string& bytes, const std::string& mark) {
   if (!bytes.starts_with(mark)) throw std::runtime_error("what was stored is of another version than " + mark);

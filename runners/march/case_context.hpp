@@ -55,8 +55,8 @@ struct CheckpointStore {
   std::function<void(const std::string& id, const std::string& call)> waiting = {};
 };
 
-/// What `read` makes of what is kept under the key; nothing where nothing is, or where it is not whole or of another
-/// version: what was stored is there to save time, and is computed again.
+/// What `read` makes of what is kept under the key. Nothing where nothing is kept, or where it is not whole or of
+/// another version. It is then computed again: it is stored to save time alone.
 template <class T>
 std::optional<T> recall(const CheckpointStore& checkpoints, const std::string& key,
                         T (*read)(const std::string& bytes)) {
@@ -76,8 +76,8 @@ struct CaseContext {
   BlockService* blocks = nullptr;  ///< other processes that march for it; null: it marches itself
 };
 
-/// When a long case shows what it has so far: every 20 s, and never so often that showing takes more than a twentieth
-/// of the time.
+/// When a long case shows what it has so far: every 20 s. It does so less often where showing would take over a
+/// twentieth of the time.
 class PartialPace {
  public:
   bool due() const { return seconds_since(shown_) >= std::max(interval, 20 * cost_); }

@@ -19,9 +19,9 @@ class GapWatch {
     if (penetration > known_) update(marcher, penetration);
   }
 
-  /// What the integration did in steps too long for its gaps, a sentence each: a point comes to its stop with a speed
-  /// that crosses the gap in a step; a point passes its stop by more than the gap. `recorder`: of the whole
-  /// integration.
+  /// What the integration did in steps too long for its gaps, a sentence each. `crossed`: a point comes to its stop
+  /// with a speed that crosses the gap in a step. `passed`: a point passes its stop by more than the gap. `recorder`:
+  /// of the whole integration.
   static std::string crossed(const Marcher& marcher, const ImpactRecorder& recorder);
   std::string passed() const;
 
@@ -31,16 +31,16 @@ class GapWatch {
   double times_ = 0, first_ = 0;
 };
 
-/// What steps of `step` (s) from t = 0 on do not resolve of a load that is a formula in t, a sentence each: that it
-/// comes and goes within a step (no step sees it, or one instant alone), and that it jumps. L being the largest load:
+/// What steps of `step` (s) from t = 0 on do not resolve of a load that is a formula in t, a sentence each. The load
+/// comes and goes within a step (no step sees it, or one instant alone), or it jumps. L being the largest load:
 ///
 ///     comes and goes    inside of a step it is beyond both of its ends by more than L/10, or at one end it is beyond
 ///                       the ends before and behind by more than L/2 (both are met by a wave of six steps and less);
 ///     jumps             by more than L/4 in a step, half of it or more in an eighth of that step.
 ///
-/// Looks at a quarter of the steps, 500 to 2500 of them, spread evenly, and closely around the numbers that stand in
-/// the formulas: what it does not find may be there. Costs half a millisecond at most where a formula takes 100 ns.
-/// Empty where no load is a formula in t.
+/// Looks at a quarter of the steps, 500 to 2500 of them, spread evenly. It looks closely around the numbers that stand
+/// in the formulas, 64 of each at most. What it does not find may be there. Costs half a millisecond at most where a
+/// formula takes 100 ns. Empty where no load is a formula in t.
 std::vector<std::string> load_changes(const SceneSpec& scene, double step, long long steps);
 
 /// What the step of a case makes of its tables and spectra, a sentence each. Told are tables with many steps between

@@ -32,10 +32,10 @@ struct CasePlan {
 /// Thrown out of a case when `stop` became true while it marched; the case leaves nothing behind.
 struct Interrupted {};
 
-/// The sentence with which the step h (s) of an explicit scheme is refused where the free structure grows in it: no
-/// stage of `plan` solves with K, and the spectral radius of the step, contact open, is beyond 1. It names the
-/// largest stable step, found by bisection of the spectrum over plans that `plan_at` makes. "" where the step is
-/// stable, the scheme is implicit, or the structure has more dofs than modes are found of.
+/// The sentence with which the step h (s) of an explicit scheme is refused where the free structure grows in it. The
+/// spectral radius of the step, contact open, is then beyond 1. A scheme is explicit where no stage of `plan` solves
+/// with K. It names the largest stable step, found by bisection of the spectrum over plans that `plan_at` makes. ""
+/// where the step is stable, the scheme is implicit, or the structure has more dofs than modes are found of.
 std::string beyond_explicit_limit(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
                                   const std::function<PlanOrRefusal(double)>& plan_at);
 
@@ -52,12 +52,12 @@ struct Prepared {
 /// Discretises, plans and compiles a case. `step` and `elements` may differ from the case's own (references).
 Prepared prepare_case(const StudyCase& study_case, const Registry& registry);
 
-/// The record of a case as far as its preparation tells: id, axes, notes, operator, what is left out; `refused`, with
-/// the sentence, where there is no program.
+/// The record of a case as far as its preparation tells: id, axes, notes, operator, what is left out. Where there is no
+/// program it is `refused`, with the sentence.
 CaseRecord begin_record(const StudyCase& study_case, const Prepared& prepared);
 
-/// How an integration that stopped before its end is recorded: diverged or failed, with the step, the time and the
-/// cause; a running lane ran out of its budget.
+/// Records an integration that stopped before its end: diverged or failed, with the step, the time and the cause. A
+/// lane that still runs ran out of its budget, and failed.
 void record_early_end(CaseRecord& record, const Marcher& marcher, long long steps, double budget);
 
 /// What makes the figures of a finished case doubtful, a sentence each ("" is none): its reason where it is done, else

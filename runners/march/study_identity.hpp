@@ -9,9 +9,10 @@
 
 namespace ricochet {
 
-/// Tells apart processors, and C libraries, that compute other last digits: a hash of all digits of a forced beam at a
-/// stop, marched some hundred steps by each kind of operator, and of values of the functions of <cmath>. Equal digests
-/// are no proof that all digits are equal; unequal ones say that they are not. Computed once per process, in a few ms.
+/// Tells apart processors, and C libraries, that compute other last digits. It is a hash of values of <cmath> functions
+/// and of all digits of a forced beam between stops. The beam is marched some hundred steps by band, modal and sparse
+/// operators. Equal digests are no proof that all digits are equal; unequal ones say that they are not. Computed once
+/// per process, in a few ms.
 const std::string& arithmetic_digest();
 
 /// What tells the cases of a study, and everything that their results depend on, from others. Each library is read and

@@ -26,9 +26,9 @@ struct PlanSource {
 /// Reads a file. Throws InputError, pointer "", whose text names the file: it cannot be read, or is no JSON.
 PlanSource read_plan_file(const std::filesystem::path& file);
 
-/// Checks a whole plan and tells what it says of itself: every key, every formula, and, where all parameters have
-/// defaults, that the plan is well-formed with these and h = 1 ms on a regular, damped problem with contact. Throws
-/// InputError with pointers into the document.
+/// Checks a whole plan, every key and every formula, and tells what it says of itself. Where all parameters have
+/// defaults, the plan must be well-formed with these and h = 1 ms. The problem is then regular and damped, with
+/// contact. Throws InputError with pointers into the document.
 PluginManual check_plan_source(const PlanSource& source);
 
 /// Checks and registers it as a time scheme that comes from `source.file`. Throws InputError.
@@ -37,22 +37,23 @@ void register_plan(const PlanSource& source, Registry& registry);
 /// The name under which a study gives a scheme that is no plugin: {"name": "plan", "file": "my-scheme.json"}.
 inline constexpr const char* stated_plan = "plan";
 
-/// An entry of `methods.time` may state its scheme itself: by "file", a path relative to `folder`, the study's, or by
-/// "plan", as resolved studies have it. This reads the plan, registers it under its own name, and leaves in `entry`
-/// this name and the parameters. Within a study a name stands for one scheme: throws InputError when the name is that
-/// of a plugin or of another plan among `before` (complete entries); and for whatever is wrong with the plan.
+/// An entry of `methods.time` may state its scheme itself. It does by "file", a path relative to `folder`, the study's,
+/// or by "plan", as resolved studies have it. This reads the plan, registers it under its own name, and leaves in
+/// `entry` this name and the parameters. Within a study a name stands for one scheme. Throws InputError when the name
+/// is that of a plugin or of another plan among `before` (complete entries). Throws it for whatever is wrong with the
+/// plan, too.
 std::optional<PlanSource> take_stated_plan(Json& entry, const std::string& pointer, const std::filesystem::path& folder,
                                            const Json& before, Catalogue& catalogue, Registry& registry);
 
-/// The catalogue of this program with the plans beside its plugins: files *.json in the plugin folders that hold a plan
-/// (an object with "slots" or "stages"), after all libraries, and those among `files`. One that is wrong is unusable;
-/// in `files` it is a PluginError.
+/// The catalogue of this program with plans after all libraries. These are the files *.json in the plugin folders that
+/// hold a plan (an object with "slots" or "stages"), and those among `files`. One that is wrong is unusable; in `files`
+/// it is a PluginError.
 Catalogue standard_catalogue(const std::vector<std::filesystem::path>& files = {});
 /// Adds the plans of one folder.
 void add_plans(const std::filesystem::path& folder, Catalogue& catalogue);
 
-/// The JSON Schema of a method that states its scheme itself: {"name": "plan", "file": …} or {"name": …, "plan": {…}},
-/// with the parameters that the plan declares, which only the reader knows.
+/// The JSON Schema of a method that states its scheme itself: {"name": "plan", "file": …} or {"name": …, "plan": {…}}.
+/// Any parameters may stand beside: only the reader knows which the plan declares.
 struct StatedPlanSchema {
   Json in_file, here;
   Json definitions;  ///< what both refer to by "#/$defs/NAME"

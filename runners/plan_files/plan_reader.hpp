@@ -41,8 +41,8 @@ class JsonPlace {
   std::string pointer_;
 };
 
-/// Formulas that are linear in some names ("q + h*v + beta*h*h*z" in slots and z), read as the weights of these names:
-/// each weight is what the formula gives where that name is 1 and the others are 0.
+/// Formulas that are linear in some names ("q + h*v + beta*h*h*z" in slots and z), read as the weights of these names.
+/// Each weight is what the formula gives where that name is 1 and the others are 0.
 class LinearFormulas {
  public:
   /// The names in which formulas are linear.
@@ -67,9 +67,8 @@ class LinearFormulas {
 /// Whether values that are not finite are errors (a plan is made) or let pass (only the text is checked).
 enum class Finite { demanded, ignored };
 
-/// The names of one plan and their values: h, what is known of the problem, parameters, "let"; and the reading of
-/// numbers, combinations, weights of matrices and sentences that use them. What it throws are InputErrors with
-/// pointers.
+/// The names of one plan and their values: h, what is known of the problem, parameters, "let". It reads the numbers,
+/// combinations, weights of matrices and sentences that use them. What it throws are InputErrors with pointers.
 class PlanValues {
  public:
   /// The names that no parameter, slot or let may take, apart from constants and functions.

@@ -16,9 +16,9 @@ std::string base64_doubles(std::span<const double> values);
 /// Bytes as base64.
 std::string base64_bytes(std::span<const unsigned char> bytes);
 
-/// At most `limit` of n samples, chosen so that no peak is lost: the interval is cut into limit/2 equal counts of
-/// samples, and of each the smallest and the largest are kept, in their order. First and last sample are kept. Returns
-/// increasing indices; all when n ≤ limit.
+/// At most `limit` of n samples, chosen so that no peak is lost. First and last sample are kept. Those between are cut
+/// into ⌊limit/2⌋ − 1 parts of equal counts. Of each part the smallest and the largest are kept, in their order.
+/// Returns increasing indices; all when n ≤ limit or limit < 4.
 std::vector<size_t> keep_extremes(std::span<const double> values, size_t limit);
 
 /// The column of a curve, nothing where there is none (a refused case has no curve).

@@ -26,19 +26,19 @@ struct PageData {
 ///   curves    {case: {column: [block of t, block of the column]}}
 ///   curve_files  whether each case with a curve has its file
 ///   and what the kind adds under its own key
-/// Nothing that figures of the kind do not read is written, but for the cases with their measures.
+/// The page holds the cases with their measures, and else what figures of the kind read.
 /// `all`: results of which the view may hold a part; they decide whether there are files of curves.
 PageData page_data(const CaseView& view, const KindPage& kind, const StudyResults& all);
 
-/// The cases of which a page holds curves over time: all where they fit the charts of a figure, which are 24 rows of
-/// cases that differ in the step alone, or 96 cases. Else 24 such rows. Among them are those with the least and with
-/// the most of what the answer speaks of first; the others are spread evenly over the study.
+/// The cases of which a page holds curves over time. All are held where they fit the charts of a figure: 24 rows of
+/// cases that differ in the step alone, or 96 cases. Else 24 such rows at most are. Up to 8 are those with the least of
+/// what the answer speaks of first, and 8 those with the most. The others are spread evenly over the study.
 class CurveChoice {
  public:
   CurveChoice(const CaseView& view, const StudyResults& all);
   bool holds(const std::string& id) const { return all_ || ids_.count(id) > 0; }
-  /// "Curves over time: this page holds those of 70 of 912 cases …", and where the others are; "" where all are held
-  /// and each has its file.
+  /// "Curves over time: this page holds those of 70 of 912 cases …", and where all are. "" where all are held and each
+  /// has its file.
   std::string sentence() const;
 
  private:

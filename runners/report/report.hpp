@@ -19,8 +19,8 @@ std::string answer_html(const CaseView& view, const KindPage& kind);
 
 namespace ricochet {
 
-/// The report of a study as one HTML file: no network (a Content-Security-Policy forbids it), the chart library
-/// inlined; `kind` says what the kind of study shows. Without the library (built where npm is missing) the tables
+/// The report of a study as one HTML file. It uses no network (a Content-Security-Policy forbids it): the chart library
+/// is inlined. `kind` says what the kind of study shows. Without the library (built where npm is missing) the tables
 /// alone, saying so.
 std::string render_report(const StudyResults& results, const report::KindPage& kind);
 
@@ -28,13 +28,13 @@ std::string render_report(const StudyResults& results, const report::KindPage& k
 
 namespace ricochet::report {
 
-/// Cases that the figures and the table of cases of one page hold, at most; of a study of more, these are shown:
+/// Cases that the figures and the table of cases of one page hold where a study has more than twice as many.
 constexpr std::size_t most_shown_cases = 2000;
 
-/// The results without the cases that a page of so many leaves out of its figures and of its table of cases, and
-/// without their rows in derived tables; nothing where all are shown. Shown are the first case of each value of an
-/// axis, up to a quarter of the most that are not done, and others in the order of their ids, which are hashes: drawn
-/// by lot, and the same ones each time.
+/// The results without the cases that a page leaves out of its figures and of its table of cases. Their rows in derived
+/// tables are left out, too. Nothing where all are shown: up to 2 × most_shown_cases of them. Shown are the first case
+/// of each value of an axis, and cases that are not done. Each of the two fills a quarter of most_shown_cases at most.
+/// Others follow in the order of their ids, which are hashes: drawn by lot, and the same ones each time.
 std::optional<StudyResults> shown_cases(const StudyResults& results);
 
 /// How many of how many are shown, and where all are.

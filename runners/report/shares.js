@@ -1,5 +1,5 @@
-// The shares of the choices in what the study observes, where they tell most of it: a bar per measure, a part per
-// choice or interaction with its interval.
+// The shares of the choices in what the study observes, where they tell most of it. A bar per measure has a part per
+// choice or interaction, with its interval.
 {
   const half = 0.5, least = 0.04, mostParts = 10, others = "all others", grey = "#BDBDBD";
 

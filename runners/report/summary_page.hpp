@@ -28,9 +28,9 @@ std::string counts_text(const StudyResults& results);
 /// commit, the plugins' bytes.
 std::string study_fingerprint(const StudyResults& results);
 
-/// What a file of qualification keeps of a study, made to fit one sheet: question, sketch of the scene with its
-/// numbers, answer, measures (HTML of the kind), a place for the figure, methods, limits, identity. The first page of a
-/// printed report.
+/// What a file of qualification keeps of a study, made to fit one sheet. Its parts: question, sketch of the scene with
+/// its numbers, answer, measures (HTML of the kind), place for the figure, methods, limits, identity. The first page of
+/// a printed report.
 std::string summary_html(const CaseView& view, const std::string& measures = "");
 
 /// The style of the printed pages' margins: which study, which fingerprint, when it ran, which page of how many.

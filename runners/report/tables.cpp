@@ -16,7 +16,7 @@ namespace ricochet::report {
 namespace {
 
 constexpr size_t most_full_rows = 100;  // of the table of all cases with every column
-// What fits the width of a sheet of paper, and how many rows of it a reader turns over; the style sheet leaves out the
+// Columns that fit the width of a sheet of paper, and rows that a reader turns over. The style sheet leaves out the
 // others.
 constexpr size_t columns_on_paper = 11, rows_on_paper = 150;
 

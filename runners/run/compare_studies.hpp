@@ -20,8 +20,8 @@ struct CasePair {
   const CaseRecord *a = nullptr, *b = nullptr;
 };
 
-/// How two numbers differ: not at all; by no more than 2⁻⁵² × steps of the measure's scale, which is what the round-off
-/// of an integration may leave; by more; or one of the two is missing.
+/// How two numbers differ. `round_off`: by no more than 2⁻⁵² × steps of the measure's scale, what the round-off of an
+/// integration may leave. `beyond`: by more.
 enum class NumberChange { none, round_off, beyond, missing };
 const char* change_word(NumberChange change);
 

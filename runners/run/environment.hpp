@@ -7,8 +7,9 @@
 
 namespace ricochet {
 
-/// Program, commit, compiler, flags, processor, cores that may be used, instruction sets, digest of the arithmetic,
-/// kernel, libraries, plugin libraries (with a hash of their bytes), time started (UTC).
+/// What computes: program, commit, compiler, build type, flags, processor, cores that may be used, instruction sets,
+/// digest of the arithmetic, kernel. Then libraries, plugin libraries (with a hash of their bytes), and the time
+/// started (UTC).
 Environment describe_environment(const std::vector<std::filesystem::path>& plugin_libraries);
 
 /// How this program was built; the words that CMake gave, "unknown" where it was built without.

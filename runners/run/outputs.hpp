@@ -10,10 +10,10 @@ namespace ricochet {
 
 using RenderReport = std::function<std::string(const StudyResults&)>;
 
-/// Writes study.json, cases.csv, the derived tables, the exported tables of numbers, curves/ID.csv, dictionary.csv
-/// (what every column of these means), failures/ID.json and report.html into `folder` from the results alone, each file
-/// whole or not at all, and removes the curves of cases that are no longer in the study. `changed`: the cases whose
-/// curve must be written again; nothing means all. Throws StoreError.
+/// Writes into `folder`, from the results alone: study.json, cases.csv, the derived tables, the exported tables of
+/// numbers, curves/ID.csv, failures/ID.json, report.html. Writes dictionary.csv, too: what every column of these means.
+/// Each file is written whole or not at all. The curves of cases that are no longer in the study are removed.
+/// `changed`: the cases whose curve must be written again; nothing means all. Throws StoreError.
 void write_outputs(const std::filesystem::path& folder, const StudyResults& results, const RenderReport& render,
                    const std::set<std::string>* changed = nullptr);
 

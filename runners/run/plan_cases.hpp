@@ -49,8 +49,9 @@ class CasePlanner {
 /// What a step makes of the contacts of compliant laws, a line for each law, scheme and step among these cases. A
 /// contact lasts half a period, π√(m/κ), of the law's spring κ on the mass m that moves in it. The line tells how many
 /// steps that is. It tells what share of its energy a bounce of m loses, over the instants of a step at which it may
-/// begin. m = κ/ω², ω that of the mode with most energy in a spring at the last contact point; of an oscillator m is
-/// its mass, on k + κ. Laws without a constant stiffness have no line. "" where there is none.
+/// begin. m = κ/ω². ω is that of the mode with most energy in a spring at the last contact point. A stop with its own κ
+/// has a line for its own point. Of an oscillator ω² = (k + κ)/M, M its mass. Laws without a constant stiffness have no
+/// line. "" where there is none.
 std::string contacts_text(const std::vector<PlannedCase>& cases, const CasePlanner& planner, const Registry& registry);
 
 /// What a study will take, in processor seconds of this machine.

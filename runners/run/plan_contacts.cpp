@@ -102,8 +102,8 @@ StudyCase bounce(const StudyCase& one, const ContactSpring& spring, double h, do
   return thrown;
 }
 
-/// The energy that is left of one bounce, least and most over the instants at which it begins; nothing where it cannot
-/// be marched, or does not leave.
+/// The share of its energy that is left after one bounce, least and most over the instants at which it begins. Nothing
+/// where it cannot be marched, or does not leave.
 std::optional<std::pair<double, double>> left_by(const StudyCase& one, const ContactSpring& spring, double h,
                                                  const Registry& registry) {
   const double steps = std::numbers::pi / (spring.pulsation * h);

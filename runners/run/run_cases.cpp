@@ -33,8 +33,8 @@ void on_threads(int threads, const std::function<void()>& body) {
 
 int run_cases(const StudyRunner& runner, std::vector<PendingCase> pending, int at_once, std::atomic<bool>& stop,
               const CaseEvents& events) {
-  // Of very many cases those that cost the same run in the order of their ids: the store keeps them in it, and what
-  // ends together then stands together there, and not each case in pages of its own that are written anew.
+  // Of very many cases those that cost the same run in the order of their ids, in which the store keeps them. Cases
+  // that end together then share pages of the store: fewer pages are written anew.
   const bool by_id = pending.size() > 2000;
   std::stable_sort(pending.begin(), pending.end(), [&](const PendingCase& a, const PendingCase& b) {
     if (a.predicted_seconds != b.predicted_seconds) return a.predicted_seconds > b.predicted_seconds;

@@ -16,8 +16,8 @@ struct RunOptions {
   int jobs = 0;               ///< workers; 0: as many as processors that it may use
   bool fresh = false;         ///< forget what the folder holds
   bool table = false;         ///< print a line for every case
-  /// Where cases run: in worker processes, in this one alone, or in this one where all of them are predicted to take
-  /// less than a second.
+  /// Where cases run: in worker processes or in this one. `here_if_short`: in this one where all of them are predicted
+  /// to take less than a second, else in workers.
   enum class Where { workers, here, here_if_short } where = Where::here;
   std::vector<std::filesystem::path> plugins = {};      ///< libraries beside the program's own, for workers
   std::vector<std::shared_ptr<WorkerHost>> hosts = {};  ///< where workers run; none: this machine alone

@@ -54,9 +54,9 @@ struct CaseEvents {
   std::function<void(const CaseRecord&, const PendingCase* next)> finished;
 };
 
-/// Times the finished cases that have no time yet, one at a time, `repeats` rounds in turn: measures timed_seconds
-/// (median), timed_low and timed_high (smallest and largest), and a note when other programs took the processor
-/// meanwhile. Ends early when `stop` becomes true, then without any time. Returns the records to save.
+/// Times the finished cases that have no time yet, one at a time, `repeats` rounds in turn. Adds the measures
+/// timed_seconds (median), timed_low and timed_high (smallest and largest). Adds a note when other programs took more
+/// than a tenth of the time. Ends early when `stop` becomes true, then without any time. Returns the records to save.
 std::vector<CaseRecord> time_cases(const StudyRunner& runner, const Study& study, const StudyResults& results,
                                    int repeats, const std::atomic<bool>& stop);
 
@@ -79,9 +79,9 @@ struct ProgressState {
   std::string waits_for;  ///< a case that takes far longer than predicted; then no time is promised
 };
 
-/// What a case costs, learnt from those that finished: a predicted seconds and b. b is for being a case at all (its
-/// rows are written, its report is drawn). Least squares of relative errors; until anything is known, as predicted and
-/// a little.
+/// What a case costs, learnt from those that finished: a × its predicted seconds + b. The constant b is for being a
+/// case at all (its rows are written, its report is drawn). Least squares of relative errors. Until anything is known:
+/// as predicted, and a little.
 class CaseCost {
  public:
   CaseCost();

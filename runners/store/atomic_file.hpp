@@ -34,9 +34,9 @@ class FileWriter {
   int descriptor_ = -1;
 };
 
-/// Writes `content` to a temporary file of the same folder, then renames it to `file`: readers see the old file or the
+/// Writes `content` to a temporary file of the same folder, then renames it to `file`. Readers see the old file or the
 /// new one, never a part. Throws StoreError (path and cause) when the folder does not exist, is not writable or the
-/// disk is full; the temporary file is removed and an older `file` is left as it was.
+/// disk is full. The temporary file is then removed and an older `file` is left as it was.
 void write_file(const std::filesystem::path& file, std::string_view content);
 
 /// Removes the temporary files that a killed process left in `folder`. Only while the folder's lock is held.
@@ -45,8 +45,8 @@ void remove_leftovers(const std::filesystem::path& folder);
 /// Creates the folder and its parents. Throws StoreError (path and cause).
 void make_folder(const std::filesystem::path& folder);
 
-/// Cases with a curve that have each a file of their own, curves/ID.csv: where there are more, nobody opens them one by
-/// one, and file systems that machines share suffer from so many; their curves are exported into one file.
+/// Cases with a curve that have each a file of their own, curves/ID.csv, at most. Where there are more, nobody opens
+/// them one by one, and shared file systems suffer. Their curves are exported into one file.
 inline constexpr std::size_t kMostCurveFiles = 2000;
 
 /// Whether each case that has a curve has its file.

@@ -61,7 +61,7 @@ Table table_of_cases(const StudyResults& results, std::string name, std::string 
 /// The same of a table that has these alone.
 Table table_of_cases(const StudyResults& results, const Table& own);
 
-/// A value of a study or of a store as a cell: what is neither a word, a number nor a truth value is its JSON text.
+/// A value of a study or of a store as a cell. What is neither a word, a number nor a truth value is its JSON text.
 Cell cell_of(const nlohmann::ordered_json& value);
 /// The same cell as it is stored.
 nlohmann::ordered_json json_of(const Cell& cell);
@@ -71,16 +71,16 @@ nlohmann::ordered_json json_of(const Cell& cell);
 /// What is known of a measure, as a column.
 Column measure_column(const std::string& name);
 
-/// cases: case, every axis, status, reason, steps, setup_seconds, run_seconds, then every measure (those of the kind,
-/// in their order, then any other in the order met). A cell is nothing where a case has no such value. The status of a
-/// case that is still running is `partial`.
+/// cases: case, every axis, status, reason, steps, setup_seconds, run_seconds, then every measure. Measures of the kind
+/// come first, in their order, then any other in the order met. A cell is nothing where a case has no such value. The
+/// status of a case that is still running is `partial`.
 Table cases_table(const StudyResults& results);
 
 /// curves/ID.csv: one column per series, one line per sample.
 std::string curve_csv(const Curve& curve);
 
-/// The tables of numbers that are exported, in the order met, without rows: case, every axis, then the columns of the
-/// table (those of the first case, then any other in the order met).
+/// The tables of numbers that are exported, in the order met, without rows. Columns are case, every axis, then those of
+/// the table: of its first case, then any other in the order met.
 std::vector<Table> number_heads(const StudyResults& results);
 
 /// The rows of all cases under such a head; empty fields for what is not finite or not there. Handed to `write` in

@@ -87,9 +87,9 @@ CREATE TABLE aside_cases(
   steps INTEGER NOT NULL, setup_seconds REAL NOT NULL, run_seconds REAL NOT NULL, operator TEXT NOT NULL);
 )sql";
 
-// What version 6 adds: the run that the store belongs to (its RunIdentity, as JSON), and with each case the digest of
-// the processor's arithmetic that it was computed with, "" where that is not known.
-// In version 7 large tables lie in pieces: rows of the same name that follow each other are one table.
+// Version 6 adds the run that the store belongs to (its RunIdentity, as JSON). It adds to each case the digest of the
+// processor's arithmetic that it was computed with, "" where that is not known. In version 7 large tables lie in
+// pieces: rows of the same name that follow each other are one table.
 constexpr const char* kEpochTable = "CREATE TABLE epoch(number INTEGER PRIMARY KEY, run TEXT NOT NULL);";
 constexpr const char* kArithmeticColumns = R"sql(
 ALTER TABLE cases ADD COLUMN arithmetic TEXT NOT NULL DEFAULT '';

@@ -30,9 +30,8 @@ void forget_store(const std::filesystem::path& file);
 void guarded(const std::filesystem::path& file, const SQLite::Database* database, const std::function<void()>& work);
 
 /// Makes the view v_cases of these results: the columns of cases.csv (cases_table) over the finished cases, by the same
-/// names, so that a query needs neither the rows of axes and measures nor JSON. Truth values are 0 and 1. There is no
-/// view of curves, nor of tables of numbers (impacts): their series are packed, and SQL cannot read doubles out of a
-/// blob.
+/// names. A query then needs neither the rows of axes and measures nor JSON. Truth values are 0 and 1. There is no view
+/// of curves, nor of tables of numbers (impacts): their series are packed, and SQL cannot read doubles out of a blob.
 void make_views(SQLite::Database& database, const StudyResults& results);
 
 // Cases of earlier versions of a study are kept in the store beside those that are asked for, by fingerprint. They have

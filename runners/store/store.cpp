@@ -77,12 +77,11 @@ Store::Store(const std::filesystem::path& folder, bool fresh, bool locked) : fil
     database_ = std::make_unique<SQLite::Database>(file_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, wait_ms);
   });
   guarded(file_, database_.get(), [&] {
-    // Rollback journal, not WAL: between two cases the record is one plain file, which can be copied, archived, read
-    // from a folder without write permission and kept on a network disk. FULL: with a rollback journal NORMAL may
-    // damage the file at a power cut; the price is a few ms, which cases that end closely share. A killed process loses
-    // nothing that was committed under either.
-    // The cache, KiB: what one transaction changes stays in memory until it is committed, and the indices of a study of
-    // many cases, which each case enters at a place of its own.
+    // Rollback journal, not WAL: between two cases the record is one plain file. It can be copied, archived, read from
+    // a folder without write permission and kept on a network disk. FULL: with a rollback journal NORMAL may damage the
+    // file at a power cut. It costs a few ms, which cases that end closely share. A killed process loses nothing that
+    // was committed under either. The cache, KiB, holds what one transaction changes until it is committed. It holds
+    // the indices of a study of many cases, which each case enters at a place of its own.
     database_->exec(
         "PRAGMA journal_mode=DELETE; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON; PRAGMA cache_size=-131072;");
   });

@@ -95,22 +95,22 @@ struct ExpectedCase {
 /// case.
 ///
 /// The folder is locked while a Store lives. Each call below is all or nothing. A process killed at any moment leaves
-/// the store as it was after some call that returned: the last one, but for what begins() and save() wrote in the last
-/// half second (WriteGroup). Errors are StoreError, with the path, the cause and what to do.
+/// the store as it was after the last call that returned. What begins(), save() and save_progress() wrote in the last
+/// half second may be missing (WriteGroup). Errors are StoreError, with the path, the cause and what to do.
 class Store {
  public:
   /// Opens or creates FOLDER/results.sqlite; `fresh` forgets what it held. Refuses a store of another version.
   Store(const std::filesystem::path& folder, bool fresh) : Store(folder, fresh, true) {}
-  /// The same without a lock on the folder, as where the locks of the file system hold nobody back: what keeps two runs
-  /// apart is then the epoch alone.
+  /// The same without a lock on the folder, as where the locks of the file system hold nobody back. The epoch alone
+  /// then keeps two runs apart.
   static Store unlocked(const std::filesystem::path& folder) { return {folder, false, false}; }
 
   /// States the study (name, question, kind, study, columns, expected_cases, part of `study`) and its cases. Stored
-  /// cases that are not expected with their fingerprint are set aside, those that were and are expected now come back;
-  /// what was refused or not finished is dropped. The curves/ID.csv of all these are removed. Returns the ids of the
-  /// cases that need not run. Refuses a store of another study. The store is this run's from here on: what an earlier
-  /// one that still lives would write is refused, and nothing of it changes the store (Epoch). `arithmetic`: digest
-  /// of the arithmetic of this run, kept with its cases; motions are found again under the same one only.
+  /// cases that are not expected with their fingerprint are set aside; refused and unfinished ones of them are dropped.
+  /// Those that were set aside and are expected now come back. The curves/ID.csv of all these are removed. Returns the
+  /// ids of the cases that need not run. Refuses a store of another study. The store is this run's from here on. What
+  /// an earlier one that still lives would write is refused, and nothing of it changes the store (Epoch). `arithmetic`:
+  /// digest of the arithmetic of this run, kept with its cases; motions are found again under the same one only.
   std::set<std::string> begin(const StudyResults& study, const std::vector<ExpectedCase>& expected,
                               const std::string& arithmetic = "");
   /// The part of its study that the store holds, as the last begin() stated it; nothing where none has.
@@ -143,12 +143,12 @@ class Store {
   /// Measures that are not finite are left out, with a note. May be called from several threads.
   void save(std::span<const CaseRecord> records, const std::string& next = "");
 
-  /// Adds what a running case has so far, to be shown and to be replaced by save(): begin() does not keep it, load()
-  /// marks it as partial. May be called from several threads.
+  /// Adds what a running case has so far, to be shown and to be replaced by save(). A later begin() does not keep it;
+  /// load() marks it as partial. May be called from several threads.
   void save_partial(const CaseRecord& record);
 
-  /// What was computed once and serves several cases (a reference), or lets a case go on (a checkpoint), by what
-  /// determines it; "" when there is none. Saving "" removes it.
+  /// What was computed once and serves several cases (a reference), or lets a case go on (a checkpoint). The key is
+  /// what determines it; "" when there is none. Saving "" removes it.
   std::string motion(const std::string& key) const;
   void save_motion(const std::string& key, const std::string& content);
 

@@ -10,9 +10,9 @@ namespace ricochet {
 
 struct Study;
 
-/// What an axis of a study means, as the study format declares it: unit and sentence of the key that the column names
-/// (`step`, `elements`, `support.amplitude`, …) in the study `resolved`. Of a method's parameter the format knows only
-/// whose it is; its unit is then "".
+/// What an axis of a study means, as the study format declares it. Unit and sentence are those of the key that the
+/// column names (`step`, `elements`, `support.amplitude`, …) in the study `resolved`. Of a method's parameter the
+/// format knows only whose it is; its unit is then "".
 Column axis_meaning(const std::string& column, const nlohmann::ordered_json& resolved);
 
 /// The role of a method's axis, "mass" of "mass.velocity" and of "mass"; the column itself where it is no method's.

@@ -17,7 +17,7 @@ struct Field;
 struct Variant;
 
 /// A closed JSON object: the keys it may have. With a discriminator (a pointer relative to the object, such as
-/// "/type"), further keys depend on the word found there; variants may have a discriminator of their own. With ways,
+/// "/type"), further keys depend on the word found there. Variants may have a discriminator of their own. With ways,
 /// the object has the keys of exactly one of them, told by the keys that are present.
 struct ObjectForm {
   std::vector<Field> fields;

@@ -49,9 +49,10 @@ class Product {
   bool ended_ = false;
 };
 
-/// Gives cases their ids: 10 hex digits of FNV-1a (64 bits, finalised) over the canonical text (keys sorted, numbers in
-/// shortest form) of everything that determines the case: kind, axes, scene, duration, samples. The order of keys and
-/// of cases has no part in it; two different cases whose digits coincide are told apart by hashing the later one again.
+/// Gives cases their ids: 10 hex digits of FNV-1a (64 bits, finalised) over a canonical text, keys sorted and numbers
+/// in shortest form. The text holds what determines the case: kind, axes, scene, duration, samples, settings of the
+/// kind. The order of keys and of cases has no part in it. Two different cases whose digits coincide are told apart by
+/// hashing the later one again.
 class CaseIds {
  public:
   std::string next(const StudyCase& study_case, const std::string& kind);
@@ -60,7 +61,7 @@ class CaseIds {
   std::unordered_map<std::string, std::string> canonical_;  // id → text
 };
 
-/// Marks the cases that `exclude` names: a list of objects {axis: value or list of values, …, "why": reason}; a case is
+/// Marks the cases that `exclude` names: a list of objects {axis: value or list of values, …, "why": reason}. A case is
 /// left out when every axis named has (one of) the value(s) given. Throws InputError for an unknown axis, a value that
 /// no case has, a combination that matches nothing, a missing reason, and when nothing remains.
 void apply_excludes(const Json& excludes, Study& study);

@@ -28,9 +28,9 @@ inline constexpr const char* reference_id = "reference";
 /// One combination of the study: everything that one run needs.
 struct StudyCase {
   std::string id;  ///< stable across re-orderings: hash of the axes, 10 hex digits
-  /// Every axis as a column: mass, mass.velocity, contact, contact.stiffness, time, time.beta, elements,
-  /// step, and any scene value given as a list by its JSON pointer without "/scene/" and '/' → '.'; in the study's
-  /// order.
+  /// Every axis as a column, in the study's order: mass, mass.velocity, contact, contact.stiffness, time, time.beta,
+  /// elements, step, and values of the scene given as lists. The latter go by their JSON pointers without "/scene/" and
+  /// '/' → '.'.
   std::vector<std::pair<std::string, Json>> axes;
   SceneSpec scene;
   Json scene_json;  ///< the scene of this case, scalars only
@@ -68,7 +68,7 @@ struct Study {
 /// The case of this id; null where there is none.
 const StudyCase* find_case(const Study& study, const std::string& id);
 
-/// One of the parts into which the cases of a study are dealt, each for a run of its own; 0 of 0: all of the study.
+/// One of the parts into which the cases of a study are dealt, each for a run of its own. 0 of 0: all of the study.
 struct StudyPart {
   int number = 0, of = 0;
 

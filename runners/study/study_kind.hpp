@@ -9,7 +9,7 @@ namespace ricochet {
 
 /// What a kind of study adds to the study format. The format itself knows no kind by name: it asks these.
 ///
-/// A kind that has the key `step` (an axis, s) or `steps_per_period` (an axis) has it as a column of its cases; one
+/// A kind that has the key `step` (an axis, s) or `steps_per_period` (an axis) has it as a column of its cases. One
 /// that has `duration`, `samples` or `reference` finds them in StudyCase. All functions but `settings` may be empty.
 struct StudyKind {
   std::string name;           ///< the word after "kind"
@@ -25,8 +25,8 @@ struct StudyKind {
   /// The same once the methods are known. `cases`: number of combinations of the axes; `dofs`: of the coarsest mesh.
   std::function<void(const Json& resolved, const Json& settings, const Registry& registry, double cases, int dofs)>
       check_methods;
-  /// Whether some scene that the case marches in place of its own is possible, where its own is not: what is never
-  /// marched is not checked. Empty: cases march their own scene.
+  /// Whether some scene that the case marches in place of its own is possible, asked where its own is not. Its own is
+  /// then not refused: it is never marched. Empty: cases march their own scene.
   std::function<bool(const StudyCase& study_case)> marches_another;
   /// Completes a case before it gets its id.
   std::function<void(const Json& settings, const Registry& registry, StudyCase& study_case)> complete;

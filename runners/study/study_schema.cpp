@@ -20,8 +20,8 @@ class SchemaWriter {
  public:
   explicit SchemaWriter(const Registry& registry) : registry_(registry) {}
 
-  // Every key that some form of the object has is known here, so that a misspelt one is the first thing a validator
-  // tells; which of them belong together, conditions on the discriminator say.
+  // Every key that some form of the object has is known here: a misspelt one is the first thing a validator tells.
+  // Conditions on the discriminator say which of them belong together.
   Json object(const ObjectForm& form) {
     Json properties = Json::object(), required = Json::array();
     add_fields(form, properties, required);

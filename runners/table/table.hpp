@@ -86,8 +86,8 @@ class Cell {
     const auto* shared = std::get_if<SharedWords>(&content_);
     return shared ? &shared->text() : nullptr;
   }
-  /// As it stands in a field, not quoted: words as they are, numbers in the shortest digits that read back as the same
-  /// number, "true" or "false"; "" for nothing.
+  /// As it stands in a field, not quoted. Words are as they are; numbers have the shortest digits that read back as the
+  /// same number. Truth values are "true" or "false"; nothing is "".
   std::string text() const;
 
   /// The same kind and value; a whole number equals the same number.

@@ -48,8 +48,8 @@ class TextTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// A span of time in two digits or in whole seconds, never in scientific notation: "2.4 ms", "8.4 s", "42 s", "3 min 05
-/// s", "2 h 10 min".
+/// A span of time in two digits, in whole seconds or in whole minutes, never in scientific notation. Examples: "2.4
+/// ms", "8.4 s", "42 s", "3 min 05 s", "2 h 10 min".
 std::string duration_text(double seconds);
 
 /// A number of bytes in two digits: "950 B", "25 kB", "1.2 GB".

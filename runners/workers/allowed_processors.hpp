@@ -4,8 +4,8 @@
 
 namespace ricochet {
 
-/// The processors that this process may keep busy: the least of those that are online, its affinity (taskset, cpusets,
-/// a scheduler that binds), the processor time that its control group grants, and what Slurm allocated.
+/// The processors that this process may keep busy: the least of four numbers. They are those online, its affinity
+/// (taskset, cpusets, a scheduler that binds), the quota of its control group, and what Slurm allocated.
 struct AllowedProcessors {
   int count = 1;
   int online = 1;

@@ -19,9 +19,9 @@ struct CrashRecord {
 /// What such a record says; nothing where it is not whole.
 std::optional<CrashRecord> parse_crash_record(const std::string& text);
 
-/// While it lives, the process does not end without a name: a signal of the processor (SIGSEGV, SIGBUS, SIGFPE, SIGILL)
-/// or SIGABRT, and exit() or quick_exit() called by a plugin, leave a crash record in `file`. Signals then end the
-/// process as they would have; exit() becomes code 3. One at a time per process.
+/// While it lives, a process that ends by a crash leaves a crash record in `file`. Crashes are SIGSEGV, SIGBUS, SIGFPE,
+/// SIGILL and SIGABRT, and exit() or quick_exit() called by a plugin. Signals then end the process as they would have;
+/// exit() becomes code 3. One at a time per process.
 class CrashGuard {
  public:
   explicit CrashGuard(const std::filesystem::path& file);
@@ -39,8 +39,8 @@ struct LongCall {
   std::string text() const;
 };
 
-/// Watches the calls of plugins' functions that the thread makes which constructs it; one per process. overdue() is
-/// asked by another thread: the watched one answers in a signal handler (SIGURG).
+/// Watches the calls of plugins' functions that the constructing thread makes; one per process. Another thread asks
+/// overdue(). The watched one answers in a signal handler (SIGURG).
 class CallWatch {
  public:
   CallWatch();

@@ -156,9 +156,9 @@ struct IsolationOptions {
   std::vector<std::shared_ptr<WorkerHost>> hosts = {};
 };
 
-/// Cases whose code runs in processes of their own: a plugin that crashes, aborts, takes all memory or never returns
-/// costs what its process had under way. A case goes on once from what it had kept; where its process ends again it is
-/// `failed`, with the signal, the plugin and the function, and the last lines of stderr. All other cases are, to the
+/// Cases whose code runs in other processes. A plugin that crashes, aborts, takes all memory or never returns costs
+/// what its process had under way. Such a case is retried once from what it had kept. Where its process ends again it
+/// is `failed`, with the signal, the plugin and the function, and the last lines of stderr. All other cases are, to the
 /// last bit, what they are in one process.
 class IsolatedCases {
  public:
@@ -168,8 +168,8 @@ class IsolatedCases {
   CaseRunner runner();
   /// "4 workers on 2 machines".
   std::string workers_in_words() const;
-  /// Cases that are under way at one time: as many as there are workers, or, where they only wait for their blocks,
-  /// what this machine can hold.
+  /// Cases that are under way at one time: as many as there are workers. Cases that only wait for their blocks are as
+  /// many as this machine can hold.
   int cases_at_once() const;
   /// The cost of a case as its plan predicts it, s. Throws std::runtime_error where the process ended.
   double predicted_seconds(const StudyCase& study_case);

@@ -112,9 +112,10 @@ class RemoteHosts {
   std::thread listener_;
 };
 
-/// The life of an agent: tells the coordinator (rank 0) what its machine is, starts workers there and passes on what
-/// they and the coordinator say, until it is sent home; false where nothing was heard of the coordinator for `silence`
-/// seconds. It computes nothing itself: nothing that a plugin does can end it. All workers are gone when it returns.
+/// The life of an agent. It tells the coordinator (rank 0) what its machine is, and starts workers there. It passes on
+/// what they and the coordinator say, until the coordinator lets it leave. False where nothing was heard of the
+/// coordinator for `silence` seconds. It computes nothing itself: nothing that a plugin does can end it. All workers
+/// are gone when it returns.
 bool serve_as_agent(Transport& transport, const HostFacts& facts,
                     const std::function<std::unique_ptr<Worker>()>& start_worker, double silence = lost_after);
 

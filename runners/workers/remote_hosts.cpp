@@ -206,8 +206,8 @@ void RemoteHosts::hear(Rank& rank, Message said) {
 }
 
 void RemoteHosts::look_for_lost() {
-  // Between two checks lies one receive(): what lies beyond it passed while this process was stopped, and what others
-  // said meanwhile is still to be heard.
+  // Between two checks lies one receive(). A longer time passed while this process was stopped: what others said
+  // meanwhile is still to be heard.
   const double passed = std::min({seconds_since(looked_), 2 * look_around, silence_ / 4});
   looked_ = SteadyClock::now();
   for (auto& [number, rank] : ranks_) {

@@ -17,8 +17,8 @@ namespace ricochet {
 /// rank.
 const std::string& worker_program();
 
-/// The environment variables of a worker, "NAME=value": those of this process without what a parallel launcher put
-/// there for its own ranks, and with one thread for its BLAS where nothing else is said.
+/// The environment variables of a worker, "NAME=value". They are those of this process without what a parallel launcher
+/// put there for its own ranks. The BLAS gets one thread where nothing else is said.
 std::vector<std::string> worker_environment();
 
 /// Signals that are for the coordinator, which tells its workers: schedulers send them to every process of a job. A
@@ -61,8 +61,8 @@ std::string machine_name();
 /// Bytes that its processes may still take; 0 where nobody says.
 double free_memory();
 
-/// The address space of each of so many workers where so much is free: an equal share, and never less than 2 GiB; 0 (no
-/// limit) where it is not known.
+/// Bytes of address space for each of so many workers where `free` bytes are free: an equal share, at least 2 GiB. 0
+/// (no limit) where it is not known.
 double memory_for_each(double free, int workers);
 
 /// This machine.
@@ -86,7 +86,7 @@ class LocalHost : public WorkerHost {
 /// Descriptors that a worker is born with.
 inline constexpr int kWorkerChannel = 3, kWorkerCrashRecord = 4;
 
-/// The life of a worker. It opens the study that it is sent, then does what it is asked to, case by case, until the
+/// The life of a worker. It opens the study that it is sent. Then it does what it is asked to, case by case, until the
 /// other end of its channel closes. What cases keep and look for is the coordinator's. Returns its exit code; ends the
 /// process itself where a plugin's function does not come back.
 int serve_as_worker();

@@ -1,6 +1,6 @@
-// A figure of more charts than a page can show, as a map of its cases: a row per method, columns along what the figure
-// is about, a cell's colour what it shows, a mark where a case has no result; below, the smallest and the largest. The
-// charts of a row are drawn when it is chosen.
+// A figure of more charts than a page can show, as a map of its cases. It has a row per method, and columns along what
+// the figure is about. A cell's colour is what the figure shows; a mark says that a case has no result. Below stand the
+// smallest and the largest. The charts of a row are drawn when it is chosen.
 //
 // What a figure says for this, beside its charts: `measured` {key, along, values}. Figures of one key share a map.
 // `along` is the column of the cases that it is about; `values` are {view, quantity, of}, `of` a number of a case or
@@ -19,8 +19,8 @@
     return "rgb(" + from.map((value, c) => Math.round(value + (at - k) * (to[c] - value))).join(",") + ")";
   }
 
-  // Which columns of the cases become rows of the map and which columns: what is no method joins the columns, longest
-  // first, until the rows fit a screen.
+  // Which columns of the cases become rows of the map and which columns. What is no method joins the columns, longest
+  // first, until the rows fit a screen. Numbers of methods follow.
   function layout(view, cases, along) {
     const many = (columns) => view.group(cases, columns).length,
           numeric = view.varying.filter((column) => cases.some((one) => numberOf(one, column) !== null));

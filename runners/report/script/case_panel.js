@@ -1,5 +1,5 @@
-// A case beside the page: what it is, what it measured, its curves, its portrait, its impacts and its energy, as far as
-// the page holds them, and the command that marches it again.
+// A case beside the page: what it is, what it measured, and the command that marches it again. Its curves, portrait,
+// impacts and energy are shown as far as the page holds them.
 {
   const quantities = {
     tip_displacement: ["tip displacement", "m"],

@@ -1,4 +1,4 @@
-// The case of the point or curve that lies where a chart was clicked: rows that speak of a case carry its id, and so do
+// The case of the point or curve that lies where a chart was clicked. Rows that speak of a case carry its id, and so do
 // curves whose rows are columns.
 {
   const reach = 14;  // pixels

@@ -1,5 +1,5 @@
-// The table of all cases: sorted by a click on a header, filtered by words, by conditions on columns and by status;
-// what it shows is to be had as CSV.
+// The table of all cases, filtered by words, by conditions on columns and by status. A click on a header sorts it. A
+// button saves what it shows as CSV.
 ricochet.startCaseTable = () => {
   const table = document.getElementById("cases");
   const all = (selector, from) => Array.from(from.querySelectorAll(selector));

@@ -1,5 +1,5 @@
-// What a chart shows, for who does not see it: a sentence as its text alternative, and its points as a table, of which
-// the page shows so many rows and a CSV file has all.
+// What a chart shows, for who does not see it: a sentence as its text alternative, and its points as a table. The page
+// shows the first rows of it; a CSV file has all.
 {
   const mostRows = 200;
   const listed = (names, most = 8) =>

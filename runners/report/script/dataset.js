@@ -1,10 +1,10 @@
 // Tables as charts draw them: rows are objects with a table's columns, and a series names the columns that it draws.
-// Outside of this stay what is drawn by hand, pixel by pixel (the points of a diagram, the images of basins), and lines
-// and areas that mark a chart, which the library takes no rows for.
+// Not drawn so: what is drawn by hand, pixel by pixel (the points of a diagram, the images of basins). Nor are lines
+// and areas that mark a chart: the library takes no rows for these.
 {
-  // Draws rows: `encode` names the columns along x and y, `series` is how it looks, and a row's `text`, where it has
-  // one, is what hovering says of it. `only` {column: value} picks some of the rows, and draws nothing where there are
-  // none. Long columns come as a function that returns them by name: it is asked when the chart is drawn.
+  // Draws rows. `encode` names the columns along x and y; `series` is how it looks. A row's `text`, where it has one,
+  // is what hovering says of it. `only` {column: value} picks some of the rows, and draws nothing where there are none.
+  // Long columns come as a function that returns them by name: it is asked when the chart is drawn.
   function draw({option}, rows, encode, series, only) {
     const {dataset} = option, known = dataset.findIndex((one) => one.source === rows);
     const dimensions = rows.length ? Object.keys(rows[0]) : Object.values(encode).flat();

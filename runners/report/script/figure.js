@@ -1,8 +1,8 @@
-// A figure at work: draws its charts when they come into sight, links their zoom, filters by the legend, and hands a
-// click to what the chart knows of it.
+// A figure at work. It draws its charts when they come into sight, links their zoom, and filters by the legend. It
+// hands a click to what the chart knows of it.
 //
-// A figure is {id, title, caption, views, charts, legend, overTime, linked}: `views` are names, each chart has as
-// many {option, x, y, notes} (or the one that `only` names), `legend` has {name, colour, dash, symbol, heading};
+// A figure is {id, title, caption, views, charts, legend, overTime, linked}. `views` are names. Each chart has as many
+// views {option, x, y, notes}, or the one that `only` names. `legend` has {name, colour, dash, symbol, heading}.
 // `atFirst`, where given, is the view that stands beside the answer. In an option, a data set's `source` may be a
 // function: it is asked when the chart is drawn. A view may add `sources` (marks drawn by hand), `pick` (what lies at a
 // place), `open` (shows it) and `hover` (says it).

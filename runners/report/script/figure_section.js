@@ -1,5 +1,4 @@
-// A figure as a part of the page: heading, caption, choice of views, legend, and a place for each of its charts with
-// what is said below it.
+// A figure as a part of the page: heading, caption, choice of views, legend, and a place for each chart with its notes.
 {
   const {escape} = ricochet.format;
   const shapes = {

@@ -1,5 +1,5 @@
-// See it move: the film of one case, or of two over each other or side by side, and the map of each over time and
-// place; the slider is the time of all.
+// See it move: the film of one case, or of two over each other or side by side. A map shows each over time and place.
+// The slider is the time of all.
 {
   const colours = ["#0072B2", "#D55E00"], lengths = [5, 10, 20, 40, 80];  // s that a whole film takes
   const calm = () => window.matchMedia("(prefers-reduced-motion: reduce)").matches;

@@ -1,5 +1,5 @@
-// Draws one instant of a motion between its stops: a beam across its axis, a bar along it, a mass on a line, nodes on
-// their plane, points as bars. What it draws on is a canvas.
+// Draws one instant of a motion between its stops on a canvas. A beam moves across its axis, a bar along it, a mass on
+// a line. Nodes move on their plane; points without a place are bars.
 {
   const roomOf = (context) => {
     const {width, height} = context.canvas.getBoundingClientRect();
@@ -15,8 +15,9 @@
     return {context, width, height, ink: ricochet.theme.ink()};
   }
 
-  // Where a structure is drawn in a box: `rest` of a place, pixels, `axes`: pixels of a metre of each displacement;
-  // `across` of them, `larger` than lengths.
+  // Where a structure is drawn in a box. `rest`: where a place is at rest, pixels. `axes`: pixels of a metre of each
+  // displacement. `larger`: how many times displacements are larger than lengths. `half`: half the side of a mass,
+  // pixels.
   function geometryOf(shots, box, row) {
     const [{x, y, names, mass, along: bar, oblique}] = shots,
                                            largest = Math.max(...shots.map((one) => one.largest), 1e-300);

@@ -1,6 +1,6 @@
-// What is long to lay out waits until it is come near, looked for (Ctrl+F), or printed: a map of cases, a table of a
-// thousand rows. Such a table stands in the page as <noscript class="later">, which a browser that runs scripts reads
-// as one text, and one that runs none as the table that it is.
+// A map of cases or a table of a thousand rows is long to lay out. It waits until the reader comes near, searches
+// (Ctrl+F, F3) or prints. Such a table stands in the page as <noscript class="later">. A browser that runs scripts
+// reads it as one text; one that runs none shows the table.
 {
   const waiting = new Map();
   const near = new IntersectionObserver((entries) => {

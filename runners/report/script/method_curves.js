@@ -1,6 +1,6 @@
-// Cases as curves along an axis, in facets of at most eight curves: first by what must not share a chart, then by what
-// is no method, then by methods other than the mass matrix. Colour is the mass matrix; where a study has one mass only,
-// it is the curve.
+// Cases as curves along an axis, in facets of at most eight curves where columns allow. Facets are by what must not
+// share a chart, then by what is no method. Then they are by methods other than the mass matrix. Colour is the mass
+// matrix; where a study has one mass only, it is the curve.
 {
   const mostCurves = 8;
   // The first eight are those of curves; a diagram may overlay more methods.

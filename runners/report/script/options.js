@@ -45,8 +45,8 @@
     const low = Math.floor(Math.log10(interval.low) + 1e-9), high = Math.ceil(Math.log10(interval.high) - 1e-9);
     return new Interval(ten(low), ten(high <= low ? low + 1 : high));
   }
-  // The intervals of small multiples, made equal so that they compare; one whose largest magnitude is over 4 times the
-  // median one keeps its own, so that it does not flatten the others. On a logarithmic axis none is flattened.
+  // The intervals of small multiples, made equal so that they compare. One whose largest magnitude is over 4 times the
+  // median one keeps its own: it would flatten the others. On a logarithmic axis none is flattened.
   function sharedFrames(ranges, logarithmic = false) {
     const magnitude = (range) => Math.max(Math.abs(range.low), Math.abs(range.high));
     const sizes = ranges.filter((range) => !range.empty).map(magnitude).sort((a, b) => a - b);
@@ -136,8 +136,8 @@
   }
 
   // A view of a chart: its option with grid, tooltip, hidden legend, zoom and text style; x and y are quantities.
-  // `along`: hovering reads all curves at one x, and what lies outside the window is left out along x, so that zooming
-  // in shows every sample; never along y, where that would cut curves.
+  // `along`: hovering reads all curves at one x. What lies outside the window is then left out along x: zooming in
+  // shows every sample. It is never left out along y, where that would cut curves.
   function view(x, y, xAxis, yAxis, along = false) {
     const series = [];
     return {

@@ -13,7 +13,7 @@
   for (const name of ["touchstart", "touchmove", "touchend", "touchcancel"])
     document.addEventListener(name, ofPage, {capture: true, passive: true});
 
-  // Says of a box whether its table is wider than it, and whether there is more to the right; such a box can be reached
+  // Says of a box whether its table is wider than it, and whether there is more to the right. Such a box can be reached
   // and scrolled by keys. All boxes are measured before any is changed: a page is laid out once for all of them.
   const resized = new Set(), widths = new ResizeObserver((entries) => entries.forEach(({target}) => lookAt(target)));
   function lookAt(box) {

@@ -1,5 +1,5 @@
-// Paper: while the page is printed, each chart stands there once more as a drawing as wide as its place on the sheet,
-// in the colours of paper. The summary takes the first chart of the page.
+// Paper. While the page is printed, each chart stands there once more as a drawing. It is as wide as its place on the
+// sheet, and has the colours of paper. The summary takes the first chart of the page.
 {
   const sheet = 680, tall = 985, gap = 12;  // CSS pixels between the margins of A4
   const place = (classes) => Object.assign(document.createElement("div"), {className: classes});
@@ -49,9 +49,9 @@
     }
   }
 
-  // The largest letters, in points, at which the summary stays on one sheet, tried on a copy beside the page; where
-  // even small ones do not do, the figure gets smaller, the legend goes, which the report has, then the answer's lesser
-  // lines.
+  // The largest letters, in points, at which the summary stays on one sheet, tried on a copy beside the page. Where
+  // even small ones do not do, the figure gets smaller and the legend goes, which the report has. The answer's lesser
+  // lines go next.
   function fit(summary) {
     const probe = place("sheet-probe"), copy = summary.cloneNode(true);
     copy.querySelectorAll("[id]").forEach((part) => part.removeAttribute("id"));

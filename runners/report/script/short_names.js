@@ -1,4 +1,4 @@
-// Short names of what labels say often, one table for the whole page: the full name stands in the tooltip and in a key
+// Short names of what labels say often, one table for the whole page. The full name stands in the tooltip and in a key
 // below the figure.
 {
   const names = [

@@ -1,6 +1,6 @@
-// Charts say their colours for white paper. On a dark screen one rule carries each over: greys run from the page's
-// paper to its ink, pale fills are as near to the dark paper as they were to white, and other hues are lightened until
-// they stand out. Pictures and paper stay as they are said.
+// Charts say their colours for white paper. On a dark screen one rule carries each over. Greys run from the page's
+// paper to its ink. Pale fills are as near to the dark paper as they were to white. Other hues are lightened until
+// their contrast to the dark paper is 4.5. Pictures and paper stay as they are said.
 {
   const dark = window.matchMedia("(prefers-color-scheme: dark)"), enough = 4.5, pale = 0.67, white = [255, 255, 255],
         black = 0x22;
