@@ -6,8 +6,8 @@
 
 namespace ricochet::testing {
 
-/// Roots of one step on the mode m q'' + c q' + k q = 0, largest modulus first, each as often as it is one; all slots
-/// in metres, so that roots that coincide are known by their mean. Empty where S vanishes.
+/// Roots of one step on the mode m q'' + c q' + k q = 0, largest modulus first, each as often as its multiplicity. All
+/// slots are in metres, so that roots that coincide are known by their mean. Empty where S vanishes.
 inline std::vector<std::complex<double>> amplification_roots(const StepPlan& plan, double m, double c, double k) {
   std::vector<std::complex<double>> all;
   const double h = step_of(plan);

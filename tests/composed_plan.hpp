@@ -78,8 +78,8 @@ inline StepPlan steps_of(StepPlan plan) {
   return plan;
 }
 
-/// Whether all stops of two stages have the same levels; rates where compliance is explicit apart: what a step knows of
-/// its end when it begins is a velocity of neither.
+/// Whether all stops of two stages have the same levels. `rates`: also those of rates where compliance is explicit.
+/// What a step knows of its end when it begins is a velocity of neither.
 inline void check_same_stops(const Stage& a, const Stage& b, bool rates = true) {
   const auto weight = [](const Levels& levels, double at) {
     double sum = 0;

@@ -10,8 +10,8 @@
 /// What a refusal must be, so that whoever reads it can act on it.
 namespace ricochet::testing {
 
-/// Matches "what does not fit; what to take instead": a clause of four words or more that ends in a colon, a semicolon
-/// or a comma, and after it an order with its object ("use …", "keep one", "lower `modes`").
+/// Matches "what does not fit; what to take instead". First comes a clause of four words or more that ends in a colon,
+/// a semicolon or a comma. After it comes an order with its object ("use …", "keep one", "lower `modes`").
 class CauseAndRemedy final : public Catch::MatcherBase<std::string> {
  public:
   bool match(const std::string& sentence) const override {

@@ -10,9 +10,9 @@
 
 namespace ricochet {
 
-/// The study of one case alone, of its own kind: its methods and mesh, its step where it has one, every other key as
-/// the study has it. Axes of the scene stay lists, of one value: the case keeps its id and its results. `minimal_study`
-/// makes a trajectory of it instead.
+/// The study of one case alone, of its own kind. It has the case's methods and mesh, and its step where it has one;
+/// every other key is as in the study. Axes of the scene stay lists, of one value: the case keeps its id and its
+/// results. `minimal_study` makes a trajectory of it instead.
 nlohmann::ordered_json single_study(const StudyResults& results, const CaseRecord& record);
 
 /// The one case whose id begins so. Throws PointRefused with the nearest id or all of them.

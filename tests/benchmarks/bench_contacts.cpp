@@ -1,7 +1,7 @@
-// What steps with hundreds of contact points cost: the reference beam upon a plane below all of its nodes, lying there
-// under its load, and thrown flat at it. Milliseconds per step held in the band (the band operator) and by columns of
-// the Delassus operator alone (the sparse one, up to 300 elements: beyond, a person does not wait for it). Means over
-// the steps, medians of interleaved rounds; the dearest step of the last round beside them.
+// What steps with hundreds of contact points cost. The reference beam is upon a plane below all of its nodes: lying
+// there under its load, or thrown flat at it. Milliseconds per step, held in the band (the band operator) and by
+// columns of the Delassus operator alone (the sparse one). The latter has up to 300 elements: more take too long to
+// wait for. Means over the steps, medians of interleaved rounds; the dearest step of the last round beside them.
 //
 //     bench_contacts [--rounds N]
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
-// What marching costs once modes are dead: a beam let go with α = 1e-4 and marched in modal coordinates, where
-// viscosity takes the high modes below the smallest normal number within milliseconds. Nanoseconds per step over the
-// first 0.02 s, 0.2 s and 1 s, and the last over the first in the same integration: more than one where denormal
-// numbers are computed with. Medians of interleaved rounds. What is predicted for the same program stands beside it.
+// What marching costs once modes are dead: a beam let go with α = 1e-4 and marched in modal coordinates. Viscosity
+// takes its high modes below the smallest normal number within milliseconds. Nanoseconds per step over the first 0.02
+// s, 0.2 s and 1 s. Also the last over the first in the same integration: more than one where denormal numbers are
+// computed with. Medians of interleaved rounds. What is predicted for the same program stands beside it.
 //
 //     bench_decay [--rounds N]
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// Marches that leave out the steps in which nothing happens, beside the same integration of every step, both with the
-// energy audit and the recorder of impacts: times, steps visited, and how far their ends are apart. Medians of
+// Marches that leave out the steps in which nothing happens, beside the same integration of every step. Both have the
+// energy audit and the recorder of impacts. Printed: times, steps visited, and how far their ends are apart. Medians of
 // interleaved rounds, every-step of the same build as partner.
 //
 //     bench_flight [--rounds N] [--only WORD]

@@ -43,7 +43,7 @@ struct Case {
   Observers observers() const { return {audit.get(), recorder.get()}; }
 };
 
-// What looks at the integration: nothing, the energy audit at every step, the same behind a recorder of impacts, or
+// What looks at the integration: nothing, the energy audit at every step, or the audit behind a recorder of impacts. Or
 // samples as a comparing study takes them.
 enum class Watch { nothing, energy, impacts, samples };
 constexpr int steps_per_sample = 500;

@@ -1,9 +1,11 @@
-// What a run on many workers rests on: what two workers make of one's time, and what the coordinator and its store take
-// in, with workers that cost nothing.
-//   bench_scale [CELLS_PER_SIDE [ROUNDS [STUDY.json]]]
-// The cells that cost nothing end as one that is marched: once in a motion of period 1, of which a point is kept, once
-// in a quasi-periodic one, of which 64 are. Wall times of whole runs in new folders, interleaved, medians; the machine
-// should have nothing else to do.
+// What a run on many workers rests on: the time of two workers against that of one, and what the coordinator takes in.
+// The coordinator and its store are measured with workers that cost nothing.
+//
+//     bench_scale [CELLS_PER_SIDE [ROUNDS [STUDY.json]]]
+//
+// The cells that cost nothing end as one that is marched. Once that is a motion of period 1, of which a point is kept,
+// once a quasi-periodic one, of which 64 are. Wall times of whole runs in new folders, interleaved, medians; the
+// machine should have nothing else to do.
 #include <fmt/format.h>
 #include <sys/resource.h>
 

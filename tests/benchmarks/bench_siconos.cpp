@@ -5,13 +5,13 @@
 //     bench_siconos [--rounds N] [--only WORD]
 //
 // Built where Siconos is found: Debian packages libsiconos-kernel-dev and libsiconos-numerics-dev (4.4; with them
-// libopenblas0). It marches without plugins, residuals or Newton iterations, its linear algebra on one thread, denormal
-// numbers as zero for both; as Debian builds it, that is with its assertions.
+// libopenblas0). It marches without plugins, residuals or Newton iterations, as Debian builds it, that is with its
+// assertions. Its linear algebra runs on one thread. Denormal numbers are zero for both.
 //
-// What the comparison leaves out: Siconos is general. It marches nonlinear bodies in space with friction, and relations
-// that come and go, through the same step; it stores what that needs, and asks every relation in every step. Here it is
-// asked for one linear beam, in each form that it has for such. It audits nothing; the works, energies and impacts of
-// this marcher are in its time.
+// What the comparison leaves out: Siconos is general. The same step also marches nonlinear bodies in space with
+// friction, and relations that come and go. It stores what that needs, and asks every relation in every step. Here it
+// is asked for one linear beam, in each form that it has for such. It audits nothing; the works, energies and impacts
+// of this marcher are in its time.
 #include <fmt/format.h>
 #include <unistd.h>
 

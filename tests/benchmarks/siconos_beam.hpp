@@ -21,7 +21,7 @@ struct ShakenBeam {
 ///
 ///     κ = tan(ωh/2)/(ωh/2),     χ = φ/κ,     F = φ''(κ M r − s) + φ' C r + χ K r
 ///
-/// its discrete equations of motion and impacts are those of q, term by term: φ' is the trapezoidal derivative of χ,
+/// its discrete equations of motion and impacts are those of q, term by term. φ' is the trapezoidal derivative of χ,
 /// and κφ'' that of φ'. Gap tests alone see χ in place of φ, (ωh)²/12 of it apart.
 class SiconosBeam {
  public:

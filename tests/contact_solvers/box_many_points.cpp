@@ -128,8 +128,8 @@ class Random {
   std::uniform_real_distribution<double> uniform_{0, 1};
 };
 
-// What both ways may differ by: W is not formed by the same sums in both; round-off of one solve, the condition of W
-// (1 + 16k), the number of points.
+// What both ways may differ by, as W is not formed by the same sums in both. Factors: round-off of one solve, the
+// condition of W (1 + 16k), the number of points.
 double close(const Row& row, double k) {
   return 100 * (1 + 16 * k) * row.points() * epsilon;
 }

@@ -1,4 +1,4 @@
-// A plan whose stage has a second unknown, R w = ι Hᵀp: what is wrong with it is told, what is derived of it is right.
+// A plan whose stage has a second unknown, R w = ι Hᵀp: what is wrong with it is told. What is derived of it is right.
 #include <catch2/catch.hpp>
 #include <functional>
 #include <limits>

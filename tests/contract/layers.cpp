@@ -269,8 +269,8 @@ TEST_CASE("a kind of study is known by name in the folders of the kinds alone") 
 TEST_CASE("core and runners know no method by name") {
   // These are words of every day as well; they may stand in a sentence.
   const std::set<std::string> ordinary = {"consistent", "exact", "layer", "lumped", "none", "penalty", "singular"};
-  // "exact" is how well a scheme keeps the restitution coefficient; "none" is also what ECharts calls no symbol, what a
-  // table shows for no value, and a projection of the initial state; "layer" is a function of every law: they may stand
+  // "exact" is how well a scheme keeps the restitution coefficient. "none" is also what ECharts calls no symbol, what a
+  // table shows for no value, and a projection of the initial state. "layer" is a function of every law. They may stand
   // alone where nothing is decided by them.
   const auto decides = [](const std::string& before) {
     return before.ends_with("==") || before.ends_with("!=") || before.ends_with("compare(") ||

@@ -106,7 +106,7 @@ TEST_CASE("two equal masses that are pushed together are one mass against a wall
 }
 
 TEST_CASE("two masses without springs that meet share the momentum of a constant push") {
-  // A is pushed from rest by F and carries B along once the gap g is closed: after the meeting at √(2gm/F) both move
+  // A is pushed from rest by F and carries B along once the gap g is closed. After the meeting at √(2gm/F) both move
   // with half its velocity, and with F/2m from then on.
   const std::string head = "%%MatrixMarket matrix coordinate real symmetric\n";
   const BeamFiles files{head + "2 2 0\n", head + "2 2 2\n1 1 2\n2 2 2\n",

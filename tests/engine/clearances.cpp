@@ -289,8 +289,8 @@ TEST_CASE("a steady whirl is pressed against its circle by what its balance leav
                         {2, -R * std::sin(phi), omega * R * std::cos(phi)}};
   const double turns = 4, duration = turns * 2 * pi / omega;
   const Marched made = marched(scene, holding, duration / 16000, duration);
-  // Corners are (π/128)²/2 = 3e-4 outside the circle; the force differs by as much of k R and m ω² R, and by what the
-  // path along a side asks for.
+  // Corners are (π/128)²/2 = 3e-4 outside the circle. The force differs by that share of k R and m ω² R, and by what
+  // the path along a side asks for.
   CHECK(made.totals.impulse / duration == Approx(N).epsilon(2e-3));
   CHECK(made.wear / duration == Approx(N * omega * R).epsilon(3e-3));
   CHECK(made.totals.impacts <= 1);

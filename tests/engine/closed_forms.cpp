@@ -65,8 +65,8 @@ TEST_CASE("the period-3 bar: contact from 1 to 2 with stress one half, energy on
   CHECK(audit.contact(0).first_impact == Approx(1).margin(0.03));
   CHECK(audit.contact(0).impulse == Approx(0.5).epsilon(0.03));  // stress ½ over one second
   CHECK(audit.totals(0).last.common() == Approx(0.125).epsilon(0.02));
-  // τ/2 on its way back, half a second after the release; β = ¼ leaves the massless end its sawtooth, gone in the mean
-  // of two steps.
+  // The end stands at τ/2 on its way back, half a second after the release. β = ¼ leaves the massless end its sawtooth;
+  // the mean of two steps has none.
   const double before = bar.tip(0);
   bar.march(1);
   CHECK(0.5 * (before + bar.tip(0)) == Approx(0.25).margin(0.01));

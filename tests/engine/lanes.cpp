@@ -1,4 +1,5 @@
-// A lane's result does not depend on the other lanes of its block, nor on what was left out, nor on the operator that was chosen.
+// A lane's result does not depend on the other lanes of its block. It depends neither on what was left out nor on the
+// operator that was chosen.
 #include <cstring>
 
 #include "tests/marching.hpp"

@@ -1,5 +1,5 @@
-// What a scene does not need is left out, and the motion is that with it: motions at rest, bounds that nothing reaches,
-// supports that rest, held dofs.
+// What a scene does not need is left out: motions at rest, bounds that nothing reaches, supports that rest, held dofs.
+// The motion is the same as with it.
 #include "tests/marching.hpp"
 #include "tests/scene/structure/beam_files.hpp"
 

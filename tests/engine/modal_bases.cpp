@@ -140,8 +140,8 @@ TEST_CASE("a residual without mass gives a static push at a stop in full, whatev
 
 namespace {
 
-/// Pinned–free bar of 14 mm by 14 mm between x = 0 and 0.783 m (SDNL32 of code_aster), as files, so that the state of
-/// each node is given.
+/// Pinned–free bar of 14 mm by 14 mm between x = 0 and 0.783 m (SDNL32 of code_aster). It is given as files, so that
+/// the state of each node is given.
 SceneSpec sdnl32(const std::vector<double>& velocities) {
   BeamSpec beam;
   beam.length = 0.783;

@@ -45,7 +45,7 @@ SceneSpec shaken() {
 
 }  // namespace
 
-// φ = A sin ωt as a table has no curvature at its ends where ωT is a multiple of π: its spline is off by A (ωδ)⁴/77.
+// φ = A sin ωt as a table has no curvature at its ends where ωT is a multiple of π. Its spline is off by A (ωδ)⁴/77.
 TEST_CASE("a tabulated motion marches as the harmonic support of the same motion, stops included") {
   const double omega = 26, end = 6 * pi / omega, h = end / 4000;
   SceneSpec scene = working_set();

@@ -12,9 +12,8 @@ namespace {
 
 constexpr double h = 1e-4;
 
-// Newmark (0.3, 0.6) with an impulse that fills everything that one may say: R and feed of all matrices, an effort that
-// also acts on z, now and a step later, ι ≠ 1. Neither accurate nor stable by design; damping and a short integration
-// suffice.
+// Newmark (0.3, 0.6) with an impulse in which every term is present: R and feed of all matrices, ι ≠ 1. An effort also
+// acts on z, now and a step later. Neither accurate nor stable by design; damping and a short integration suffice.
 StepPlan full_plan(bool gated) {
   const double beta = 0.3, gamma = 0.6, lag = (1 - gamma) * h, curve = (0.5 - beta) * h * h;
   StepPlan plan;
@@ -177,8 +176,8 @@ TEST_CASE("a mass in factors has impulses too, where R is regular") {
       }
       INFO(velocity << " " << law.contact.name);
       CHECK(band.delassus_columns() > 0);
-      // Accelerations of stiff modes carry 1/h² of the round-off of positions, and impacts make it grow: positions are
-      // compared, 10⁹ times as wide as their round-off.
+      // Accelerations of stiff modes carry 1/h² of the round-off of positions, and impacts make it grow. Positions are
+      // compared, to 10⁹ times their round-off.
       CHECK((band.position(0) - modal.position(0)).norm() <= 1e-7 * modal.position(0).norm());
     }
 }

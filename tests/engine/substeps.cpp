@@ -140,8 +140,8 @@ TEST_CASE("n steps of h are one step of n sub-steps") {
       coarse.start(&of_coarse);
       Differences differ;
       const double length = 0.1;
-      // A scheme that knows no restitution throws what hits a rigid stop back faster than it came, up to three times:
-      // round-off grows by as much with each impact, so that it is compared over the first ones.
+      // A scheme that knows no restitution throws what hits a rigid stop back up to three times as fast as it came.
+      // Round-off grows by as much with each impact, so that only the first ones are compared.
       const bool throws_back = law.name == "signorini" && fine.program().plan.facts.restitution == Restitution::ignored;
       for (int step = 1; step <= one.steps / n / (throws_back ? 4 : 1); ++step) {
         coarse.march(step - coarse.step(), &of_coarse);
@@ -182,8 +182,8 @@ TEST_CASE("n steps of h are one step of n sub-steps") {
       CHECK(x.active == y.active);
       CHECK(of_fine.log.changes() == of_coarse.log.changes());
       INFO(differ.where);
-      // The same operations on the same numbers; only times differ, (k + c)/n · nh for (k + c)h, by some 1e-16 of a
-      // second in loads and supports. Impacts magnify that, by up to 1e4 on the beam.
+      // The same operations on the same numbers; only times differ, (k + c)/n · nh for (k + c)h. That is some 1e-16 of
+      // a second in loads and supports. Impacts magnify it, by up to 1e4 on the beam.
       CHECK(differ.largest <= 1e-9);
     }
 }

@@ -58,7 +58,8 @@ TEST_CASE("tangent columns are the derivative of the step, contacts included") {
   const LaneState base = block.lane_state(0);
   const LaneState direction = direction_of(base);
   // Lane 0 with its tangent, lanes 1 and 2 to either side: a central difference. Over a short integration the same
-  // steps are in contact on both sides, except where a contact begins or ends between them: the offset is small enough.
+  // steps are in contact on both sides, as the offset is small enough. The exception is a contact that begins or ends
+  // between them.
   const double offset = 1e-7;
   const LaneSpec spec = block.program().lanes[0];
   block.set_tangent(0, 0, direction);
@@ -71,7 +72,7 @@ TEST_CASE("tangent columns are the derivative of the step, contacts included") {
   INFO(methods.mass.name << " " << methods.contact.name << " " << methods.time.name);
   CHECK(block.delassus_columns() > 0);
   // Round-off over the offset (1e-16 · size / 1e-7), and the curvature of penalties that open within a step
-  // (O(offset)); a step more or less in contact costs the step's share of a contact, O(h/contact time).
+  // (O(offset)). A step more or less in contact costs the step's share of a contact, O(h/contact time).
   const double wrong = size(shifted(tangent, difference, -1)) / size(difference);
   CHECK(wrong < 2e-2);
 }

@@ -62,8 +62,8 @@ TEST_CASE("dense: general problems, and those of no full rank") {
   CHECK_FALSE(regular_solve(singular, b));
   CHECK_FALSE(regular_solve(Eigen::MatrixXcd(singular), Eigen::VectorXcd(b)));
 
-  // Of all X that solve it best, the least: nothing of it lies in the kernel of A, and what is left over is orthogonal
-  // to its columns.
+  // The least of all X that solve it best. No part of it lies in the kernel of A, and the remainder is orthogonal to
+  // the columns of A.
   const MatrixXd X = least_norm_solve(singular, B), left = B - singular * X;
   CHECK((singular.transpose() * left).norm() < 1e-11);
   const MatrixXd kernel = pivoted_basis(singular.transpose()).basis.rightCols(1);

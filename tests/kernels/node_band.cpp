@@ -1,5 +1,5 @@
-// Steps by nodes and by modes against the kernels that they stand for, bit by bit: update, product and substitution,
-// measures, test of the bounds; for each instruction set and each number of lanes.
+// Steps by nodes and by modes against the kernels that they stand for, bit by bit. Compared are update, product and
+// substitution, measures, test of the bounds, for each instruction set and each number of lanes.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -64,8 +64,8 @@ TEST_CASE("the kernel of thousands of elements is measured without a basis of it
   for (const char* velocity : {"P1", "P0"}) {
     const auto strategy = mass("singular", {{"velocity", std::string(velocity)}});
     SceneSpec scene = working_set();
-    // The seed's excess over the massless part's equilibrium is that of the element at the clamp: of order one in its
-    // length, on either side of the size where the dense basis ends.
+    // The seed's excess over the massless part's equilibrium is that of the element at the clamp. It is of order one in
+    // its length, on either side of the size where the dense basis ends.
     std::vector<double> lengths, energies;
     for (const int elements : {50, 125, 250, 500, 1000, 2000}) {
       const auto problem = discretised(scene, elements, *strategy);

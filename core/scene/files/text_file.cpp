@@ -120,4 +120,126 @@ std::string read_file(const std::filesystem::path& folder, const std::string& na
   return content;
 }
 
+namespace {
+
+std::vector<std::string> cells_of(std::string_view line, const TextLines& lines) {
+  if (line.find('"') != std::string_view::npos) lines.fail("a quote; expected cells without quotes");
+  std::vector<std::string> cells;
+  while (true) {
+    const std::size_t end = std::min(line.find(','), line.size());
+    cells.emplace_back(trimmed(line.substr(0, end)));
+    if (end == line.size()) return cells;
+    line.remove_prefix(end + 1);
+  }
+}
+
+}  // namespace
+
+std::size_t CsvFile::column(const std::string& key) const {
+  const auto found = std::find(columns.begin(), columns.end(), key);
+  if (found != columns.end()) return static_cast<std::size_t>(found - columns.begin());
+  std::string nearest = nearest_name(key, columns);
+  constexpr std::size_t shortest = 3;
+  for (const std::string& one : columns)  // an abbreviation is nearer than any other word
+    if (one.size() >= shortest && key.starts_with(one)) nearest = one;
+  throw FileError(fmt::format("{} has no column \"{}\"; there are {}{}", name, key, fmt::join(columns, ","),
+                              nearest.empty() ? "" : fmt::format(": did you mean {}?", nearest)));
+}
+
+void CsvFile::fail(const Row& row, const std::string& what) const {
+  throw FileError(fmt::format("{}, line {}: {}", name, row.line, what));
+}
+
+double CsvFile::number(const Row& row, std::size_t column) const {
+  if (const auto value = finite_number(row.cells[column])) return *value;
+  fail(row, fmt::format("\"{}\" for {}; expected a finite number", shortened(row.cells[column]), columns[column]));
+}
+
+CsvFile read_csv(std::string_view content, const std::string& name) {
+  TextLines lines(content, name);
+  CsvFile table;
+  table.name = name;
+  while (const auto line = lines.next()) {
+    if (trimmed(*line).empty()) continue;
+    std::vector<std::string> cells = cells_of(*line, lines);
+    if (table.columns.empty()) {
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        if (std::find(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(i), cells[i]) !=
+            cells.begin() + static_cast<std::ptrdiff_t>(i))
+          lines.fail(fmt::format("column \"{}\" stands a second time", shortened(cells[i])));
+      table.columns = std::move(cells);
+      continue;
+    }
+    if (cells.size() != table.columns.size())
+      lines.fail(fmt::format("{} cells; expected {}, as in the header", cells.size(), table.columns.size()));
+    table.rows.push_back({lines.line(), std::move(cells)});
+  }
+  if (table.columns.empty()) throw FileError(name + " is empty; expected a header of columns");
+  return table;
+}
+
+namespace {
+
+/// Names are words of a study and of tables.
+bool is_name(std::string_view text) {
+  constexpr std::size_t longest = 64;
+  return !text.empty() && text.size() <= longest && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return c > ' ' && c != ',' && c != '"' && c != '/';
+  });
+}
+
+// The least number from 1 that no row has.
+long long first_missing(const CsvFile& file, std::size_t dof) {
+  std::set<long long> known;
+  for (const CsvFile::Row& row : file.rows)
+    if (const auto number = whole_number(row.cells[dof])) known.insert(*number);
+  long long missing = 1;
+  while (known.count(missing) != 0) ++missing;
+  return missing;
+}
+
+}  // namespace
+
+DofTable read_dof_table(std::string_view content, const std::string& name) {
+  const CsvFile file = read_csv(content, name);
+  const std::size_t dof = file.column("dof"), node = file.column("node"), component = file.column("component"),
+                    held = file.column("held");
+  const std::array<std::size_t, 3> axes = {file.column("x"), file.column("y"), file.column("z")};
+  const std::size_t count = file.rows.size();
+  DofTable table;
+  table.name = name;
+  table.dofs.resize(count);
+  std::map<std::pair<std::string, std::string>, int> known;
+  std::map<std::string, const DofName*> nodes;
+  for (const CsvFile::Row& row : file.rows) {
+    const auto number = whole_number(row.cells[dof]);
+    if (!number || *number < 1)
+      file.fail(row, fmt::format("\"{}\" for dof; expected a whole number from 1", shortened(row.cells[dof])));
+    if (static_cast<std::size_t>(*number) > count)
+      file.fail(row, fmt::format("dof {} of a table of {}; expected 1 to {}, each once: {} is missing", *number, count,
+                                 count, first_missing(file, dof)));
+    DofName& one = table.dofs[static_cast<std::size_t>(*number) - 1];
+    if (one.dof != 0) file.fail(row, fmt::format("dof {} stands a second time", *number));
+    one.dof = static_cast<int>(*number);
+    one.node = row.cells[node];
+    one.component = row.cells[component];
+    one.held = row.cells[held];
+    for (const auto& [text, what] : {std::pair(&one.node, "node"), {&one.component, "component"}})
+      if (!is_name(*text))
+        file.fail(row, fmt::format("\"{}\" for {}; expected a word without spaces", shortened(*text), what));
+    if (!one.held.empty() && !is_name(one.held))
+      file.fail(row,
+                fmt::format("\"{}\" for held; expected nothing, fixed or the name of a support", shortened(one.held)));
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) one.place[axis] = file.number(row, axes[axis]);
+    const auto [first, fresh] = known.emplace(std::pair(one.node, one.component), one.dof);
+    if (!fresh) file.fail(row, fmt::format("{} is dof {} and dof {}", one.text(), first->second, one.dof));
+    const auto [other, new_node] = nodes.emplace(one.node, &one);
+    if (!new_node && other->second->place != one.place)
+      file.fail(row, fmt::format("node {} has two places; expected the same x, y, z in its rows", one.node));
+  }
+  // Each number is at most the count and stands once: none is missing.
+  if (count == 0) throw FileError(name + " has no dofs; expected one row per row of the matrices");
+  return table;
+}
+
 }  // namespace ricochet

@@ -14,7 +14,7 @@
 namespace ricochet {
 
 /// The scenes of a grid of two parameters, made ready cell by cell. Where the axes are the initial displacement and the
-/// initial velocity, one scene per column and one per row serve all cells: w(0) hangs on the one, w_t(0) on the other.
+/// initial velocity, one scene per column and one per row serve all cells. One axis sets w(0), the other w_t(0).
 class CellScenes {
  public:
   CellScenes(const StudyCase& study_case, const Registry& registry);
@@ -76,8 +76,8 @@ struct CellPlace {
   std::size_t column = 0, row = 0;
 };
 
-/// Marches the orbit of a cell from its initial state to its end, bitwise as a run marches it; then hands
-/// over samples of the kept periods, as march_on() does. A cell that is refused or stops hands over none.
+/// Marches the orbit of a cell from its initial state to its end, bitwise as a run marches it. Then hands over samples
+/// of the kept periods, as march_on() does. A cell that is refused or stops hands over none.
 CellEnd march_cell(const StudyCase& study_case, const Registry& registry, CellPlace cell, SampleCount count,
                    const std::function<void(const PointSample&)>& use);
 

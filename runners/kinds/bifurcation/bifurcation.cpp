@@ -135,9 +135,9 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
     }
   }
   const Json& settings = study_case.settings;
-  // Measured on diagrams of the shaken beam: about half of the orbits wait for the cap of the transient, and contacts
-  // cost 0.3 of free flight on top of it. What leaves out steps is told from the beam of bench_flight, which is never
-  // at rest: two diagrams took 0.6 and 1.05 times as much.
+  // Measured on diagrams of the shaken beam: about half of the orbits reach the cap of the transient. Contacts cost 0.3
+  // of free flight on top of it. The cost of marches that leave out steps is predicted from the beam of bench_flight,
+  // which is never at rest. Two diagrams took 0.6 and 1.05 times as much.
   const double contact_share = scenes.flies() ? 0.8 : 1.3;
   const auto kept = settings.at("keep").get<double>(), exponents = settings.value("exponents", 0.0);
   const double transient = 0.5 * (settings.at("transient").at("periods").get<double>() +

@@ -31,8 +31,9 @@ double size_of(const CaseRecord& record, const std::string& refined) {
   return refined == "step" ? value : 1 / value;
 }
 
-// By how much the error of this case would still move if the other quantity were refined: to the finest of it, and by
-// what the last refinements say of the rest. The error of the finest case bounds what is in it.
+// By how much the error of this case would still move if the other quantity were refined. The first part is the
+// distance to the finest of it. The second is what remains then, judged by the last refinements. The error of the
+// finest case is an upper bound.
 double other_error(const StudyResults& results, const CaseRecord& finest, const std::string& other,
                    const std::string& error) {
   const std::vector<std::string> columns = without(results.columns, other);

@@ -273,8 +273,8 @@ void PrecisionSpeaker::say(Answer& answer) const {
   say_never(answer);
 }
 
-/// "Flights cost 0.22 of the time of every step (median of 44 pairs, 0.03 to 1.7)": of a compared choice, or of the way
-/// of marching where that varies.
+/// "Flights cost 0.22 of the time of every step (median of 44 pairs, 0.03 to 1.7)". The factor is that of a compared
+/// choice, or of the way of marching where that varies.
 void say_factor(const Compared& study, Answer& answer) {
   const std::string choice = compared_choice(study);
   if (choice.empty()) return;

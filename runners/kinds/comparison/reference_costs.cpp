@@ -21,7 +21,7 @@
 namespace ricochet {
 namespace {
 
-// Seconds that all solutions together may be tried for, and one of them; one that is not done by then costs as if it
+// Seconds that all solutions together may be tried for, and one of them. One that is not done by then counts as if it
 // had been.
 constexpr double enough_trying = 1, longest_trial = 2;
 // Shares of the duration that are solved: what the second adds to the first, the rest will add as well.

@@ -271,8 +271,8 @@ ReferencePointer References::find(const StudyCase& study_case, const MethodChoic
 }
 
 References::Twin References::twin_horizon(const StudyCase& study_case, const std::atomic<bool>& stop) {
-  // One pair of nearby runs per scene and mesh: of the first case of them that marches to its end and whose impacts
-  // move with its motion, at its own step.
+  // One pair of nearby runs per scene and mesh, of one case at its own step. It is the first of them that marches to
+  // its end and whose impacts move with its motion.
   const Json name = {{"scene", study_case.scene_json}, {"elements", study_case.elements}};
   return once<Twin>(twins_, name.dump(), [&]() -> Twin {
     bool blind = false;

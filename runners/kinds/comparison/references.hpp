@@ -36,16 +36,17 @@ struct ReferenceSet {
   std::string horizon_why;  ///< what set it
 };
 
-/// The references of a comparing study. Each is computed once, when a case first asks for it, by whichever thread asks
-/// first, and kept in the checkpoint store by a hash of all that determines it.
+/// The references of a comparing study. Each is computed once, by the thread that asks for it first. It is kept in the
+/// checkpoint store by a hash of all that determines it.
 ///
-/// References of the scene (closed forms, the continuous problem) see rigid stops whatever the contact law: there a
-/// penalty is one more numerical choice, whose error is measured. Those of the mesh see the law itself: they leave the
+/// References of the scene (closed forms, the continuous problem) see rigid stops whatever the contact law. A penalty
+/// is one more numerical choice there, and its error is measured. Those of the mesh see the law itself: they leave the
 /// error of the time scheme alone.
 ///
-/// `self`: the case's own methods at h/4 and h/8, h the smallest step of the study, on its own mesh, or twice the
-/// finest when the study has several; extrapolated (Richardson) with order 1 where the motion touches a stop, else the
-/// declared order. Its own gap (`coarser`) is the extrapolation's correction, or the two meshes' difference if larger.
+/// `self`: the case's own methods at h/4 and h/8, h the smallest step of the study. The mesh is the case's own, or
+/// twice the finest when the study has several. It is extrapolated (Richardson) with order 1 where the motion touches a
+/// stop, else the declared order. Its own gap (`coarser`) is the extrapolation's correction, or the difference of two
+/// meshes or two bases of modes if larger.
 class References {
  public:
   References(const Study& study, const Registry& registry, CheckpointStore checkpoints);
@@ -53,8 +54,9 @@ class References {
   /// Throws Interrupted when `stop` became true.
   ReferenceSet of(const StudyCase& study_case, const std::atomic<bool>& stop);
 
-  /// Steps that marching beside the cases takes: those of `self`, once for all that share it, and of the twins that
-  /// tell the horizon; each with the case whose methods make them and what a step of it costs times (a finer mesh).
+  /// Steps that marching beside the cases takes: those of `self`, once for all that share it, and of the twins for the
+  /// horizon. `study_case` has the methods that make them; `times` is what a step costs in steps of that case (a finer
+  /// mesh).
   struct Aside {
     const StudyCase* study_case;
     double steps, times;
@@ -80,8 +82,8 @@ class References {
   KnownReference march_finer(const StudyCase& study_case, const std::atomic<bool>& stop) const;
   std::string key(const StudyCase& study_case, const MethodChoice& choice) const;
   Twin twin_horizon(const StudyCase& study_case, const std::atomic<bool>& stop);
-  /// Of this case's own methods; nothing where they do not march to the end, or where they are blind: impacts at whole
-  /// steps do not move with the motion.
+  /// Of this case's own methods; nothing where they do not march to the end. Also nothing where they are blind: impacts
+  /// at whole steps do not move with the motion.
   std::optional<Twin> twin_of(const StudyCase& chosen, bool& blind, const std::atomic<bool>& stop) const;
   /// What was computed once, or why it could not be.
   template <class Value>

@@ -10,8 +10,8 @@
 #include "runners/table/number_type.hpp"
 
 /// \file
-/// What a case keeps of the orbits of its branches beside their rows: states from which any of them is solved again,
-/// and what some of them look like. Tables of numbers that are not exported.
+/// What a case keeps of the orbits of its branches beside their rows. States: any orbit is solved again from one.
+/// Samples: what some of the orbits look like. They are tables of numbers that are not exported.
 namespace ricochet {
 
 struct FollowedBranch;
@@ -50,8 +50,8 @@ struct BranchPortraitColumns {
   const Series *branch = nullptr, *row = nullptr, *samples = nullptr, *lower = nullptr, *upper = nullptr;
 };
 NumberType<BranchPortraitColumns> branch_portraits_type();
-/// `branch_samples`: the tip over the period, or over the first half where the orbit is its own image, from the strobe
-/// on, evenly; portrait after portrait.
+/// `branch_samples`: the tip over the period, or over the first half where the orbit is its own image. Samples are
+/// evenly spaced and begin at the strobe; portrait follows portrait.
 struct BranchSampleColumns {
   const Series *displacement = nullptr, *velocity = nullptr;
 };

@@ -61,8 +61,8 @@ StepFollower begin_branch(SteppedMap& map, const MapClock& clock, const ShotOrbi
   return {map, clock, shot.x, shot.parameter, way, steps};
 }
 
-// How far a twin of an orbit, a millionth of the gap and less away, is from where the derivative has it after a period:
-// the least share. The derivative holds as far as no contact changes.
+// An orbit and its twins, 1e-6, 1e-7 and 1e-8 of the gap apart, are marched for one period. The derivative predicts how
+// far apart they are then: the result is the least relative error of that. It holds as far as no contact changes.
 template <class Map>
 double twin_error(Map& map, const ShotOrbit& shot, const MapClock& clock, double gap) {
   const Eigen::MatrixXd derivative = derivative_at(map, shot, clock);

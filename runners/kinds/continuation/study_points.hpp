@@ -83,8 +83,9 @@ class StudyPoints {
   /// The cases of the head's method that differ from it along this axis alone, itself among them.
   std::vector<std::size_t> along(std::size_t head, std::size_t axis) const;
   PointConvergence convergence(std::size_t head, int name) const;
-  /// Where the study names no prominence: 25 times the largest turn that the two finest steps of the reference's method
-  /// disagree about, in the unit of the parameter; nothing of one step, or where they agree.
+  /// The least fold where the study names no prominence, in the unit of the parameter. It is 25 times the largest turn
+  /// that the two finest steps of the reference's method disagree about. There is none with one step, or where they
+  /// agree.
   std::optional<double> least_fold() const;
   /// The limit of the cases that an order was told of.
   PointLimit limit(const PointConvergence::Along& along, int name) const {

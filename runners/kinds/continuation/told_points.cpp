@@ -21,9 +21,9 @@ std::optional<double> stable_share(const std::vector<BranchRow>& rows, double fr
   return all > 0 ? std::optional(stable / all) : std::nullopt;
 }
 
-/// Whether stable orbits lie on one side of the point alone: their share of the arc differs by more than a half between
-/// both sides, over 5 % of the branch's arc each. Flickers of multipliers at corners change a share by little.
-/// `rows`: by branch, those with an arc that are known to be stable or not.
+/// Whether stable orbits lie on one side of the point alone. Their share of the arc differs by more than a half between
+/// both sides, over 5 % of the branch's arc each. Flickers of multipliers at corners change a share by little. `rows`:
+/// by branch, those with an arc that are known to be stable or not.
 bool ends_stability(const std::map<std::string, std::vector<BranchRow>>& rows, const SpecialRow& point) {
   const auto branch = rows.find(point.branch);
   if (branch == rows.end() || !point.arc) return false;

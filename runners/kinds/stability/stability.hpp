@@ -23,9 +23,9 @@ std::vector<double> steps_of(const StudyCase& study_case);
 /// What would run for a case of kind `stability`: the steps that observation marches at most, bisection not counted.
 CasePlan plan_stability(const StudyCase& study_case, const Registry& registry);
 
-/// Runs one case of kind `stability`: settings {"steps": {"from", "to", "count"}, "observe", "budget"}, steps evenly
-/// spaced on a logarithmic scale. study_case.duration is the simulated time of observed scenes (0: three periods of the
-/// first mode).
+/// Runs one case of kind `stability`: settings {"steps": {"from", "to", "count"}, "observe", "budget"}. Steps are
+/// evenly spaced on a logarithmic scale.
+/// study_case.duration is the simulated time of observed scenes (0: three periods of the first mode).
 ///
 /// Table `stability`, one row per step and contact state (open, and closed where there are stops). Its columns are
 /// step, closed, radius, marginal, limit_predicted, limit_observed, status (stable, marginal, unstable, failed,

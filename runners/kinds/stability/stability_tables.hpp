@@ -43,8 +43,8 @@ struct RestitutionRow {
 };
 TableType<RestitutionRow> restitution_type();
 
-/// Gives the tables that a case of a stability study left their units and meanings, and today's column names: stores
-/// that are older say the contact state in the words of a column `contact`.
+/// Gives the tables that a case of a stability study left their units and meanings, and today's column names. Older
+/// stores say the contact state in the words of a column `contact`.
 void describe_stability(CaseRecord& record);
 
 // The cells that a case of kind `stability` left, as a range of steps.
@@ -105,9 +105,9 @@ struct LimitRow {
 TableType<LimitRow> step_limits_type();
 
 /// step_limits: one row per case and contact state, open before closed. A scene is open as well as closed: the limit
-/// expected of it is the smaller of both predictions, and a cell is expected to grow where either radius exceeds one.
-/// The open structure does not depend on the contact law: of cases that differ in it alone one is `counted`, the first
-/// that was done.
+/// expected of it is the smaller of both predictions. A cell is expected to grow where either radius exceeds one. The
+/// open structure does not depend on the contact law: of cases that differ in it alone one is `counted`, the first that
+/// was done.
 Table step_limits_table(const StudyResults& results);
 
 /// step_limit_agreement: how many of the counted ranges agree, for the open structure, for closed contact, and for

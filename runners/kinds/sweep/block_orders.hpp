@@ -17,9 +17,9 @@
 #include "runners/march/case_context.hpp"
 
 /// \file
-/// Orbits of a case that another process marches, as bytes: what it must be told so that each result is bitwise the one
-/// that it has anywhere, and what it answers. Decisions that the first scene takes for all (the operator, the measure
-/// of settling) are taken once, by the case, and travel with the order.
+/// Orbits of a case that another process marches, as bytes: the order that it gets, and what it answers. An order says
+/// enough for each result to be bitwise the one that it has anywhere. Decisions that the first scene takes for all (the
+/// operator, the measure of settling) are taken once, by the case, and travel with the order.
 namespace ricochet {
 
 /// Where an orbit begins; what else its lane is, its scene says.

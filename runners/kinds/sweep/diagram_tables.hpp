@@ -123,8 +123,8 @@ std::string count_of(std::size_t count, const std::string& one);
 
 namespace ricochet {
 
-// What a bifurcation diagram, or an image of basins, owes to its methods: the tables worked out of the `values`,
-// `bifurcations` and `points` (or `cells` and `cell_points`) that the cases leave.
+// Tables of a bifurcation diagram, or of an image of basins, that show what the methods do to it. They are worked out
+// of the `values`, `bifurcations` and `points` (or `cells` and `cell_points`) that the cases leave.
 //
 // Clouds of section points live in (tip displacement, tip velocity), without unit. Each is divided by its standard
 // deviation over all section points of the study and the motions' places half a period later. A study of one orbit is
@@ -132,14 +132,14 @@ namespace ricochet {
 // core/measure/attractors: attractors.hpp (distances, their null, what counts as one attractor at one value, along the
 // parameter) and basin_grid.hpp.
 //
-// *Reference case*: of the cases with the stiffest contact (a rigid one, where there is one; the law tells) the one
-// with the most steps per period, then the most elements, then the first of the study that has anything to compare
-// with.
+// *Reference case*: of the cases with anything to compare with, the one with the stiffest contact. The law tells how
+// stiff it is; a rigid one is the stiffest. Then count the most steps per period, the most elements, the most modes,
+// and the first of the study.
 //
-// What the columns of these tables mean is declared in sweep_tables.hpp. A change of shifts is one of the same kind,
-// classes and start, the nearest within a tenth of the values' range; changes from or to "undecided" are left out.
-// Intervals of verdicts touch: they end half way between two values. Of kind `basins` a motion and its mirror image
-// are one attractor.
+// What the columns of these tables mean is declared in sweep_tables.hpp. A change of `shifts` is matched with one of
+// the same kind, classes and start: the nearest within a tenth of the values' range. Changes from or to "undecided" are
+// left out. Intervals of verdicts touch: they end half way between two values. Of kind `basins` a motion and its mirror
+// image are one attractor.
 
 /// Whether a table of the cases is among those that are collected.
 bool derived_as_dynamics(const std::string& table);

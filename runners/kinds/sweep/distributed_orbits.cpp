@@ -32,8 +32,8 @@ DistributedOrbits::DistributedOrbits(OrbitQueue& queue, const ForcedScenes& scen
   timed_ = static_cast<int>(std::clamp(std::ceil(block_seconds / std::max(one, 1e-12)), 1.0, 4096.0));
 }
 
-// Orbits of a block: as many as take some seconds, fewer where all processes would not have a share, and where there
-// are enough a full block of lanes. A rest of half a block marches with the others.
+// Orbits of a block: as many as take some seconds, at most half of a fair share of those that wait. It is at least 1.5
+// times the lanes, where a fair share has so many. The last half of the lanes marches with the orbits of another block.
 int DistributedOrbits::block_size() const {
   const int share = options_.blocks->share(), waiting = std::max(1, queue_.waiting());
   const int fair = (waiting + share - 1) / share, half = (waiting + 2 * share - 1) / (2 * share);

@@ -15,8 +15,8 @@
 namespace ricochet {
 
 /// Marches the orbits of a queue as blocks in other processes. A block whose process ends goes back orbit by orbit,
-/// each from where it was last seen; an orbit that ends a process of its own for the second time has stopped there,
-/// with the reason. All others are bitwise equal to a run without it.
+/// each from where it was last seen. An orbit that then ends a process of its own as well has stopped there, with the
+/// reason. All others are bitwise equal to a run without it.
 class DistributedOrbits {
  public:
   DistributedOrbits(OrbitQueue& queue, const ForcedScenes& scenes, const ScheduleOptions& options);
@@ -57,8 +57,8 @@ class DistributedOrbits {
 };
 
 /// Measures batches of orbits of a task in other processes: `found` of each orbit is set, and `measured` told of each
-/// batch that is complete. A batch whose process ends goes back orbit by orbit; an orbit that ends a process of its own
-/// for the second time has no exponents, and task.lost says why. Adds the processor seconds.
+/// batch that is complete. A batch whose process ends goes back orbit by orbit. An orbit that then ends a process of
+/// its own as well has no exponents, and task.lost says why. Adds the processor seconds.
 void measure_elsewhere(const ForcedScenes& scenes, const ExponentTask& task, const SectionPlan& plan,
                        const std::vector<std::vector<std::size_t>>& batches, std::vector<OrbitExponents>& found,
                        double& seconds, const std::function<void(std::size_t batch)>& measured,

@@ -29,8 +29,8 @@ struct ForcedScene {
   double pulsation = 0;
 };
 
-/// The scenes of one case of a sweep: the case at each value of its parameters, sorted into groups that march as lanes
-/// of one factorisation (LaneGroups).
+/// The scenes of one case of a sweep: the case at each value of its parameters. They are sorted into groups that march
+/// as lanes of one factorisation (LaneGroups).
 class ForcedScenes {
  public:
   ForcedScenes(const StudyCase& study_case, const Registry& registry);

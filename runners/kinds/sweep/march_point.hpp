@@ -55,8 +55,8 @@ struct PointSample {
   long long strobe = -1;
 };
 
-/// Marches the orbit and hands over its samples, `samples` per period, the last of each at the strobe: bitwise equal to
-/// those of the run that left the entry. Throws InputError where the scene cannot be marched at this value.
+/// Marches the orbit and hands over its samples, `samples` per period, the last of each at the strobe. They are bitwise
+/// equal to those of the run that left the entry. Throws InputError where the scene cannot be marched at this value.
 void march_point(const StudyCase& study_case, const Registry& registry, const PointTask& task,
                  const std::function<void(const PointSample&)>& use);
 

@@ -94,8 +94,8 @@ void serialize(Archive& archive, OrbitExponents& exponents) {
           exponents.superstable, exponents.outlived, exponents.untold);
 }
 
-/// What an interrupted set of orbits had marched, in a checkpoint store: finished orbits in parts that are written
-/// once, those on their way anew each time. Without a store nothing is kept.
+/// What an interrupted set of orbits had marched, in a checkpoint store. Parts with finished orbits are written once;
+/// orbits on their way are written anew each time. Without a store nothing is kept.
 class OrbitCheckpoints {
  public:
   /// `key` tells this set of orbits from every other.

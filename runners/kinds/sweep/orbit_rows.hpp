@@ -60,10 +60,10 @@ void add_grazing_row(CaseRecord& record, const Grazing& grazing);
 /// The most numbers that the entries of one case may take; beyond, none are kept.
 constexpr std::size_t most_entry_numbers = 2000000;
 
-/// Numbers `entries` (not exported): parameter, start, index, value: the state of each complete orbit when its kept
-/// periods began, from which "ricochet point" marches them again: how many slots, efforts and fastest speeds, then
-/// these one after the other, then what the law remembers (see LaneState). Absent, with a note, where they would take
-/// too much room.
+/// Numbers `entries` (not exported): parameter, start, index, value. They are the state of each complete orbit when its
+/// kept periods began; "ricochet point" marches these again. A state begins with three counts: of slots, efforts and
+/// fastest speeds. Their values follow one after the other, then what the law remembers (see LaneState). Absent, with a
+/// note, where they would take too much room.
 void add_entries(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts);
 
 /// A column of a table of numbers in the rows of one orbit; empty where the case keeps none.

@@ -182,8 +182,8 @@ bool OrbitScheduler::going(const std::atomic<bool>& stop) const {
   return queue_.open_tasks() > 0 && !stop && !over_budget_;
 }
 
-// Marches a block of these orbits, and of others that take the places of those that end, until all have ended or the
-// block is half empty: what is left is returned, for a narrower one.
+// Marches a block of these orbits, and of others that take the places of those that end. It ends when all have ended or
+// the block is half empty. What is left is returned, for a narrower block.
 std::vector<Orbit> OrbitScheduler::march_block(std::vector<Orbit> orbits, const std::atomic<bool>& stop,
                                                const std::function<void(const MarchedOrbits&)>& checkpoint) {
   const int group = queue_.group(orbits.front().task);

@@ -59,8 +59,8 @@ class OrbitQueue {
   };
   /// Orbits of one group that an interrupted run had on their way.
   std::vector<Orbit> resume(int most);
-  /// Orbits on their way that nobody marches, at most so many lanes of them, and beside single ones others of their
-  /// group that may begin, up to `most` together; empty where there are none on their way.
+  /// Orbits on their way that nobody marches, at most so many lanes of them; empty where there are none. Single ones
+  /// come with others of their group that may begin, up to `most` together.
   Batch go_on(int lanes, int most);
   /// Orbits on their way that are marched no further where they were.
   void give_back(std::vector<Orbit> orbits);

@@ -19,9 +19,9 @@ namespace ricochet {
 ///   · a formula of the scene in x or t, "/scene/load": multiplied by `value`,
 ///   · a position of a list of stops, "/scene/stops/at/0",
 ///   · a real parameter of the case's own method, "/methods/contact/stiffness".
-/// Throws InputError (with pointer) for a pointer that names none of these in this case, a value out of range, a scene
-/// that check_scene() refuses at this value, and, for cases that step by the forcing period, what check_forcing()
-/// refuses.
+/// Throws InputError (with pointer) for a pointer that names none of these in this case, and for a value out of range.
+/// Also for a scene that check_scene() refuses at this value. For cases that step by the forcing period, also for what
+/// check_forcing() refuses.
 StudyCase with_parameter(const StudyCase& study_case, const std::string& pointer, double value);
 
 /// The same for several scalars at once; the scene is checked when all are changed.

@@ -6,9 +6,9 @@
 /// What the energies of a study of trajectories say of its methods, worked out of the measures of its cases.
 namespace ricochet {
 
-/// Share of the energy brought in below which a change of a case's energy is not told from round-off: the larger of
-/// 2⁻⁵² × steps and the residual of its energy balance. A residual above exact_balance is no round-off but what the
-/// scheme does and does not declare: it says nothing of the floor.
+/// Share of the energy brought in below which a change of a case's energy is not told from round-off. It is the larger
+/// of 2⁻⁵² × steps and the residual of the case's energy balance. A residual above exact_balance is not round-off: the
+/// scheme does something that it does not declare. It says nothing of the floor.
 double energy_noise(const CaseRecord& record);
 inline constexpr double exact_balance = 1e-8;
 

@@ -36,8 +36,8 @@ struct AskedOutputs {
 /// The key itself.
 Field outputs_key();
 
-/// Throws InputError for spectra of what is not there, a rate that the steps do not reach, and a segment that the
-/// window does not hold. Observed measures of stops that the study does not ask for are refused as well.
+/// Throws InputError for spectra of what is not there and for a rate that the steps do not reach. Also for a segment
+/// that the window does not hold, and for observed measures of stops that the study does not ask for.
 void check_outputs(const Json& study);
 
 AskedOutputs asked_outputs(const StudyCase& study_case);

@@ -36,8 +36,8 @@ Row stop_reading_cells(const StopReading& reading);
 /// All of them.
 std::vector<Column> all_stop_reading_columns();
 
-/// Throws InputError where `observe` of a study names a stop that its scene has not, or a measure of it that the study
-/// does not ask for.
+/// Throws InputError where `observe` of a study names a stop that its scene has not. Also where it names a measure of a
+/// stop that the study does not ask for.
 void check_observed_stops(const nlohmann::ordered_json& study);
 
 // Levels of spectra in thirds of octaves, as measures: "third_octave_force_63Hz[bar-a]", "…_displacement_…[mid]".

@@ -42,10 +42,10 @@ void add_stop_tables(CaseRecord& record, const SemiDiscrete& problem, const Stop
 /// Units and meanings of these tables, for records that come from a store.
 void describe_stop_tables(CaseRecord& record);
 
-/// The contacts of lane 0, as the record keeps them: `impacts`, a row per impact; `stops`, a row per contact point, or
-/// clearance, and side that ever closed. Beside them are the measures impacts, peak_contact_force and contact_time, and
-/// a note where the list of impacts ended before the run did. Without contact there are no impacts, and nothing else is
-/// said. What else looks at the stops adds columns at their ends, and tables.
+/// The contacts of lane 0, as the record keeps them. `impacts` has a row per impact. `stops` has a row per contact
+/// point, or clearance, and side that ever closed. Beside them are the measures impacts, peak_contact_force and
+/// contact_time, and a note where the list of impacts ended before the run did. Without contact there are no impacts,
+/// and nothing else is said. What else looks at the stops adds columns at their ends, and tables.
 void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher& marcher,
                  const StopWatches& watches = {});
 

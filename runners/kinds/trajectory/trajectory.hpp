@@ -13,8 +13,8 @@ namespace ricochet {
 /// "energy 3.61 J → 3.02 J (−16.4 %), 12 impacts, 0.8 µs/step": what a marched case has of these.
 std::string energies_text(const CaseRecord& record);
 
-/// The smallest study that shows what happened to one case: kind `trajectory`, its scene and methods alone, every list
-/// replaced by the case's value, without excludes. Runs as it stands.
+/// The smallest study that shows what happened to one case: kind `trajectory`, its scene and methods alone. The case's
+/// value replaces every list, and there are no excludes. Runs as it stands.
 nlohmann::ordered_json minimal_study(const StudyResults& results, const CaseRecord& record);
 
 /// What would run for a case that integrates its scene once.

@@ -13,10 +13,10 @@
 namespace ricochet {
 
 /// Means over the window of a trajectory, cut into equal parts: what a chaotic motion has in place of a path. Of each
-/// part: the energy lost at the stops and the momentum that they gave, both over its length (W, N); how often points
-/// closed in a second (1/s); the root mean square of the tip's absolute displacement (m). The mean over the parts
-/// comes with its 95 % interval by the stationary block bootstrap, which holds where the motion is stationary over the
-/// window: parts that drift show as an interval that is too narrow, never too wide.
+/// part: the energy lost at the stops and the momentum that they gave, both over its length (W, N). Then how often
+/// points closed in a second (1/s), and the root mean square of the tip's absolute displacement (m). The mean over the
+/// parts has a 95 % interval by the stationary block bootstrap. That holds where the motion is stationary over the
+/// window. Parts that drift show as an interval that is too narrow, never too wide.
 class WindowMeans final : public StepObserver {
  public:
   static constexpr int fewest_parts = fewest_resampled;
@@ -62,12 +62,12 @@ inline bool has_window(const Json& settings) {
   return settings.is_object() && settings.contains("window");
 }
 
-/// The contact force over an interval of time, as one lane marches. What the efforts of an instant of contact give a
-/// free mass, Σ ω p over its stages and points (N s), is a force F over the largest ω of its stages (s), which is also
-/// what the instant weighs:
+/// The contact force over an interval of time, as one lane marches. The efforts of an instant of contact give a free
+/// mass the momentum Σ ω p over its stages and points (N s). Over the largest ω of its stages (s) this is the force F.
+/// The instant weighs as much as that ω:
 ///     F̄ = Σ ω F / Σ ω,   s² = Σ ω (F − F̄)² / Σ ω   (N),
-/// so that F̄ times the interval is the impulse, whatever the stages of the scheme. An effort that gives no momentum, of
-/// a projection, is no force. Allocates nothing.
+/// so that F̄ times the interval is the impulse, whatever the stages of the scheme. An effort that gives no momentum,
+/// of a projection, is no force. Allocates nothing.
 class ForceWindow final : public StepObserver {
  public:
   /// [from, to], s; `settings` are those of a trajectory. Without a window it has nothing to look at, and shall not.

@@ -119,8 +119,8 @@ TEST_CASE("a flight that looks for the stops where they are not is found out") {
 }
 
 TEST_CASE("the balance of an integration that leaves out steps closes as well as that of every step") {
-  // Where closed contact is left, round-off of the constraint (1e-17 m a step) is a velocity of 1e-9 m/s at h = 1e-7:
-  // taken off along what moves the whole structure it gave or took 1e-11 J each time.
+  // Where closed contact is left, round-off of the constraint (1e-17 m a step) is a velocity of 1e-10 m/s at h = 1e-7.
+  // Taken off along what moves the whole structure, it gave or took 1e-11 J each time.
   SceneSpec scene = working_set();
   scene.stops.place = StopsSpec::Place::nodes;
   const Methods methods{

@@ -177,7 +177,7 @@ Interval exponent(const std::vector<int>& labels, int columns, int rows) {
   return *found;
 }
 
-/// Which gap of the Cantor set that keeps two outer parts of `keep` each x lies in, by depth (parity); points deeper
+/// Which gap x lies in, by depth (parity), of the Cantor set that keeps two outer parts of `keep` each. Points deeper
 /// than `depth` count as another gap.
 int cantor_gap(double x, double keep, int depth) {
   for (int level = 0; level < depth; ++level) {

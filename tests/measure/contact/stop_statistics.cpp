@@ -132,8 +132,8 @@ TEST_CASE("classes of more peaks than are kept have all of them, to the peaks th
   }
 }
 
-// A mass of 100 kg on 1e4 N/m comes back to a stop of 1e6 N/m with the speed with which it left: contact lasts half a
-// period of √(k + κ over m), free flight half of √(k over m).
+// A mass of 100 kg on k = 1e4 N/m comes back to a stop of κ = 1e6 N/m with the speed with which it left. Contact lasts
+// half a period of √((k + κ)/m), free flight half of √(k/m).
 TEST_CASE("the second shock of a mass between two springs is that of its closed form") {
   constexpr double mass = 100, stiffness = 1e4, stop = 1e6, pi = std::numbers::pi;
   const double free = std::sqrt(stiffness / mass), closed = std::sqrt((stiffness + stop) / mass);

@@ -34,7 +34,7 @@ TEST_CASE("the balance of energy closes to round-off, with damping, loads, a mov
       Choice{"hht-alpha", {{"alpha", 0.0}}}, Choice{"hht-alpha", {{"alpha", -0.1}}},
       Choice{"hht-alpha", {{"alpha", -0.3}, {"contact", std::string("weighted")}}});
   const auto kind = GENERATE(OperatorKind::band, OperatorKind::modal);
-  // Newmark's family needs equilibrium at t = 0, which these data do not have on the kernel of a singular mass; the
+  // Newmark's family needs equilibrium at t = 0. These data do not have it on the kernel of a singular mass. The
   // mid-point rule keeps the root −1 there.
   if (mass.name == "singular" && (time.name == "newmark" || time.name == "hht-alpha" || time.name == "midpoint"))
     return;

@@ -1,5 +1,5 @@
-// The ledger of a step is that of its definition: every term worked out again with whole matrices, at every step, and
-// the energies of every step between them.
+// The ledger of a step is that of its definition. Every term is worked out again with whole matrices, at every step,
+// and so are the energies of every step between them.
 #include <numeric>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>

@@ -1,5 +1,5 @@
-// Exponents of orbits with impacts against their exact multipliers: products of flows and saltations along orbits that
-// are found event by event; and orbits that keep nothing of where they came from.
+// Exponents of orbits with impacts against their exact multipliers. These are products of flows and saltations along
+// orbits that are found event by event. Also orbits that keep nothing of where they came from.
 #include <Eigen/Eigenvalues>
 #include <numbers>
 #include <ricochet/measure/orbits/impact_jump.hpp>
@@ -209,8 +209,8 @@ TEST_CASE(
   for (const auto& one_of : multipliers) wanted.push_back(std::log(std::abs(one_of)) / (known.round * scene.period()));
   std::sort(wanted.rbegin(), wanted.rend());
   const std::string time = GENERATE(as<std::string>(), "moreau-jean", "newmark-dumont-paoli");
-  // A step places impacts to within h: at 4000 steps the orbits below are off by some 1e-3 of their size, and what that
-  // does to a multiplier is a few percent at most.
+  // A step places impacts to within h: at 4000 steps the orbits below are off by some 1e-3 of their size. A multiplier
+  // is off by a few percent at most for that.
   constexpr int steps = 4000;
   for (const int keep : {17, 48}) {
     INFO(time << ", keep " << keep);

@@ -47,8 +47,8 @@ TEST_CASE("0–1 test: periodic and quasi-periodic series are regular, chaotic o
 }
 
 TEST_CASE("0–1 test: two rotations of the circle map, before and after it is invertible") {
-  // θ ← θ + Ω − k/(2π) sin 2πθ: quasi-periodic for small k and the golden Ω, chaotic at k = 6 for this Ω (its
-  // exponent, Σ ln|1 − k cos 2πθ|/N, is checked to be clearly of its sign).
+  // θ ← θ + Ω − k/(2π) sin 2πθ is quasi-periodic for small k and the golden Ω. It is chaotic at k = 6 for this Ω: the
+  // sign of its exponent, Σ ln|1 − k cos 2πθ|/N, is checked to be clear.
   for (const double k : {0.3, 6.0}) {
     double theta = 0.1, exponent = 0;
     const auto series = sampled(2000, [&](int) {

@@ -190,8 +190,8 @@ namespace {
 
 using Rates = std::vector<std::vector<double>>;
 
-/// What the columns of the linear map with these multipliers grow by, re-orthonormalised every period: a pair
-/// ρe^{±iφ} in an oblique frame swings, a real multiplier does not.
+/// What the columns of the linear map with these multipliers grow by, re-orthonormalised every period. A pair ρe^{±iφ}
+/// in an oblique frame swings; a real multiplier does not.
 Rates rates_of_pair(double growth, double angle, int periods) {
   Rates rates(2);
   double u[2] = {1, 0}, w[2] = {0, 1};

@@ -16,7 +16,7 @@ namespace {
 constexpr double pulsation = 2 * std::numbers::pi;
 constexpr int steps = 400;
 
-/// A spring that presses its mass on a stop with 1 N, and a force a cos ωt beside it: the mass lifts where a > 1. On
+/// A spring presses its mass on a stop with 1 N, and a force a cos ωt acts beside it. The mass lifts where a > 1. On
 /// the upper stop everything is mirrored.
 SceneSpec pressed(double a, bool upper = false) {
   const double sign = upper ? -1 : 1;

@@ -123,8 +123,8 @@ TEST_CASE("equivalent viscosity: it is the decay that is marched") {
   REQUIRE(std::holds_alternative<Program>(program));
   Marcher marcher(std::move(std::get<Program>(program)));
   marcher.start();
-  // Twice the energy of the first mode: qᵀKq + vᵀMv, which the root takes as a whole after every half turn; over
-  // thousands of steps its swing within one turn does not count.
+  // Twice the energy of the first mode: qᵀKq + vᵀMv. The root takes it as a whole after every half turn; over thousands
+  // of steps its swing within one turn does not count.
   const auto energy = [&] {
     Eigen::VectorXd q(problem->dofs()), v(problem->dofs());
     for (int i = 0; i < problem->dofs(); ++i) {

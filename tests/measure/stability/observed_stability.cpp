@@ -47,8 +47,8 @@ struct Cell {
   ObservedCell free(double h, const StabilityPredictor& predicted) const {
     return known(observe_free(problem, plan(h), h, predicted.excitation(h), {}));
   }
-  /// The structure pressed against the stop at the tip by 1 N and disturbed from rest by 10⁻⁶ of that state: a contact
-  /// that does not open, hence the linear step that StabilityPredictor::closed() speaks of.
+  /// The structure is pressed against the stop at the tip by 1 N and disturbed from rest by 10⁻⁶ of that state. Its
+  /// contact does not open: this is the linear step of StabilityPredictor::closed().
   std::array<double, 3> held(double h, const Excitation& start, int tip) const;
   ObservedCell scene(double h, double duration) const {
     Horizon horizon;
@@ -248,7 +248,7 @@ TEST_CASE("energy that nothing gave is seen where theory has it, and nowhere els
   CHECK(gains.gain > 1);
   CHECK(gains.first_bad_step > 0);
   CHECK_THAT(gains.cause, Contains("nothing gave"));
-  // A spring of 1e9 N/m averaged over three levels throws back more than it got where steps are too long for it; the
+  // A spring of 1e9 N/m averaged over three levels throws back more than it got where steps are too long for it. The
   // same spring at the end of the step never does. How much, a chaotic run tells: the largest of four.
   double averaged = 0, implicit = 0;
   for (const double h : {2e-5, 4e-5, 2.5e-4, 6e-4}) {
@@ -275,7 +275,7 @@ TEST_CASE("a cell beyond the limit ends with the step where it went wrong") {
 }
 
 TEST_CASE("energy that swells and falls again is no limit") {
-  // Steps of hundreds of periods of the highest modes: near the root −1 amplitudes swell by ωh/2, energies past 1e9
+  // Steps of hundreds of periods of the highest modes: near the root −1 amplitudes swell by ωh/2. Energies pass 1e9
   // times those of the start, and fall again where the scheme has no limit.
   for (const int elements : {10, 20})
     for (const double viscosity : {1e-6, 1e-5, 1e-4})

@@ -41,8 +41,8 @@ TEST_CASE("the step matrix is the step that is marched, contact open") {
 }
 
 TEST_CASE("the step matrix is the step that is marched, contact closed") {
-  // A stop pressed far into the structure holds it; two motions that never leave it differ by a solution of the linear
-  // problem, past efforts of the first step included, which are zero for both.
+  // A stop pressed far into the structure holds it. Two motions that never leave it differ by a solution of the linear
+  // problem. That includes past efforts of the first step, which are zero for both.
   const double push = 0.5, h = 2e-5;
   int compared = 0;
   std::vector<Choice> closing = schemes();

@@ -48,7 +48,7 @@ TEST_CASE("independent numbers have a flat density, whose integral is their vari
     spectrum.add(x);
     moments.add(x);
   }
-  // Deviations of a mean over 2000 half-overlapping segments: 2 % a frequency, 0.3 % the integral; the mean of each
+  // Deviations of a mean over 2000 half-overlapping segments: 2 % a frequency, 0.3 % the integral. The mean of each
   // segment takes one of 256 degrees of freedom.
   CHECK(integral(spectrum) == Approx(std::pow(moments.deviation(), 2)).epsilon(0.015));
   const std::vector<double> density = spectrum.density();

@@ -1,4 +1,4 @@
-// Where in a step a compliant law takes its force, and what that does to the energy: an undamped mass on a spring that
+// Where in a step a compliant law takes its force, and what that does to the energy. An undamped mass on a spring
 // bounces between two stops, 100 steps to a swing.
 #include "tests/plugins/contact/impacts.hpp"
 

@@ -39,8 +39,8 @@ inline Bounce bounce(const Choice& law, double h, double duration = 0.25, const 
           audit.totals(0).work_of_law, audit.totals(0)};
 }
 
-/// E + U over a run, E the energy of the scheme: how far it moves from its first value, its largest gain in a step, its
-/// change at the end, and the largest share of it that the stops held. `losses`: what the law says that it dissipated
+/// E + U over a run, E the energy of the scheme. How far it moves from its first value, its largest gain in a step, its
+/// change at the end. Also the largest share of it that the stops held. `losses`: what the law says that it dissipated
 /// counts too.
 class Kept final : public StepObserver {
  public:

@@ -88,7 +88,7 @@ TEST_CASE("for Newmark the implicit and the averaged penalty coincide") {
 }
 
 TEST_CASE("averaged penalty springs keep the energy of a free impact, and the spring gives it back") {
-  // β = ¼: the spring is treated as K is, and the scheme keeps the energy of every linear piece; only the two steps
+  // β = ¼: the spring is treated as K is, and the scheme keeps the energy of every linear piece. Only the two steps
   // that straddle contact onset and release break it, by O(h).
   SceneSpec scene = working_set();
   std::vector<double> drift;

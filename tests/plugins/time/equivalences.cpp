@@ -88,8 +88,8 @@ TEST_CASE("schemes that are the same numbers give bitwise equal motions") {
 }
 
 TEST_CASE("schemes that are one another in exact arithmetic differ by round-off in free motion") {
-  // The trapezium on accelerations asks the mean of the equations of both ends, which Newmark (¼, ½) meets one by one
-  // from a₀ on; the acceleration drops out of the positions.
+  // The trapezium on accelerations asks the mean of the equations of both ends. Newmark (¼, ½) meets these one by one
+  // from a₀ on. The acceleration drops out of the positions.
   struct Pair {
     Choice a, b;
   };

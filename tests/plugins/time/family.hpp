@@ -9,7 +9,7 @@
 #include "tests/marching.hpp"
 
 /// \file
-/// What the tests of the time schemes have in common: plans by name, the beam and the bar that they are compared on,
+/// What the tests of the time schemes have in common. Plans by name, the beam and the bar that they are compared on,
 /// and the force that an integration shows.
 namespace ricochet::testing {
 

@@ -53,8 +53,8 @@ TEST_CASE("least, mean and most that a free mass keeps of its speed, by scheme")
     INFO(label(row.time));
     const auto range = restitution_range(plan_made(row.time, 1e-3, free_mass()), 1e-3);
     REQUIRE(range);
-    // 64 phases: the outermost lies 1/128 of a step off the end of a piece, and no piece crosses the whole range in
-    // less than a quarter of a step. Printed to two digits.
+    // 64 phases: the outermost lies 1/128 of a step off the end of a piece. No piece crosses the whole range in less
+    // than a quarter of a step. Printed to two digits.
     const double phase = (row.most - row.least) / 32 + 0.005;
     CHECK(range->least == Approx(row.least).margin(phase));
     CHECK(range->most == Approx(row.most).margin(phase));

@@ -88,7 +88,7 @@ TEST_CASE("Dumont–Paoli with e = 0 gains energy in no step, for any mass") {
   const EnergyAudit audit = audited(beam, 0.4);
   INFO(mass.name << " β = " << beta << " h = " << h);
   CHECK(audit.contact(0).impacts > 0);
-  // With β = ¼ the kernel of a singular mass carries a sawtooth whose amplitude grows with the number of steps; the
+  // With β = ¼ the kernel of a singular mass carries a sawtooth whose amplitude grows with the number of steps. The
   // energy is what is left when it cancels, to fewer digits.
   const bool sawtooth = beta == 0.25 && (mass.name == "singular" || !mass.values.empty());
   CHECK(audit.totals(0).largest_step_gain <= (sawtooth ? 1e-8 : 1e-9) * audit.totals(0).scheme_start);

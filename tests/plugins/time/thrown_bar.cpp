@@ -88,8 +88,8 @@ TEST_CASE("Laursen and Chawla's bar comes back with all its energy, as deep in t
 }
 
 TEST_CASE("a bar thrown at a wall comes back with more energy than it had from schemes that throw a mass back") {
-  // Contact goes on and off some 40 times and each time multiplies round-off: a throw is a draw (Newmark: 8.5 to 17
-  // times the energy, Bathe 0.8: 2.3 to 5.7), the median of nine throws 1 nm apart is not.
+  // Contact goes on and off some 40 times and each time multiplies round-off. One throw is a draw: 8.5 to 17 times the
+  // energy with Newmark, 2.3 to 5.7 times with Bathe 0.8. The median of nine throws 1 nm apart is not.
   struct Row {
     Choice time;
     double least_energy;

@@ -8,7 +8,7 @@
 
 namespace launch {
 
-/// A cluster of Slurm on this machine: two nodes of two processors, over the loopback interface alone, with a key,
+/// A cluster of Slurm on this machine: two nodes of two processors, over the loopback interface alone. It has a key,
 /// ports and a folder of its own. It ends with this object, with everything that runs on it.
 class Cluster {
  public:

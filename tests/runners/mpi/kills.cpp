@@ -1,4 +1,4 @@
-/// kill -9 at random moments, of whatever a run on several ranks consists of: nothing that was kept is lost, and the
+/// kill -9 at random moments, of whatever a run on several ranks consists of. Nothing that was kept is lost, and the
 /// same command goes on to the same tables. RICOCHET_KILLS=100 kills so many of each.
 #include <signal.h>
 #include <unistd.h>
@@ -78,8 +78,8 @@ double time_of(const Victims& victims, const ScratchFolder& scratch, const std::
   return Seconds(last - first).count();
 }
 
-/// Kills, again and again, one of those that `victims` finds, at a moment of their life of which `luck` decides: how
-/// long a machine takes until there are any says nothing.
+/// Kills, again and again, one of those that `victims` finds, at a random moment of their life. The moment counts from
+/// when there are any: how long a machine takes until then says nothing.
 void kill_at_random(const Victims& victims, bool survives) {
   const ScratchFolder scratch;
   const Json study = sweep();

@@ -1,4 +1,4 @@
-// A scheme without C++: what a plan says in formulas is the step that a plugin writes in numbers, and whatever is wrong
+// A scheme without C++. What a plan says in formulas is the step that a plugin writes in numbers. Whatever is wrong
 // with it is told with its place.
 #include "runners/plan_files/plan_file.hpp"
 

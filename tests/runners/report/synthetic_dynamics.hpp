@@ -8,8 +8,8 @@
 #include "runners/store/record_values.hpp"
 
 /// \file
-/// A study of kind `bifurcation` made from formulas: the cubic map x → a x − x³, which is odd as the shaken beam is,
-/// stands for the structure, and the names of the methods for themselves.
+/// A study of kind `bifurcation` made from formulas. The cubic map x → a x − x³, which is odd as the shaken beam is,
+/// stands for the structure. The names of the methods stand for themselves.
 namespace ricochet::synthetic {
 
 struct DynamicsShape {
@@ -202,8 +202,8 @@ inline StudyResults dynamics(const DynamicsShape& shape = {}) {
   return out;
 }
 
-/// A study of kind `basins`: the half-planes of x + y/2 against a wavy border, which the second case moves by `shift`;
-/// a third attractor near the origin, a corner that failed, and one row that is not known yet.
+/// A study of kind `basins`: the half-planes of x + y/2 against a wavy border, which the second case moves by `shift`.
+/// A third attractor is near the origin. A corner failed, and one row is not known yet.
 inline StudyResults basins(int count = 40, double shift = 0.2) {
   StudyResults out;
   out.name = "basins";

@@ -1,4 +1,4 @@
-// Numbers that are in range and absurd, in the place of every number of the shipped studies: each makes rows, or is an
+// Numbers that are in range and absurd, in the place of every number of the shipped studies. Each makes rows, or is an
 // error of the input; nothing else.
 #include <catch2/catch.hpp>
 #include <limits>

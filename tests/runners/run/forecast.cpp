@@ -70,8 +70,9 @@ TEST_CASE("forecast: a reference that is marched on finer steps is counted once 
   ForecastContext context{planned.study, planned.registry, {}, [](const StudyCase&) { return 1.0; }};
   for (const StudyCase& one : planned.study.cases) context.cases.push_back(&one);
   const double all = kind.beside(context);
-  // h/4 and h/8 of the smallest step on twice the finest mesh, h/4 on the finest, once for each mass and mesh; two
-  // twins for each mesh. A step costs what its elements do: (12·2 + 4)·4000 steps of 8 elements and of 4 for each mass.
+  // h/4 and h/8 of the smallest step on twice the finest mesh, h/4 on the finest, once for each mass and mesh. Two
+  // twins for each mesh. A step costs what its elements do: for each mass (12·2 + 4)·4000 steps of 8 elements, and
+  // twice as many of 4.
   const double marched = 2 * (28.0 * 4000 + 2 * 28.0 * 4000), twins = 2 * 2 * 2000;
   const double rest = all - marched - twins;
   CHECK(rest >= 0);

@@ -1,7 +1,7 @@
 #pragma once
 
-/// The coordinator against machines that are scripts: whatever the order in which they speak, and whichever of them
-/// vanish, come back late or talk nonsense, the same rows come out, each once, and nobody waits for ever.
+/// The coordinator against machines that are scripts. They speak in any order, and some of them vanish, come back late
+/// or talk nonsense. The same rows come out, each once, and nobody waits for ever.
 #include <catch2/catch.hpp>
 #include <utility>
 

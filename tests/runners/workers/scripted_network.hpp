@@ -15,8 +15,9 @@
 
 namespace ricochet::tests {
 
-/// A network with agents that are scripts, as rank 0 sees it: whole packets, in order from any one rank, otherwise in
-/// an order that luck decides, each rank at a pace of its own. An agent does its work while rank 0 listens.
+/// A network with agents that are scripts, as rank 0 sees it. It hears whole packets, in order from any one rank,
+/// otherwise in an order that luck decides. Each rank has a pace of its own. An agent does its work while rank 0
+/// listens.
 class ScriptedNetwork : public Transport {
  public:
   /// What becomes of an agent.

@@ -37,9 +37,9 @@ struct ScriptedWorld {
 /// The row that a scripted worker makes of a case: everything that its blocks and what is shared gave it.
 CaseRecord scripted_row(const std::string& id);
 
-/// Runs cases that look for something shared, keep it where it is missing, have three blocks marched at one time and a
-/// fourth that begins where these ended, show what they have, and end. A block that is lost is begun once more. It
-/// speaks when it is spoken to.
+/// Runs cases that look for something shared, and keep it where it is missing. They have three blocks marched at one
+/// time and a fourth that begins where these ended. Then they show what they have, and end. A block that is lost is
+/// begun once more. It speaks when it is spoken to.
 class ScriptedWorker : public Worker {
  public:
   explicit ScriptedWorker(ScriptedWorld& world) : world_(world) {}

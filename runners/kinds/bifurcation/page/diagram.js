@@ -1,6 +1,6 @@
-// The bifurcation diagram: tip displacement on the section against the parameter, coloured by the regime of the orbit,
-// with exponents, regimes and verdicts in panels under it that share its horizontal axis. Views: a chart per case, all
-// cases in one chart, a chart per case and kind of start.
+// The bifurcation diagram: tip displacement on the section against the parameter, coloured by the regime of the orbit.
+// Panels under it share its horizontal axis: exponents, regimes and verdicts. Views: a chart per case, all cases in one
+// chart, a chart per case and kind of start.
 {
   const {Interval, diagramPanels, methodColours} = ricochet;
   const mostLanes = 24, mostStartCharts = 24;  // rows of a band of regimes; charts of the view by start

@@ -1,5 +1,5 @@
-// Distances of sections to those of the reference case, as views of one figure each: against every numeric axis of at
-// least three values, and along the parameter. The null level, of two halves of one run, lies behind both.
+// Distances of sections to those of the reference case, as views of one figure each. The axes are every numeric axis of
+// at least three values, and the parameter. The null level, of two halves of one run, lies behind both.
 {
   const {Interval, numberOf} = ricochet;
   const nullColour = "#B9C7D6", nullName = "null level";

@@ -1,6 +1,6 @@
-// Marks drawn pixel by pixel, all of a grid in one picture: the chart library is told of none of them, as hundreds of
-// thousands of its own are slow. A source is {grid, axis, tags, z, colour, glyph, values, orbits} with pairs (x, y) in
-// `values`, or triples (x, low, high) where the glyph is a whisker.
+// Marks drawn pixel by pixel, all of a grid in one picture. The chart library knows none of them: hundreds of thousands
+// of its own marks are slow. A source is {grid, axis, tags, z, colour, glyph, values, orbits}. Its `values` are pairs
+// (x, y), or triples (x, low, high) where the glyph is a whisker.
 {
   // Shape and size in CSS pixels. Starts are told apart by their marks while these are few; clouds are dots.
   const cloudGlyph = (shape, count) =>
@@ -145,8 +145,8 @@
                                  data: [[option.xAxis[grid].min, 0]],
                                }));
     },
-    // The mark of a source with orbits that is nearest to a place of a grid, within `reach` pixels: {source, index,
-    // value}; null where there is none.
+    // The mark nearest to a place of a grid, within `reach` pixels: {source, index, value}; null where there is none.
+    // Whiskers are left out.
     nearest(chart, option, sources, hidden, grid, at, reach) {
       let best = null, nearest = reach;
       const axis = option.xAxis[grid], bend = axis.type === "log" ? Math.log : (v) => v,

@@ -1,6 +1,6 @@
 // Errors against the step and against the number of elements, log–log, one view per kind of error, one curve per
-// method: the fitted slope over the points that follow it, the error floor, points at or below it in grey, cases
-// without an error as marks along the upper edge.
+// method. Shown besides: the fitted slope over the points that follow it, and the error floor. Points at or below the
+// floor are grey. Cases without an error are marks along the upper edge.
 {
   const {numberOf, Interval, errors} = ricochet;
   const follows = 2;     // factor within which a point follows the fitted line

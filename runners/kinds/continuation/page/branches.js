@@ -109,8 +109,8 @@
       if (!this.known.has(id)) this.known.set(id, new Map(Array.from(this.block(id, "row"), (row, k) => [row, k])));
       return this.known.get(id);
     }
-    // One period of an orbit, closed, over its phase in forcing periods; of one that is its own image the second half
-    // is minus the first.
+    // One period of an orbit, closed, over its phase in forcing periods. The second half of an orbit that is its own
+    // image is minus the first.
     portrait(id, row) {
       const k = this.portrayed(id).get(row);
       if (k === undefined) return null;
@@ -137,8 +137,8 @@
         runs
       };
     }
-    // Rows at which multipliers cross the circle again and again: those between two changes of stability less than 3 mm
-    // of arc apart, and those around a special point that lie in its interval.
+    // Rows at which multipliers cross the circle again and again. Some lie between two changes of stability less than 3
+    // mm of arc apart. The others lie around a special point with several crossings, in its interval.
     flickering(id) {
       if (this.shaky.has(id)) return this.shaky.get(id);
       const of = this.column(id, "of"), parameter = this.column(id, "parameter"), arc = this.column(id, "arc"),

@@ -1,5 +1,5 @@
-// Multipliers along the branches in the complex plane, a chart per method at its finest: raw ones as dots, those of the
-// half-step rule as a line.
+// Multipliers along the branches in the complex plane, a chart per method at its finest. Raw ones are dots; those of
+// the half-step rule are a line.
 {
   const {Interval} = ricochet, frame = 1.6, side = 320, least = 0.5, farthest = 0.2, lineName = "half-step rule",
         lineColour = "#000000", looks = {"stable orbit": "#0072B2", "unstable orbit": "#D55E00"};

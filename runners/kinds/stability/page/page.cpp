@@ -43,8 +43,8 @@ std::string limit_text(const std::optional<double>& limit, const std::string& wh
   return limit ? number_text(*limit, 5) : where.empty() ? "–" : where;
 }
 
-/// Marginal roots, then what grows at the smallest step that is not stable, or why there is no prediction; what was
-/// seen there is left to the map.
+/// Marginal roots, then what grows at the smallest step that is not stable, or why there is no prediction. The map
+/// shows what was seen there.
 std::string why(const LimitRow& row) {
   if (row.grows.empty() || !row.first_unstable) return row.marginal;
   return row.marginal + (row.marginal.empty() ? "" : "; ") +

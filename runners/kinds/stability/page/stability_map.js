@@ -1,5 +1,5 @@
-// For each numeric parameter with at least three values its map over the step: cells coloured by the prediction, marked
-// by what was observed, with the predicted boundary and the observed one over them.
+// For each numeric parameter with at least three values, its map over the step. Cells are coloured by the prediction
+// and marked by what was observed. The predicted boundary and the observed one lie over them.
 {
   const {Interval, numberOf} = ricochet;
   const unstable = "#D55E00", colours = {

@@ -9,8 +9,8 @@
         .concat(numeric.filter((column) => column !== "step" && view.values(column).length >= 3));
   }
 
-  // A subject has id, title, caption and values {view, quantity, logarithmic, of, hollow}: `of` a number of a case or
-  // null, hollow marks on a condition.
+  // A subject has id, title, caption and values {view, quantity, logarithmic, of, hollow}. `of` gives a number of a
+  // case or null; `hollow` tells which marks are hollow.
   class AlongAxis {
     constructor(view, column) {
       const onAxis = view.all.filter((one) => numberOf(one, column) !== null),

@@ -1,5 +1,5 @@
-// Where places are within their clearances: a chart per clearance, a dot per sample of each method at its finest step
-// and mesh, both axes on one scale.
+// Where places are within their clearances: a chart per clearance, both axes on one scale. Each method has a dot per
+// sample, at its finest step and mesh.
 ricochet.figure("clearances", (data) => {
   const {view} = data, found = data.rows("orbit_points").filter((row) => data.byId.has(row.case));
   if (!found.length) return [];

@@ -1,5 +1,5 @@
-// A column of the sampled curves against time, the zoom of all charts linked: a chart per method with a curve per step
-// (or mass), or a chart per step with a curve per method; as they are, or less one of them.
+// A column of the sampled curves against time, the zoom of all charts linked. Either a chart per method with a curve
+// per step (or mass), or a chart per step with a curve per method. Curves are shown as they are, or less one of them.
 {
   const {numberOf, measureOf, Interval} = ricochet;
   const drawnWhole = 4000;  // points of a curve up to which every one is drawn: a chart is about 500 pixels wide
@@ -154,8 +154,8 @@
       return scale === "difference" ? ["difference in " + name, unit] : scaleNames[scale] || this.subject.quantity;
     }
 
-    // Of the finished curves, and of the others as far as they stay in sight: up to three times their start where none
-    // finished, up to a thousand times the finished ones on a logarithmic axis.
+    // Of the finished curves, and of the others as far as they stay in sight. On a logarithmic axis those count up to a
+    // thousand times the finished ones. On any other they count where none finished, up to three times their start.
     range(facet, scale) {
       const range = new Interval(), logarithmic = scale === "change";
       const include = (finished, bound) => {

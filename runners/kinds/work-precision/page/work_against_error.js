@@ -1,5 +1,5 @@
-// Work against error, one view per kind of error, one curve per method over its steps: the Pareto front of all methods
-// of a scene, the error floor, and a gutter for the cases without an error.
+// Work against error, one view per kind of error, one curve per method over its steps. Shown besides: the Pareto front
+// of all methods of a scene, the error floor, and a gutter for the cases without an error.
 {
   const {Interval, errors} = ricochet;
   const frontColour = "#E8D95A", frontName = "Pareto front";

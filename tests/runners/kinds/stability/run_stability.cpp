@@ -186,8 +186,8 @@ TEST_CASE("an explicit spring limits the step of the closed cells, and the scene
   REQUIRE(predicted.number());
   REQUIRE(observed.number());
   CHECK(result.column("limit_predicted", "open").front().is_nothing());
-  // A contact of a few steps is no lasting one: impacts make energy somewhat below the limit, and growth needs a
-  // little more than the limit to show before the contact opens.
+  // A contact of a few steps is no lasting one. Impacts make energy somewhat below the limit. Growth needs a little
+  // more than the limit to show before the contact opens.
   CHECK(observed.number().value() > predicted.number().value() / 2);
   CHECK(observed.number().value() < predicted.number().value() * 2);
   CHECK(result.column("status", "closed").back() == "unstable");
@@ -201,8 +201,8 @@ TEST_CASE("a rigid stop's restitution over the phases of a step is told from the
     text["observe"] = false;
     return run(text);
   };
-  // Newmark (1/4, 1/2) with the multiplier at the end of the step: −1 + 4ξ at the phase ξ, where that leaves the stop;
-  // 64 phases come within 4/64 of its ends.
+  // Newmark (1/4, 1/2) with the multiplier at the end of the step. It has −1 + 4ξ at the phase ξ, where that leaves the
+  // stop. 64 phases come within 4/64 of its ends.
   const Result newmark = told("signorini", {{"name", "newmark"}, {"beta", 0.25}, {"gamma", 0.5}});
   const TableReader rows(newmark.table("restitution"));
   REQUIRE(rows.size() == 1);

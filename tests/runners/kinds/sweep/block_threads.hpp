@@ -14,8 +14,8 @@
 
 namespace ricochet::testing {
 
-/// Workers that march blocks of one case, as threads: what they are told and what they say are the bytes that worker
-/// processes send each other.
+/// Workers that march blocks of one case, as threads. The bytes that they hear and say are those that worker processes
+/// send each other.
 class BlockThreads : public BlockService {
  public:
   BlockThreads(const StudyCase& study_case, const Registry& registry, int workers)

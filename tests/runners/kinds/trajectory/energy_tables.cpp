@@ -46,8 +46,8 @@ TEST_CASE("the ledger of a case closes, and says so where the works are not know
   StudyResults results;
   CaseRecord& known = results.cases.emplace_back();
   known.status = "done";
-  // The scheme's own energy rises by 1.25 J, a quarter of which the common one has not: loads 1 − damping 0.5 − scheme
-  // 0.2 + stops 0.95, of whose springs 0.0625 J are held at the end beside it.
+  // The scheme's own energy rises by 1.25 J: loads 1 − damping 0.5 − scheme 0.2 + stops 0.95. The common one rises by
+  // 1.0625 J, of which springs at the stops hold 0.0625 J at the end.
   known.measures = {{"energy_start", 2},         {"energy_end", 3.0625},      {"energy_brought_in", 3},
                     {"work_of_loads", 1},        {"work_of_damping", 0.5},    {"dissipated_at_contact", -1.0125},
                     {"stored_at_stops", 0.0625}, {"balance_residual", 1e-12}, {"dissipated_by_scheme", 0.2},

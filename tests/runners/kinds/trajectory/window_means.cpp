@@ -108,7 +108,7 @@ TEST_CASE("the mean force over a window is the impulse that came in it, whatever
   for (const CaseRecord& record : CaseRuns().of(bar_study())) {
     INFO(axis(record, "time").text() << " " << axis(record, "time.velocity").text());
     REQUIRE(record.status == "done");
-    // One stop, so that all efforts have one sign; an instant at an end of the window may fall in or out: a step of
+    // One stop, so that all efforts have one sign. An instant at an end of the window may fall in or out: a step of
     // 300.
     CHECK(measure(record, "contact_force_mean").value() * 1.5 ==
           Approx(measure(record, "impulse").value()).epsilon(1.01 / 300));

@@ -1,4 +1,4 @@
-// Every dot is a door: a click on what is drawn of a case, or Enter on its row, opens the case; and the film moves.
+// A click on what is drawn of a case, or Enter on its row, opens the case. The film moves.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>

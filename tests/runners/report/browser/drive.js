@@ -1,12 +1,12 @@
 // node drive.js STEPS.json ANSWERS.json
 // Drives headless Chromium as a reader's hands and eyes would: real keys, real swipes, a paper's width, a dark screen.
 // Each step opens a page anew:
-//   {name, page, width, height, dark, print, touch, bare, before: [expression…], keys: [key…], swipe: {x, from, to},
-//   evaluate: [expression…], turn: [expression…],
-//    pdf: file, png: file, whole: tallest}
-// and its answer is {errors, before, values, turned}: all that the console said, and what the expressions before and
-// behind keys and swipe gave, in order; `bare` runs none of the page's scripts; `turn` is evaluated when a dark screen
-// has turned light, or a light one dark. An expression may be a promise. The browser is RICOCHET_BROWSER or chromium.
+//     {name, page, width, height, dark, print, touch, bare, before: [expression…], keys: [key…], swipe: {x, from, to},
+//      evaluate: [expression…], turn: [expression…], pdf: file, png: file, whole: tallest}
+// Its answer is {errors, before, values, turned}. `errors` is all that the console said. `before` and `values` are what
+// the expressions before and behind keys and swipe gave, in order. `bare` runs none of the page's scripts. `turn` is
+// evaluated when a dark screen has turned light, or a light one dark. An expression may be a promise. The browser is
+// RICOCHET_BROWSER or chromium.
 "use strict";
 const {spawn} = require("child_process"), fs = require("fs"), os = require("os"), path = require("path");
 

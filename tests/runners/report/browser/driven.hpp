@@ -7,8 +7,8 @@
 /// Reports read as people read them: on a phone with a finger, on paper, on a dark screen, by keys. See drive.js.
 namespace ricochet::browser {
 
-/// The report of a study of tests/runners/report/studies that the command ran in a folder: run once for all tests, and
-/// anew when the command, its methods or the study are newer.
+/// The report of a study of tests/runners/report/studies that the command ran in a folder. It is run once for all
+/// tests, and anew when the command, its methods or the study are newer.
 std::string report_of(const std::string& folder, const std::string& kind);
 
 /// What drive.js answers to these steps, by their names; fails where a page met an error.

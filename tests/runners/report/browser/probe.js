@@ -1,5 +1,5 @@
-// Goes into a copy of a report: draws every figure in every view, reads back what the chart library then holds, works
-// the page's controls, and promises all of it as `probed`.
+// Goes into a copy of a report. It draws every figure in every view, reads back what the chart library then holds, and
+// works the page's controls. It promises all of it as `probed`.
 (() => {
   "use strict";
   const errors = [];
@@ -53,8 +53,8 @@
   // ---- what the library holds ---------------------------------------------------------------------------------------
   const pick = (from, names) => Object.fromEntries(
       names.filter((name) => from[name] !== undefined && from[name] !== null).map((name) => [name, from[name]]));
-  // A point as the library has it: where it lies, the words of its row, and where it looks unlike a row with nothing to
-  // tell.
+  // A point as the library has it: where it lies, and the words of its row. Also where it looks unlike a row with
+  // nothing to tell.
   function itemOf(data, i, plain) {
     const along = (dimension) => {
       const {ordinalMeta} = data.getDimensionInfo(dimension), value = data.get(dimension, i);

@@ -1,4 +1,4 @@
-// A JSON Schema on the first line, then a value on each line: answers each by a line, "null" where it is valid, else
+// A JSON Schema on the first line, then a value on each line. Answers each by a line: "null" where it is valid, else
 // the first error (instancePath, keyword, params, message).
 const Ajv = require("ajv");
 const lines = require("readline").createInterface({input: process.stdin});

@@ -1,5 +1,5 @@
-// A rigid law at one stop point, in closed form, that does what no plugin may do once a point would pass its stop by
-// more than it likes in one step: along a parameter, at the hard impacts only.
+// A rigid law at one stop point, in closed form. It does what no plugin may do once a point would pass its stop by more
+// than `beyond` in one step. Along a parameter that happens at the hard impacts only.
 #include <signal.h>
 #include <unistd.h>
 
