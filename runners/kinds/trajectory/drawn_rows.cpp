@@ -74,8 +74,11 @@ class FilmShape {
     }
     out.rows.setFromTriplets(entries.begin(), entries.end());
     out.on_supports = held;
-    if (supports > 0) out.on_supports += out.rows * problem_.static_modes;
-    out.by_clamp = out.on_supports.rowwise().sum();
+    out.by_clamp = Eigen::VectorXd::Zero(out.rows.rows());
+    if (supports > 0) {
+      out.on_supports += out.rows * problem_.static_modes;
+      out.by_clamp = out.on_supports.rowwise().sum();
+    }
     if (!problem_.space.given) {
       out.by_clamp.setOnes();
       // A motion of all supports is along y.
