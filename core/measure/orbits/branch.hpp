@@ -81,9 +81,9 @@ BranchState branch_start(Eigen::VectorXd x, double parameter, SetSequence sets, 
 
 /// Follows a branch of −P½(x, λ) = x or P^p(x, λ) = x, P piecewise affine and continuous, piece by piece. On a piece
 /// the contact sets stay and the branch is a line, x + s t with [P' − 1, P_λ] t = 0. The piece ends at the least s > 0
-/// at which an effort or the distance to a bound vanishes; there the point changes its set in that step, and the new
+/// at which an effort or the distance to a bound vanishes. There the point changes its set in that step, and the new
 /// line leaves so that the new margin grows. No step size, no tolerance: any fold is passed. Bounds that are met at
-/// once change one after the other, the earlier step and the lower row first, on pieces of no length between them.
+/// once change one after the other, the earlier step and the lower row first. The pieces between them have no length.
 class PieceFollower {
  public:
   /// From an orbit (branch_start()), or from the entry of another follower: both then go on alike, bit for bit.
@@ -145,7 +145,7 @@ struct BranchCorner {
 /// Over all points, those of each stage on their own.
 ContactRuns contact_runs(const SetSteps& sets, const SetSequence& sequence, bool half);
 
-/// Whether the second half of the steps has the sets of the first one with the sides exchanged: an orbit that stands
+/// Whether the second half of the steps has the sets of the first one with the sides exchanged. An orbit that stands
 /// alone with such sets is its own image under x → −x, t → t + T/2.
 bool is_image(const SetSteps& sets, const SetSequence& sequence);
 /// The divisor of its period after which a sequence repeats: an orbit alone with such sets does so too. 0: none.

@@ -19,7 +19,7 @@ double spread(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
-// Whether the summed difference of two series stays within twice what it swings about its own trend: that of a pair is
+// Whether the summed difference of two series stays within twice what it swings about its own trend. That of a pair is
 // bounded, that of two real multipliers grows.
 bool stays_together(const std::vector<double>& a, const std::vector<double>& b) {
   double end = 0;

@@ -245,8 +245,9 @@ bool StepFollower::comes_back(const Point& secant, double far) const {
   return along >= 0 && along <= far && std::sqrt(std::max(0.0, length * length - along * along)) < aside * far;
 }
 
-// Whether an orbit lies back along the branch: the bordered determinant changes its sign. Beyond a sharp corner of a
-// smooth map it does so too, and the direction is set anew: there λ turns, and det(1 − P') keeps its sign.
+// Whether an orbit lies back along the branch: the bordered determinant changes its sign. It does so beyond a sharp
+// corner of a smooth map too, where the direction is set anew. Of such a map λ must turn, and det(1 − P') keep its
+// sign.
 bool StepFollower::goes_back(const Step& step) const {
   if (step.image.rebounds != 0) return false;
   if (!limits_.smooth) return step.turned * orientation_ < 0;

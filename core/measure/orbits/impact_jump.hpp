@@ -8,16 +8,16 @@
 namespace ricochet {
 
 /// The jump of tangent columns at impacts with inertia. Where a contact point has mass, the derivative of a fixed-step
-/// impact is not the derivative of the motion, at any step: the step at which the point is met does not move with the
-/// orbit. Tangents are therefore held free through an impact, and when it is over (at most three steps of contact) the
-/// exact jump is put on them, with δt = −H δq⁻/w⁻ the shift of the impact's time:
+/// impact is not that of the motion, at any step. The step at which the point is met does not move with the orbit.
+/// Tangents are therefore held free through an impact, of at most three steps of contact. When it is over the exact
+/// jump is put on them, with δt = −H δq⁻/w⁻ the shift of the impact's time:
 ///
 ///     δq⁺ = δq⁻ + (v⁻ − v⁺) δt
 ///     δv⁺ = δv⁻ + (a⁻ − a⁺) δt − (1+e) r [H δv⁻ + (H a⁻ + φ'') δt],        (1+e) r = (v⁻ − v⁺)/w⁻
 ///
-/// w = Hv + φ' the speed of the point; v±, a± are those of the orbit, from its displacements before and after, carried
-/// to the time of the impact; e is what the plan restitutes to a free mass. Second-order accurate in h on regular
-/// masses.
+/// The speed of the point is w = Hv + φ'. The orbit's v± and a± come from its displacements before and after, carried
+/// to the time of the impact. The coefficient e is what the plan restitutes to a free mass. The jump is second-order
+/// accurate in h on regular masses.
 ///
 /// A contact that lasts longer is a point that comes to rest: at the end of chattering, or at once. Where it is and how
 /// fast then depends on nothing that was before, so with A the points that rest now
@@ -25,15 +25,15 @@ namespace ricochet {
 ///     δq ← P δq,  δv ← P δv,      P = I − M⁻¹H_Aᵀ (H_A M⁻¹H_Aᵀ)⁻¹ H_A
 ///
 /// which is the limit of the jumps above along a chattering sequence, as (a⁻ − a⁺) δt cancels there. From there on the
-/// derivative of the step with its contact set is right, and it is continuous where the point leaves, as the effort is
-/// zero then. That limit is of e > 0: a structure whose point sticks where it lands has untold jumps. An oscillator
-/// keeps nothing: its orbit is superstable. An impact with e = 0 whose point leaves at once
-/// ends one direction only, H δq⁺ = 0: when it leaves still depends on when it came.
+/// derivative of the step with its contact set is right. It is continuous where the point leaves, as the effort is zero
+/// then. That limit is of e > 0: a structure whose point sticks where it lands has untold jumps. An oscillator keeps
+/// nothing: its orbit is superstable. An impact with e = 0 whose point leaves at once ends one direction only,
+/// H δq⁺ = 0. When the point leaves still depends on when it came.
 ///
-/// An impact before the jump of the last one could be put on has none, nor have two points that meet their stops
-/// together: they count as untold, unless the point comes to rest before it has been away for more than ten steps.
-/// Points whose impact the step does not resolve (resolved_points(): the mass of one node of a beam) are not looked at:
-/// they meet their stop like points without mass, the motion after it is the step's own, and so is its derivative.
+/// An impact has no jump where the jump of the last one could not be put on yet. Two points that meet their stops
+/// together have none either. Both count as untold, unless the point comes to rest after at most ten steps of flight.
+/// Points whose impact the step does not resolve (resolved_points(): the mass of one node of a beam) are not looked at.
+/// They meet their stop like points without mass: the motion after it is the step's own, and so is its derivative.
 /// Source: Müller (1995), Chaos, Solitons & Fractals 5, 1671–1681; saltation of Leine and Nijmeijer (2004), §7.
 class ImpactJump final : public StepObserver {
  public:
@@ -48,8 +48,8 @@ class ImpactJump final : public StepObserver {
   void columns_replaced();
   /// Jumps put on lane's columns so far.
   int applied(int lane) const;
-  /// Directions of the state that no longer depend on what was before: two for each of the most points that rested
-  /// together, else one where an impact without rebound was met.
+  /// Directions of the state that no longer depend on what was before. They are two for each of the most points that
+  /// rested together, else one where an impact without rebound was met.
   int lost(int lane) const;
   /// Impacts and rests so far whose effect on the columns is not known.
   int untold(int lane) const;
@@ -77,19 +77,19 @@ class ImpactJump final : public StepObserver {
 /// For each contact point of the problem, whether it has inertia: no displacement in Ker M moves it.
 std::vector<bool> points_with_mass(const SemiDiscrete& problem);
 
-/// For each contact point, whether a step of h follows the motion that an impulse on it leaves: whether
+/// For each contact point, whether a step of h follows the motion that an impulse on it leaves. It does where
 /// H (M + h²K)⁻¹ Hᵀ is within a hundredth of its limit H M⁻¹ Hᵀ for h → 0 (taken at h/1000). For an oscillator: hω ≤
 /// 0.1.
 std::vector<bool> resolved_points(const SemiDiscrete& problem, double h);
 
-/// Whether rigid stops are met at whole steps: a gate finds the point at its stop, and then the velocity jumps by a
-/// rule that knows no position. Between two orbits with the same gates the step is linear, whatever happens between
-/// them: their impacts do not move with them as they do in the motion. Two of them closer than a step's way stay
-/// together, or part at once where one gate differs.
+/// Whether rigid stops are met at whole steps. A gate then finds the point at its stop, and the velocity jumps by a
+/// rule that knows no position. The step is linear between two orbits with the same gates. Their impacts do not move
+/// with them as they do in the motion. Two orbits closer than a step's way stay together, or part at once where one
+/// gate differs.
 bool stops_met_at_steps(const Program& program);
 
-/// Whether the tangents of this program say nothing of the motion once there are impacts, nor a twin nearby: stops met
-/// at steps, by a mass whose impacts ImpactJump does not look at.
+/// Whether neither tangents nor a twin nearby say anything of the motion once there are impacts. Then stops are met at
+/// steps, by a mass whose impacts ImpactJump does not look at.
 bool tangents_miss_impacts(const Program& program);
 
 }  // namespace ricochet

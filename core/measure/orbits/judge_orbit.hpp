@@ -23,8 +23,8 @@ std::optional<double> zero_one_test(std::span<const double> series, std::uint64_
 /// Relative distance at which two readings of an orbit count as the same (see SectionPlan::scale for the unit). An
 /// orbit that is still approaching repeats when the limit it approaches does.
 constexpr double recurrence_tolerance = 1e-4;
-/// What one forcing period puts into an orbit may come back from it this many times as large: 2/(1 − |μ|) at a
-/// multiplier μ of 0.96. Nearer to ±1 what a step makes of an orbit is not told from a change of its class.
+/// What one forcing period puts into an orbit may come back this many times as large: 2/(1 − |μ|) at a multiplier μ of
+/// 0.96. Nearer to ±1 what a step makes of an orbit is not told from a change of its class.
 constexpr double most_amplified = 50;
 /// Of the largest reading: what differs by more is not said to repeat.
 constexpr double most_left_open = 0.05;
@@ -46,16 +46,17 @@ struct OrbitPeriod {
   Recurrence recurrence;                    ///< within `tolerance`
   double tolerance = recurrence_tolerance;  ///< that, or half of (2) where it is larger
   double placed = 0;                        ///< u
-  /// The smallest lag at which the readings differ by less than twice (2), short of the period or without one: they may
+  /// The smallest lag at which the readings differ by less than twice (2), short of the period or without one. They may
   /// repeat at it, and the step does not tell. 0: none.
   int doubtful = 0;
   double doubtful_distance = 0;
 };
 OrbitPeriod orbit_period(const Orbit& orbit, const SectionPlan& plan);
 
-/// Whether an orbit stays what it is where neighbours would part at this rate: it wanders by what its step leaves open
-/// (by more than recurrence_tolerance, and does not drift away), and e^{low T window} of that is more than the orbit
-/// itself. The tangents along it then are no derivative of what the step makes of a neighbour.
+/// Whether an orbit stays what it is where neighbours would part at this rate. It repeats within what its step leaves
+/// open, wanders by more than recurrence_tolerance, and does not drift away. Its largest
+/// distance times e^{low T window} is more than SectionPlan::scale. The tangents along it then are no derivative of
+/// what the step makes of a neighbour.
 bool outlives(const OrbitPeriod& period, const Interval& exponent, const SectionPlan& plan);
 
 /// What the kept periods of an orbit say.
@@ -73,9 +74,9 @@ JudgedOrbit judge(const Orbit& orbit, const SectionPlan& plan, const std::option
 
 /// Points of an orbit's end that are kept where nothing repeats, at most.
 constexpr int longest_end = 64;
-/// Judges a complete orbit without an exponent, and leaves of its readings what its end is drawn from: the strobed
-/// points of one period of what repeats, else the last 64, and of `readings` their displacements alone (width 1).
-/// Of one that stopped the cause and the counts are left. No states: it cannot go on.
+/// Judges a complete orbit without an exponent, and leaves what its end is drawn from. These are the strobed points of
+/// one period of what repeats, else the last 64. In `readings` their displacements alone are left (width 1). Of an
+/// orbit that stopped the cause and the counts are left. No states: it cannot go on.
 void keep_end(Orbit& orbit, const SectionPlan& plan);
 
 /// The class of a complete orbit as far as its readings tell without K and exponents: what does not repeat is one

@@ -28,9 +28,9 @@ struct Outside {
 };
 Outside outside(const std::vector<std::complex<double>>& multipliers);
 
-/// The derivative of sign · P with the half-step rule. Where a contact set changes from one step to the next, θ =
-/// m₀/(m₀ + m₁) is where in the step the motion would change it: m₀ and m₁ are the margins of the free measure to the
-/// bound before and after. The derivative of
+/// The derivative of sign · P with the half-step rule. Where a contact set changes from one step to the next, the
+/// motion would change it at θ = m₀/(m₀ + m₁) in the step. The margins of the free measure to the bound are m₀ before
+/// and m₁ after. The derivative of
 ///
 ///     θ < ½: the step before the change   (½ + θ) old + (½ − θ) new
 ///     θ ≥ ½: the first step after it      (θ − ½) old + (3/2 − θ) new

@@ -73,8 +73,9 @@ class StateVector {
   int points_ = 0;
 };
 
-/// How long states are: over the nodal displacements of the position, and those of velocities over ω, their root mean
-/// square; the parameter over its scale. m.
+/// How long states are, m: the root mean square over nodal displacements, or the tip's where the state is in modes.
+/// Velocities count over ω, accelerations over ω². All slots and the parameter times its scale in metres add in
+/// squares.
 class StateMetric {
  public:
   StateMetric(const Program& program, int state_size, double parameter_metres);
@@ -96,8 +97,8 @@ struct AffineLoad {
   double other = 0;
 };
 
-/// The map by marching, and what its contact sets make of it: image and derivatives are affine in (x, λ) as long as the
-/// sets stay. One lane; not to be shared between threads.
+/// The map by marching, and what its contact sets make of it. As long as the sets stay, its image is affine in (x, λ)
+/// and its derivatives are constant. One lane; not to be shared between threads.
 class PeriodicMap {
  public:
   /// `program` has one lane and no tangents. Throws Refusal where SetSteps refuses it.
@@ -170,8 +171,8 @@ struct StrobeTip {
 /// Marches lane 0 over the steps of a map, from a set clock.
 StrobeTip march_over(Marcher& marcher, const MapClock& clock, const Observers& observers);
 
-/// The state of a lane after so many periods from its own initial state, under the start rule, at a strobe; nothing
-/// where it stopped, with the cause in `end`.
+/// The state of a lane at a strobe, after so many periods from its own initial state under the start rule. Nothing
+/// where it stopped; the cause is in `end`.
 std::optional<LaneState> settle(Program program, int steps_per_period, int periods, LaneEnd& end);
 
 /// A periodic orbit as far as Newton's method came.
@@ -201,8 +202,8 @@ std::optional<Eigen::VectorXd> free_orbit(PeriodicMap& map, double parameter, co
 /// x with every number that is not 0 one unit in the last place larger.
 Eigen::VectorXd one_unit_on(Eigen::VectorXd x);
 
-/// What round-off makes of a period: the distance between the images of x and of a state one unit in the last place
-/// away in every number, m.
+/// What round-off makes of a period, m, one unit of round-off of x at least. It is the distance between the images of x
+/// and of one_unit_on(x).
 double round_off_of_map(PeriodicMap& map, const Eigen::VectorXd& x, double parameter, const MapClock& clock);
 
 /// How many units of round-off count as none.

@@ -11,7 +11,7 @@
 /// A column whose scale is 0 repeats only where it is equal.
 namespace ricochet {
 
-/// Readings of one orbit on its section, one row per forcing period (oldest first): x_k ∈ R^width, each column in its
+/// Readings x_k ∈ R^width of one orbit on its section, one row per forcing period, oldest first. Each column has its
 /// own unit (tip displacement in m, tip velocity in m/s, …).
 struct SectionSeries {
   int width = 0;
@@ -30,15 +30,17 @@ struct Recurrence {
   int window = 0;          ///< rows looked at, the last ones; 0: too few for any lag
 };
 
-/// The smallest p ≤ longest at which the orbit repeats over a window of its last rows (all of them, or else the last
-/// half; at least 2p + 8 rows):
-///   - max d_k(p) ≤ tolerance, and the distances do not grow so that they would leave it within another such window
-///     (an unstable orbit that is being left), or
-///   - the largest d_k(p) of each p periods follow L + A ρ^k with ρ < 1, A > 0, scatter below a tenth, and |L| plus
-///     three standard errors is at most the tolerance: an orbit that has not quite arrived;
-/// and no divisor q of p has distances d_k(q) that fall by a tenth or more over the window without having come within a
-/// tenth of their limit: near a period doubling d_k(2p) is small long before d_k(p) is, and the orbit may be either.
-/// `contraction` is e^slope of ln d_k over k, where the slope is three standard errors from 0; distances below 1e-13
+/// The smallest p ≤ longest at which the orbit repeats over a window of its last rows. The window is all rows, or else
+/// the last half, and at least 2p + 8 rows. One of these holds:
+///   - max d_k(p) ≤ tolerance, and the distances do not grow to leave it within another such window. An unstable orbit
+///     that is being left does not count.
+///   - The largest d_k(p) of each p periods follow L + A ρ^k with ρ < 1, A > 0 and a scatter below a tenth. |L| plus
+///     three standard errors is at most the tolerance. This is an orbit that has not quite arrived.
+/// Besides, no divisor q of p may repeat one day. It may where its distances d_k(q) fall by a tenth or more over the
+/// window and have not come within a tenth of their limit. Near a period doubling d_k(2p) is small long before d_k(p)
+/// is, and the orbit may be either.
+///
+/// `contraction` is e^slope of ln d_k over k, where the slope is three standard errors from 0. Distances below 1e-13
 /// are round-off and end the fit. Rows that are not finite repeat nothing; no distance is told as larger than 1e9.
 /// Throws std::invalid_argument when `scale` does not give one finite number ≥ 0 per column.
 Recurrence find_recurrence(const SectionSeries& series, const std::vector<double>& scale, double tolerance,
@@ -47,7 +49,7 @@ Recurrence find_recurrence(const SectionSeries& series, const std::vector<double
 /// The largest d_k(lag) of (1) over all rows of the series; infinite where there are none so far apart.
 double lag_distance(const SectionSeries& series, const std::vector<double>& scale, int lag);
 
-/// The same question asked once per period of an integration that waits for its transient to end: plain data, O(longest
+/// The same question asked once per period of an integration that waits for its transient to end. Plain data, O(longest
 /// · width) per period, no allocation after construction.
 struct Settling {
   std::vector<double> scale;  ///< one per column, as for find_recurrence()
@@ -70,9 +72,9 @@ struct Settling {
   void clear();
 };
 
-/// Whether two clouds of section points are the same: every point of either has one of the other within
-/// max_c |a_c − b_c|/scale_c ≤ tolerance (the Hausdorff distance in that norm). With b the image of a under x → −x,
-/// t → t + T/2 (the opposite section, negated), this is the symmetry of the orbit. Two empty clouds are the same.
+/// Whether two clouds of section points are the same: each point of either has one of the other within
+/// max_c |a_c − b_c|/scale_c ≤ tolerance. This is the Hausdorff distance in that norm. With b the image of a under x →
+/// −x, t → t + T/2 (the opposite section, negated), this is the symmetry of the orbit. Two empty clouds are the same.
 bool same_cloud(const std::vector<std::array<double, 2>>& a, const std::vector<std::array<double, 2>>& b,
                 const std::array<double, 2>& scale, double tolerance);
 

@@ -31,12 +31,12 @@ std::string text(const MotionClass& motion);
 
 /// The class that text() spells in these words; nothing for others. "periodic" alone is none.
 std::optional<MotionClass> motion_class(std::string_view words);
-/// The class of a row of a table, where regime and period have columns of their own; the period of what is not periodic
-/// (a motion whose contacts never change repeats as well) is no part of it.
+/// The class of a row of a table, where regime and period have columns of their own. The period of what is not periodic
+/// is no part of it. A motion whose contacts never change repeats as well.
 std::optional<MotionClass> motion_class(std::string_view regime, std::optional<double> period);
 
-/// Points of the cycle that a section of this motion shows where it repeats after `period` forcing periods (0: not
-/// known): of a motion whose contacts never change one at least, of what is not periodic none.
+/// Points of the cycle that a section of this motion shows: of a periodic one as many as its own period. Of a motion
+/// whose contacts never change they are `period` (forcing periods; 0: not known), one at least. Others have none.
 int cycle_of(const MotionClass& motion, int period);
 
 /// What is known of one orbit over its kept periods.
@@ -64,11 +64,11 @@ struct RegimeVerdict {
 
 /// 1. No contact: no stop was touched. At rest: one was, and that contact never opened.
 /// 2. Undecided: the step does not tell whether the section repeats at a shorter lag than the one found, or at all.
-/// 3. Periodic: the section repeats. An exponent whose interval lies above zero contradicts that, unless T is known and
-///    the growth it means over the window, e^{low T window}, is less than 2: undecided.
+/// 3. Periodic: the section repeats. An exponent whose interval lies above zero contradicts that: undecided. Not so
+///    where T is known and the growth it means over the window, e^{low T window}, is less than 2.
 /// 4. Chaotic: the exponent's interval lies above zero; without an exponent, K > 0.8.
-/// 5. Quasi-periodic: the exponent's interval holds zero and K < 0.2; without an exponent, K < 0.2 and the section does
-///    not approach an orbit (distances that halved over the window do).
+/// 5. Quasi-periodic: the exponent's interval holds zero and K < 0.2. Without an exponent, K < 0.2 and the section does
+///    not approach an orbit. It does where distances halved over the window.
 /// 6. Undecided otherwise; the sentence says what is missing or what contradicts.
 /// `failed` is for those who march: nothing is classified as failed here.
 RegimeVerdict classify(const RegimeInput& input);

@@ -179,8 +179,8 @@ class SectionMarch::Watch final : public StepObserver {
          nan});
   }
 
-  // The velocity at which a point meets its stop: between that of the scheme and that of the free step to come, at the
-  // time when the gap closes. A point without mass changes its velocity within few steps.
+  // The velocity at which a point meets its stop, at the time when the gap closes. It lies on the line through that of
+  // the scheme and that of the free step to come. A point without mass changes its velocity within few steps.
   double closing_speed(const Marcher& marcher, const StageView& view, int lane, int point) const {
     const double t = view.from, dt = view.to - view.from;
     const double before = velocity(marcher, view, lane, model_.contact(), point) + marcher.lift_rate(lane, point, t);

@@ -9,9 +9,9 @@
 #include <vector>
 
 /// \file
-/// Orbits of a periodically forced scene, read once per forcing period: many at a time, one per lane, each replaced by
-/// the next as it ends. The clock of the integration runs over one period and is turned back: the strobed map is
-/// autonomous, and an orbit does not depend on how many periods were marched before, nor in which lane.
+/// Orbits of a periodically forced scene, read once per forcing period. Many march at a time, one per lane; each is
+/// replaced by the next as it ends. The clock of the integration runs over one period and is turned back. So the
+/// strobed map is autonomous: an orbit does not depend on how many periods were marched before, nor in which lane.
 namespace ricochet {
 
 /// Where the points of a section are taken.
@@ -33,18 +33,18 @@ struct SectionPlan {
   double tolerance = 1e-6;  ///< of settling, in units of `scale` (displacement) and ω·scale (velocity)
   double scale = 1;         ///< m
 
-  /// What the readings of an orbit are measured in: displacement, velocity, and the same half a period later.
+  /// What the readings of an orbit are measured in: displacement, velocity, and the same half a period before.
   std::vector<double> reading_scale() const { return {scale, pulsation * scale, scale, pulsation * scale}; }
 };
 
-/// Readings of the tip at a strobe, absolute: (x, v) there, and (−x, −v) half a period later: the image of the orbit
-/// under x → −x, t → t + T/2. v is the central difference over two steps.
+/// Readings of the tip at a strobe, absolute: (x, v) there, and (−x, −v) half a period before. The latter belong to the
+/// image of the orbit under x → −x, t → t + T/2. The velocity is the central difference over two steps.
 struct SectionPoint {
   double displacement = 0, velocity = 0, opposite_displacement = 0, opposite_velocity = 0;
 };
 
 /// A contact that begins: ωt in [0, 2π), the side (0 lower, 1 upper), the speed at which the point closes (m/s). Then
-/// the row of H that closes, of several at once the first, and t (s) since the orbit's own beginning, counted from a
+/// the row of H that closes, of several at once the first. Last t (s) since the orbit's own beginning, counted from a
 /// whole period of the forcing.
 struct ImpactPoint {
   double phase = 0;
@@ -54,15 +54,15 @@ struct ImpactPoint {
   double time = 0;
 };
 
-/// A contact that has begun and may be over at once: then it is an impact that rebounds, and its instant is one of the
+/// A contact that has begun and may be over at once. Then it is an impact that rebounds, and its instant is one of the
 /// step's. One that lasts is not.
 struct BriefContact {
   std::int64_t point = -1;  ///< row of H; −1: none
   std::int64_t steps = 0;   ///< that it has lasted
   double before = 0;        ///< velocity of the point when it began, m/s
 };
-/// Steps without effort after which a point pushes the same stop again and has not left it: a hop so short is the
-/// scheme's, or a load that vanishes for an instant.
+/// Most steps without effort after which a point that pushes the same stop again has not left it. A hop so short is the
+/// scheme's, or a load vanishes for an instant.
 constexpr int longest_loose = 3;
 /// Steps that a contact without a duration of its own may last in a scheme.
 constexpr int briefest_contact = 3;
@@ -86,13 +86,13 @@ struct Orbit {
   long long contact_steps = 0;        ///< of the kept periods
   int most_on_a_side = 0;             ///< impacts on one side in one period, the most
   bool closed[2] = {false, false};
-  /// Per row of H and side (2 row + side), the step of the kept ones, from 1 on, at which the point last pushed its
-  /// stop; empty once one has arrived.
+  /// Per row of H and side (2 row + side), the step at which the point last pushed its stop. Steps of the kept periods
+  /// count from 1 on. Empty once one has arrived.
   std::vector<std::int64_t> pushed;
   bool arrived = false;  ///< a point came to its stop in the kept periods, after more than longest_loose steps
   bool rests = false;    ///< of a complete one: stops were touched all the time, and no point arrived at one
-  /// Of the kept periods, the largest sum over one of |v₊ − v₋| over contacts of at most briefest_contact steps that
-  /// leave with a tenth of their speed or more (m/s).
+  /// The largest sum of |v₊ − v₋| over one of the kept periods (m/s). It counts contacts of at most briefest_contact
+  /// steps that leave with a tenth of their speed or more.
   /// A step h places their instants to within h, which moves what follows by up to h times this.
   double rebounds = 0;
   double rebounds_so_far = 0;  ///< in the present period

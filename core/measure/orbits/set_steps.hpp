@@ -15,8 +15,8 @@
 ///
 ///     X ← A X + B r,     v = Y X + Z r
 ///
-/// X: the slots, then p₋₁, p₋₂, … as far as the plan weights them. r: what drives the step. v, for each point of each
-/// stage that reads contact: the effort (N) of a closed point, the measure (m) of an open one.
+/// X holds the slots, then p₋₁, p₋₂, … as far as the plan weights them. The vector r is what drives the step. Per point
+/// of each stage that reads contact, v is the effort (N) of a closed point or the measure (m) of an open one.
 namespace ricochet {
 
 /// How many efforts of steps before a step of this program weights: p₋₁, p₋₂, …
@@ -31,8 +31,9 @@ struct SetPoint {
 /// The closed points of one step, ascending.
 using ContactSet = std::vector<SetPoint>;
 
-/// What drives a step: A sin(ωt + ψ) and A cos(ωt + ψ) of the support, then the lower and the upper bounds of all
-/// points (0 where there is none), then Σ φ_k F(t + c_k h) of each stage where there is a load.
+/// What drives a step. A sin(ωt + ψ) and A cos(ωt + ψ) of the support come first. The lower bounds of all points
+/// follow, then the upper ones (0 where there is none). Σ φ_k F(t + c_k h) of each stage is last, where there is a
+/// load.
 struct DriveLayout {
   int points = 0, loads = 0;
   int lower(int point) const { return 2 + point; }
@@ -46,7 +47,7 @@ struct SetStep {
   ContactSet closed;
   Eigen::MatrixXd state;  ///< (D + rows) × D
   Eigen::MatrixXd drive;  ///< (D + rows) × r
-  /// Per closed row what one newton moves the measure by, the point alone being free to move, m/N: the free measure is
+  /// Per closed row what one newton moves the measure by, the point alone being free to move, m/N. The free measure is
   /// beyond the bound by that times the effort.
   std::vector<double> give;
   std::vector<int> side;                ///< per row: 0 open, −1 closed by the lower stop, 1 by the upper one

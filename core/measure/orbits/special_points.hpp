@@ -49,14 +49,17 @@ struct Turn {
 };
 std::vector<Turn> turns_of(const BranchTrace& trace);
 
-/// Special points of a branch, in its order, the end last.
-///   fold      turns of λ; the interval is half a piece in λ
-///   symmetry  (half map), flip (period map): a real multiplier through −1
-///   torus     a pair through the circle
-///   contact   a run of contact that appears or vanishes
-/// Raw crossings near to each other are one group. It is a point where the count of multipliers outside differs before
-/// and after it; its value is where the multiplier by the half-step rule crosses, its interval all of the group. Where
-/// the count changes with a contact that comes or goes, the corner is the point, and no multiplier is told.
+/// Special points of a branch, in its order, the end last:
+///
+///     fold      turns of λ; the interval is half a piece in λ
+///     symmetry  (half map), flip (period map): a real multiplier through −1
+///     torus     a pair through the circle
+///     contact   a run of contact that appears or vanishes
+///
+/// Crossings near to each other are one group; on a branch by steps each is its own. A group is a point where the count
+/// of multipliers outside differs before and after it. Its value is where the multiplier by the half-step rule crosses,
+/// or the middle frozen crossing where none does. Its interval is all of the group. Where the count changes with a
+/// contact that comes or goes, the corner is the point, and no multiplier is told.
 std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSearch& search);
 
 /// An orbit of another branch, near to the point at which it begins.
@@ -65,10 +68,11 @@ struct SwitchedOrbit {
   MapClock clock;  ///< of the whole period where symmetry is lost, of the doubled one at a flip
 };
 
-/// Looks for the branch that begins where a multiplier of an orbit passes −1: with v its vector, Newton's method on the
-/// doubled map from x ± a v, a of a thousandth, three thousandths and a hundredth of `scale` (m), at one, two and four
-/// widths of the point on either side of it. `x_at` solves the orbit of the branch itself near to a value. An orbit is
-/// taken that the map itself does not return to within a millionth of the scale. Nothing where there is none.
+/// Looks for the branch that begins where a multiplier of an orbit passes −1. With v its vector, Newton's method on the
+/// doubled map starts from x ± a v. The amplitude a is a thousandth, three thousandths and a hundredth of `scale` (m).
+/// The values lie one, two and four widths of the point's interval on either side of it. `x_at` solves the orbit of the
+/// branch itself near to a value. An orbit is taken that the map itself does not return to within a millionth of the
+/// scale. Nothing where there is none.
 template <class Map>  // PeriodicMap or SteppedMap
 std::optional<SwitchedOrbit> switch_branch(Map& map, const MapClock& clock, const SpecialPoint& point, double scale,
                                            double tolerance, const std::function<ShotOrbit(double parameter)>& x_at);

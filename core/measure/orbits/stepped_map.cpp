@@ -198,8 +198,8 @@ double round_off_of_map(SteppedMap& map, const VectorXd& x, double parameter, co
 // Steps of arclength over contacts that come or go, and over corners.
 
 // Of a map without steps of time, where no shorter step finds an orbit: a contact comes or goes. The orbit beyond is
-// looked for by longer steps, then with one contact more or less at the next values up and down, where the branch
-// turns.
+// looked for by longer steps. Where the branch turns there is none: it is then looked for at the next values up and
+// down, with another count of contacts.
 bool StepFollower::pass_graze(Step& step) {
   const double range = limits_.branch.largest - limits_.branch.least, metres = map_->metric().parameter_metres();
   const std::string failure = failure_;  // of the step itself
@@ -228,8 +228,8 @@ bool StepFollower::pass_graze(Step& step) {
   return false;
 }
 
-// Adds the orbit at which a contact comes or goes before the one beyond it: the last one along the branch on the side
-// with fewer contacts, where the map has a derivative.
+// Adds the orbit at which a contact comes or goes before the one beyond it. It is the last one on the side with fewer
+// contacts, where the map has a derivative.
 void StepFollower::place_contact(const Step& beyond) {
   const bool vanishes = beyond.image.runs < trace_.corners.back().runs;
   const int runs = std::min(beyond.image.runs, trace_.corners.back().runs);

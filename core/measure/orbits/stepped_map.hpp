@@ -30,7 +30,7 @@ class FollowedMap {
   virtual Image march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool derivative = false) = 0;
 };
 
-/// P(x, λ) of programs that differ from value to value: steps, matrices, laws. x is a state in the coordinates of one
+/// P(x, λ) of programs that differ from value to value: steps, matrices, laws. The state x has the coordinates of one
 /// of them; displacements and velocities of the others are carried there. Derivatives are those of tangent columns,
 /// with the jumps of impacts with inertia (impact_jump.hpp). One lane.
 class SteppedMap final : public FollowedMap {
@@ -89,17 +89,20 @@ struct ArcSteps {
   double tolerance = 1e-12;  ///< of residuals, m
   double first = 0;          ///< step, m
   double located = 1e-4;     ///< of the range: the step at which the count of multipliers outside may change
-  /// A map without steps of time: turns and contacts are placed to `located` too, and a branch goes on where a contact
+  /// Of a map without steps of time. Turns and contacts are placed to `located` too. A branch goes on where a contact
   /// that comes or goes turns it.
   bool smooth = false;
 };
 
-/// Follows a branch of P(x, λ) = x by steps of arclength: secant predictor, Newton's method bordered by the secant,
-/// ∂P/∂λ by a difference over 1e-6 of the range. A step grows by half after at most four iterations, shrinks by as much
-/// after more than seven, is halved where none is found, the branch turns by more than 45 degrees, or the count of
-/// multipliers outside changes within more than `located` of the range. So is one whose bordered matrix changes the
-/// sign of its determinant: it goes back along the branch. Below 1e-9 of the range's length the steps are at a corner
-/// of a map that is piecewise smooth: they go on along the null direction beyond it, or the branch ends.
+/// Follows a branch of P(x, λ) = x by steps of arclength. A secant predicts, Newton's method bordered by the secant
+/// corrects. ∂P/∂λ is a difference over 1e-6 of the range. A step grows by a factor of 1.5 after at most four
+/// iterations and shrinks by the same after more than seven. It is halved in these cases:
+///   - No orbit is found.
+///   - The branch turns by more than 45 degrees.
+///   - The count of multipliers outside changes within more than `located` of the range.
+///   - The bordered matrix changes the sign of its determinant: the step goes back along the branch.
+/// Below 1e-9 of the range's length the steps are at a corner of a piecewise smooth map. They go on along the null
+/// direction beyond it, or the branch ends.
 class StepFollower {
  public:
   StepFollower(FollowedMap& map, const MapClock& clock, Eigen::VectorXd x, double parameter, int way,
@@ -114,8 +117,8 @@ class StepFollower {
   long long pieces() const { return static_cast<long long>(trace_.corners.size()); }
   /// The last orbit, the unit secant and the step.
   BranchState state() const;
-  /// The orbit of the branch in the plane normal to the way from its first orbit to another one, so far along; not
-  /// found where Newton's method did not come to it.
+  /// The orbit of the branch in the plane normal to the way from the last orbit to another one, so far along. Not found
+  /// where Newton's method did not come to it.
   ShotOrbit towards(const Eigen::VectorXd& x, double parameter, double arc);
 
  private:

@@ -19,13 +19,13 @@ struct EquivalentViscosity {
 ///
 ///     δ_k = −ln|r_k| / h,       α_eq = 2 Σ δ_k ω_k² / Σ ω_k⁴         (least squares of δ_k against αω_k²/2)
 ///
-/// |r_k|² − 1 may be as small as 1e-16: the step is composed in quadruple precision from the plan's own numbers, so
-/// that a scheme that conserves gives |α_eq| of about 1e-16 h. To the lowest order in h, the θ-scheme gives (2θ−1)h and
+/// |r_k|² − 1 may be as small as 1e-16, so the step is composed in quadruple precision from the plan's own numbers. A
+/// scheme that conserves then gives |α_eq| of about 1e-16 h. To the lowest order in h, the θ-scheme gives (2θ−1)h and
 /// Newmark's (γ−½)h.
 ///
 /// `undamped_plan`: the plan for facts without damping; its stages may weigh C, which is zero here. Nothing where no
-/// mode moves (K = 0, M = 0), where S vanishes on a mode, where the roots are not found, and above 1200 dofs, where
-/// modes cost more than marching.
+/// mode moves (K = 0, M = 0), where S vanishes on a mode, or where the roots are not found. Nothing either where
+/// damping has a matrix of its own, and above 1200 dofs, where modes cost more than marching.
 std::optional<EquivalentViscosity> equivalent_viscosity(const SemiDiscrete& problem, const StepPlan& undamped_plan,
                                                         double h, int modes = 3);
 

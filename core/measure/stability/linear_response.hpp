@@ -17,12 +17,12 @@ struct LinearResponse {
   std::complex<double> tip;                   ///< of the tip, m per metre of A
 };
 
-/// Nothing where a load other than the support's acts, where ω = 0, in resonance of an undamped scheme, or where the
-/// structure is held by nothing.
+/// Nothing where ω = 0, where a load other than the support's acts, or where damping has a matrix of its own. Nothing
+/// either where S vanishes on a mode, in resonance of an undamped scheme, or where the structure is held by nothing.
 std::optional<LinearResponse> linear_response(const SemiDiscrete& problem, const StepPlan& plan, double h);
 
-/// How far the periodic motion without contact goes beyond the nearer stop, over the steps of a period: < 0 where it
-/// stays between the stops, 0 at grazing. m.
+/// How far the periodic motion without contact goes beyond the nearer stop, over all phases, m. It is < 0 where the
+/// motion stays between the stops, 0 at grazing.
 double overlap(const LinearResponse& response, const LaneSpec& lane);
 
 /// A spring behind a stop and the mass that it turns back.
@@ -31,17 +31,18 @@ struct ContactSpring {
   double pulsation = 0;            ///< rad/s, of the mass on it and on the structure behind it
 };
 
-/// What a spring κ behind a point of contact turns back, the last one where none is said: the mode that has most of its
-/// energy in that spring,
+/// What a spring κ behind a point of contact turns back (the last point where none is said). It is the mode that has
+/// most of its energy in that spring,
 ///
 ///     M φ = μ (K + κ hᵀh) φ,   φᵀ(K + κ hᵀh) φ = 1,   κ (h φ)² largest:   m = κ μ,   ω = 1/√μ,
 ///
 /// a dense problem of n dofs. Nothing where it has no points, no modes are found, or that one has no mass.
 std::optional<ContactSpring> contact_spring(const SemiDiscrete& problem, double stiffness, int point = -1);
 
-/// How much a contact law gives way, m/N: 0 for a rigid law; 1/κ of one that declares a constant stiffness κ; of any
-/// other the secant d²/2U(d) of the energy U that it stores at the depth `depth` (m). Nothing for a compliant law that
-/// says neither. It follows from the law alone, whatever its parameters are called. The law is prepared for one point.
+/// How much a contact law gives way, m/N. A rigid law has 0, one that declares a constant stiffness κ has 1/κ. Any
+/// other has the secant d²/2U(d) of the energy U that it stores at the depth `depth` (m). Nothing for a compliant law
+/// that says neither. It follows from the law alone, whatever its parameters are called. The law is prepared for one
+/// point.
 std::optional<double> contact_compliance(ContactLaw& law, const Parameters& parameters, double depth);
 
 /// A value of a parameter at which the periodic motion without contact touches a stop for the first time.
@@ -51,10 +52,10 @@ struct Grazing {
   int steps = 0;  ///< halvings made
 };
 
-/// Zeros of the overlap of a motion with its stops along a parameter. `overlap` (< 0: no contact, see
-/// linear_response.hpp; nothing where it is not known) is looked at in about 17 of the values (ascending); where its
-/// sign changes from one to the next, the zero is bisected to 1e-12 of its size, at most 60 times. Two zeros between
-/// two of these values are not seen.
+/// Zeros of the overlap of a motion with its stops along a parameter. `overlap` is < 0 without contact, and has no
+/// value where it is not known. It is looked at in 17 to 32 of the ascending values, evenly spaced from the first, or
+/// in all where they are fewer. Where its sign changes from one to the next, the zero is bisected to 1e-12 of its size,
+/// at most 60 times. Two zeros between two of these values are not seen, nor are zeros beyond the last of them.
 std::vector<Grazing> find_grazings(const std::vector<double>& values,
                                    const std::function<std::optional<double>(double value)>& overlap);
 

@@ -20,8 +20,8 @@ using Eigen::VectorXd;
 
 // Motions that begin with half of their energy elastic and half kinetic reach at most twice their first norm.
 constexpr double growth_since_start = 4, growth_at_end = 1.5;
-// Near the limit of an explicit scheme the common energy swings by 1/(1 − (h/h*)²) around what is conserved: a thousand
-// times is out of its reach but for the last half per mille.
+// Near the limit h* of an explicit scheme the common energy swings by 1/(1 − (h/h*)²) around what is conserved. It
+// reaches a thousand times that only in the last half per mille of h.
 constexpr double blown_up = 1000;
 constexpr std::size_t window = 1024;
 

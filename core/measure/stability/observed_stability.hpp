@@ -10,8 +10,8 @@
 #include <vector>
 
 /// \file
-/// Stability observed by marching: what the spectra of stability.hpp predict, and what they cannot see (contacts that
-/// open and close, energy that a rigid impact makes, laws that do not converge).
+/// Stability observed by marching: what the spectra of stability.hpp predict, and what they cannot see. The latter are
+/// contacts that open and close, energy that a rigid impact makes, and laws that do not converge.
 namespace ricochet {
 
 /// What an integration of a horizon did.
@@ -33,8 +33,8 @@ struct ObservedCell {
   long long impacts = 0;          ///< times that a contact point closed
   /// Changes of the active set for each time that contact began anywhere; 2: it closes and opens.
   double changes_per_impact = 0;
-  /// Share of the contact force's power above a quarter of the step frequency (mean left out), over windows of 1024
-  /// steps that begin at an impact; a force that lasts one step has ½, one that alternates 1.
+  /// Share of the contact force's power above a quarter of the step frequency, the mean left out. It is taken over
+  /// windows of 1024 steps that begin at an impact. A force that lasts one step has ½, one that alternates 1.
   double fast_share = 0;
   std::string cause;  ///< one sentence, "" when stable
   bool stable() const { return behaviour == Behaviour::stable || behaviour == Behaviour::linear_growth; }
@@ -49,10 +49,10 @@ struct Horizon {
 };
 
 /// The structure alone, without loads, stops and support motion, from `start` (where empty: from the scene's own
-/// state). Growth is read from the squared K- and M-norms of every slot, the largest in each third of the horizon: the
-/// last has 4 times the first and 1.5 times the second. In 3000 steps a growth of 3.5e-4 per step shows. An integration
-/// that the energy bound stops is made again without it: energy that swells and falls again (high modes of a step far
-/// beyond their period) is no limit.
+/// state). Growth is read from the squared K- and M-norms of every slot, the largest in each third of the horizon. It
+/// grows where the last has 4 times the first and 1.5 times the second. In 3000 steps a growth of 3.5e-4 per step
+/// shows. An integration that the energy bound stops is made again without it. Energy that swells and falls again is no
+/// limit: high modes do so at a step far beyond their period.
 ObservedOrRefusal observe_free(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
                                const Excitation& start, const Horizon& horizon);
 
@@ -76,7 +76,7 @@ struct ObservedLimit {
 ObservedLimit observed_limit(const std::vector<double>& steps, const std::vector<std::optional<ObservedCell>>& known,
                              const std::function<std::optional<ObservedCell>(double h)>& observe, bool below = true);
 
-/// Power of a real signal of 2^k samples above a quarter of the sampling frequency over its power but for the mean; 0
+/// Power of a real signal of 2^k samples above a quarter of the sampling frequency, over its power without the mean. 0
 /// for a constant.
 double fast_power_share(std::vector<double> signal);
 

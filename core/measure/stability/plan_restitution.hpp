@@ -4,7 +4,7 @@
 
 namespace ricochet {
 
-/// The restitution coefficient e of a scheme at rigid stops, −v⁺/v⁻ of a free unit mass thrown at one; without forces
+/// The restitution coefficient e of a scheme at rigid stops, −v⁺/v⁻ of a free unit mass thrown at one. Without forces
 /// this is what the scheme restitutes, exactly and at any step. Nothing for plans without an impact measure, or whose
 /// measure no effort can move. Compliant laws rebound by themselves: this says nothing of them.
 std::optional<double> plan_restitution(const StepPlan& plan, double h);

@@ -13,15 +13,15 @@
 #include <vector>
 
 /// \file
-/// Stability predicted from the plan alone: the spectral radius of one step with the contact open, and with points held
-/// closed on both sides, before anything runs.
+/// Stability predicted from the plan alone, before anything runs. It is the spectral radius of one step, with the
+/// contact open and with points held closed on both sides.
 namespace ricochet {
 
 struct StructureModes;
 class RootCollector;
 
-/// Growth per step below which a step counts as stable: a double root is known to the square root of round-off only,
-/// and 10⁶ steps of such a growth are needed to see it.
+/// Growth per step below which a step counts as stable. A double root is known to the square root of round-off only.
+/// 10⁶ steps of such a growth are needed to see it.
 constexpr double growth_tolerance = 1e-6;
 
 /// What the contact law is while its set of closed points does not change.
@@ -85,7 +85,7 @@ struct Excitation {
 ///
 /// Open: per mode of M φ = μ K φ, hence exact up to the modes' own accuracy, whatever the step. Closed and rigid: per
 /// mode of the structure held at the points, and the scheme's recursion at the points. Closed and compliant: dense, in
-/// the coordinates of the open modes; only as many directions of Ker M as there are closed points feel the spring, the
+/// the coordinates of the open modes. Only as many directions of Ker M as there are closed points feel the spring. The
 /// others stay modes. A root r of modulus one is physical where the mode itself neither decays nor lacks inertia.
 class StabilityPredictor {
  public:
@@ -96,8 +96,8 @@ class StabilityPredictor {
   /// Refused above 1200 dofs, where modes cost more than marching.
   SpectrumOrRefusal open(const StepPlan& plan, double h, Detail detail = Detail::full) const;
   /// Closed sets that are looked at: each point alone where there are at most 20 (else the tip and the middle one),
-  /// and all together. Of a clearance each side alone (of many the first and the middle one), and a corner of two,
-  /// which holds what all of them would. Empty without contact, above 160 dofs, and for laws without a constant
+  /// and all together. Of a clearance each side alone (of many the first and the middle one), and a corner of two. The
+  /// corner holds what all of them would. Empty without contact, above 160 dofs, and for laws without a constant
   /// stiffness: notes() say which.
   const std::vector<ClosedSet>& sets() const { return sets_; }
   SpectrumOrRefusal closed(const StepPlan& plan, double h, const ClosedSet& set, Detail detail = Detail::full) const;
@@ -137,8 +137,8 @@ struct StepLimit {
   bool below_range = false;            ///< the limit (or the search for it) lies below the range
 };
 
-/// First crossing of the radius along `steps` (increasing), then bisection to a relative 1e-6; below the first step the
-/// search goes on downwards over six decades. Refused steps count as unknown and are passed over.
+/// First crossing of the radius along `steps` (increasing), then bisection to a relative 1e-6. Where the first step is
+/// unstable, the search goes on downwards over six decades. Refused steps count as unknown and are passed over.
 StepLimit step_limit(const std::function<SpectrumOrRefusal(double h)>& spectrum, const std::vector<double>& steps);
 
 }  // namespace ricochet

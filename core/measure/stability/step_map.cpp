@@ -257,8 +257,8 @@ Eigen::MatrixXd amplification(const StepPlan& plan, double m, double c, double k
 
 namespace {
 
-// Slots that the position depends on, after however many steps: others, kept for an energy or for who reads them, have
-// roots of their own that are none of the motion.
+// Slots that the position depends on, after however many steps. Others are kept for an energy or for who reads them;
+// they have roots of their own that are none of the motion.
 std::vector<Eigen::Index> moving_slots(const StepPlan& plan) {
   const Eigen::MatrixXd step = amplification(plan, 1, 0.7, 1.3);  // any mode: what is zero is so by structure
   std::vector<Eigen::Index> found = {0};

@@ -39,15 +39,15 @@ using StepMapOrRefusal = std::variant<Eigen::MatrixXd, Refusal>;
 /// Refused: a singular S, a plan without the measure that the law reads, an impact measure that no effort can move.
 StepMapOrRefusal step_map(const LinearProblem& problem, const StepPlan& plan, const ClosedContact& law);
 
-/// What a scheme does to the closed points themselves under a rigid law: A (s × s) of x_{n+1} = A x_n over one contact
-/// row of the slots, where the impact measure of the plan's single stage vanishes at every step. Together with the
-/// modes of the structure held at these points it has the eigenvalues of step_map(): H z follows from H x alone, and
-/// on the displacements that leave the points where they are the constraint does not act. Nothing for plans of several
-/// stages, without impact measure, or whose measure no effort can move.
+/// What a scheme does to the closed points themselves under a rigid law. It is A (s × s) of x_{n+1} = A x_n over one
+/// contact row of the slots. The impact measure of the plan's single stage vanishes there at every step. Together with
+/// the modes of the structure held at these points it has the eigenvalues of step_map(). For H z follows from H x
+/// alone, and the constraint does not act on displacements that leave the points where they are. Nothing for plans of
+/// several stages, with past efforts or an impulse, without an impact measure, or whose measure does not weigh z.
 std::optional<Eigen::MatrixXd> held_point_map(const StepPlan& plan);
 
-/// The same step in like units: slots of `rows` numbers each in metres per step (velocities times h, slots that do not
-/// start from q₀ or v₀ times h²), past efforts as lengths p/κ. Eigenvalues do not depend on it, their accuracy does.
+/// The same step in like units, slots of `rows` numbers each in metres. Velocities count times h, slots that start from
+/// neither q₀ nor v₀ times h². Past efforts are lengths p/κ. Eigenvalues do not depend on it, their accuracy does.
 Eigen::MatrixXd in_metres(Eigen::MatrixXd step, const StepPlan& plan, double h, Eigen::Index rows,
                           double stiffness = 1);
 

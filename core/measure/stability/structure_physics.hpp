@@ -57,8 +57,8 @@ struct StructurePhysics {
   int elements = 0;                     ///< of the mesh whose modes these are
   std::vector<double> pulsations;  ///< ω_i of M φ ω² = K φ, open, slowest first, rad/s; Ker M has no part in them
   Damping damping;                 ///< α, η
-  /// Of a beam with supports, sections or masses of its own: one line each on what holds it, what it is made of, the
-  /// mesh between its breaks, the dofs held.
+  /// Of a beam with breaks, supports or two planes, lines on what holds it, its parts and masses, its mesh and its
+  /// dofs. Of given matrices, their supports. Then lines on a basis of modes, and one on what static modes sum to.
   std::vector<std::string> details;
   /// 1/(h K⁻¹ hᵀ) of each contact point, N/m: the force that moves it by 1 m at rest. Empty where K has no inverse, or
   /// where there are many points.
