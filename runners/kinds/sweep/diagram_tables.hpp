@@ -35,7 +35,7 @@ class SectionIndex {
   /// By cell.
   static SectionIndex of_cells(const CaseRecord& record);
   SectionReadings read(double key, const std::string& word) const;
-  /// Every point of the table, and of the motions half a period later.
+  /// Every point of the table, and of the motions half a period before their strobes.
   void add_points(ScaleOfPoints& scale) const;
   const NumberTable* table() const { return table_; }
 
@@ -127,7 +127,7 @@ namespace ricochet {
 // of the `values`, `bifurcations` and `points` (or `cells` and `cell_points`) that the cases leave.
 //
 // Clouds of section points live in (tip displacement, tip velocity), without unit. Each is divided by its standard
-// deviation over all section points of the study and the motions' places half a period later. A study of one orbit is
+// deviation over all section points of the study and the motions' places half a period before. A study of one orbit is
 // so measured against its motion. Clouds of more than 64 points are thinned evenly to that. See
 // core/measure/attractors: attractors.hpp (distances, their null, what counts as one attractor at one value, along the
 // parameter) and basin_grid.hpp.
