@@ -67,8 +67,8 @@ std::string demangled(const std::string& text) {
   return result;
 }
 
-// Loads a library and lets it register. It stays open for the life of the process, also when registering fails: an
-// exception, or a copy of what was registered, may hold its code, and methods may outlive any catalogue.
+// Loads a library and lets it register. It stays open for the life of the process, also when registering fails. An
+// exception, or a copy of what was registered, may hold its code. Methods may outlive any catalogue.
 void load(const fs::path& file, Registry& registry) {
   const std::string place = file.string() + ": ", path = fs::absolute(file).string();
   void* const library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);

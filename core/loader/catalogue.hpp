@@ -52,17 +52,17 @@ class Catalogue {
   /// The unusable file that is meant to provide the method, or null.
   const Unusable* unusable_provider(Role role, const std::string& name) const;
 
-  /// Adds a file that is no library, with what its reader found in it: after the files known so far, or before them
-  /// all. require() takes its methods from there.
+  /// Adds a file that is no library, with what its reader found in it. It comes after the files known so far, or before
+  /// them all where `first`. require() takes its methods from there.
   void provide(const std::filesystem::path& file, Registry methods, bool first = false);
   /// Adds a file that its reader could not make anything of.
   void cannot_serve(Unusable file) { unusable_.push_back(std::move(file)); }
 
   /// Opens the library that provides the method and lets it register what it provides first, unless the method is there
-  /// already. Returns false when no file provides it. Throws PluginError (naming the file) when it does not load,
-  /// throws while it registers, or does not register exactly what it says; the registry is then as it was before. A
-  /// foreign library is loaded in a child process first, so that one which ends the process that loads it, or does not
-  /// come to an end within 10 s, is a PluginError too.
+  /// already. Returns false when no file provides it. Throws PluginError (naming the file) when the library does not
+  /// load, throws while it registers, or does not register exactly what it says. The registry is then as it was before.
+  /// A foreign library is loaded in a child process first. It is a PluginError too where it ends that process, or does
+  /// not come to an end within 10 s.
   bool require(Role role, const std::string& name, Registry& registry);
   /// Opens everything (for `describe` without a name and for `schema`); failures go to unusable().
   void open_all(Registry& registry);
@@ -87,11 +87,10 @@ struct ExportedSymbol {
   std::uint64_t size = 0;
 };
 
-/// The symbols, of names that begin with `prefix`, that a shared library defines for others, by name, read from the
-/// file's dynamic symbol table: none of its code runs, and a stripped library still tells them. Throws
-/// std::runtime_error with a reason ("not a shared library", "damaged: …", "built for another processor") when the file
-/// has no such table to read; whatever bytes the file holds, nothing outside of it is read. Source: System V ABI,
-/// chapters 4 and 5.
+/// The symbols with names that begin with `prefix` that a shared library defines for others, in the order of their
+/// names. They are read from the dynamic symbol table of the file. None of its code runs, and a stripped library still
+/// tells them. Throws std::runtime_error with a reason: "not a shared library", "damaged: …", "built for another
+/// processor". Nothing outside of the file is read, whatever bytes it holds. Source: System V ABI, chapters 4 and 5.
 std::vector<ExportedSymbol> exported_symbols(const std::filesystem::path& file, std::string_view prefix);
 
 }  // namespace ricochet

@@ -25,9 +25,9 @@ struct ChildOutcome {
   std::string sentence() const;
 };
 
-/// Runs `work` in a child process and waits for it, at most `seconds` long: what a plugin's code does there (abort,
-/// exit, write where it must not, never return) leaves this process as it was. The child writes nothing to the streams
-/// of this process and leaves no core file. Throws std::runtime_error when no process can be had.
+/// Runs `work` in a child process and waits for it, at most `seconds` long. Whatever a plugin does there (abort, exit,
+/// write where it must not, never return), this process stays as it was. The child writes nothing to the streams of
+/// this process and leaves no core file. Throws std::runtime_error when no process can be had.
 ChildOutcome run_in_child(const std::function<std::string()>& work, double seconds);
 
 }  // namespace ricochet

@@ -3,9 +3,10 @@
 
 namespace ricochet {
 
-/// Puts the floating-point control word of this thread back as it was found, when it goes out of scope: rounding,
-/// masks, exception flags, and whether denormal numbers count as zero. Around code of others: a library built with
-/// -ffast-math switches denormal numbers off for the thread that loads it.
+/// Puts the floating-point control word of this thread back as it was found, when it goes out of scope. The word holds
+/// rounding, masks, and whether denormal numbers count as zero; on x86-64 it holds exception flags too. The guard
+/// stands around code of others: a library built with -ffast-math switches denormal numbers off for the thread that
+/// loads it.
 class KeepFloatControl {
  public:
   KeepFloatControl() noexcept;
@@ -20,8 +21,8 @@ class KeepFloatControl {
 /// The control word of this thread: MXCSR on x86-64, FPCR on 64-bit ARM; elsewhere nothing is known of it: 0.
 std::uint64_t float_control() noexcept;
 
-/// The bits of the control word with which denormal operands are read as zero and denormal results become zero; 0 where
-/// the processor is not known.
+/// The bits of the control word that have denormal operands read as zero and denormal results become zero. They are 0
+/// where the processor is not known.
 std::uint64_t flushing_bits() noexcept;
 
 /// Sets it, for this thread alone.

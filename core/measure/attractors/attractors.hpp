@@ -8,14 +8,15 @@
 /// \file
 /// Which settled sections show one attractor, at one value of the parameter.
 ///
-/// Sections of different class (no contact, periodic 3, chaotic …) never do. Of one class, they are linked where their
-/// distance (cloud_distance(), a mirror image folded onto its original) is at most a threshold,
+/// Sections of different class (no contact, periodic 3, chaotic …) never do. Sections of one class are linked where
+/// their distance is at most a threshold. The distance is cloud_distance(), a mirror image folded onto its original.
 ///
 ///     cycles: c        others: max(c, f × the larger of the two nulls)
 ///
-/// since two runs of one non-periodic attractor differ as much as the halves of one run do; f > 1 because a diagram
-/// asks this thousands of times, and one answer in 20 would be wrong. Distances are in units of the spread of all
-/// points of the study. Sections whose points are not known are told apart by their class alone.
+/// The nulls enter because two runs of one non-periodic attractor differ as much as the halves of one run do. The
+/// factor f is above 1: a diagram asks this thousands of times, and one answer in 20 would be wrong. Distances are in
+/// units of the spread of all points of the study. Sections whose points are not known are told apart by their class
+/// alone.
 namespace ricochet {
 
 // Distances between sections of motions, as clouds of points in (displacement, velocity) made dimensionless.
@@ -24,21 +25,22 @@ namespace ricochet {
 //
 //     W(a, b) = min Σ_ij t_ij |a_i − b_j|,   t_ij ≥ 0, Σ_j t_ij = 1/n, Σ_i t_ij = 1/m
 //
-// (Euclidean norm). Where one of the two has at most 16 points and the other at most 64 this is solved exactly, as a
-// transport of whole units by shortest augmenting paths (Tomizawa 1971; Edmonds and Karp 1972). Larger clouds are
-// compared by slices (Rabin, Peyré, Delon and Bernot 2011): with F_θ the distribution of the points' projections on
-// the direction θ, of which 8 are taken, evenly spread over a half turn from θ = π/16,
+// (Euclidean norm). This is solved exactly where one of the two has at most 16 points and the other at most 64. The
+// method is a transport of whole units by shortest augmenting paths (Tomizawa 1971; Edmonds and Karp 1972). Larger
+// clouds are compared by slices (Rabin, Peyré, Delon and Bernot 2011). F_θ is the distribution of the points'
+// projections on the direction θ. Eight directions are taken, evenly spread over a half turn from θ = π/16:
 //
 //     W(a, b) ≈ (π/2) mean_θ ∫ |F_θ^a(s) − F_θ^b(s)| ds
 //
-// exact on each direction. The factor makes the distance of a cloud to its translate the length of the translation
-// (from 1.3 % below to 0.7 % above it, by its direction); no pair's value exceeds 1.007 W(a, b).
+// This is exact on each direction. The factor makes the distance of a cloud to its translate the length of the
+// translation. It is from 1.3 % below to 0.7 % above that length, by its direction. No pair's value exceeds
+// 1.007 W(a, b).
 //
 // *Null*: a run of a non-periodic motion is at a distance from itself, because it is finite. The run is cut into 10
-// blocks of successive points; 5 of them against the other 5, drawn 19 times (the first against the second half comes
-// first), give distances of which the largest is the null: W to another run of the same motion exceeds it once in 20
-// (the Hausdorff distance once in five: it hangs on outliers, which all draws of a run share). Each half holds as many
-// points as the clouds that are compared.
+// blocks of successive points. Five of them are compared with the other five, in 19 draws; the first draw is the first
+// half against the second. The null is the largest of these distances. W to another run of the same motion exceeds it
+// once in 20. The Hausdorff distance exceeds its null once in five: it hangs on outliers, which all draws of a run
+// share. Each half holds as many points as the clouds that are compared.
 
 using CloudPoint = std::array<double, 2>;
 
@@ -58,10 +60,10 @@ struct SectionCloud {
   bool empty() const { return points.empty(); }
 };
 
-/// Prepares the section of a run: `run` and `opposite` (as long, or empty) in SI units, in the order of time, divided
-/// by `scale` here. `cycle` > 0: the section repeats after that many points, and the last ones stand for it; 0: an even
-/// sample of at most 64 points, never more than half of the run (so that the null has halves of that size). Points that
-/// are not finite are left out. Deterministic.
+/// Prepares the section of a run. `run` and `opposite` (as long, or empty) are in SI units, in the order of time; they
+/// are divided by `scale` here. `cycle` > 0: the section repeats after that many points, and the last ones stand for
+/// it, at most 64. `cycle` = 0: an even sample of at most 64 points stands for it. The sample is never more than half
+/// of the run, so that the null has halves of that size. Points that are not finite are left out. Deterministic.
 SectionCloud make_cloud(std::span<const CloudPoint> run, std::span<const CloudPoint> opposite, const CloudPoint& scale,
                         int cycle);
 
@@ -85,8 +87,8 @@ struct HalvesNull {
 /// transient. {0, 0} where the run has fewer than 20 points (fewer than two cycles).
 HalvesNull null_of_halves(std::span<const CloudPoint> run, const CloudPoint& scale, int cycle);
 
-/// Standard deviation of each coordinate over all finite points, one after the other; the largest magnitude where they
-/// do not spread, 1 where they are all zero or there are none.
+/// Standard deviation of each coordinate over all finite points, added one after the other. The largest magnitude takes
+/// its place where the points do not spread; 1 where they are all zero or there are none.
 class ScaleOfPoints {
  public:
   void add(const CloudPoint& point);
@@ -125,8 +127,8 @@ struct OwnedSection {
   const SettledSection* section = nullptr;
 };
 
-/// Group of each section over all owners, from 0 in the order met: single linkage from the closest pair on, but two
-/// sections of one owner (told apart by cluster_starts) never come into one group.
+/// Group of each section over all owners, from 0 in the order met. Groups form by single linkage from the closest pair
+/// on. Two sections of one owner (told apart by cluster_starts) never come into one group.
 std::vector<int> match_owners(const std::vector<OwnedSection>& sections, const LinkRule& rule = kAcrossCases);
 
 /// A share of `trials` with its 95 % interval (Wilson 1927, J. Am. Stat. Assoc. 22, 209–212). Trials may be effective
@@ -136,15 +138,15 @@ struct Proportion {
 };
 Proportion wilson_interval(double share, double trials);
 
-// Which orbits of one scene have the same end: the one rule by which a grid of initial states is refined, its basins
-// are told apart, and a map of them is drawn.
+// Which orbits of one scene have the same end. One rule refines a grid of initial states, tells its basins apart, and
+// draws a map of them.
 //
 // Two ends are the same where their classes are equal and relative_distance() by kSameScene is at most 1. So a motion
 // and its mirror image, x → −x, t → t + T/2, are one end. In a symmetric scene every motion that is not its own image
-// has one: both hit as often and as hard, only the sides are exchanged, and between their basins no answer changes
-// (does this state end in impacts, in which motion, how hard). A map that told them apart would show a boundary, often
-// a fractal one, where nothing is at stake. In a scene without that symmetry the image of a motion is none, and
-// nothing is folded.
+// has one. Both hit as often and as hard; only the sides are exchanged. Their basins give the same answers: whether a
+// state ends in impacts, in which motion, how hard. A map that told them apart would show a boundary, often a fractal
+// one, where nothing is at stake. In a scene without that symmetry the image of a motion is none, and nothing is
+// folded.
 //
 // Motions without contact are one, the linear response; their sections are left out and told by their class alone.
 
@@ -176,9 +178,9 @@ class OrbitEnds {
 constexpr LinkRule kAlongParameter{0.35, 2};
 
 /// Follows the attractors of one case along rising values of the parameter. A section continues the branch of its class
-/// whose last section is near: relative_distance() with kAlongParameter is at most 1, the nearest pairs first, each
-/// branch in one section at most. A branch that has been away for up to four values may come back; it counts as
-/// further, by half its distance per value. What continues no branch is born.
+/// whose last section is near: relative_distance() with kAlongParameter is at most 1. The nearest pairs come first;
+/// each branch continues in one section at most. A branch that has been away for up to four values may come back. It
+/// counts as further, by half its distance per value. What continues no branch is born.
 class Branches {
  public:
   explicit Branches(const LinkRule& rule = kAlongParameter) : rule_(rule) {}
@@ -209,8 +211,8 @@ struct BranchPair {
   std::vector<double> distances;
 };
 
-/// Identity of each branch over all cases, from 0 in the order met: branches whose median distance is at most 1 become
-/// one, the nearest first, unless that would join two attractors that one case shows at one value.
+/// Identity of each branch over all cases, from 0 in the order met. Branches whose median distance is at most 1 become
+/// one, the nearest first. They stay apart where that would join two attractors that one case shows at one value.
 std::vector<int> match_branches(const std::vector<CaseBranch>& branches, const std::vector<BranchPair>& pairs);
 
 }  // namespace ricochet

@@ -7,13 +7,13 @@
 #include <vector>
 
 /// \file
-/// Basins of several cases on one grid: which cells of a case end alike, which ends of different cases are one
-/// attractor, and what that says.
+/// Basins of several cases on one grid: which cells of a case end alike, and which ends of different cases are one
+/// attractor.
 ///
-/// On a grid of initial states the attractors are the same in every cell: cells that have one end (attractors.hpp)
-/// belong together wherever they lie. On a grid of parameters attractors move from cell to cell: neighbours belong
-/// together where the section of one continues that of the other (kAlongParameter), and a region is what such
-/// neighbours join.
+/// On a grid of initial states the attractors are the same in every cell. Cells that have one end (attractors.hpp)
+/// belong together wherever they lie. On a grid of parameters attractors move from cell to cell. Neighbours belong
+/// together where the section of one continues that of the other (kAlongParameter). A region is what such neighbours
+/// join.
 namespace ricochet {
 
 /// What a grid goes through.
@@ -72,26 +72,28 @@ std::vector<int> attractors_of(const BasinGrid& grid);
 ///
 ///     f(ε) ~ ε^s,      s = d − D,     d: dimensions of the grid, D: dimension of the basins' boundary
 ///
-/// s = 1: a smooth boundary; s < 1: a fractal one; s = 0: no accuracy helps. `labels` is row after row (rows ×
-/// columns; one row is a line, d = 1), one label per cell, < 0 where the end is not known. f(ε) is the share of the
-/// known cells of which one of the (up to 2d) cells ε further along an axis is known and ends differently. ε = 1, 2, 4,
-/// … cells, up to a quarter of the shorter side. Usable sizes have 0 < f ≤ 0.8: beyond, ε is too large for this
-/// boundary. s is the least-squares slope of ln f over ln ε; its 95 % interval joins the scatter (Student) and the
-/// counts (1/√n, n uncertain cells that lie 2ε apart). Nothing with fewer than 3 usable sizes. Throws
-/// std::invalid_argument when the labels do not fill the grid. Source: Grebogi, McDonald, Ott and Yorke (1983), Phys.
-/// Lett. A 99, 415–418.
+/// s = 1: a smooth boundary; s < 1: a fractal one; s = 0: no accuracy helps. `labels` is row after row
+/// (rows × columns), one label per cell, < 0 where the end is not known. One row is a line, d = 1. A known cell is
+/// uncertain at ε where a cell ε further along an axis (up to 2d of them) is known and ends differently. Then f(ε) is
+/// the share of the known cells that are uncertain. The sizes are ε = 1, 2, 4, … cells, up to a quarter of the shorter
+/// side. Usable sizes have 0 < f ≤ 0.8: beyond, ε is too large for this boundary. The exponent s is the least-squares
+/// slope of ln f over ln ε. Its 95 % interval joins the scatter (Student) and the counts, 1/√n with n uncertain cells
+/// that lie 2ε apart. Nothing with fewer than 3 usable sizes. Throws std::invalid_argument when the labels do not fill
+/// the grid. Source: Grebogi, McDonald, Ott and Yorke (1983), Phys. Lett. A 99, 415–418.
 std::optional<Interval> uncertainty_exponent(const std::vector<int>& labels, int columns, int rows);
 
 /// Which cells of a grid need to be marched, so that only boundaries between unlike cells are known at full resolution.
 ///
 /// Marched first are a coarse grid (every fourth column and row, and the last ones) and the whole frame of the grid.
 /// The coarse grid cuts it into blocks that share their edges. A block in which any two known cells are unlike is cut
-/// in four, whose corners are marched, until blocks are alike or one cell wide; what a neighbour finds on a shared edge
-/// counts. Cells of blocks that stay alike are filled from their nearest corner.
+/// in four, or in two where it is one cell wide. The corners of the parts are marched, until blocks are alike or one
+/// cell wide both ways. What a neighbour finds on a shared edge counts. Cells of blocks that stay alike are filled from
+/// their nearest corner.
 ///
-/// So every region of like cells (joined by an edge or a corner) that holds a cell of the coarse grid or of the frame
-/// is found whole, however thin it becomes. An island that holds neither, hence no square of 4 × 4 cells, is not found:
-/// that is the price. The frame is marched because a tongue that enters from outside would else be such an island.
+/// A region consists of like cells joined by an edge or a corner. It is found whole where it holds a cell of the coarse
+/// grid or of the frame, however thin it becomes. An island that holds neither, hence no square of 4 × 4 cells, is not
+/// found: that is the price. The frame is marched because a tongue that enters from outside would else be such an
+/// island.
 class GridRefinement {
  public:
   /// Whether two marched cells end alike: an equivalence, or as good as one among the cells of a block.
@@ -106,8 +108,8 @@ class GridRefinement {
   void set_marched(std::size_t cell) { marched_[cell] = true; }
 
   bool marched(std::size_t cell) const { return marched_[cell]; }
-  /// The marched cell that each cell takes its end from: itself, or the nearest corner of its block; the number of
-  /// cells where nothing is known yet.
+  /// The marched cell that each cell takes its end from: itself, or the nearest corner of its block. Where nothing is
+  /// known yet it is the number of cells.
   std::vector<std::size_t> sources() const;
   /// How many cells the first call of next() asks for.
   static std::size_t first_cells(std::size_t columns, std::size_t rows, bool refine);

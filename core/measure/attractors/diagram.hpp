@@ -65,8 +65,8 @@ struct Diagram {
 };
 
 /// The case that others are compared with, of those with anything decided. It has the stiffest contact (a rigid one,
-/// where there is one), then the most steps per period, the most elements, all dofs or the most modes; else it is the
-/// first.
+/// where there is one). Ties are decided by the most steps per period, the most elements, and all dofs or the most
+/// modes, in this order. Of cases equal in all it is the first.
 std::optional<std::size_t> reference_case(const Diagram& diagram);
 
 /// Values × starts where both cases decided, and how many of them agree.
@@ -124,9 +124,9 @@ struct Opinion {
 /// Neighbouring values of one verdict and one choice.
 using Stretch = std::vector<Opinion>;
 
-/// The stretches along the parameter: of values that two cases or more speak of, and half of those that any value has
-/// (a change that one case refined is no place to compare). A case that decides nothing anywhere says nothing of any
-/// value. `axes` hold a level for each case.
+/// The stretches along the parameter. A value counts where two cases or more speak of it, and at least half as many as
+/// of any other value. A change that one case refined is no place to compare. A case that decides nothing anywhere says
+/// nothing of any value. `axes` hold a level for each case.
 std::vector<Stretch> stretches_of(const Diagram& diagram, const std::vector<ChoiceAxis>& axes);
 
 /// The class of each attractor, by its number.
@@ -138,8 +138,8 @@ std::vector<std::set<int>> attractor_sets(const Stretch& stretch, const std::set
 /// A numerical viscosity counts as small up to this share of the physical one.
 inline constexpr double small_viscosity = 0.01;
 
-/// The cases of a stretch whose numerical viscosity is not small against α (a hundredth of it; 1e-12 s, which is what
-/// round-off leaves of none, where the structure has none), and which choice they share.
+/// The cases of a stretch whose numerical viscosity is not small against α, and which choice they share. The limit
+/// is a hundredth of α, or 1e-12 s where the structure has none: round-off leaves that much of none.
 struct ThickCases {
   std::set<std::size_t> told, thick;  ///< cases whose viscosity is known; those where it is not small
   double largest = 0;                 ///< s

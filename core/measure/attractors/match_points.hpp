@@ -46,17 +46,17 @@ struct MatchedPoints {
 
 /// Names special points over cases, by the links of all cases (one for each owner).
 ///
-/// The distance of two points of a kind is |Δλ|/Λ + |Δu|/U + |Δs|/(10 S), |Δλ| less what both intervals explain: arcs
+/// The distance of two points of a kind is |Δλ|/Λ + |Δu|/U + |Δs|/(10 S), |Δλ| less what both intervals explain. Arcs
 /// count a tenth, because folds that a step invents lengthen them. Folds whose prominences differ by more than a factor
-/// of 3 are no pair. Points of linked cases are paired one to one,
-/// nearest first, up to 0.05. Along a refinement whose next coarser pairs are told from others (no other point less
-/// than three times as far) the bound is four times the largest of their distances, 0.001 at least. A point that its
+/// of 3 are no pair. Points of linked cases are paired one to one, nearest first, up to 0.05. The bound may be narrower
+/// along a refinement. The next coarser pairs that are told from others give it: no other point is less than three
+/// times as far. It is four times the largest distance of such pairs of the kind, 0.001 at least. A point that its
 /// finer case lacks is sought in the next case towards the reference. What two branches of a case share counts once.
 ///
-/// Points that are joined over cases have a name where the two finest cases of a refinement both have them and no other
-/// point is less than three times as far from either. The result
-/// depends on neither the order of cases nor that of points. Throws std::invalid_argument where a link or an owner
-/// names no case, or links form a circle.
+/// Points that are joined over cases have a name under two conditions. The two finest cases of a refinement both have
+/// them, and no other point is less than three times as far from either. The result depends on neither the order of
+/// cases nor that of points. Throws std::invalid_argument where a link or an owner names no case, or links form a
+/// circle.
 MatchedPoints match_points(const std::vector<CasePoint>& points, const std::vector<CaseLink>& links,
                            const PointScales& scales);
 
@@ -75,8 +75,8 @@ enum class PointPresence {
 /// "found", "many", "absent", "not reached".
 const char* word(PointPresence presence);
 
-/// Presence of a point at `parameter` in a case that has `sharing` points at its place (0: none), with branches
-/// that cover `reaches`. A branch passed it where its range goes beyond the point by more than `margin` on both sides;
+/// Presence of a point at `parameter` in a case that has `sharing` points at its place (0: none), with branches that
+/// cover `reaches`. A branch passed it where its range goes beyond the point by more than `margin` on both sides.
 /// `passed`, if not null, is set to the widest range that did.
 PointPresence presence_of(double parameter, double margin, int sharing, const std::vector<BranchReach>& reaches,
                           std::optional<BranchReach>* passed = nullptr);
@@ -103,9 +103,9 @@ struct PointOrder {
 ///
 /// The difference v_{k+1} − v_k of successive sizes counts where it is more than twice the widths of both intervals.
 /// Used is the longest run of such differences of one sign that reaches the finest of them. Two differences (three
-/// sizes) solve (h₂ᵖ − h₃ᵖ)/(h₁ᵖ − h₂ᵖ) = d₂/d₁, and the interval is what the intervals of the points, 2 % of a
-/// difference at least, make of p. From three on, |d_k|/(1 − (h_{k+1}/h_k)ᵖ) = |c| h_kᵖ is fitted as errors of a
-/// convergence study are (fit_order()), p on the left being the one that comes out. Throws std::invalid_argument on a
+/// sizes) solve (h₂ᵖ − h₃ᵖ)/(h₁ᵖ − h₂ᵖ) = d₂/d₁. The interval of p follows from the intervals of the points, taken as
+/// 2 % of a difference at least. From three on, |d_k|/(1 − (h_{k+1}/h_k)ᵖ) = |c| h_kᵖ is fitted by fit_order(), as
+/// errors of a convergence study are. The p on the left is the one that comes out. Throws std::invalid_argument on a
 /// size that is not positive or a negative interval.
 PointOrder point_order(std::vector<PointLevel> levels);
 

@@ -65,8 +65,8 @@ class ClosedPoints {
     bool changed = false;  ///< whether any point opened, closed or changed its side
     bool was_active = false;
   };
-  /// Ends the instant: `see`(point, side before, side now) for each point that is closed or was, sides −1 (upper stop),
-  /// 0 (open) and 1 (lower stop).
+  /// Ends the instant: `see`(point, side before, side now) for each point that is closed or was. Sides are −1 (upper
+  /// stop), 0 (open) and 1 (lower stop).
   template <class See>
   Change end_instant(See&& see) {
     Change change;

@@ -9,16 +9,16 @@
 
 /// \file
 /// Contact point by point, as an integration meets it. Contact is looked at once per instant: each sub-step, with the
-/// stages that ask together as one. With ω the momentum weight of a stage (s: what an effort of 1 N finally gives to a
-/// free mass) and p the effort that it finds at a point (N), an instant
+/// stages that ask together as one. A stage has the momentum weight ω (s): what an effort of 1 N finally gives to a
+/// free mass. It finds the effort p at a point (N). An instant
 ///
 ///     lasts   Ω = max ω                over its stages (s),
 ///     gives   I = Σ ω |p|              (N s),    by the force    F = I / Ω    (N),
 ///
 /// as the mean force of a window has it. An effort that gives no momentum (ω = 0, of a projection) closes a point and
-/// is no force. The velocity of a point between two instants is the difference of its absolute positions before any
-/// stage of either, H q + φ, over the time between: of one stage per step (x_{n+1} − x_n)/h, of several sub-steps that
-/// of one of them. Stops do not move: it is relative to them.
+/// is no force. The velocity of a point between two instants is the difference of its positions over the time between.
+/// The positions are absolute, H q + φ, and stand before any stage of either instant. With one stage per step this is
+/// (x_{n+1} − x_n)/h; with several sub-steps it is that of one of them. Stops do not move: it is relative to them.
 namespace ricochet {
 
 /// A point closes at a stop, is pushed for one or more instants, and opens.
@@ -26,12 +26,12 @@ struct Impact {
   double time = 0;  ///< of the first instant with an effort, s
   int point = 0;    ///< row of H
   StopSide side = StopSide::lower;
-  /// Towards the stop, m/s: the velocity over the sub-step that ends where the one that closes the point begins, free
-  /// of its efforts; that of the initial state where there is none before.
+  /// Towards the stop, m/s: the velocity over the sub-step that ends where the one that closes the point begins. It is
+  /// free of the efforts of that one. Where there is no sub-step before, it is that of the initial state.
   double speed_in = 0;
-  /// Away from the stop, m/s: the velocity over the second sub-step without an effort, when what the first one still
-  /// had of the efforts before it is spent; over the first where the point closes again or the integration ends after
-  /// it. NaN while the point is closed.
+  /// Away from the stop, m/s: the velocity over the second sub-step without an effort. What the first one still had of
+  /// the efforts before it is spent then. The first one counts where the point closes again or the integration ends
+  /// after it. NaN while the point is closed, and where it goes to the other stop at once.
   double speed_out = std::numeric_limits<double>::quiet_NaN();
   double impulse = 0;        ///< Σ I, N s
   double peak_force = 0;     ///< largest F, N
@@ -47,8 +47,8 @@ struct StopTotals {
   double impulse = 0;       ///< N s
   double contact_time = 0;  ///< Σ Ω, s
   double squares = 0;       ///< Σ Ω F², N² s
-  /// ∫ F |v| dt, J: of an instant, I times the mean of |v| where v goes, evenly with the momentum given, from the
-  /// velocity over the sub-step before to that over the instant's own. So a free mass with e has ½ m v² (1 + e²).
+  /// ∫ F |v| dt, J. An instant gives I times the mean of |v|. The velocity goes evenly with the momentum given, from
+  /// that over the sub-step before to that over the instant's own. So a free mass with e has ½ m v² (1 + e²).
   double normal_work = 0;
   double fastest = 0;  ///< largest speed in, m/s
 
@@ -59,7 +59,7 @@ struct StopTotals {
 
 /// Writes down the impacts of every contact point of every lane.
 ///
-/// A step costs one copy of the positions where no slot of the plan holds what they moved by; a point that is open
+/// A step costs one copy of the positions where no slot of the plan holds what they moved by. A point that is open
 /// costs nothing more. Nothing is allocated but by an impact, when the list grows. Beyond `most` impacts of a lane the
 /// list ends, totals go on.
 class ImpactRecorder final : public StepObserver {

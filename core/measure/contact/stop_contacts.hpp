@@ -11,8 +11,8 @@ namespace ricochet {
 ///     I = |Σ I_k d_k|   (N s),     F = I/Ω   (N),     d_k the direction in which side k is met,
 ///
 /// and in contact as long as one of them is: to pass from side to side is no impact. All is told of its upper side. Its
-/// speed in is that along the resultant, Σ I_k v_k / I, of all that closes; its speed out likewise, over the sides that
-/// it leaves.
+/// speed in is that along the resultant, Σ I_k v_k / I, of all that closes. Its speed out is the same over the sides
+/// that it leaves.
 class StopContacts final : public ContactListener {
  public:
   /// Is told by `recorder` from now on. Both outlive the integration.

@@ -51,8 +51,8 @@ struct StopList {
 };
 StopList stop_list(const SemiDiscrete& problem);
 
-/// What the bounds of each stop are put on: the displacement of its contact point, of a clearance the distance from its
-/// axis, √(u₁² + u₂²), m. Allocates when constructed.
+/// What the bounds of each stop are put on, m: the displacement of its contact point. Of a clearance it is the distance
+/// from its axis, √(u₁² + u₂²). Allocates when constructed.
 class StopPlaces {
  public:
   explicit StopPlaces(const Marcher& marcher);

@@ -7,15 +7,15 @@
 
 namespace ricochet {
 
-/// What stops with a tangent wear: an instant of contact that gives I (N s) while the surface goes from V⁻ to V⁺ (m/s)
+/// How stops with a tangent wear. An instant of contact gives I (N s) while the surface goes from V⁻ to V⁺ (m/s). It
 /// slides by ½(|V⁻| + |V⁺|) a second,
 ///
 ///     wear power = (1/T) Σ I ½ (|V⁻| + |V⁺|)   (W),
 ///
-/// V⁻ over the sub-step before the instant and V⁺ over that of the instant. Of a clearance met in the direction n,
-/// |V|² = (n × v)² + (r n·θ')², along the circle and, of a surface of radius r that bends, along the beam: its rows are
-/// u₁, u₂ and r θ₁, r θ₂. Tangents are read, never pushed; points are stops. It looks
-/// at a step before the ImpactRecorder that tells it of instants. Every step is shown to it where there are tangents.
+/// V⁻ over the sub-step before the instant and V⁺ over that of the instant. A clearance met in the direction n has
+/// |V|² = (n × v)² + (r n·θ')². The first part is along the circle. The second, of a surface of radius r that bends, is
+/// along the beam. The rows are u₁, u₂ and r θ₁, r θ₂. Tangents are read, never pushed; points are stops. It looks at a
+/// step before the ImpactRecorder that tells it of instants. Every step is shown to it where there are tangents.
 class TangentWatch final : public StepObserver, public ContactListener {
  public:
   TangentWatch(const Marcher& marcher, const WindowParts& window);

@@ -271,8 +271,9 @@ void EnergyAudit::step_done(Marcher& marcher) {
   asks_.next_shown = next_shown(marcher);
 }
 
-// Of one lane: the next step after which energies are read, where the squares that a step adds up are all that its
-// works ask without contact. Flights may leave out steps that cannot gain energy.
+// Of one lane: the next step after which energies are read; 0 where every step is shown. Steps are left out where the
+// squares that a step adds up are all that its works ask without contact. Flights may leave out steps that cannot gain
+// energy.
 long long EnergyAudit::next_shown(const Marcher& marcher) const {
   const Lane& state = lanes_.front();
   if (flies_) {

@@ -8,9 +8,9 @@
 namespace ricochet {
 
 /// Energies of one step, joules, in the frame of the clamp (w = u − φ), at the time where the plan's own velocity
-/// stands: at the end of the step, from that velocity and q_{n+1}; or, for plans whose velocity is a mean over the
-/// step, in the middle of its last sub-step, from v = Δq/Δt and q̄ = q_{n+1} − Δq/2. There neither has a bias of order
-/// h² of its own: positions of another time beside a velocity would show a gain that the scheme does not make.
+/// stands. That is the end of the step, from this velocity and q_{n+1}. For plans whose velocity is a mean over the
+/// step it is the middle of its last sub-step, from v = Δq/Δt and q̄ = q_{n+1} − Δq/2. Neither has a bias of order h²
+/// of its own there. Positions of another time beside a velocity would show a gain that the scheme does not make.
 struct EnergySample {
   double kinetic = 0;  ///< ½ vᵀM v
   double elastic = 0;  ///< ½ qᵀK q
@@ -63,23 +63,23 @@ struct ContactTotals {
 enum class SamplingMode {
   every_step,
   /// At every check_interval-th step and where somebody asks (sample_after). The works of every step are added up
-  /// between. Where the scheme has an energy of its own and every stage a work form, the gain of a step is contact −
-  /// damping − scheme, and a sample confirms the sum. A sample may find more than a share `confirmed` of the energy
-  /// that the works do not explain. The gain then counts it, and that lane is sampled at every step from there on. So
-  /// is a scheme that has no such balance.
+  /// between. A scheme has a balance where it has an energy of its own and every stage a work form. The gain of a step
+  /// is then contact − damping − scheme, and a sample confirms the sum. A sample may find more than a share `confirmed`
+  /// of the energy that the works do not explain. The gain then counts it, and that lane is sampled at every step from
+  /// there on. A scheme without a balance is sampled at every step too.
   seldom,
 };
 
 /// The energy audit. It adds up the works of every step and samples energies at every step or seldom. Where it samples
-/// seldom, steps that touch no stop need not be shown to it: the squares that a free step adds up tell their works.
-/// Flights may leave out any number of steps where the scheme has an energy of its own that no free step can gain.
-/// energy() and totals() are those of the last sample. A lane whose common energy passes the marcher's bound is stopped
+/// seldom, steps that touch no stop need not be shown to it. The squares that a free step adds up tell their works.
+/// Flights may leave out any number of steps where the scheme has an energy of its own that no free step can gain. What
+/// energy() and totals() tell is of the last sample. A lane whose common energy passes the marcher's bound is stopped
 /// where that is seen.
 class EnergyAudit final : public StepObserver {
  public:
   static constexpr double confirmed = 1e-10;
-  /// Share of the energy that is there or was brought in. Works of one step beyond it have the next shown step sampled:
-  /// a lane that blows up is seen at once where stops work in it.
+  /// Share of the energy that is there or was brought in. Works of one step beyond it have the next shown step sampled.
+  /// A lane that blows up is seen at once where stops work in it.
   static constexpr double alarming = 0.1;
 
   explicit EnergyAudit(const Marcher& marcher, SamplingMode sampling = SamplingMode::every_step);

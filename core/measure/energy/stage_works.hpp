@@ -95,8 +95,8 @@ class StateEnergies {
     double elastic = 0;  ///< ½ qᵀK q
     double scheme = 0;   ///< 0 where the plan declares none
   };
-  /// Where the velocity is a mean over a sub-step: `increment`, what the position moved by in it, contiguous (read only
-  /// where no slot holds it), and how long it lasted (s).
+  /// Where the velocity is a mean over a sub-step, `increment` is what the position moved by in it, contiguous. It is
+  /// read only where no slot holds it. `duration` is how long the sub-step lasted (s).
   Values read(const double* const* slots, const double* increment, double duration, int lane);
   /// The scheme's own alone.
   double scheme(const double* const* slots, int lane);
@@ -147,8 +147,9 @@ struct Works {
 /// one more pass. Points that push are added. What a scene does not have is not computed. Keeps what damping and loads
 /// ask of each stage, allocates when constructed; one lane at a time, each stage in turn.
 ///
-/// A start rule without work form is no step of the balance, which begins after it. What its contact works is added all
-/// the same: ω pᵀ(H(v⁻ + v⁺)/2 + Δφ/Δt), v the plan's velocity before and after it, ω p the momentum given within it.
+/// A start rule without work form is no step of the balance, which begins after it. The work of its contact is added
+/// all the same: ω pᵀ(H(v⁻ + v⁺)/2 + Δφ/Δt). The plan's velocity is v⁻ before the rule and v⁺ after it; ω p is the
+/// momentum given within it.
 class StageWorks {
  public:
   /// M and K in the coordinates of the integration.
@@ -196,8 +197,8 @@ class StageWorks {
     Levels support_levels;
     std::vector<Loss> losses;
     bool impulsive = false;  // a start rule whose contact alone works: `displacement` is the mean velocity
-    // Where damping and clamp are all there is without contact, of an operator that adds up their squares: of s over
-    // the weight of z, and what these are worth. Else no fours.
+    // Of an operator that adds up squares: those of s over the weight of z, and what they are worth. They hold where
+    // damping and clamp are all there is without contact; else no fours.
     Block fours;
     SquareSum sum;
     double by_sum = 0;

@@ -12,9 +12,9 @@ namespace ricochet {
 
 /// The momentum that contact efforts have given by the end of each step (N s), whatever the plan. The plan itself moves
 /// a free unit mass under the sum of the efforts, with the weights that the program gives them. The velocity of that
-/// mass is read as the plan reads it. In a plan of one stage that is Σ h p; where an effort acts over several steps
-/// (Newmark: γh now, (1−γ)h in the next; averaged penalties), its momentum comes when the plan gives it.
-/// Allocates in its constructor only; between contacts it costs one test.
+/// mass is read as the plan reads it. In a plan of one stage that is Σ h p, unless an effort acts over several steps.
+/// Then its momentum comes when the plan gives it (Newmark: γh now, (1−γ)h in the next; averaged penalties). Allocates
+/// in its constructor only; between contacts it costs one test.
 class MomentumLedger {
  public:
   explicit MomentumLedger(const Program& program);
@@ -62,9 +62,10 @@ void sample_places(double length, int cells, SampleGrid& grid);
 /// Contact as it happens, lane 0: impacts and releases per side, and the impulse so far. A step without contact costs
 /// one test.
 ///
-/// The time of an impact is where the gap of the point that closes, carried on at its velocity, is zero, kept within a
-/// sub-step of the one that closed it; a release is the beginning of the first sub-step without contact on that side.
-/// Contact that is there from the start (StartContact) is no impact, and has a release only.
+/// The time of an impact is where the gap of the point that closes, carried on at its velocity, is zero. It is kept
+/// within a sub-step of the beginning of the one that closed it. A release is the beginning of the first sub-step
+/// without contact on that side. Contact that is there from the start (StartContact) is no impact, and has a release
+/// only.
 class ContactLog final : public StepObserver {
  public:
   explicit ContactLog(const Marcher& marcher);
@@ -103,11 +104,11 @@ class ContactLog final : public StepObserver {
 
 /// Reads a marching lane 0 on a grid of times and places, as references are read.
 ///
-/// Positions at a time t between steps n and n+1 are the cubic through steps n−1 … n+2, velocities its derivative; at a
-/// time that is a step, q_n and (q_{n+1} − q_{n−1})/2h. Both are second-order accurate or better, whatever the scheme
-/// keeps as its own velocity. Impulses are the momentum that the plan gives to a free mass (MomentumLedger); those of a
-/// scheme whose momentum stands at mid-step (d/h) are brought to t. Energy is ½vᵀMv + ½wᵀKw plus the law's potential at
-/// that time. The integration goes up to two steps beyond the last time.
+/// Positions at a time t between steps n and n+1 are the cubic through steps n−1 … n+2, velocities its derivative. At a
+/// time that is a step they are q_n and (q_{n+1} − q_{n−1})/2h. Both are second-order accurate or better, whatever the
+/// scheme keeps as its own velocity. Impulses are the momentum that the plan gives to a free mass (MomentumLedger).
+/// Those of a scheme whose momentum stands at mid-step (d/h) are brought to t. Energy is ½vᵀMv + ½wᵀKw plus the law's
+/// potential at that time. The integration goes up to two steps beyond the last time.
 class MotionSampler {
  public:
   /// `beside`: observes the same integration.

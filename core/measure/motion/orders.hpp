@@ -5,27 +5,29 @@
 #include <vector>
 
 /// \file
-/// Orders of convergence that carry a confidence: e ≈ C r^p, fitted over the range where the errors behave so, and
-/// compared with what a method declares.
+/// Orders of convergence that carry a confidence. A power law e ≈ C r^p is fitted over the range where the errors
+/// behave so, and compared with what a method declares.
 ///
 /// 1. *Usable* points have e > 4 max(floor, other error): closer, what the error is measured against shapes it as much
-///    as the method does. A lone dip (e under a quarter of what its two neighbours interpolate, the next one larger
-///    again: a signed error on its way through zero) is left out, one in five points at most.
-/// 2. A window of at least three neighbouring points is *straight* under three conditions. ln e over ln r scatters by
-///    at most 0.4 around its line (a factor of 1.5, as impacts do). It bends by no more than chance, or by less than
-///    0.1 in slope from end to end (quadratic term, t test at 95 %). Six points or more whose slopes only rise, or only
-///    fall, bend. Each of its ends is predicted from the others, within 5 % or by t at 99 %.
+///    as the method does. A lone dip is left out, one in five points at most. In a dip e is under a quarter of what its
+///    two neighbours interpolate, and the next one is larger again. That is a signed error on its way through zero.
+/// 2. A window of at least three neighbouring points is *straight* under three conditions. First, ln e over ln r
+///    scatters by at most 0.4 around its line. That is a factor of 1.5, as impacts do. Second, it bends by no more than
+///    chance, or by less than 0.1 in slope from end to end (quadratic term, t test at 95 %). Six points or more whose
+///    slopes only rise, or only fall, bend. Third, each of its ends is predicted from the others, within 5 % or by t at
+///    99 %. Of three points the scatter alone is asked.
 /// 3. The longest straight window is taken, the finer of equals. It gives way to a straight window that lies beyond it
-///    by three finer points and falls (low end of its interval above 0.3): the coarser one was pre-asymptotic. One that
-///    does not fall gives way to a coarser one that does: there the errors meet a floor.
-/// 4. p is the least-squares slope. Half its 95 % interval is
+///    by three finer points and falls: the coarser one was pre-asymptotic. A window falls where the low end of its
+///    interval is above 0.3. One that does not fall gives way to a coarser one that does: there the errors meet a
+///    floor.
+/// 4. The order p is the least-squares slope. Half its 95 % interval is
 ///
 ///        t_{0.975, m−2} s / √S_xx · √((1+ρ)/(1−ρ)) + Σ_k |w_k| δ_k + d,    w_k = (ln r_k − mean) / S_xx
 ///
-///    with s the scatter, ρ ∈ [0, 0.8] the lag-one correlation of the residuals (m ≥ 5), and d half the change of slope
-///    from end to end where it is more than chance or goes one way only. δ_k is the larger of 0.02 and
-///    −ln(1 − (floor + other)/e_k): no error is trusted to better than 2 %, so that points exactly on a line still have
-///    an interval.
+///    with s the scatter and ρ ∈ [0, 0.8] the lag-one correlation of the residuals (m ≥ 5). The term d is half the
+///    change of slope from end to end, where that is more than chance or goes one way only. Each δ_k is the larger of
+///    0.02 and −ln(1 − (floor + other)/e_k). No error is trusted to better than 2 %, so that points exactly on a line
+///    still have an interval.
 namespace ricochet {
 
 /// One error of a refinement.
@@ -62,12 +64,12 @@ struct OrderFit {
 };
 
 /// Fits the order. Confirmed: the interval holds the declared order and is no wider than ±0.5, or |p − declared| ≤ 0.05
-/// with ±0.3. Refuted: the interval is 0.1 or more away from it, the range reaches the finest usable point, and the
-/// finer points do not move towards the declared order. They move where slopes go one way, or the finer half is nearer
-/// by half. Too fast is refuted over five points or more, since errors that cancel fall faster for a while. Else
-/// undecided, with the reason: too few points, too wide an interval, another error, errors that stop falling, nothing
-/// declared. Points in any order; equal sizes are taken together (geometric mean). Throws
-/// std::invalid_argument on a size that is not positive, on a negative error or floor.
+/// with ±0.3. Refuted: the interval is 0.1 or more away, the range reaches the finest usable point, and finer points do
+/// not move towards the declared order. They move where slopes go one way, or the finer half is nearer by half. Too
+/// fast is refuted over five points or more, since errors that cancel fall faster for a while. Else undecided, with the
+/// reason: too few points, too wide an interval, another error, errors that stop falling, nothing declared. Points in
+/// any order; equal sizes are taken together (geometric mean). Throws std::invalid_argument on a size that is not
+/// positive, on a negative error or floor.
 OrderFit fit_order(const std::vector<OrderPoint>& points, const OrderQuestion& question = {});
 
 /// Three grids of one constant ratio.

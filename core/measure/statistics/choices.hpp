@@ -25,10 +25,10 @@ struct DecidingChoice {
   std::vector<std::size_t> axes{};  ///< indices of the one or two axes
 };
 
-/// Axes are ranked by their share corrected for their number of levels L among n cases, 1 − (1 − s)(n − 1)/(n − L); one
-/// that gives each case a level of its own explains anything, and counts only where no other reaches one half. Of
-/// equals the one with fewer levels, then the first. Two axes together are named where none alone reaches 0.8 and they
-/// gain 0.2 or more, corrected in the same way.
+/// Axes are ranked by their share s corrected for their number of levels L among n cases, 1 − (1 − s)(n − 1)/(n − L).
+/// An axis that gives each case a level of its own explains anything: its corrected share is 0. Where no corrected
+/// share reaches one half, axes are ranked by s. Of equals the one with fewer levels counts, then the first. Two axes
+/// together are named where none alone reaches 0.8 and they gain 0.2 or more, corrected in the same way.
 DecidingChoice deciding_choice(const std::vector<int>& labels, const std::vector<ChoiceAxis>& axes);
 
 }  // namespace ricochet

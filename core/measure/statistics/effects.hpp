@@ -6,27 +6,28 @@
 #include <vector>
 
 /// \file
-/// How much of a result is owed to each choice: the functional analysis of variance of a measure over the factors of a
-/// (nearly) full factorial study.
+/// How much of a result is owed to each choice. The shares come from the functional analysis of variance of a measure
+/// over the factors of a (nearly) full factorial study.
 ///
 /// Every combination of levels l = (l_1, …, l_d) has one value f(l). With f̄_u the mean over the factors outside u,
 ///
 ///     f(l) = Σ_u f_u(l_u),   f_u = Σ_{v ⊆ u} (−1)^{|u|−|v|} f̄_v,   V = Σ_{u ≠ ∅} V_u,   V_u = mean of f_u²
 ///
-/// (Hoeffding 1948; Sobol' 1993). V_u/V is the share of u: of a main effect for one factor, of an interaction for two
-/// or three; what is left is lumped as "higher". Levels are categories: nothing is assumed of steps or stiffnesses.
+/// (Hoeffding 1948; Sobol' 1993). The share of u is V_u/V: of a main effect for one factor, of an interaction for two
+/// or three. What is left is lumped as "higher". Levels are categories: nothing is assumed of steps or stiffnesses.
 ///
-/// *Missing* combinations (refused, failed, diverged) are filled by least squares on the others: main effects, and
-/// interactions of two factors where 1.25 times as many values as such a model has numbers are there (from the
-/// additive fill, by repeated projection, which leaves alone what no value speaks of). So an additive measure has no
-/// bias from what is missing. No shares are given when over half is missing or main effects cannot be told apart.
+/// *Missing* combinations (refused, failed, diverged) are filled by least squares on the others. Main effects fill
+/// them; interactions of two factors do too where there are 1.25 times as many values as such a model has numbers. That
+/// fill starts from the additive one and goes by repeated projection, which leaves alone what no value speaks of. So an
+/// additive measure has no bias from what is missing. No shares are given when over half is missing or main effects
+/// cannot be told apart.
 ///
 /// *Intervals*: the values are deterministic, so the question is how much the shares hang on which levels the study
-/// happens to hold. Each level of each factor gets a random weight (exponential, normalised per factor: the Bayesian
-/// bootstrap of Rubin 1981), a combination the product of its levels' (Owen and Eckles 2012, Ann. Appl. Stat. 6,
-/// 895–927); V_u is scaled by Π_{i∈u} (1 − 1/n_i)/(1 − Σp_i²), so that few levels bring no bias and two levels alone no
-/// width. Filled values are drawn again with the residuals of their model. 2.5 % and 97.5 % of the draws, widened to
-/// hold the share itself; seeded, the same everywhere.
+/// happens to hold. Each level of each factor gets a random weight, exponential and normalised per factor: the Bayesian
+/// bootstrap of Rubin (1981). A combination gets the product of its levels' weights (Owen and Eckles 2012, Ann. Appl.
+/// Stat. 6, 895–927). V_u is scaled by Π_{i∈u} (1 − 1/n_i)/(1 − Σp_i²), so that few levels bring no bias and two levels
+/// alone no width. Filled values are drawn again with the residuals of their model. The interval is 2.5 % and 97.5 % of
+/// the draws, widened to hold the share itself; seeded, the same everywhere.
 namespace ricochet {
 
 /// One choice of a study, with the level that each cell has of it.
@@ -41,8 +42,8 @@ struct FactorSet {
   std::vector<std::string> notes;
 };
 
-/// The factors of a table of cells: cells[c][k] is the text of column k, "" where the cell has none. A method's
-/// parameters ("time.beta" beside a column "time") that exist for some methods only, or not in every combination, are
+/// The factors of a table of cells: cells[c][k] is the text of column k, "" where the cell has none. Parameters of a
+/// method ("time.beta" beside a column "time") may exist for some methods only, or not in every combination. These are
 /// nested: the method with those parameters becomes one factor under the method's name, and a note says so.
 FactorSet factors_of(const std::vector<std::string>& columns, const std::vector<std::vector<std::string>>& cells);
 

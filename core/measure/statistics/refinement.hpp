@@ -55,9 +55,9 @@ inline constexpr double lowest_order = 0.5;
 /// the exact value where one is known. Nothing of no values.
 ///
 /// With the differences d of values from coarse to fine and the ratio r of the last sizes, the rest is
-/// |d_last|/(rᵖ − 1). u is the larger of |d_last| and the rest. Where two orders p in a row agree within 0.6, u is the
-/// rest alone, at least a tenth of |d_last|. Of two sizes u is |d_last|, of what moves 2 |d_last|, of what wanders the
-/// range of the last three values.
+/// |d_last|/(rᵖ − 1). The uncertainty u is the larger of |d_last| and the rest. Where two orders p in a row agree
+/// within 0.6, u is the rest alone, at least a tenth of |d_last|. Of two sizes u is |d_last|, of what moves 2 |d_last|,
+/// of what wanders the range of the last three values.
 std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std::optional<double> truth = {});
 
 /// The limit over two refinements, at the finest of both: uncertainties are added, the status is the worse of the two.
@@ -67,8 +67,8 @@ std::optional<Limit> combined(const std::optional<Limit>& step, const std::optio
 /// Adds half an interval of the value itself, as of a mean over a window.
 void widen(Limit& limit, double half);
 
-/// Three values may settle by chance: where more than half of all methods move or wander, those that settle on three
-/// values without an order are taken as moving, with the range of the three as u. Says which limits changed nothing.
+/// Three values may settle by chance. Where more than half of all methods move or wander, those that settle on three
+/// values without an order are taken as moving. Their u is then the larger of what it was and the range of the three.
 void doubt_chance(std::vector<Limit*> limits);
 
 /// Where the limit may be: what wanders is as wide as its last values and half of that on both sides.
@@ -77,8 +77,8 @@ struct LimitInterval {
 };
 LimitInterval interval(const Limit& limit);
 
-/// The order of a run of errors e(h): the longest run of at least two local slopes log(e_i/e_{i+1})/log(h_i/h_{i+1})
-/// that are ≥ 0.4 and within 0.6 of each other, over errors above three floors.
+/// The order of a run of errors e(h), from local slopes log(e_i/e_{i+1})/log(h_i/h_{i+1}) over errors above three
+/// floors. The run is the longest of at least two slopes that are ≥ 0.4 and within 0.6 of each other.
 struct OrderRun {
   enum class Verdict {
     order,            ///< such a run
@@ -91,8 +91,8 @@ struct OrderRun {
   Verdict verdict = Verdict::too_few;
   double order = 0, least = 0, most = 0;  ///< slope over the whole run, and of its local slopes
   double from = 0, to = 0;                ///< sizes of its ends
-  /// Whether it has two slopes alone, half of all at most, and ends before the finest error above the floor: it may be
-  /// one of chance.
+  /// Whether it may be one of chance. Then it has two slopes alone, half of all at most, and ends before the finest
+  /// error above the floor.
   bool in_passing = false;
   std::optional<double> stops_at;  ///< the error at which the fall ends: the smallest that was seen
   double last = 0, last_size = 0;  ///< the error at the finest size
@@ -104,7 +104,8 @@ const char* word(OrderRun::Verdict verdict);
 /// `errors` ≥ 0 by size, in any order; nothing of none. `floor`: what the reference itself may be wrong by.
 std::optional<OrderRun> order_run(std::vector<SizedValue> errors, double floor);
 
-/// ½ in [0.4, 0.7), 1 in [0.7, 1.4), 1½ in [1.4, 1.6), 2 in [1.6, 2.6), 3 in [2.6, 3.4), 4 in [3.4, 4.7); else rounded.
+/// ½ in [0.4, 0.7), 1 in [0.7, 1.4), 1½ in [1.4, 1.6), 2 in [1.6, 2.6), 3 in [2.6, 3.4), 4 in [3.4, 4.7). Others are
+/// rounded.
 double order_class(double order);
 
 }  // namespace ricochet

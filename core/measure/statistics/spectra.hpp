@@ -50,7 +50,7 @@ struct ThirdOctave {
   std::string nominal() const;  ///< as bands are called: "31.5", "63", "1000"
 };
 
-/// Levels of a one-sided density S_k (unit²/Hz) at f_k = k Δf, each line of the width Δf with its middle at f_k: where
+/// Levels of a one-sided density S_k (unit²/Hz) at f_k = k Δf. Each line has the width Δf and its middle at f_k. Where
 /// a band ends within a line, it has that share of it. Bands whose width is Δf or more and that end at or below the
 /// last line.
 std::vector<ThirdOctave> third_octaves(const std::vector<double>& density, double spacing);

@@ -17,9 +17,10 @@ struct Tiers {
 };
 
 /// Limits sorted into tiers. Firm ones, u ≤ max(2T, 0.3 × spread of the values), are taken by the low ends of their
-/// intervals; a new tier begins where the gap to all before is larger than the tolerance T. Another one joins the only
-/// tier that its interval touches, makes its own where it touches none, and is nowhere where it touches several or
-/// u > 2 × max(spread, T). A single size counts as firm.
+/// intervals. A new tier begins where the gap to all before is larger than the tolerance T. Other limits touch a tier
+/// where their intervals come within T of its own. One that touches a single tier joins it. Those that touch none make
+/// tiers of their own. One that touches several, or has u > 2 × max(spread, T), is nowhere. A single size counts as
+/// firm.
 Tiers tiers_of(const std::vector<Limit>& limits, double tolerance);
 
 /// Values ≥ 0 over decades: a new tier begins at three times the largest value before; all below `nothing` is one tier.
