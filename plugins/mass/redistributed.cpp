@@ -16,7 +16,7 @@ struct DofGroup {
   std::vector<char> near;  ///< of each of the n dofs
 };
 
-/// Groups of contact dofs on the graph of K and M. The neighbourhood of a dof are the dofs at most `reach` entries
+/// Groups of contact dofs on the graph of K and M. The neighbourhood of a dof holds the dofs at most `reach` entries
 /// away. Dofs whose neighbourhoods meet are one group. Reach 0: all dofs, one group.
 std::vector<DofGroup> ring_groups(const GivenMass& given, const std::vector<int>& contact, int reach) {
   const auto n = static_cast<std::size_t>(given.mass.rows());
