@@ -42,8 +42,9 @@ void BoxSolver::descend(const Operator& A, LaneOutcome& outcome) {
   }
 }
 
-// A_SS is singular: along its null vector y does not move, and the sum decreases at the rate at which the entering
-// point's violation is worked on, until a point of the set has no effort left. If none ever has, no p satisfies (1).
+// A_SS is singular: along its null vector y does not move. The sum decreases there at the rate at which the entering
+// point's violation is worked on. The way ends where another point of the set has no effort left. If none ever has, no
+// p satisfies (1).
 bool BoxSolver::slide(int entering) {
   find_null();
   side_[dropped_] = dropped_side_;

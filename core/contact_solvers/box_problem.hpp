@@ -51,8 +51,8 @@ class BoxInterior {
     const double *free = nullptr, *lower = nullptr, *upper = nullptr;
   };
 
-  /// Ends when the mean of a s and b t is 1e-12 of what it was, or no step is left; says after how many iterations.
-  /// Allocates when there are more points than ever before.
+  /// Ends when the mean of a s and b t is 1e-12 of what it was, when no step is left, or after 60 iterations. Returns
+  /// how many it made. Allocates when there are more points than ever before.
   int solve(HeldBand& band, const Problem& problem);
   /// +1: the point lies on its lower stop, −1: on its upper one, 0: on none; by which of a A_ii and s is larger.
   int side(int point) const { return side_[static_cast<std::size_t>(point)]; }
@@ -90,27 +90,27 @@ class HeldBand;
 /// It is the optimality of min ½pᵀA p + y°ᵀp − Σ(lower_i p_i⁺ − upper_i p_i⁻), convex.
 ///
 /// One active candidate: closed form. Otherwise a primal–dual active set (Hintermüller, Ito, Kunisch 2002),
-/// warm-started from the sign of p: a point belongs to a stop when its measure without its own effort, y_i − A_ii p_i,
-/// lies beyond it (this is where the diagonal scales). A set met again hands over to descent: the deepest violation
-/// enters (least index on ties), the effort moves towards the solution on the set, and a point whose effort would
-/// change sign leaves (Lawson and Hanson 1974, NNLS, with two sides). The sum above decreases strictly between sets, so
-/// none returns: finite, for semidefinite W as well. (Murty's least index is finite too, but exponential where it
-/// matters: over 10⁵ pivots for 50 nodes of a cantilever, against about a hundred.)
+/// warm-started from the sign of p. A point belongs to a stop when its measure without its own effort, y_i − A_ii p_i,
+/// lies beyond it. This is where the diagonal scales. A set met again hands over to descent (Lawson and Hanson 1974,
+/// NNLS, with two sides). The deepest violation enters (least index on ties), and the effort moves towards the solution
+/// on the set. A point whose effort would change sign leaves. The sum above decreases strictly between sets, so none
+/// returns: finite, for semidefinite W as well. (Murty's least index is finite too, but exponential where it matters:
+/// over 10⁵ pivots for 50 nodes of a cantilever, against about a hundred.)
 ///
 /// Only the columns of sets that were tried are asked for. Cost: O(m) to read the lane, and O(k³ + m·k) for each set of
-/// k points. A set of more than `many` points is held in the band of its operator (a BandDelassus), p corrected by the
-/// residual of W itself until that is round-off: O(n), n the size of the band, and no columns. A search over such sets
-/// that comes back to one goes on from the set that an interior point shows (box_interior.cpp) before it descends.
+/// k points. A set of more than `many` points is held in the band of its operator (a BandDelassus). The residual of W
+/// itself corrects p until it is round-off. That costs O(n), n the size of the band, and no columns. A search over such
+/// sets that comes back to one goes on from the set that an interior point shows (box_interior.cpp) before it descends.
 ///
-/// **Uniqueness.** y is unique. p is computed from scratch from the final set, so the warm start changes it by
-/// round-off only, as long as W is regular on that set. Where it is not (two points at one place, more supports than a
-/// rigid body needs) one of the solutions is given: efforts on a subset of independent points, the others zero. A point
-/// depends on others when its pivot is below 16(k+1)ε of its diagonal. A point with A_ii = 0 cannot be moved and
-/// carries no effort.
+/// **Uniqueness.** y is unique. The efforts p are computed from scratch from the final set. The warm start changes them
+/// by round-off only, as long as W is regular on that set. Where it is not, one of the solutions is given: efforts on a
+/// subset of independent points, the others zero. Examples are two points at one place, or more supports than a rigid
+/// body needs. A point depends on others when its pivot is below 16(k+1)ε of its diagonal. A point with A_ii = 0 cannot
+/// be moved and carries no effort.
 ///
-/// **Tolerance.** All tests are relative to the lane's own data, so scaling y or A changes nothing. Convergence means
-/// a residual (2) of at most 10⁻¹² times the deepest violation of y°, plus 64(k+1)ε times the largest size of y°, of
-/// the bounds in force and of the terms of A p. Signs of p are exact.
+/// **Tolerance.** All tests are relative to the lane's own data, so scaling y or A changes nothing. Convergence means a
+/// residual (2) of at most 10⁻¹² d + 64(k+1)ε s. Here d is the deepest violation of y°. The size s is the largest
+/// of y°, of the bounds in force and of the terms of A p. Signs of p are exact.
 class BoxSolver {
  public:
   /// Sets of more points are held in the band, where there is one.

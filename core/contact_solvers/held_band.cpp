@@ -8,8 +8,8 @@
 namespace ricochet {
 namespace {
 
-/// Column j of a band, w + 1 numbers from its diagonal down, taken off the w columns behind it: with v = l D,
-/// A_(j+s)(j+t) −= v_s l_t. The entries become l. D is that of its inverse, as renew() knows it.
+/// Takes column j of a band off the w columns behind it. The column is w + 1 numbers from its diagonal down. With
+/// v = l D, A_(j+s)(j+t) −= v_s l_t. The entries become l. D is that of its inverse, as renew() knows it.
 template <int W>
 void eliminate_column(double* column, double inverse, double* size, int width) {
   const int w = W > 0 ? W : width;

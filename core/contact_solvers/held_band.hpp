@@ -7,7 +7,7 @@
 
 namespace ricochet {
 
-/// W = H S⁻¹ Hᵀ (m × m) of a band matrix S (n × n), with any of its points held, at a cost of n times the bandwidth
+/// W = H S⁻¹ Hᵀ (m × m) of a band matrix S (n × n), with any of its points held. The cost is n times the bandwidth,
 /// whatever their number:
 ///
 ///     [ S   Hᵀ ] [ x]   [0]
@@ -17,11 +17,11 @@ namespace ricochet {
 /// row j of H touches. Every leading block of (1) is then one of the same kind, regular where its rows of H are
 /// independent: L D Lᵀ without pivoting. Between two sets only what stands behind the first change is factorised again.
 ///
-/// A point whose pivot is lost in round-off depends on points before it (two at one place), or nothing moves it; it is
-/// dropped, p_j = 0.
+/// A point whose pivot is lost in round-off is dropped, p_j = 0. It depends on points before it (two at one place), or
+/// nothing moves it.
 ///
-/// A solve carries the round-off of S, its condition times ε; W itself, by multiply(), is that of the factor that
-/// BandLdlt gives of S, so that a residual formed by it corrects p. One object serves one thread at a time; nothing
+/// A solve carries the round-off of S, its condition times ε. W itself, by multiply(), is that of the factor that
+/// BandLdlt gives of S. A residual formed by it therefore corrects p. One object serves one thread at a time; nothing
 /// allocates after construction.
 class HeldBand {
  public:

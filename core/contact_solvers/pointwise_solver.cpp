@@ -95,7 +95,8 @@ bool PointwiseSolver::Lane::on_law(int i, double x, double terms, double p, cons
   return this->answer(i, x - width).force >= p - p_off && this->answer(i, x + width).force <= p + p_off;
 }
 
-// Of a p between the ends of a jump, as far from each as p is: not that of the end on which round-off has put x.
+// The dissipation at a p between the ends of a jump, linear in p between those of the ends. It is not that of the end
+// on which round-off has put x.
 double PointwiseSolver::Lane::dissipation_between(int i, double x, double terms, double p, const Answer& at) const {
   const double width = slack(i, terms, at);
   const Answer before = answer(i, x - width), after = answer(i, x + width);

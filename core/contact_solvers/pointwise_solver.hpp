@@ -23,9 +23,9 @@ struct PointForce {
   double dissipation = 0;  ///< power that does not come back, (p − U′(δ)) δ̇ ≥ 0, W
 };
 
-/// A compliant law, one point and one side at a time: p = Φ(δ, δ̇, δ⁻), zero where neither δ nor δ⁻ is positive, and
-/// growing, at least not falling, with δ and δ̇. Both sides have the same law; what a point feels is Φ of the lower stop
-/// minus Φ of the upper one.
+/// A compliant law, one point and one side at a time: p = Φ(δ, δ̇, δ⁻). It is zero where neither δ nor δ⁻ is positive.
+/// It grows with δ and δ̇, or at least does not fall. Both sides have the same law; what a point feels is Φ of the
+/// lower stop minus Φ of the upper one.
 class PointwiseLaw {
  public:
   virtual ~PointwiseLaw() = default;
@@ -44,7 +44,7 @@ class PointwiseLaw {
 /// is least: p is unique wherever W is regular or F answers.
 ///
 /// η = η_u = 0: closed form. One point: Newton between two bounds of p that close in, by halves where it would leave
-/// them, so that jumps and forces without bound are met too (a jump is bridged: p between its ends). Several points:
+/// them. Jumps and forces without bound are thus met too (a jump is bridged: p between its ends). Several points:
 /// Newton from the last effort, halved until the slope (2) does not turn steeply upwards,
 ///
 ///     (I + DW) δp = F − p,     D = η ∂p/∂δ + η_u ∂p/∂δ̇ ≥ 0                                                       (3)
@@ -124,8 +124,8 @@ class PointwiseSolver {
   std::vector<ContactSlopes> slopes_;           // m × lanes
 };
 
-/// How a force of the depth becomes the force of a step: at the measure where the scheme evaluates it, or from the
-/// depths δ⁻ before the step and δ after it, the measure with a `before`.
+/// How a force of the depth becomes the force of a step. It is read at the measure where the scheme evaluates it, or
+/// from the depths δ⁻ before the step and δ after it. Those two need the measure with a `before`.
 ///
 ///     at_measure   Φ(δ, δ̇)
 ///     midpoint     Φ(½(δ+δ⁻), δ̇)

@@ -13,8 +13,9 @@ namespace ricochet {
 ///
 ///     min ½aᵀB a + cᵀa − Σ w_i ln a_i,     a ≥ 0                                                                (2)
 ///
-/// strictly convex for W regular on the pushed points: there is exactly one solution, whatever y° and w ≥ 0 (the
-/// weighted centre of a linear complementarity problem; w_i = 0 is the problem itself: 0 ≤ a_i ⊥ b_i ≥ 0). One point:
+/// strictly convex for W regular on the pushed points. There is exactly one solution, whatever y° and w ≥ 0: the
+/// weighted centre of a linear complementarity problem. With w_i = 0 it is that problem itself: 0 ≤ a_i ⊥ b_i ≥ 0. One
+/// point:
 ///
 ///     a = (−c + √(c² + 4Bw)) / 2B                                                                               (3)
 ///

@@ -56,8 +56,8 @@ std::optional<Refusal> read_contact(StageProgram& program, const Stage& stage, c
   return std::nullopt;
 }
 
-// What a law reads moves with z and w by one set of columns: those of the measure, or of the rate where no effort moves
-// the measure.
+// What a law reads moves with z and w by one set of columns. They are those of the measure, or of the rate where no
+// effort moves the measure.
 std::optional<Refusal> read_impulse(StageProgram& program, const Stage& stage, const Program& whole) {
   const double weight = program.compliance ? program.compliance->impulse : stage.impact->impulse;
   if (weight == 0) return std::nullopt;

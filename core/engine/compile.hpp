@@ -71,8 +71,8 @@ struct StageProgram {
   Combination motion;    ///< of a stage whose work is given back: its test displacement; else empty
   Levels motion_levels;  ///< of the supports, in it
   double measure_z = 0;  ///< η
-  /// What an effort moves the measure and the rate by, over what the columns that the law is given say: η π₀ and η_u
-  /// π₀, where those are W = H S⁻¹Hᵀ.
+  /// What an effort moves the measure and the rate by, over what the columns given to the law say. Where these are
+  /// W = H S⁻¹Hᵀ, they are η π₀ and η_u π₀.
   double reach = 0, rate_reach = 0;
   ImpulseProgram impulse;
   std::vector<double> effort = {1.0};  ///< π
@@ -84,8 +84,8 @@ struct StageProgram {
   PhaseWeights load_phase, measure_phase, rate_phase, before_phase, predictor_phase, approach_phase, motion_phase;
   StageFacts facts;
   double momentum = 0;  ///< s: what an effort of 1 N of this stage finally gives to a free mass
-  /// Contact stages that ask at the same instant (a velocity, then a projection) are one contact instant: whether this
-  /// one is its first, and its last.
+  /// Contact stages that ask at the same instant (a velocity, then a projection) are one contact instant. Whether this
+  /// stage is its first, and its last.
   bool opens_instant = false, closes_instant = false;
 };
 

@@ -43,15 +43,15 @@ double available_memory() {
 namespace {
 
 // Nanoseconds per multiply-add, by block width 1, 2, 4, 8, 16, 32, as measured by `bench_march --calibrate` (AVX2,
-// Intel Xeon, 2.5 GHz). Substitution at one lane is bound by latency, not by throughput.
-// That through CHOLMOD's factor is from the benchmark's own rows: the sparse one less the band, and the substitution
-// that the band has in its place, over 700 multiply-adds.
+// Intel Xeon, 2.5 GHz). Substitution at one lane is bound by latency, not by throughput. The rate of a substitution
+// through CHOLMOD's factor is from the benchmark's own rows, over 700 multiply-adds. It is the sparse row less the
+// band, plus the substitution that the band has in its place.
 struct Rates {
   double product, substitution, sparse, elementwise, diagonal, measure;
 };
 
-// What a stage costs besides, whatever its size: calls, the motion of the support, and, per step and per lane, the
-// check of contact, closed now and then. What `bench_march` and `bench_decay` measure over their products and sums.
+// What a stage costs besides, whatever its size: calls and the motion of the support. Per step and per lane there is
+// the check of contact, closed now and then. What `bench_march` and `bench_decay` measure over their products and sums.
 constexpr double per_stage = 130, per_contact = 170, per_contact_lane = 25;
 
 Rates rates(int width) {

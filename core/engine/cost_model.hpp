@@ -3,8 +3,8 @@
 
 namespace ricochet {
 
-/// Bytes that this process may still take without paging: what the machine has free, less where the process or its
-/// group is allowed less; infinite where nobody says.
+/// Bytes that this process may still take without paging. That is what the machine has free, less where the process or
+/// its group is allowed less; infinite where nobody says.
 double available_memory();
 
 /// Predicted cost of marching, from operation counts and the per-operation times that the benchmark `bench_march
@@ -24,11 +24,11 @@ struct StepWork {
 /// `width`: T.
 Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork& work, int width);
 
-/// An integration of so many steps by flights: of them up to four times their root are visited, as bench_flight counts
-/// on beams, each with a step in modes and a search of a flight. Seconds, set-up included.
+/// An integration of so many steps by flights. Up to four times their root are visited, as bench_flight counts on
+/// beams. Each visit is a step in modes and a search of a flight. Seconds, set-up included.
 double predict_flights(const SemiDiscrete& problem, const StepWork& work, long long steps);
 
-/// Seconds of one forcing period of so many steps by flights: some 60 steps^0.17 of them are visited, as bench_flight
+/// Seconds of one forcing period of so many steps by flights. Some 60 steps^0.17 of them are visited, as bench_flight
 /// counts on a beam with six impacts a period.
 double predict_visits(const SemiDiscrete& problem, const StepWork& work, double steps);
 

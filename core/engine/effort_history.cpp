@@ -11,8 +11,8 @@ std::pair<int, std::size_t> place_in_steps(std::ptrdiff_t place, std::ptrdiff_t 
   return {static_cast<int>(place + steps * stages), static_cast<std::size_t>(steps)};
 }
 
-// Which block holds p₋ₖ of each stage: stages follow each other without end, and each keeps as many of its own efforts
-// as any stage looks back to.
+// Which block holds p₋ₖ of each stage. Stages follow each other without end. Each keeps as many of its own efforts as
+// any stage looks back to.
 void Marcher::connect_efforts() {
   const auto stages = static_cast<std::ptrdiff_t>(stage_states_.size());
   const auto weights = [&](std::ptrdiff_t i) {
@@ -117,8 +117,8 @@ void Marcher::connect_works() {
       stage_states_[k]->restored = stage_states_[k - static_cast<std::size_t>(before)].get();
 }
 
-// Which operators measure what the law reads: positions that no effort has moved yet, where no load is added to the
-// free step apart and one lane alone does not fly, which sums modes in another order.
+// Which operators measure what the law reads: positions that no effort has moved yet. The free step has no load added
+// apart, and nothing moves by histories. No lane flies, as a flight of one lane sums modes in another order.
 void Marcher::connect_tests() {
   if (program_.load || program_.flight || !motions().empty() || slot_count() != 2) return;
   const auto connect = [&](StageProgram& program, StageState& state) {

@@ -10,11 +10,12 @@ class EnergyScale {
  public:
   explicit EnergyScale(const SemiDiscrete& problem);
 
-  /// Of one lane, whoever marches beside it: the largest of ½ qᵀKq + ½ vᵀMv of its initial state, the static response
-  /// to the clamp's inertia forces A ω² and to resting on each stop, and the kinetic energy of the clamp's speed A ω.
+  /// Of one lane, whoever marches beside it: the largest of several energies. One is ½ qᵀKq + ½ vᵀMv of its initial
+  /// state, one the kinetic energy of the clamp's speed A ω. The others are of static responses: to the clamp's inertia
+  /// forces A ω², and to resting on each stop.
   double of_lane(const LaneSpec& lane) const;
 
-  /// The largest static energy ½ Fᵀ K⁻¹ F of the distributed load at evenly spaced times up to t (s); infinite where
+  /// The largest static energy ½ Fᵀ K⁻¹ F of the distributed load at evenly spaced times up to t (s). Infinite where
   /// nothing holds the structure back, so that no energy is too large; 0 without a load.
   double of_load(double t) const;
 

@@ -22,7 +22,7 @@ struct LaneCandidate {
 
 /// Scenes sorted into groups that march as lanes of one factorisation: same matrices, same step, same scheme and law.
 /// Amplitude, phase, stops, initial state and the law's per-lane parameters may differ. The operator is chosen with the
-/// first group, for a block of eight lanes and a long integration, and is the same for all programs: so states are in
+/// first group, for a block of eight lanes and a long integration. All programs have the same one. States are thus in
 /// the same coordinates, and results do not depend bitwise on the number of lanes.
 class LaneGroups {
  public:

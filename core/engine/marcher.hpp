@@ -98,8 +98,8 @@ class Marcher {
   LaneState tangent(int lane, int k) const { return state_at(tangent_lane(lane, k)); }
   void set_tangent(int lane, int k, const LaneState& state) { set_state_at(tangent_lane(lane, k), state); }
 
-  /// Lets tangent columns fly free through the first `steps` steps of contact at these points: an impact with inertia
-  /// is over by then, and its jump is put on by whoever asked.
+  /// Lets tangent columns fly free through the first `steps` steps of contact at these points. An impact with inertia
+  /// is over by then. The caller puts its jump on.
   void delay_tangents(const std::vector<bool>& points, int steps);
 
   long long step() const { return step_; }

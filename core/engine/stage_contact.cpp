@@ -315,8 +315,8 @@ void Marcher::keep_contact(StageState& state) {
 
 // Stages that give back what contact took in a stage before them.
 
-// δ = H s + Δφ of a stage that has found z; known up to what its law leaves of the measure (now, as it says, and a
-// share of what it puts right, at the beginning of the way) and round-off.
+// δ = H s + Δφ of a stage that has found z. It is known up to round-off and what its law leaves of the measure. That is
+// what the law says now, and a share of what it puts right at the beginning of the way.
 void Marcher::measure_way(const StageProgram& program, StageState& state, const double* z) {
   constexpr double round_off = 64 * std::numeric_limits<double>::epsilon(), left = 1e-9;
   std::array<const double*, most_slots + 1> slots{};

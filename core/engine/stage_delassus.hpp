@@ -24,8 +24,8 @@ struct ActiveSystem {
   void solve();
 };
 
-/// Columns of W = H S⁻¹ Hᵀ and the responses S⁻¹Hᵀ e_j of one stage, kept once computed; where S is a band, W as a
-/// whole.
+/// Columns of W = H S⁻¹ Hᵀ and the responses S⁻¹Hᵀ e_j of one stage, kept once computed. Where S is a band, W is there
+/// as a whole.
 class StageDelassus final : public BandDelassus {
  public:
   /// `band`: the stage, where its S is factorised as a band; else null.

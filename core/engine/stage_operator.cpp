@@ -11,8 +11,8 @@ bool any(const std::vector<double>& weights) {
   return std::any_of(weights.begin(), weights.end(), [](double w) { return w != 0; });
 }
 
-// What band and sparse operators share: the right-hand side by band products, and M x of a mass that is not assembled
-// through the border: with g = B m / √s_M the solution of the quasi-definite system is S⁻¹(b + M m).
+// What band and sparse operators share: the right-hand side by band products, and M x of a mass that is not assembled.
+// That goes through the border: with g = B m / √s_M the solution of the quasi-definite system is S⁻¹(b + M m).
 class Assembly {
  public:
   Assembly(const MarchModel& model, const FoldedStage& stage, int lanes)
@@ -91,8 +91,8 @@ class Assembly {
   Block m_, c_, b_;
 };
 
-/// Band L D Lᵀ, in place of any dense or general sparse structure: half-bandwidth 3 for Hermite, 5 with the interleaved
-/// border; by nodes where the matrices come so, which gives bitwise equal results.
+/// Band L D Lᵀ, in place of any dense or general sparse structure. The half-bandwidth is 3 for Hermite, 5 with the
+/// interleaved border. It goes by nodes where the matrices come so, with bitwise equal results.
 class BandOperator final : public StageOperator {
  public:
   BandOperator(const MarchModel& model, const FoldedStage& stage, int lanes)

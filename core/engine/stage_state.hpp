@@ -12,8 +12,8 @@
 
 namespace ricochet {
 
-/// Which stage of a step stands at `place` stages after the first of a step, and how many steps before it; negative
-/// places are in the steps before.
+/// Which stage of a step stands `place` stages after the first of a step, and how many steps before it. Negative places
+/// are in the steps before.
 std::pair<int, std::size_t> place_in_steps(std::ptrdiff_t place, std::ptrdiff_t stages);
 
 /// What a Marcher keeps of a stage between steps, and the constants of its loop.

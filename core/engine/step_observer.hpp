@@ -42,13 +42,13 @@ class StepObserver {
   /// What it asks of an integration. It keeps this up to date; the marcher reads it when an integration begins or goes
   /// on, and after each call.
   struct Asks {
-    /// The next step (counted as Marcher::step() after it) that it has to be shown whatever happens in it. interval()
-    /// tells of those before it: steps that flights leave out, and marched ones in which no stage looks at a stop.
-    /// It comes before the next step that is shown, and before march() returns. 0: every step is shown.
+    /// The next step (counted as Marcher::step() after it) that it must be shown whatever happens in it. Those before
+    /// it are told by interval(): steps that flights leave out, and marched ones in which no stage looks at a stop. A
+    /// call comes before the next step that is shown, and before march() returns. 0: every step is shown.
     long long next_shown = 0;
     bool tip = false;  ///< whether it reads the tip in marched steps of an interval
-    /// Of each stage of the plan, squares that it would see added up in free steps, if its operator sums_squares();
-    /// null or none: it needs none. One observer of an integration gets them.
+    /// Of each stage of the plan: squares that it would see added up in free steps, if its operator sums_squares().
+    /// Null or none: it needs none. One observer of an integration gets them.
     std::vector<SquareSum*> squares;
   };
 

@@ -27,8 +27,9 @@ void Marcher::remove_load(StageProgram& program, const double* load) {
       z[static_cast<std::size_t>(i) * width + column] -= scratch_[static_cast<std::size_t>(i)];
 }
 
-// What the derivative of each active measure must be: zero where a bound holds, the rebound's share of the approach
-// where a gate does, minus the free measure brought over.
+// Right-hand sides of the efforts below. With a rigid law the derivative of each active measure has a target, from
+// which the free measure is subtracted. The target is zero where a bound holds, the rebound's share of the approach
+// where a gate does.
 void Marcher::tangent_targets(const StageProgram& program, StageState& state, int lane, int tangent) {
   ActiveSystem& system = state.tangents;
   for (std::size_t a = 0; a < system.points.size(); ++a) {

@@ -21,9 +21,9 @@ std::vector<double> band_storage(const SparseMatrix& matrix, int half_width, boo
 ///     [ G   −C_v ] [r] = [g]        so that  (A + Gᵀ C_v⁻¹ G) z = b + Gᵀ C_v⁻¹ g                                 (1)
 ///
 /// with A SPD and C_v SPD: L D Lᵀ exists without pivoting in any symmetric ordering (Vanderbei 1995, quasi-definite
-/// matrices). The r unknowns are interleaved among the z unknowns by the largest column of their row of G, which keeps
-/// the band narrow: after it, or before it where `border_first`. With G diagonal and regular, border first, A need only
-/// be semidefinite: every pivot of z then holds what its own r has brought.
+/// matrices). The r unknowns are interleaved among the z unknowns by the largest column of their row of G. Each stands
+/// after that column, or before it where `border_first`. This keeps the band narrow. With G diagonal and regular,
+/// border first, A need only be semidefinite: every pivot of z then holds what its own r has brought.
 struct QuasiDefinite {
   SparseMatrix A, G, Cv;  ///< G and Cv may be 0 × 0
   bool border_first = false;
@@ -34,8 +34,8 @@ struct QuasiDefinite {
 /// L D Lᵀ of a symmetric band matrix without pivoting, stored for LaneKernels::band_step.
 class BandLdlt {
  public:
-  /// Fails (with a sentence) when a pivot vanishes, is not finite, or has not the sign it must have: positive for dofs,
-  /// negative for the border.
+  /// Fails (with a sentence) when a pivot is lost in round-off, is not finite or has the wrong sign. Pivots of dofs are
+  /// positive, those of the border negative.
   std::optional<std::string> factorise(const QuasiDefinite& matrix);
 
   int rows() const { return rows_; }

@@ -12,7 +12,7 @@ Eigen::MatrixXd householder_basis(const Eigen::MatrixXd& A);
 /// Its first columns, as many as A has: Q applied to them.
 Eigen::MatrixXd householder_columns(const Eigen::MatrixXd& A);
 
-/// Q of A P = Q R with pivoted columns, n × n, and the rank of A to round-off: the columns of Q behind it are
+/// Q of A P = Q R with pivoted columns, n × n, and the rank of A to round-off. Columns of Q behind the rank are
 /// orthogonal to those of A.
 struct PivotedBasis {
   Eigen::MatrixXd basis;

@@ -107,8 +107,9 @@ class SecularZeros {
  private:
   Index near(Index k) const { return nearest_[static_cast<std::size_t>(k)]; }
 
-  // Between the poles k and k + 1, where f rises from −∞ to ∞: by f ≈ a + s/(d_k − ν) + t/(d_{k+1} − ν) with the slopes
-  // of the poles on both sides (Bunch, Nielsen and Sorensen, Numer. Math. 31, 1978), within the bracket.
+  // Between the poles k and k + 1, where f rises from −∞ to ∞. The model f ≈ a + s/(d_k − ν) + t/(d_{k+1} − ν) has the
+  // slopes of the poles on both sides (Bunch, Nielsen and Sorensen, Numer. Math. 31, 1978). The zero stays within the
+  // bracket.
   void find(Index k) {
     const double width = poles_[k + 1] - poles_[k];
     const bool left = sum(poles_[k], 0.5 * width) > 0;

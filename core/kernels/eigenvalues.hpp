@@ -36,9 +36,9 @@ GeneralModes general_modes(const Eigen::MatrixXd& A, EigenVectors vectors = Eige
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& A);
 Eigen::VectorXd singular_values(const Eigen::MatrixXcd& A);
 
-/// A becomes D⁻¹ A D with D of powers of two, its rows and columns of about the same size (Parlett and Reinsch 1969);
-/// returns D. Eigenvalues stay, and are found more accurately. Rows and columns whose sizes differ by more than 1 :
-/// `negligible` are left alone: against round-off there is nothing to balance, and a defective matrix would look
+/// A becomes D⁻¹ A D, with rows and columns of about the same size (Parlett and Reinsch 1969). Returns D, of powers of
+/// two. Eigenvalues stay, and are found more accurately. Rows and columns whose sizes differ by more than 1 :
+/// `negligible` are left alone. Against round-off there is nothing to balance, and a defective matrix would look
 /// diagonal.
 Eigen::VectorXd balance(Eigen::MatrixXd& A, double negligible = 1e-13);
 
@@ -49,13 +49,13 @@ struct ConstrainedModes {
 };
 
 /// Ψ and m with C Ψ = 0, ΨᵀΨ = 1, Ψᵀ diag(d) Ψ = diag(m), from the modes of the free structure (K = 1, M = diag(d)):
-/// `mass` d ≥ 0 (n), `rows` C (k × n, independent, k < n). One row c after the other: with the poles d_j the new masses
-/// are the zeros of the secular equation, one between any two of them,
+/// `mass` d ≥ 0 (n), `rows` C (k × n, independent, k < n). One row c is taken after the other. With the poles d_j the
+/// new masses are the zeros of the secular equation, one between any two of them,
 ///
 ///     f(ν) = Σ_j c_j² / (d_j − ν) = 0,     ψ_j = c_j / (d_j − ν)
 ///
-/// (Golub, Some modified matrix eigenvalue problems, SIAM Review 15, 1973, §5), found from the nearer pole, so that
-/// each d_j − ν has its digits whatever the sizes of masses; vectors are those of the c of which the zeros found are
+/// (Golub, Some modified matrix eigenvalue problems, SIAM Review 15, 1973, §5). Zeros are found from the nearer pole:
+/// each d_j − ν has its digits whatever the sizes of masses. Vectors are those of the c of which the zeros found are
 /// exact (Gu and Eisenstat, SIAM J. Matrix Anal. Appl. 15, 1994, §3), orthogonal to round-off. Poles that coincide are
 /// turned until one c is left. n² operations per row, and n²(n − k) from the second on.
 ConstrainedModes constrained_modes(const Eigen::VectorXd& mass, const Eigen::MatrixXd& rows);

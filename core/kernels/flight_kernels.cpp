@@ -5,8 +5,8 @@
 namespace ricochet {
 namespace {
 
-// All that takes or gives a vector is inlined: a call would pass it as the caller's instruction set has it, the
-// callee's takes it as its own.
+// All that takes or gives a vector is inlined. A call would pass the vector as the caller's instruction set has it, and
+// the callee would take it as its own has it.
 #define RICOCHET_BODY [[gnu::always_inline]] inline
 #define RICOCHET_INLINED __attribute__((always_inline))
 

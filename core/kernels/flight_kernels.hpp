@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// The inner loops of flights, over the modes of one lane: arrays of n numbers, one per mode; tables of such arrays,
+/// The inner loops of flights, over the modes of one lane. An array is n numbers, one per mode. A table is such arrays,
 /// one per entry of a small matrix. Instruction sets are chosen when the table is asked for.
 namespace ricochet {
 
@@ -15,8 +15,8 @@ struct FlightKernels {
   /// amplitude += |re + i im|, bend += weight |re + i im|.
   void (*modulus)(int n, const double* re, const double* im, const double* weight, double* amplitude, double* bend);
   /// Where each mode is after 0 and after k steps, and how far from there it may be at any step up to then. It goes
-  /// along its first two values c and c + d with second differences of at most `bend`, or stays within its amplitude;
-  /// the narrower of both is told. `places`: four arrays, near, its radius, far, its radius.
+  /// along its first two values c and c + d with second differences of at most `bend`, or stays within its amplitude.
+  /// The narrower of both at step k is told. `places`: four arrays, near, its radius, far, its radius.
   void (*cone)(int n, double k, const double* value, const double* change, const double* amplitude, const double* bend,
                double* places);
   /// Σ h_j near_j, Σ |h_j| radius_j, and the same of far, over n modes of arrays that are `stride` numbers apart.

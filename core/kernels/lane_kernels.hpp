@@ -3,10 +3,10 @@
 #include <ricochet/kernels/instruction_set.hpp>
 
 /// \file
-/// The inner loops of marching, on blocks of lanes. A block is rows × T doubles, lanes contiguous, 64-byte aligned and
-/// padded to a multiple of 64 bytes; T is one of 1, 2, 4, 8, 16, 32. Every kernel does the same sequence of operations
-/// for each lane whatever T is, so a lane's result does not depend on the other lanes of its block. Instruction sets
-/// are chosen when the table is asked for, never by the ABI.
+/// The inner loops of marching, on blocks of lanes. A block is rows × T doubles with lanes contiguous; T is one of 1,
+/// 2, 4, 8, 16, 32. It is 64-byte aligned and padded to a multiple of 64 bytes. Every kernel does the same sequence of
+/// operations for each lane, whatever T is. A lane's result does not depend on the other lanes of its block.
+/// Instruction sets are chosen when the table is asked for, never by the ABI.
 namespace ricochet {
 
 /// The most blocks that a kernel combines: the slots of a plan, and one more where the unknown z is measured with them.
@@ -71,11 +71,11 @@ struct SquareSum {
   double form = 0, projection = 0;
 };
 
-/// The step of a BandStep whose rows come by nodes: two dofs each (deflection and rotation of Hermite elements) or,
-/// with `border`, an unknown of the border between them, every node coupled with its neighbours alone. The operations
-/// are those of BandStep in the same order, without the terms that are zero whatever the numbers: the results are the
-/// same. Update and measures included, each block is read twice per step, once down the nodes and once up. One lane
-/// multiplies and measures in vectors of rows and points.
+/// The step of a BandStep whose rows come by nodes, every node coupled with its neighbours alone. A node has two dofs
+/// (deflection and rotation of Hermite elements). With `border` an unknown of the border stands between the two. The
+/// operations are those of BandStep in the same order, without the terms that are zero whatever the numbers: the
+/// results are the same. Update and measures included, each block is read twice per step, once down the nodes and once
+/// up. One lane multiplies and measures in vectors of rows and points.
 struct NodeStep {
   int nodes = 0;
   bool border = false;

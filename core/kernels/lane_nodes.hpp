@@ -13,8 +13,8 @@ struct NodeRows {
   V<T> w[G], t[G];
 };
 
-// Rows 2a and 2a + 1 of k, of the slots as they are after the update; and what these give to the measure of the point
-// there, which saves the way up their rows.
+// Rows 2a and 2a + 1 of k, of the slots as they are after the update. With `Test` also what these give to the measure
+// of the point there: the way up then need not read their rows.
 template <int T, int G, bool Update, bool Test>
 RICOCHET_INLINE void combined_rows(const NodeStep& step, long a, long first, NodeRows<T, G>& out) {
 #pragma GCC unroll 2
@@ -266,7 +266,7 @@ RICOCHET_INLINE void nodes_up(const NodeStep& step, long first) {
   if constexpr (Test) step.test->outside |= outside_lanes<T, G>(inside, first);
 }
 
-// The same of one lane, with the sums of its squares: those of two nodes at once, in the time in which the substitution
+// The same of one lane, with the sums of its squares. Those of two nodes are taken at once, while the substitution
 // waits for itself.
 template <bool Border, bool Test>
 RICOCHET_INLINE void nodes_up_summed(const NodeStep& step) {

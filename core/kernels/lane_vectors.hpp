@@ -7,7 +7,7 @@
 /// \file
 /// Rows of a block as vectors of lanes. For lane_kernels.cpp alone, here and in the other lane_*.hpp: one body per
 /// kernel, force-inlined into a wrapper per instruction set. `a += b * c` contracts to one fused operation in each
-/// wrapper that has it, in scalar and in vector code alike, which is what makes lanes independent of their number; the
+/// wrapper that has it, in scalar and in vector code alike. This makes lanes independent of their number. The
 /// contraction is a flag of that one source.
 #define RICOCHET_INLINE inline __attribute__((always_inline))
 
@@ -70,7 +70,7 @@ RICOCHET_INLINE Vector4 loadu4(const double* from) {
   return *reinterpret_cast<const LooseFour*>(from);
 }
 
-// In a loop of unknown length over one lane the compiler would multiply in vectors and add one by one, unfused: this
+// In a loop of unknown length over one lane the compiler would multiply in vectors and add one by one, unfused. This
 // keeps each step of the sum where it is written.
 template <int T, int W>
 RICOCHET_INLINE void keep_order([[maybe_unused]] V<T>* sum) {

@@ -76,8 +76,8 @@ class CombinedForm {
   /// h: as many numbers as A has rows; null: zeros.
   explicit CombinedForm(const QuadraticForm& form, const double* h = nullptr);
 
-  /// 1 ≤ count ≤ most_terms; `ratio` holds r_0 = 1, r_1, … Each x_k and `out` are blocks of one lane, or start on 32
-  /// bytes with room up to a whole number of fours. x itself is written where `out` is given.
+  /// 1 ≤ count ≤ most_terms; `ratio` holds r_0 = 1, r_1, …; where `out` is given, x itself is written to it. Each x_k
+  /// and `out` are blocks of one lane, or start on 32 bytes with room up to a whole number of fours.
   Value operator()(int count, const double* const* x, const double* ratio, double* out = nullptr) const {
     return kernels_ ? kernels_[count - 1]({rows_, fours_.data()}, x, ratio, out) : at_length(count, x, ratio, out);
   }

@@ -66,7 +66,8 @@ StaticModes static_modes(const BeamSpec& beam, int elements);
 double buckling_load(const BeamSpec& beam, int elements);
 
 /// Throws InputError at /scene/structure/… for supports, sections and masses outside of the beam or twice at one place,
-/// for numbers out of range, and for a tension beyond the first buckling load.
+/// and for numbers out of range. The same for a tension beyond the first buckling load, and supports that hold every
+/// dof.
 void check_beam(const BeamSpec& beam, int elements);
 
 }  // namespace ricochet

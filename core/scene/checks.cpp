@@ -194,8 +194,8 @@ void check_order(const std::vector<double>& x, const Eigen::VectorXd& lower, con
   }
 }
 
-/// With a stop along the whole structure what is held lies between the stops too, wherever the support takes it; where
-/// a law lets points pass, it may as well.
+/// With a stop along the whole structure what is held lies between the stops too, wherever the support takes it. It may
+/// pass where a law lets points pass.
 void check_held(const SceneSpec& scene, const HeldPlace& place, const ForceBeyond& beyond) {
   const double clamp = place.x;
   const double lower = scene.stops.lower ? (*scene.stops.lower)(clamp) : -infinity;

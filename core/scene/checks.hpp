@@ -13,8 +13,8 @@ namespace ricochet {
 /// Length of the structure, m; 0 for an oscillator.
 double structure_length(const SceneSpec& scene);
 
-/// Where the displacement shown to people is, m: the free end of a beam or bar, at L before at 0; of a beam held at
-/// both, the middle of its longest span.
+/// Where the displacement shown to people is, m. A beam has it at its free end, at L before at 0; a bar at 0 before at
+/// L. A beam held at both has it at the middle of its longest span.
 double tip_position(const SceneSpec& scene);
 /// Where the displacement shown to people stands: at the first point of the scene, else at the tip.
 double shown_position(const SceneSpec& scene);
@@ -47,8 +47,8 @@ inline ForceBeyond anywhere_beyond() {
   return [](double) { return true; };
 }
 
-/// That of a law with these parameters: a compliant law pushes where it stores a finite energy, and where there is no
-/// contact nothing has to. Sizes the law for one point, and is good for as long as the law is.
+/// That of a law with these parameters. A compliant law pushes where it stores a finite energy. Where there is no
+/// contact nothing has to push. Sizes the law for one point, and is good for as long as the law is.
 ForceBeyond force_beyond(ContactLaw& law, const Parameters& parameters);
 
 /// What is wrong with stops, clamp or initial state is that they lie beyond a stop where nothing pushes them back:
@@ -58,7 +58,7 @@ struct BeyondStop : InputError {
 };
 
 /// Throws BeyondStop at `pointer` when u leaves [lower, upper] at a point (absolute displacements, m) where no law
-/// pushes it back; `what` names u in the sentence, `names` the stops where they have names. A passage smaller than
+/// pushes it back. `what` names u in the sentence, `names` the stops where they have names. A passage smaller than
 /// 1e-12 of the values compared is rounding.
 void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u, const Eigen::VectorXd& lower,
                          const Eigen::VectorXd& upper, const std::string& pointer, const std::string& what,
@@ -67,8 +67,8 @@ void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u,
 /// Throws InputError for a structure that is none, whatever acts on it, and by check_magnitudes().
 void check_structure_alone(const SceneSpec& scene, int elements);
 
-/// Throws InputError where numbers that are each in range make coefficients whose squares doubles cannot hold: the
-/// stiffness and the mass of an element, their ratio, damping, the acceleration of the support.
+/// Throws InputError where numbers that are each in range make coefficients whose squares doubles cannot hold. Such are
+/// the stiffness and the mass of an element, their ratio, damping, the motion of the support.
 void check_magnitudes(const SceneSpec& scene, int elements);
 
 /// φ and its first three derivatives at t = 0: m, m/s, m/s², m/s³.

@@ -12,12 +12,13 @@ class ParserError;
 
 namespace ricochet {
 
-/// Throws InputError (with the pointer) for a text that is no expression: empty, or an assignment. muParser reads
-/// "x = 3" as one, which would change the variable behind our back.
+/// Throws InputError (with the pointer) for a text that is no expression: empty, too long, or an assignment. The
+/// parser (muParser) reads "x = 3" as an assignment, which would change the variable unseen.
 void require_expression(const std::string& text, const std::string& pointer);
 
-/// Throws InputError (with the pointer) that says what a parser did not understand: an unknown name with the nearest of
-/// `names`, the constants and the functions, what `names_in_words` tells of those that may appear; or its own message.
+/// Throws InputError (with the pointer) that says what a parser did not understand. Of an unknown name it tells the
+/// nearest of `names`, the constants and the functions, and `names_in_words`, which says what may appear. Else it gives
+/// the parser's own message.
 [[noreturn]] void explain_formula(const mu::Parser& parser, const mu::ParserError& error, const std::string& text,
                                   const std::string& pointer, std::vector<std::string> names,
                                   const std::string& names_in_words);
@@ -62,8 +63,8 @@ class Formula {
 };
 
 /// Formulas over one set of named values: "(0.5-beta)*h*h", "gamma == 0.5 ? 2 : 1". A formula is evaluated in double
-/// precision in the order in which it is written, products from left to right, so that it gives what the same text
-/// gives in C++; nothing is merged or reordered. For one thread at a time.
+/// precision in the order in which it is written, products from left to right. It gives what the same text gives in
+/// C++; nothing is merged or reordered. For one thread at a time.
 class NamedFormulas {
  public:
   NamedFormulas();

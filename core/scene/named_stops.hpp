@@ -34,8 +34,8 @@ void check_name(const std::string& name, const std::string& pointer);
 /// The row of a stop: that of `at` less that of `to`. `number`: of the stop in its list, for pointers.
 PlaceRow stop_row(const SceneSpec& scene, const FiniteElementSpace& space, const NamedStop& stop, std::size_t number);
 
-/// Throws InputError for a force on a beam, the term number k of its load, that no component has or that acts along z
-/// where nothing can move; false where it acts along y alone.
+/// Throws InputError for a force on a beam, the term number k of its load, along a component that the beam has not. The
+/// same for one along z beyond the beam or where nothing can move. False where it acts along y alone.
 bool check_force_across(const SceneSpec& scene, const FiniteElementSpace& space, std::size_t k);
 
 /// The contact points of a scene.
@@ -63,21 +63,22 @@ PlaceRow given_tip(const AssembledSpec& spec, const SceneSpec& scene);
 /// study says it.
 std::string tip_choice(const SceneSpec& scene);
 
-/// Throws InputError for names that are none or stand twice, bounds that are missing or cross, places that are not
-/// there, stops at which nothing can move, two stops on one row, a stop between two points of a structure whose clamp
-/// moves.
+/// Throws InputError for names that are none or stand twice, and for bounds that are missing or cross. The same for
+/// places that are not there, stops at which nothing can move, and two stops on one row. The same for a stop between
+/// two points of a structure whose clamp moves.
 void check_named_stops(const SceneSpec& scene, const FiniteElementSpace& space);
 
-/// Throws BeyondStop where the formula of the initial displacement of a beam, a bar or an oscillator is beyond a stop
-/// of the list and nothing pushes back.
+/// Throws BeyondStop where the initial displacement of a beam, a bar or an oscillator is beyond a stop of the list and
+/// nothing pushes back.
 void check_named_start(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond);
 
-/// Throws InputError for formulas, which matrices that are given have no x for (`no_x` says so and what is expected),
-/// and for a held dof that begins elsewhere.
+/// Throws InputError for formulas: matrices that are given have no x for them (`no_x` says so and what is expected).
+/// The same for a held dof that does not begin at 0, at rest.
 void check_given_initial(const AssembledStructure& structure, const InitialSpec& initial, const std::string& no_x);
 
-/// What the study may not say of matrices that are given: positions x, formulas in x, a clamp that moves, a held dof
-/// that begins elsewhere, an initial state beyond a stop where nothing pushes back.
+/// What the study may not say of matrices that are given: positions x, formulas in x, an amplitude without supports in
+/// the table. Nor may a force act where nothing can move, a held dof begin elsewhere, or a state begin beyond a stop
+/// where nothing pushes back.
 void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond);
 
 /// Displacements or velocities of the free dofs at t = 0 (n).

@@ -29,8 +29,8 @@ void check_tangents(const SceneSpec& scene, const FiniteElementSpace& space);
 /// Fills points and tangents of a problem whose supports and motions are known.
 void observe_rows(const SceneSpec& scene, SemiDiscrete& problem);
 
-/// The problem as references of the semi-discrete problem are given it: the matrices that a method would march, dense,
-/// and rows that give w and its strain at `places` (x, m). A load that depends on t is given by its value at 0.
+/// The problem as references of the semi-discrete problem are given it. It has the matrices that a method would march,
+/// dense, and rows that give w and its strain at `places` (x, m). A load that depends on t is given by its value at 0.
 DiscreteProblem discrete_problem(const SemiDiscrete& problem, const std::vector<double>& places);
 
 /// The displacement at `places` (x, m) as rows (places × n); of matrices that are given, which have no x, that of the

@@ -40,9 +40,9 @@ StaticModes join_planes(const FiniteElementSpace& joint, const std::array<Static
 /// A mass made of each plane by itself. What refuses a plane refuses the beam.
 InertiaOrRefusal mass_by_plane(const MassStrategy& mass, const FiniteElementSpace& joint);
 
-/// Shares of u_y and u_z in the displacement that a place of a beam means: (1, 0) unless it says a component or a
-/// direction, which is normalised. Throws InputError below `pointer` for another word, for a direction without length,
-/// for uz and directions where the structure moves in one plane.
+/// Shares of u_y and u_z in the displacement that a place of a beam means. They are (1, 0) unless it says a component
+/// or a direction, which is normalised. Throws InputError below `pointer` for another word and a direction without
+/// length. Where the structure moves in one plane, also for uz and a direction that is not along y.
 std::array<double, 2> plane_shares(const Place& place, bool two_planes, const std::string& pointer);
 
 /// u_z, or its slope, of a formula at a dof of a beam of this length.

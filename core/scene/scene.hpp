@@ -161,8 +161,8 @@ struct StopParameters {
 
 struct MotionSpec;
 
-/// A side of a clearance, the polygon round a circle: the stop bounds cos α u₁ + sin α u₂, u₁ at its own places and u₂
-/// at those here. Opposite sides are one row with two bounds.
+/// A side of a clearance, the polygon round a circle. The stop bounds cos α u₁ + sin α u₂, with u₁ at its own places
+/// and u₂ at those here. Opposite sides are one row with two bounds.
 struct ClearanceSide {
   int number = 0;     ///< from 0
   double angle = 0;   ///< α, rad

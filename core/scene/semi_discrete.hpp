@@ -68,9 +68,9 @@ class DistributedLoad {
 ///     M q'' + C q' + K q = F(t) − φ''(t) s + Hᵀ p,     lower − φ(t) ≤ H q ≤ upper − φ(t),     C = αK + ηM
 /// with s_i = ∫ρS φ_i (whatever the mass strategy). φ moves all supports and the ground of a foundation together.
 /// Motions φ_j of supports by histories: w = u − Σ ψ_j φ_j, F holds −Σ s_j φ_j'', and bounds are less Σ (Hψ)_j φ_j. Of
-/// a contact law that changes the problem, K is the K' and H the G of ContactStructure; `contact` stays H. Of a basis,
-/// q is q̂ and what is n × n, m × n or n holds in its coordinates; what supports do (static_modes, support_loads) and
-/// `space` stay those of the mesh.
+/// a contact law that changes the problem, K is the K' and H the G of ContactStructure; `contact` stays H. With a
+/// basis, q is q̂, and what is n × n, m × n or n holds in its coordinates. What supports do (static_modes,
+/// support_loads) and `space` stay those of the mesh.
 struct SemiDiscrete {
   FiniteElementSpace space;
   std::shared_ptr<const ModalBasis> basis;  ///< null: q are the dofs of the mesh
@@ -80,14 +80,14 @@ struct SemiDiscrete {
   Damping damping;         ///< α, η
   SupportSpec support;
   Eigen::VectorXd support_shape;  ///< s (kg)
-  /// What holds the structure, by name: the supports of a beam, the clamp of a beam or bar, the base of an oscillator,
-  /// those of the table of dofs.
+  /// Names of what holds it: supports of a beam, clamp of a beam or bar, base of an oscillator, supports of the table
+  /// of dofs.
   std::vector<std::string> supports;
   /// ψ_j (n × r), K ψ_j = −K_fs e_j: the displacement of the structure at rest while support j alone is moved by 1. Its
   /// columns sum to the rigid translation, unless a foundation, whose ground stays at rest, holds the beam too.
   Eigen::MatrixXd static_modes;
-  /// s_j = M ψ_j + M_fs e_j (n × r, kg) with the consistent mass whatever the strategy: support j accelerating by a
-  /// loads the displacements relative to ψ_j by −a s_j.
+  /// s_j = M ψ_j + M_fs e_j (n × r, kg) with the consistent mass whatever the strategy. A support j that accelerates by
+  /// a loads the displacements relative to ψ_j by −a s_j.
   Eigen::MatrixXd support_loads;
   std::vector<double> support_x;  ///< where each holds the displacement of a beam or bar, m; NaN where it holds none
   /// Whether nothing of the structure can move rigidly, so that K is positive definite; false of an oscillator.
@@ -152,20 +152,20 @@ Eigen::MatrixXd motion_shapes(const SemiDiscrete& problem, const std::vector<dou
 /// `velocity`. What the clamp imposes is dropped, and a note says so when the formulas differ from it.
 void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem);
 
-/// The displacement space of the structure without contact dofs, on `elements` equal elements; of a beam with supports,
-/// sections or masses between its ends, on those of beam_intervals().
+/// The displacement space of the structure without contact dofs, on `elements` equal elements. A beam with supports,
+/// sections or masses between its ends has the elements of beam_intervals().
 FiniteElementSpace make_space(const StructureSpec& structure, int elements);
 
 /// A structure by itself: its space, K, supports and static modes. Nothing acts on it, and it has no mass yet.
 SemiDiscrete structure_alone(const StructureSpec& structure, int elements);
 
 /// Scene × mesh × mass strategy → matrices. Throws InputError with JSON pointers into the scene ("/scene/stops/lower",
-/// …) for stops that cross (lower > upper somewhere), a clamp that the support pushes through a stop, an initial state
-/// outside the stops, formulas that give no finite value. A strategy that does not apply is a Refusal, and so is a law.
-/// Without a law the problem is that of laws that do not change it.
+/// …) for stops that cross (lower > upper somewhere) or a clamp that the support pushes through one. The same for an
+/// initial state outside the stops and formulas that give no finite value. A strategy that does not apply is a Refusal,
+/// and so is a law. Without a law the problem is that of laws that do not change it.
 ///
-/// With a law and its parameters, stops may cross and the clamp and the initial state lie beyond them where the law
-/// pushes back (force_beyond()); where it does not, that is a Refusal of the law.
+/// With a law and its parameters, stops may cross, and the clamp and the initial state lie beyond them, where the law
+/// pushes back (force_beyond()). Where it does not, that is a Refusal of the law.
 SemiDiscreteOrRefusal discretise(const SceneSpec& scene, int elements, const MassStrategy& mass,
                                  ContactLaw* law = nullptr, const Parameters* parameters = nullptr);
 

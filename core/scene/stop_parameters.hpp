@@ -34,7 +34,7 @@ struct UnusedParameter {
   bool wrong = false;  ///< whether the law has such a parameter, or a force that should: it is refused
 };
 /// What of the stops' own stiffness and damping a law does not take. A rigid law, and a law without the parameter
-/// damping, leave it aside; a compliant law with another stiffness than N/m, or one set for all stops, refuses it.
+/// damping, leave it aside. A compliant law refuses it with another stiffness than N/m, or with one set for all stops.
 std::vector<UnusedParameter> unused_by(const ContactLaw& law, const OwnParameters& stops);
 
 /// The refusal of a law that cannot take what stops have of their own, or nothing. `names`: of the stops.

@@ -23,12 +23,14 @@ const std::string& carrier_of(const SceneSpec& scene, std::size_t stop);
 std::string carrier_pointer(const SceneSpec& scene, std::size_t stop);
 
 /// What carries a stop: shares of motions (−1: supports at rest) in the displacement that it bounds. A clearance goes
-/// along with a support that holds u₁ or u₂ in the table of dofs, or is called like the carrier, a dot and the
-/// component. Throws InputError for an unknown name, supports that move apart, one whose way is not known.
+/// along with a support that is called like the carrier, a dot and the component. Without one it goes along with the
+/// carrier where that holds u₁ or u₂ in the table of dofs. Throws InputError for an unknown name, supports that move
+/// apart, one whose way is not known.
 std::vector<std::pair<double, int>> carried_by(const SceneSpec& scene, std::size_t number, const MovedSupports& moved);
 
-/// How far a stop moves along its row by a motion of its own of 1: by 1, a side of a clearance by its share of the
-/// component that the motion says, u₁ where it says none. Throws InputError for another word.
+/// How far a stop moves along its row by a motion of its own of 1: by 1. A side of a clearance moves by its share of
+/// the component that the motion says, u₁ where it says none. Throws InputError for another word, and for a
+/// component of any other stop.
 double own_share(const NamedStop& stop, std::size_t number);
 
 /// Fills names, static modes, loads and places of what holds the structure, and whether it is held.
@@ -46,8 +48,8 @@ std::vector<std::pair<int, double>> held_by(const std::vector<double>& supports,
 /// Columns of supports to columns of motions: the sum over those that each moves.
 Eigen::MatrixXd of_motions(const SupportMotions& motions, const Eigen::MatrixXd& shapes);
 
-/// Throws InputError for an unknown support, one that two motions move, a stop that would move with supports that move
-/// apart or rest, a frame without motions.
+/// Throws InputError for an unknown support, one that two motions move, a harmonic support beside motions, a frame or a
+/// carrier without motions. The same for a stop that would move with supports that move apart.
 void check_motions(const SceneSpec& scene);
 
 /// Fills the motions of a problem whose supports, contact points and tip are known, and adds −Σ s_j φ_j'' to its load.
@@ -55,8 +57,9 @@ void check_motions(const SceneSpec& scene);
 void add_motions(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, SemiDiscrete& problem,
                  DistributedLoad& load);
 
-/// The same, and the harmonic motion of all supports of matrices that are given: where these lift the stops and the tip
-/// alike, it stays the support of the problem, whose shape is Σ s_j. Else it is a motion of them all.
+/// The same, and the harmonic motion of all supports. Where these lift the stops alike (of given matrices
+/// the tip too), it stays the support of the problem. Of given matrices its shape is then Σ s_j. Where they do not, it
+/// is a motion of them all.
 void add_support(const SceneSpec& scene, const Eigen::MatrixXd& on_supports, SemiDiscrete& problem,
                  DistributedLoad& load);
 

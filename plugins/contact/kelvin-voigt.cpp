@@ -5,8 +5,8 @@ namespace {
 
 using namespace ricochet;
 
-/// p = (k δ + c δ̇)₊ for δ > 0. At δ = 0 the force jumps to c δ̇ where the point arrives: the graph is closed there,
-/// 0 ≤ p ≤ c δ̇, without which a step may have no solution. With b = c/2m and w² = k/m − b² > 0 a mass m keeps
+/// p = (k δ + c δ̇)₊ for δ > 0. At δ = 0 the force jumps to c δ̇ where the point arrives. The graph is closed
+/// there: 0 ≤ p ≤ c δ̇. Without that a step may have no solution. With b = c/2m and w² = k/m − b² > 0 a mass m keeps
 ///
 ///     e = exp[−(b/w)(π − atan2(2bw, w² − b²))]
 ///

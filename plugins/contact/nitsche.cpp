@@ -33,8 +33,9 @@ double coercivity_limit(const SparseMatrix& reactions, double kappa) {
   return symmetric_modes(reactions, EigenVectors::none).values.maxCoeff();
 }
 
-/// Nitsche's method with θ = 1 at pointwise stops. The elements report the reaction σ_i = s_iᵀq at node i: a beam's
-/// jump of shear EI(u‴₊ − u‴₋), a bar's EA(u′₋ − u′₊); both are the row of K q, s = H K. With κ = γ₀·12EI/ℓ³ or γ₀·EA/ℓ
+/// Nitsche's method with θ = 1 at pointwise stops. The elements report the reaction σ_i = s_iᵀq at node i. Of a beam it
+/// is the jump of shear EI(u‴₊ − u‴₋), of a bar EA(u′₋ − u′₊). Both are the row of K q: s = H K. With κ = γ₀·12EI/ℓ³ or
+/// γ₀·EA/ℓ
 ///
 ///     G = H − s/κ,     K' = K − sᵀs/κ always,     p = κ(lower − G q)₊ − κ(G q − upper)₊
 ///

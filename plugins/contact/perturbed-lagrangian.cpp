@@ -8,8 +8,9 @@ namespace {
 
 using namespace ricochet;
 
-/// Rigid stops with a multiplier that gives way: lower ≤ y + p/κ ⊥ p ≤ upper on the scheme's impact measure y, the
-/// optimality of the Lagrangian less |p|²/2κ. κ → ∞ is Signorini; augmented-lagrangian makes one such solve from λ = 0.
+/// Rigid stops with a multiplier that gives way. With the scheme's impact measure y it solves
+/// lower ≤ y + p/κ ⊥ p ≤ upper, the optimality of the Lagrangian less |p|²/2κ. κ → ∞ is Signorini;
+/// augmented-lagrangian makes one such solve from λ = 0.
 class PerturbedLagrangian final : public ContactLaw {
  public:
   void prepare(int points, std::span<const Parameters> lanes) override {

@@ -23,8 +23,9 @@ struct PowerLaw {
   }
   PointForce at(double depth) const { return {.value = force(depth), .stiffness = slope(depth)}; }
 
-  /// The discrete gradient [U(δ) − U(δ⁻)]/(δ − δ⁻), whose work over the step is U(δ) − U(δ⁻) whatever the step; the
-  /// force half-way where both depths are equal to 1e-9. Written with expm1, so that it does not cancel in between.
+  /// The discrete gradient [U(δ) − U(δ⁻)]/(δ − δ⁻): its work over the step is U(δ) − U(δ⁻) whatever the step. Where
+  /// both depths are equal to 1e-9, it is the force half-way. Written with expm1, so that it does not cancel in
+  /// between.
   PointForce between(double depth, double before) const;
 };
 
@@ -101,8 +102,8 @@ inline std::vector<PowerLaw> power_laws(std::span<const Parameters> lanes) {
 }
 
 /// The discrete gradient [U(δ) − U(δ⁻)]/(δ − δ⁻) of a law with stored(), force() and slope(), whose force changes over
-/// lengths of `scale` (m) near both depths. Where they are closer than a fiftieth of that the difference would cancel,
-/// and the mean of the force over the way is taken at five Gauss points, exact to round-off there.
+/// lengths of `scale` (m) near both depths. Where they are closer than a fiftieth of that, the difference would cancel.
+/// There the mean of the force over the way is taken at five Gauss points, exact to round-off.
 template <class Law>
 PointForce mean_force(const Law& law, double depth, double before, double scale) {
   constexpr double near = 0.02;
@@ -126,8 +127,8 @@ PointForce mean_force(const Law& law, double depth, double before, double scale)
   return mean;
 }
 
-/// p = f (1 + χ δ̇)₊ with an elastic force f, k δⁿ or its mean over a step: it grows with the speed of closing, never
-/// pulls, and starts and ends at zero.
+/// p = f (1 + χ δ̇)₊ with an elastic force f: k δⁿ or its mean over a step. It grows with the speed of closing and
+/// never pulls. It starts and ends at zero.
 inline PointForce damped(const PointForce& elastic, double chi, double rate) {
   const double factor = 1 + chi * rate;
   PointForce force;

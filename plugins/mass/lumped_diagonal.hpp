@@ -3,9 +3,9 @@
 
 namespace ricochet {
 
-/// What one end of an element carries, Hinton, Rock and Zienkiewicz (1976): half the element's mass for a translation;
-/// for the rotation of a Hermite element the consistent diagonal ρSℓ(156, 4ℓ², 156, 4ℓ²)/420 scaled alike, ρSℓ³/78;
-/// with shear or rotary inertia, their consistent diagonal scaled alike.
+/// What one end of an element carries (Hinton, Rock and Zienkiewicz 1976). A translation carries half the element's
+/// mass. The rotation of a Hermite element carries its consistent diagonal scaled alike: ρSℓ(156, 4ℓ², 156, 4ℓ²)/420
+/// gives ρSℓ³/78. With shear or rotary inertia their consistent diagonal is scaled alike.
 inline double lumped_share(const FiniteElementSpace& space, const FiniteElementSpace::Element& element, int function) {
   const double mass = element.line_density * element.length;
   if (element.shear != 0 || element.rotary != 0) {

@@ -4,8 +4,8 @@ namespace {
 
 using namespace ricochet;
 
-/// Lumped mass, to which each element adds inertia against its own deformation: with M_e its diagonal and R its rigid
-/// motions (translation, for a beam rotation as well)
+/// Lumped mass, to which each element adds inertia against its own deformation. M_e is its diagonal, R its rigid
+/// motions (translation; for a beam rotation as well):
 ///
 ///     ΔM_e = 2β [M_e − M_e R (Rᵀ M_e R)⁻¹ Rᵀ M_e],   ΔM_e R = 0;   of a bar: β m_e (I − 11ᵀ/2)
 ///

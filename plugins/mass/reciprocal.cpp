@@ -10,8 +10,8 @@ using namespace ricochet;
 ///
 ///     M⁻¹ = A⁻¹ [Σ_e A_e M_e⁻¹ A_e] A⁻¹,     A = Σ_e A_e
 ///
-/// with A_e the diagonal (lumped) mass of an element and M_e its mass: A_e on its rigid motions R, and between the
-/// consistent and the lumped one against its deformations,
+/// with A_e the diagonal (lumped) mass of an element and M_e its mass. On the rigid motions R of the element M_e is
+/// A_e. Against its deformations it is between the consistent mass M_c and A_e:
 ///
 ///     M_e = A_e P + Qᵀ [(1−β) M_c + β A_e] Q,     P = R (RᵀA_e R)⁻¹ RᵀA_e,  Q = I − P;   of a bar: (1−β) M_c + β A_e
 ///

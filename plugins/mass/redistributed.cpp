@@ -16,8 +16,8 @@ struct DofGroup {
   std::vector<char> near;  ///< of each of the n dofs
 };
 
-/// Groups of contact dofs on the graph of K and M, whose neighbourhood are the dofs at most `reach` entries away; 0:
-/// all dofs, one group.
+/// Groups of contact dofs on the graph of K and M. The neighbourhood of a dof holds the dofs at most `reach` entries
+/// away. Dofs whose neighbourhoods meet are one group. Reach 0: all dofs, one group.
 std::vector<DofGroup> ring_groups(const GivenMass& given, const std::vector<int>& contact, int reach) {
   const auto n = static_cast<std::size_t>(given.mass.rows());
   if (contact.empty()) return {};
@@ -182,8 +182,8 @@ bool move_mass(SparseMatrix& mass, const GivenMass& given, const DofGroup& group
   return move_mass<Eigen::Dynamic>(mass, X, group.dofs, group.near);
 }
 
-/// Whether a mass without the rows `empty` is positive definite on the others; where it may have a `kernel` there, too,
-/// whether it is positive semidefinite.
+/// Whether a mass is positive definite outside the rows `empty`. Where it may have a `kernel` there, too, positive
+/// semidefinite is enough.
 inline bool positive_elsewhere(const SparseMatrix& mass, const std::vector<int>& empty, bool kernel = false) {
   Eigen::VectorXd scale = mass.diagonal();
   if (!(scale.minCoeff() >= 0)) return false;
@@ -198,7 +198,7 @@ inline bool positive_elsewhere(const SparseMatrix& mass, const std::vector<int>&
 }
 
 /// form lumped: lumped mass whose free ends carry none. The half element mass m/2 of a free end node goes to its two
-/// neighbours, at ℓ and 2ℓ, as m and −m/2: sum m/2 and first moment 0 as before, so that total mass and centre of
+/// neighbours, at ℓ and 2ℓ, as m and −m/2. The sum m/2 and the first moment 0 are as before: total mass and centre of
 /// gravity are kept. The diagonal next to that end becomes (0, 2m, m/2, m, …).
 class OfTheEnds : public MassStrategy {
  public:

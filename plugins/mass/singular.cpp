@@ -15,8 +15,8 @@ SparseMatrix assemble(int rows, int columns, const Triplets& entries) {
 }
 
 /// Velocities in a poorer space than displacements: M = Bᵀ C_v⁻¹ B, B_ij = ∫ρS ψ_i φ_j, C_v = ∫ρS ψψ.
-/// A point mass m at dof j is one more velocity of its own: a row m e_jᵀ of B and an entry m of C_v, which add m e_j
-/// e_jᵀ to M.
+/// A point mass m at dof j is one more velocity of its own. It adds a row m e_jᵀ to B and an entry m to C_v, hence
+/// m e_j e_jᵀ to M.
 class Singular : public MassStrategy {
  public:
   explicit Singular(bool continuous) : continuous_(continuous) {}

@@ -6,8 +6,8 @@
 #include <optional>
 
 /// \file
-/// The linear oscillator, solved exactly, in forms that keep their digits in every regime: under-, critically and
-/// over-damped, without stiffness, forced at rest, in resonance, near each of these.
+/// The linear oscillator, solved exactly, in forms that keep their digits in every regime. These are under-, critically
+/// and over-damped, without stiffness, forced at rest, in resonance, and near each of these.
 ///
 ///     y'' + 2δ y' + λ y = f e^{στ}                   δ ≥ 0, λ ≥ 0, σ = 0 or iω
 ///     y = y₀ c + v₀ s + f r                           c(0) = s'(0) = 1, c'(0) = s(0) = 0, r(0) = r'(0) = 0
@@ -149,8 +149,8 @@ struct Reading {
   double at = 0, value = 0, rate = 0;
 };
 
-/// The zero of `read` between `above` (value ≥ 0, or rising from a value of round-off) and `below` (value < 0): Newton
-/// kept inside its bracket, to the last digit of the time.
+/// The zero of `read` between `above` (value ≥ 0, or rising from a value of round-off) and `below` (value < 0). Newton
+/// is kept inside its bracket and goes to the last digit of the time.
 template <class Function>
 double crossing(const Function& read, Reading above, Reading below) {
   double left = above.at, right = below.at;

@@ -75,7 +75,7 @@ void FlightBound::place(Watched& watched, long long k) {
   slow_from_ = -1;
 }
 
-// The modes that are followed along their first values, from the first to the last of them, and what all others may
+// The modes that are followed along their first values, from the first to the last of them. Also what all others may
 // add at any point.
 void FlightBound::split(const Watched& watched) {
   if (slow_from_ >= 0) return;
@@ -119,8 +119,8 @@ bool FlightBound::inside(Watched& watched, std::size_t point, long long k) {
   return range.low > lower && range.high < upper;
 }
 
-// `see`(point) of each that may not stay there, until it says false; first all of them by what the fast modes may add
-// anywhere, which is one number and says enough of most.
+// `see`(point) of each that may not stay there, until it says false. Where few modes are slow, all points are first
+// bounded with what the fast modes may add anywhere. That is one number and says enough of most.
 template <class See>
 bool FlightBound::see_exposed(Watched& watched, long long k, See&& see) {
   const std::size_t points = watched.offset.size();
@@ -177,8 +177,8 @@ FlightBound::Range FlightBound::range(int watch, int point, long long k) {
   return cone(watched, static_cast<std::size_t>(point), static_cast<double>(k), 0, modes_, 0);
 }
 
-// Of a share c λⁱ the m-th difference is |λ − 1|ᵐ |c|: the first at most the root of its amplitude times its bend, as
-// their sums have it; the third and fourth by the fastest share.
+// Of a share c λⁱ the m-th difference is |λ − 1|ᵐ |c|. The first is at most the root of its amplitude times its bend,
+// as their sums have it. The third and fourth are bounded by the fastest share.
 FlightBound::Differences FlightBound::differences(int watch, int point) {
   Watched& watched = watches_[static_cast<std::size_t>(watch)];
   const auto at = static_cast<std::size_t>(point);

@@ -64,8 +64,8 @@ namespace {
 constexpr int block = StepReadings::block;
 constexpr long long least_leap = 4;  // below it steps are read one by one
 
-// The largest whole k with g − k s > 0 or g + k d − ½ k (k−1) z > 0: steps that cannot use up g, of what changes by d
-// in the next of them, at most by s in any, and its change by z.
+// The largest whole k with g − k s > 0 or g + k d − ½ k (k−1) z > 0, less a thousandth. So many steps cannot use up g.
+// It changes by d in the next of them, at most by s in any, and its change by z.
 double steps_within(double g, double d, double s, double z) {
   const double by_pace = g / s, slope = d + 0.5 * z, by_bend = (slope + std::sqrt(slope * slope + 2 * z * g)) / z;
   const double most = std::max(by_pace, by_bend);
@@ -131,8 +131,8 @@ long long ClearSteps::count(const std::vector<double>& x, const double* e, long 
   return done;
 }
 
-// Goes on by up to `steps` steps, as long as the exposed points are between their bounds in each; the bound was set
-// at where they begin. Returns over how many they are; −1: not in the first.
+// Goes on by up to `steps` steps, as long as the exposed points are between their bounds in each. The bound was set at
+// where they begin. Returns over how many they are; −1: not in the first.
 long long ClearSteps::follow(long long steps) {
   followed_.clear();
   for (const auto& [watch, point] : exposed_)
@@ -167,8 +167,8 @@ long long ClearSteps::follow(long long steps) {
   return steps;
 }
 
-// How many steps a point stays between its bounds from here on: by where it is, how it moves now, and what its
-// differences can be at most. −1: it is not between them.
+// How many steps a point stays between its bounds from here on. It follows from where it is, how it moves now, and what
+// its differences can be at most. −1: it is not between them.
 long long ClearSteps::clear_steps(const Followed& one) {
   const auto& bounds = one.most;
   read_ += 4;

@@ -209,8 +209,8 @@ long long ClosedSteps::run(long long most) {
   return made;
 }
 
-// Whether all other points stay between their bounds in the state that was looked at and `steps` steps on, with efforts
-// that sum up to impulse_.
+// Whether all other points stay between their bounds in the state that was looked at and `steps` steps on. Efforts sum
+// up to impulse_.
 bool ClosedSteps::stays_open(long long steps) {
   FlightBound& bound = free_.bound();
   const std::size_t m = rows_.efforts();

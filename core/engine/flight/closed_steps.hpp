@@ -15,8 +15,8 @@
 /// open point is measured and nobody observes: of all that a step with 50 points asks, a tenth is left.
 namespace ricochet {
 
-/// The numbers of a step with these points closed: everything that is linear in the state, in what drives it, and in
-/// the efforts of this step and of those before that still act, worked out once. Efforts stand stage by stage, point by
+/// The numbers of a step with these points closed, worked out once. They hold all that is linear in the state, in the
+/// drive, and in efforts that still act (of this step and of those before). Efforts stand stage by stage, point by
 /// point.
 class ClosedRows {
  public:
@@ -84,8 +84,8 @@ class ClosedRows {
   std::vector<std::pair<std::size_t, std::vector<double>>> change;  ///< U: where in (p, p₋₁, …), slots × modes
   std::vector<Row> start;  ///< absolute place of each closed point where a step begins
   Row tip;                 ///< of the tip there
-  /// How far an effort may take a measure of an open point within 2^k steps: of each watch of the free motion, points ×
-  /// efforts for each k.
+  /// How far an effort may take a measure of an open point within 2^k steps. Of each watch of the free motion:
+  /// points × efforts for each k.
   std::vector<std::vector<std::vector<double>>> reach;
 
  private:
@@ -122,8 +122,8 @@ class ClosedSteps {
   /// `free`: the same motion without contact.
   ClosedSteps(const Program& program, FlightSet& free, std::vector<ClosedPoint> closed);
 
-  /// Makes up to `most` steps from this state on, as long as these points alone are closed in each of them and in the
-  /// one after; how many.
+  /// Makes up to `most` steps from this state on, and returns how many. These points alone are closed in each of them
+  /// and in the one after.
   long long march(const double* const* slots, const double* e, Past past, long long most);
   /// The state after them.
   void leave(double* const* slots, Past past) const;

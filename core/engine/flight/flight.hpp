@@ -42,11 +42,11 @@ class Flight {
 
   /// Whether a search may find something in a lane with these closed points; to be asked once a step.
   bool due(const Program& program, std::span<const ClosedPoint> closed);
-  /// How many of the next `most` steps may be left out, such that nothing changes in them, nor in the one after where
-  /// slots are not told; 0: march. `columns`, `e`: the lane's state; `past`: its efforts. Where a search is due.
+  /// How many of the next `most` steps may be left out; 0: march. Nothing changes in them, nor in the one after where
+  /// slots are not told. `columns`, `e`: the lane's state; `past`: its efforts. Where a search is due.
   long long search(Columns columns, const double* e, ClosedSteps::Past past, long long most);
-  /// How many steps that come next, the one after a flight among them, no open point can close in, as far as the last
-  /// search has seen; no lane without contact then needs to be measured.
+  /// The number of next steps in which no open point can close, as far as the last search has seen. The one after a
+  /// flight is among them. No lane without contact then needs to be measured.
   long long clear() const { return clear_; }
   /// Leaves them out: the slots k steps later, of tangents without what drives the lane. Right after search().
   FlightSums fly(long long k, Columns columns, ClosedSteps::Past past, bool works);
@@ -68,9 +68,9 @@ class Flight {
     last_ = start_;
     set_->tip_readings().each(set_->motion(), flown_, last_.x.data(), last_.e, see);
   }
-  /// Each stage of each of them: `see`(stage, efforts of the closed points in their order, N, and their absolute places
-  /// before the stage, m; none where they rest). A stage that reads no contact has no efforts. Found once for all who
-  /// ask.
+  /// Each stage of each of them: `see`(stage, efforts, places). Efforts are those of the closed points in their order,
+  /// N. Places are their absolute places before the stage, m; none where they rest. A stage that reads no contact has
+  /// no efforts. Found once for all who ask.
   template <class See>
   void each_stage(See&& see) {
     if (steps_) return steps_->each_stage(see);

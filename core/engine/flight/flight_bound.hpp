@@ -71,7 +71,7 @@ class FlightBound {
   };
   Range range(int watch, int point, long long k);
   /// What a point can do from that state on, forever: the largest of its first, second, third and fourth differences
-  /// from step to step; and what its values have for round-off.
+  /// from step to step. Its values have `margin` for round-off.
   struct Differences {
     double first = 0, second = 0, third = 0, fourth = 0, margin = 0;
   };

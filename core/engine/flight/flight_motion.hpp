@@ -67,8 +67,8 @@ class StepRows {
 /// `factor` times a combination of levels of the clamp's motion, over e.
 Eigen::RowVectorXd harmonic(const PhaseWeights& phase, const FlightDrive& drive, double factor = 1);
 
-/// A load over e, in the coordinates of the integration (rows × drives): of the clamp's inertia, and of a distributed
-/// load that is constant in time.
+/// A load over e, in the coordinates of the integration (rows × drives). It is that of the clamp's inertia and of a
+/// distributed load that is constant in time.
 Eigen::MatrixXd load_over_drive(const Program& program, const Levels& levels, const FlightDrive& drive);
 
 /// The weight of slot j; trailing ones may be left out.

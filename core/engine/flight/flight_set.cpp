@@ -59,8 +59,8 @@ RowVectorXd FlightSet::unknown_at_rest(const Stage& plan, const MatrixXd& steady
 bool FlightSet::rest(const Program& program) {
   const Stage& plan = program.plan.stages.front();
   const StageProgram& stage = program.stages.front();
-  // A displacement of a step is a small difference of positions: with the digits of doubles alone, what they lose would
-  // be a velocity of round-off over h, met again by every flight.
+  // A displacement of a step is a small difference of positions. With the digits of doubles alone, what they lose would
+  // be a velocity of round-off over h. Every flight would meet it again.
   using Real = long double;
   using Complex = std::complex<Real>;
   const Real push = stage.measure.z;
@@ -124,8 +124,8 @@ void FlightSet::close(const Program& program, const FlightSet* twin) {
   basis_ = std::move(modes.basis);
   closed_mass_ = std::move(modes.mass);
   basis_rows_ = basis_.transpose();
-  // Along these columns a step itself moves what is closed: what round-off leaves there is taken off without work,
-  // while a static lever would move the whole structure by it.
+  // Along these columns a step itself moves what is closed. What round-off leaves there is taken off without work; a
+  // static lever would move the whole structure by it.
   const FoldedStage& folded = program.stages.front().folded;
   const MatrixXd response =
       (folded.mass * own_mass_.array() + folded.stiffness).inverse().matrix().asDiagonal() * closed_rows_.transpose();

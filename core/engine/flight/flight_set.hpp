@@ -8,8 +8,8 @@
 
 /// \file
 /// The motion between two changes of contact, as uncoupled modes. With no point closed they are the modes of the
-/// structure. Where a rigid law that reads positions holds the points I at their stops, H_I x_j follows from the stops
-/// alone: with ξ_j(e) what each slot has there once the transient of the scheme is over,
+/// structure. A rigid law that reads positions may hold the points I at their stops. Then H_I x_j follows from the
+/// stops alone. With ξ_j(e) what each slot has there once the transient of the scheme is over,
 ///
 ///     x_j = L ξ_j + Ψ η_j,     L = K⁻¹H_Iᵀ(H_I K⁻¹ H_Iᵀ)⁻¹,     H_I Ψ = 0,  ΨᵀKΨ = 1,  ΨᵀMΨ = diag (6)
 ///
@@ -23,8 +23,8 @@ struct ClosedPoint {
   bool operator==(const ClosedPoint&) const = default;
 };
 
-/// One point of a watch in each of `block` steps that begin one after the other, from the state before them alone: by
-/// rows h r, h r A, h r A², …; h is the point over the modes.
+/// One point of a watch in each of `block` steps that begin one after the other, from the state before them alone. The
+/// rows are h r, h r A, h r A², …; h is the point over the modes.
 class StepReadings {
  public:
   static constexpr int block = 8;
@@ -35,8 +35,8 @@ class StepReadings {
   double operator()(int step, const double* x, const double* e) const;
   /// It in each of the first `steps` ≤ block steps.
   void first(int steps, const double* x, const double* e, double* out) const { read(0, steps, x, e, out); }
-  /// Its value in the step that begins now, and its first, second and third differences over those that follow: by h r,
-  /// h r D, h r D² and h r D³, so that what they differ by is not lost in their sizes.
+  /// Its value in the step that begins now, and its first, second and third differences over those that follow. The
+  /// rows are h r, h r D, h r D² and h r D³. What the values differ by is thus not lost in their sizes.
   void differences(const double* x, const double* e, double out[4]) const {
     read(differences_from, differences_read, x, e, out);
   }
@@ -64,8 +64,8 @@ class StepReadings {
 
 /// How many steps lie ahead in which every measure of a motion stays between its bounds. The bound of the motion alone
 /// covers few steps where a point is near a bound or a fast mode is strong. It is then asked again from where it ends.
-/// The few points that it leaves open are read as often as they could have reached their bound since, in every step
-/// just before they do. The first step in which one does ends it, up to round-off.
+/// The few points that it leaves open are read as often as they could have reached their bound since. Just before they
+/// do, they are read in every step. The first step in which one does ends it, up to round-off.
 class ClearSteps {
  public:
   ClearSteps(const StepRows& rows, FlightBound& bound, const FlightMotion& motion)

@@ -14,7 +14,7 @@ struct FlownLane {
   const Block& memory;             ///< of the law
 };
 
-/// The flights of one lane: follows from step to step which points are closed, and has a Flight leave out the steps in
+/// The flights of one lane. It follows from step to step which points are closed. A Flight leaves out the steps in
 /// which that stays as it is.
 class LaneFlight {
  public:

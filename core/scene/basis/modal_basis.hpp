@@ -36,7 +36,7 @@ double elastic_shift(const SparseMatrix& stiffness, const SparseMatrix& mass, in
 ///     K̂ = diag(Ω², Λ⁻¹),     Ĥ = [HΦ, V],     M̂ = diag(1, Λ⁻¹ VᵀΨᵀMΨV Λ⁻¹)
 ///
 /// R is the residual flexibility at the stops (MacNeal 1971, A hybrid method of component mode synthesis, Computers &
-/// Structures 1, 581-601): with it, a static force at a stop moves the stop as in the whole structure. Ψ is solved for
+/// Structures 1, 581-601). With it a static force at a stop moves the stop as in the whole structure. Ψ is solved for
 /// its own load, which no mode carries: as a difference of flexibilities R loses its digits. Points whose R_ii is below
 /// 1e-12 of their flexibility, and directions of R below 1e-12 of its largest, have no shape.
 struct ModalBasis {
@@ -72,8 +72,8 @@ struct ModalBasis {
 ModalBasis modal_basis(const SparseMatrix& stiffness, const SparseMatrix& mass, const SparseRows& contact,
                        bool definite, const BasisSpec& spec);
 
-/// A displacement (n) in the coordinates of the basis: η = ΦᵀM v, and the ζ with which the stops are where v has them,
-/// Vᵀ(H v − HΦ η). For contact (m × n) and mass as the basis was made of.
+/// A displacement (n) in the coordinates of the basis. Modes have η = ΦᵀM v. With ζ = Vᵀ(H v − HΦ η) the stops are
+/// where v has them. For contact (m × n) and mass as the basis was made of.
 Eigen::VectorXd in_basis(const ModalBasis& basis, const SparseMatrix& mass, const SparseRows& contact,
                          const Eigen::VectorXd& displacement);
 /// The same by least squares over all dofs, (QᵀQ)⁻¹Qᵀ v.

@@ -51,8 +51,8 @@ std::optional<double> finite_number(std::string_view text);
 /// A whole number from 0; nothing where the text is none.
 std::optional<long long> whole_number(std::string_view text);
 
-/// Content of `folder`/`name`. Throws FileError where it is missing (with the nearest name of the folder), is no file,
-/// is larger than the limit (2 GiB, or RICOCHET_FILE_LIMIT bytes) or cannot be read.
+/// Content of `folder`/`name`. Throws FileError where it is missing (with the nearest name of the folder), is no file
+/// or cannot be read. The same where it is larger than the limit: 2 GiB, or RICOCHET_FILE_LIMIT bytes.
 std::string read_file(const std::filesystem::path& folder, const std::string& name);
 
 /// A table in CSV: a header, then one row per line, cells separated by commas, spaces around them left out, no quotes.
@@ -115,7 +115,8 @@ inline constexpr double most_asymmetry = 1e-10;
 ///
 /// A general matrix is returned as ½(A + Aᵀ); whether its asymmetry is acceptable is the caller's question. `table` and
 /// `dofs`: where the number of rows comes from. Throws FileError with file, line, what was found and what was expected
-/// for every other text: other headers, sizes, entries outside, twice or not finite, a file that ends early or late.
+/// for every other text. That is one with other headers or sizes, entries outside, twice or not finite, or a file that
+/// ends early or late.
 FileMatrix read_matrix_market(std::string_view content, const std::string& name, int dofs, const std::string& table);
 
 }  // namespace ricochet

@@ -55,8 +55,8 @@ struct TimeTable {
     return period > 0 || ((before != Beyond::error || times.front() <= from + slack) &&
                           (after != Beyond::error || to <= times.back() + slack));
   }
-  /// Throws InputError at `pointer` unless there are two instants or more, all increasing, and all numbers finite; and
-  /// where it repeats, unless it is as long as the period and ends as it begins.
+  /// Throws InputError at `pointer` unless there are two instants or more, all increasing, with a value each, and all
+  /// numbers finite. Where it repeats, it must be as long as the period and end as it begins.
   void check(const std::string& pointer) const;
 };
 
@@ -67,11 +67,11 @@ class PiecewiseCubic : public TimeHistory {
  public:
   using Piece = std::array<double, 4>;
 
-  /// The values of a table: straight between instants, a natural cubic spline (f'' = 0 at both ends; one of a table
-  /// that repeats has f' and f'' equal there), or each value until the next instant.
+  /// The values of a table: straight between instants, a natural cubic spline, or each value until the next instant.
+  /// The spline has f'' = 0 at both ends; of a table that repeats, f' and f'' are equal there.
   static PiecewiseCubic interpolate(const TimeTable& table);
-  /// The motion whose acceleration is that of a table, straight between instants: f'' is exact, f and f' are its exact
-  /// integrals with f(0) and f'(0) as given (m, m/s).
+  /// The motion whose acceleration is that of a table, straight between instants. It has f'' exactly, and f and f' as
+  /// its exact integrals with f(0) and f'(0) as given (m, m/s).
   static PiecewiseCubic integrate_twice(const TimeTable& acceleration, double position, double velocity);
 
   PiecewiseCubic(std::vector<double> starts, std::vector<Piece> pieces, double period = 0);
@@ -159,8 +159,8 @@ struct SpectrumSpec {
 /// (SplitMix64 of seed, load and i): the same on every machine, in any order of asking.
 ///
 /// Its mean square over 2/Δf is Σ S(f_i) Δf whatever the seed, where from/Δf is whole. After 1/Δf it repeats, but for a
-/// phase. Between instants 1/(64·to) apart, at which value and slope are exact, it is the cubic of Hermite: off by less
-/// than (2π/64)⁴/384 = 2.5e-7 of its amplitude.
+/// phase. Between instants 1/(64·to) apart, at which value and slope are exact, it is the cubic of Hermite. It is off
+/// by less than (2π/64)⁴/384 = 2.5e-7 of its amplitude.
 class RandomLoad {
  public:
   /// Throws InputError at the pointer for bands without width, S(f) negative or not finite.

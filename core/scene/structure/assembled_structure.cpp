@@ -95,8 +95,8 @@ std::optional<NegativePivot> negative_pivot(const SparseMatrix& matrix) {
   return worst;
 }
 
-/// Whether the slowest motion, by inverse iteration with a factor of K, has an energy that is round-off of its own
-/// terms: a pivot that vanishes may come out as one of either sign.
+/// Whether the slowest motion has an energy that is round-off of its own terms. The motion is found by inverse
+/// iteration with a factor of K. A pivot that vanishes may come out as one of either sign.
 bool moves_rigidly(const SparseMatrix& stiffness, SparseLdlt& ldlt) {
   constexpr int iterations = 4;
   constexpr double round_off = 1e-15;

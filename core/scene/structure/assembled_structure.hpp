@@ -20,8 +20,8 @@ struct AssembledFiles {
   FileMatrix damping = {};                ///< C, N s/m
   DofTable table;
   double length_unit = 1;  ///< m: K and M of a consistent mm–t–s model have 0.001
-  /// How the dofs follow a support whose held dofs the matrices do not have any more: ψ by dof, from 1, in units of the
-  /// files; those left out are 0.
+  /// How the dofs follow a support whose held dofs the matrices do not have any more. It is ψ by dof, from 1, in units
+  /// of the files; those left out are 0.
   struct Influence {
     std::string support, file;
     std::vector<std::pair<int, double>> values;
@@ -59,8 +59,8 @@ struct AssembledStructure {
   Eigen::MatrixXd support_loads;  ///< s (kg), n × r
   std::vector<std::string> notes;
 
-  /// Of a dof of the file, from 1: its number here where it is free, else −1 and the number of its support, or −1 where
-  /// it is fixed.
+  /// Of a dof of the file, from 1: its number here where it is free. A held dof has −1 and the number of its support,
+  /// or −1 where it is fixed.
   struct Where {
     int free = -1, support = -1;
   };
@@ -82,8 +82,9 @@ struct AssembledStructure {
   PlaceRow row(const Place& place, const std::string& pointer) const;
 };
 
-/// Checks the matrices and makes the structure. Throws FileError for an asymmetry above 1e-10, an indefinite matrix, a
-/// dof that nothing holds or moves, components without a unit of length, supports of a structure that they do not hold.
+/// Checks the matrices and makes the structure. Throws FileError for an asymmetry above 1e-10, an indefinite matrix, no
+/// dof that can move, or one that nothing holds or moves. The same for components without a unit of length, and
+/// supports of a structure that they do not hold.
 AssembledStructure assemble_structure(const AssembledFiles& files);
 
 /// What a structure in modes is described by. Names of points are those of the first column.
@@ -101,8 +102,9 @@ struct ModalFiles {
 ///
 /// with R = V Λ Vᵀ the residual flexibility and M_r its mass. A row of `shapes` called like a support, which
 /// `static_modes` names, is its participation Φᵀ(Mψ_j + M_fs e_j) in kg. `ratios` receives the damping of the elastic
-/// modes. Throws FileError for counts that differ, modes that stand twice or miss, frequencies below 0, masses not
-/// above 0, ratios not in ]−1, 1[, a residual that is not symmetric or not positive semidefinite, unknown points.
+/// modes. Throws FileError for counts that differ, modes that stand twice or miss, and unknown points. The same for
+/// frequencies below 0, masses not above 0 and ratios not in ]−1, 1[. A residual must be symmetric and positive
+/// semidefinite.
 AssembledStructure modal_structure(const ModalFiles& files, std::vector<double>& ratios);
 
 }  // namespace ricochet

@@ -8,15 +8,15 @@ namespace ricochet {
 /// Of each dof in `order` (of the table, from 0): 0, 1, 2 a displacement along x, y, z; 3 a rotation; −1 another word.
 std::vector<int> dof_directions(const DofTable& table, const std::vector<int>& order);
 
-/// Rigid motions of the dofs in `order`, as columns: each translation that a dof has, then each rotation
+/// Rigid motions of the dofs in `order`, as columns. First comes each translation that a dof has, then each rotation
 /// u = ω × (x − x₀) that K lets be, x₀ the mean place. K is of all dofs of the table, in m. It lets u be where (K u)_i
 /// is zero to 1e-6 of its terms in every row that no ground holds. A ground holds the rows in which K resists a
 /// translation. `unit`: m per unit of the table's places.
 Eigen::MatrixXd rigid_motions(const DofTable& table, const SparseMatrix& stiffness, double unit,
                               const std::vector<int>& order);
 
-/// What a translation along x, y, z of all dofs moves of M (all dofs of the table), and the sum of its diagonal along
-/// each, kg.
+/// What a translation along x, y, z of all dofs moves of M (all dofs of the table), kg. Also the sum of the diagonal of
+/// M along each, kg.
 struct TranslatedMass {
   std::array<double, 3> whole{}, diagonal{};
 };

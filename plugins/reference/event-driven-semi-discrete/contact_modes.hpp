@@ -49,8 +49,8 @@ struct ContactPoints {
   bool massless = false;    ///< the massless modes carry every contact point
   Eigen::Index kernel = 0;  ///< massless modes
 
-  /// `open`: the modes without contact. Throws Stopped where rigid stops have no unique motion: two points at one
-  /// place, several points with inertia, a point that mass and massless modes carry together.
+  /// `open`: the modes without contact. Throws Stopped for rigid stops without unique motion: two points at one place,
+  /// several with inertia, one that mass and massless modes carry together.
   ContactPoints(const LinearStructure& structure, const ContactModes& open);
 };
 

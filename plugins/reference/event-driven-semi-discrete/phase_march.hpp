@@ -41,8 +41,8 @@ struct Fall {
   double impulse = 0;  ///< Σp over the phase, N s
 };
 
-/// Follows one phase after the other, each to the first function that falls below zero: sampled in steps that resolve
-/// the fastest motion that still matters, with a bound of the curvature between samples, and polished to round-off.
+/// Follows one phase after the other, each to the first function that falls below zero. Steps resolve the fastest
+/// motion that still matters, with a bound of the curvature between samples. Zeros are polished to round-off.
 class PhaseMarch {
  public:
   /// `resolution`: step × fastest rate.

@@ -29,9 +29,9 @@ class BeamRun {
 
   std::variant<SampledMotion, Refusal> motion();
 
-  /// The motion from modal displacements and velocities (a, b) of flight at t = 0 to the end of the grid, where they
-  /// are left in a, b. `tangent`: columns over (a, b) that follow it, the instants of switches moving with them.
-  /// A state at a stop or in contact at the end is refused.
+  /// The motion to the end of the grid from modal displacements and velocities (a, b) of flight at t = 0. Those at the
+  /// end are left in a, b. `tangent`: columns over (a, b) that follow it, the instants of switches moving with them. A
+  /// state at a stop or in contact at the end is refused.
   std::variant<SampledMotion, Refusal> motion_from(Eigen::ArrayXd& a, Eigen::ArrayXd& b, Eigen::MatrixXd* tangent);
   /// ⟨w, φ⟩ and ⟨w_t, φ⟩ of the initial formulas.
   void project_start(Eigen::ArrayXd& a, Eigen::ArrayXd& b) const;
@@ -59,7 +59,7 @@ class BeamRun {
   void move_tangent(const ModalPhase& phase, double t);
   /// How far the instant of a switch moves with each column: δt = −∇g·δ / g'.
   void set_instants(const ModalPhase& phase, double slope);
-  /// The tangent columns in the modes of the next phase, which has begun: δ⁺ = R δ⁻ + (R f⁻ + ∂R/∂t − f⁺) δt, R the
+  /// The tangent columns in the modes of the next phase, which has begun: δ⁺ = R δ⁻ + (R f⁻ + ∂R/∂t − f⁺) δt. R is the
   /// change of modes and of the lift, f the rates on either side.
   template <class Basis>
   void switch_tangent(const ModalPhase& phase, const ModalPhase& next_phase, const ModalState& before,

@@ -10,8 +10,8 @@
 #include "modal_phase.hpp"
 
 /// \file
-/// A function of x ∈ [0, L] on equal panels: eight Gauss points each, and the Legendre polynomial of degree 7 through
-/// them, which knows the second derivative that a bending energy needs.
+/// A function of x ∈ [0, L] on equal panels. Each has eight Gauss points and the Legendre polynomial of degree 7
+/// through them. That knows the second derivative, which a bending energy needs.
 namespace ricochet::event_driven {
 
 class PanelSeries {

@@ -12,8 +12,8 @@
 /// Between two readings a watched quantity g is its cubic Hermite interpolant, within (δ⁴/384) max|g''''|.
 namespace ricochet::event_driven {
 
-/// What a bound leaves of |e^{rτ}| between two readings δ apart, x = |r|δ: the interpolation error while it is small,
-/// the function and its interpolant where it is not.
+/// What a bound leaves of |e^{rτ}| between two readings δ apart, x = |r|δ. While x is small it is the interpolation
+/// error, else the function and its interpolant.
 inline double interpolation_loss(double x) {
   return std::min(x * x * x * x / 384, 1 + 0.3 * x);
 }
@@ -43,8 +43,8 @@ struct Cubic {
 };
 
 /// One bound that ends a phase when g passes it. Just after a switch the truncated expansion may leave g a hair beyond
-/// the bound: the guard is then off until g has been further inside than `slack`, or the time `until` has come, and
-/// meanwhile passing the bound by more than the slack ends the phase as well.
+/// the bound. The guard is then off until g has been further inside than `slack`, or the time `until` has come.
+/// Meanwhile passing the bound by more than the slack ends the phase as well.
 struct Guard {
   double bound = 0;
   int inside = 1;  ///< +1: g stays above; −1: below

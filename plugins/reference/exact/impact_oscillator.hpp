@@ -168,8 +168,8 @@ class ImpactOscillator {
     return now;
   }
 
-  /// What may not fall below zero: the gap to `side` in flight; on a stop the force of a rigid one, the depth of a
-  /// spring.
+  /// What may not fall below zero. In flight it is the gap to `side`. On a stop it is the force of a rigid one, the
+  /// depth of a spring.
   Reading watch(int side, double tau) const {
     if (closed() && rigid()) {
       const double push = spec_.stiffness * stop(side) - spec_.force.at(start_ + tau);
