@@ -126,7 +126,8 @@ std::vector<Grazing> find_grazings(const std::vector<double>& values,
   if (values.empty()) return found;
   std::optional<double> before;
   double low = 0;
-  for (std::size_t i = 0; i < values.size(); i += std::max<std::size_t>(1, (values.size() - 1) / samples)) {
+  const std::size_t last = values.size() - 1, stride = std::max<std::size_t>(1, last / samples);
+  for (std::size_t i = 0; i <= last; i = i < last ? std::min(i + stride, last) : i + 1) {
     const auto now = overlap(values[i]);
     if (before && now && (*before < 0) != (*now < 0)) {
       double left = low, right = values[i];

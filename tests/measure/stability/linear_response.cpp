@@ -83,6 +83,10 @@ TEST_CASE("grazing: no change of sign, or nothing known on one side of it, is no
   CHECK(find_grazings({}, [](double) { return std::optional(1.0); }).empty());
   CHECK(find_grazings({2}, [](double) { return std::optional(1.0); }).empty());
   CHECK(find_grazings(evenly(0, 1, 9), [](double a) { return std::optional(a + 1); }).empty());
+  // Every second one of 34 values: the zero lies between the last two.
+  const auto at_the_end = find_grazings(evenly(0, 33, 34), [](double a) { return std::optional(a - 32.5); });
+  REQUIRE(at_the_end.size() == 1);
+  CHECK(at_the_end[0].value == Approx(32.5).epsilon(1e-12));
   const auto unknown = [](double a) { return a < 0.5 ? std::nullopt : std::optional(a - 0.4); };
   CHECK(find_grazings(evenly(0, 1, 9), unknown).empty());
   // A gap in what is known ends the search where it meets it; what is bracketed by then is told.
