@@ -53,9 +53,9 @@ struct Grazing {
 };
 
 /// Zeros of the overlap of a motion with its stops along a parameter. `overlap` is < 0 without contact, and has no
-/// value where it is not known. It is looked at in 17 to 32 of the ascending values, evenly spaced from the first, and
-/// in the last; in all where they are fewer. Where its sign changes from one to the next, the zero is bisected to 1e-12
-/// of its size, at most 60 times. Two zeros between two of these values are not seen.
+/// value where it is not known. It is evaluated at 17 to 32 of the ascending values, evenly spaced from the first, and
+/// at the last. Fewer values are all evaluated. Where its sign changes from one to the next, the zero is bisected to
+/// 1e-12 of its size, at most 60 times. Two zeros between two of these values are not seen.
 std::vector<Grazing> find_grazings(const std::vector<double>& values,
                                    const std::function<std::optional<double>(double value)>& overlap);
 
