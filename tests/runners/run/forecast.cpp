@@ -119,9 +119,11 @@ TEST_CASE("forecast: a sweep and a range of steps take what their plans predict,
     const CaseRecord record = runner.run(one, stop);
     const double taken = record.setup_seconds + record.run_seconds,
                  predicted = planned.cases.front().plan.predicted_seconds;
-    // Three, and what else the machine does.
+    // Three, and what else the machine does. Sanitized code is not what is predicted.
     CHECK(predicted < 6 * taken);
+#ifndef RICOCHET_SANITIZED
     CHECK(taken < 6 * predicted);
+#endif
   }
 }
 
