@@ -36,7 +36,7 @@ std::string with_probe(const Page& page) {
   out.replace(html, 16, "<html lang=\"en\" data-asked=\"" + asked + "\">");
   const size_t head = out.find("<title>");
   REQUIRE(head != std::string::npos);
-  return out.insert(head, "<script>" + content(source / "probe.js") + "</script>");
+  return out.insert(head, "<script>" + content(source / "readback.js") + content(source / "probe.js") + "</script>");
 }
 
 }  // namespace
