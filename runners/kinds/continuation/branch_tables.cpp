@@ -72,11 +72,6 @@ void put_multipliers(const std::vector<std::complex<double>>& multipliers, const
   row.multipliers.resize(static_cast<std::size_t>(most));
 }
 
-void put_half_step(const CornerRoots& roots, BranchRow& row) {
-  if (roots.real != 0) row.half_step_real = roots.real;
-  if (roots.modulus != 0) row.half_step_pair = std::polar(roots.modulus, roots.angle);
-}
-
 std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipliers) {
   std::map<long long, int> numbers;  // of special points, by corner
   for (std::size_t i = 0; i < branch.points.size(); ++i)
@@ -108,6 +103,12 @@ std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipli
 }
 
 namespace {
+
+/// The multipliers nearest the circle by the half-step rule.
+void put_half_step(const CornerRoots& roots, BranchRow& row) {
+  if (roots.real != 0) row.half_step_real = roots.real;
+  if (roots.modulus != 0) row.half_step_pair = std::polar(roots.modulus, roots.angle);
+}
 
 // The row of an orbit between two corners, where it belongs.
 template <class Map>
@@ -164,6 +165,9 @@ std::vector<double> x_of_rows(const PeriodicMap& map) {
   return all;
 }
 
+namespace {
+
+/// `x_of_rows`: where the point of each row of v stands, m.
 std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std::vector<double>& x_of_rows) {
   std::vector<SpecialRow> rows;
   for (const SpecialPoint& point : branch.points) {
@@ -204,8 +208,6 @@ std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std:
   }
   return rows;
 }
-
-namespace {
 
 // Three prominences a decade, 1e-6 … 1e-2 of the scale.
 std::vector<TurnRow> turn_rows_of(const FollowedBranch& branch, double scale) {

@@ -39,13 +39,10 @@ std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipli
 /// The multipliers of an orbit, largest first, the first `most` of them, and how many are outside the circle.
 void put_multipliers(const std::vector<std::complex<double>>& multipliers, const Outside& outside, int most,
                      BranchRow& row);
-/// The multipliers nearest the circle by the half-step rule.
-void put_half_step(const CornerRoots& roots, BranchRow& row);
 /// The rows of a branch at corners whose states were kept, special points among them.
 template <class Map>
 std::vector<BranchRow> rows_of(Map& map, const FollowedBranch& branch, int multipliers);
-/// `x_of_rows`: where the point of each row of v stands, m.
-std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std::vector<double>& x_of_rows);
+/// Where the point of each row of v stands, m.
 std::vector<double> x_of_rows(const PeriodicMap& map);
 std::vector<double> x_of_rows(const SteppedMap& map);
 

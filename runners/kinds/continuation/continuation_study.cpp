@@ -61,13 +61,10 @@ Field kinds_of_points(const char* key, std::vector<std::string> words, std::opti
 
 }  // namespace
 
-const std::vector<std::string>& special_kinds() {
-  static const std::vector<std::string> kinds = {"fold", "symmetry", "flip", "torus", "contact", "mark", "end"};
-  return kinds;
-}
-
 std::vector<Field> continuation_keys() {
   using namespace keys;
+  // In the order of the tables.
+  const std::vector<std::string> special_kinds = {"fold", "symmetry", "flip", "torus", "contact", "mark", "end"};
   ObjectForm parameter;
   parameter.fields = {swept_pointer(), single(real("from", "as the parameter", any, std::nullopt, "Least value.")),
                       single(real("to", "as the parameter", any, std::nullopt, "Largest value."))};
@@ -128,7 +125,7 @@ std::vector<Field> continuation_keys() {
           "Least way that the parameter goes back by at a fold; null: 1e-4 of the gap, or of the value, and of folds "
           "that no other case has 25 times what the two finest steps disagree about.")),
       integer("multipliers", {1, 64, false, false}, 4, "Number of multipliers told, largest first."),
-      kinds_of_points("stop_at", special_kinds(), std::nullopt, "Kinds of points at which a branch ends; null: none."),
+      kinds_of_points("stop_at", special_kinds, std::nullopt, "Kinds of points at which a branch ends; null: none."),
       std::move(marks),
       std::move(reference),
       std::move(beneath),

@@ -50,9 +50,6 @@ struct ContinuationPlan {
   double range() const { return to - from; }
 };
 
-/// The kinds of special points, in the order of the tables.
-const std::vector<std::string>& special_kinds();
-
 std::vector<Field> continuation_keys();
 /// Everything that determines the results of a case.
 Json continuation_settings(const Json& resolved);

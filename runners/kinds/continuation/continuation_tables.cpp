@@ -34,9 +34,8 @@ void add_multiplier(RowType<BranchRow>& type, std::size_t k, const char* suffix,
       });
 }
 
-}  // namespace
-
-RowType<BranchRow> branch_row_type(int multipliers, const SweptColumns& swept) {
+/// With so many multipliers.
+RowType<BranchRow> branch_row_type(int multipliers, const SweptColumns& swept = {}) {
   RowType<BranchRow> type;
   type.of_case(&BranchRow::id)
       .add(branch_column, &BranchRow::branch)
@@ -92,6 +91,8 @@ RowType<BranchRow> branch_row_type(int multipliers, const SweptColumns& swept) {
       .add({"point", "1", "Number of the special point that the row is; empty: none."}, &BranchRow::point);
   return type;
 }
+
+}  // namespace
 
 std::vector<BranchRow> branch_rows_in(const Table& branches) {
   int count = 0;

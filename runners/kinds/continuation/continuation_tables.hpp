@@ -32,8 +32,6 @@ struct BranchRow {
   std::optional<int> direction;
   std::optional<int> point;  ///< of special_points, where the row is one
 };
-/// With so many multipliers.
-RowType<BranchRow> branch_row_type(int multipliers, const SweptColumns& swept = {});
 /// The rows of `branches`, with as many multipliers as it has.
 std::vector<BranchRow> branch_rows_in(const Table& branches);
 inline constexpr char branches_name[] = "branches";
