@@ -50,7 +50,7 @@ using Moments = const RunningMoments&;
 using Push = const PushTotals&;
 using Shocks = const ShockTotals&;
 
-const StopMeasure table[] = {
+const StopMeasure stop_measures[] = {
     {"impulse", "N s", "Momentum that the stop {} gives, by magnitude.", "impulse at {}",
      [](const StopReading& of) -> Known { return of.run.impulse; }},
     {"impacts", "1", "Number of times that the stop {} closed; contact from the start is none.", "impacts at {}",
@@ -108,9 +108,9 @@ const StopMeasure table[] = {
      "wear power at {}", [](const StopReading& of) { return of.wear_power; }, Needs::tangent, true}};
 
 const StopMeasure* find_measure(const std::string& name) {
-  const auto one = std::find_if(std::begin(table), std::end(table),
+  const auto one = std::find_if(std::begin(stop_measures), std::end(stop_measures),
                                 [&](const StopMeasure& candidate) { return name == candidate.name; });
-  return one == std::end(table) ? nullptr : &*one;
+  return one == std::end(stop_measures) ? nullptr : &*one;
 }
 
 std::string name_of(const std::string& measure, const std::string& stop) {
@@ -235,7 +235,7 @@ bool check_observed_octave(const nlohmann::ordered_json& study, const std::strin
 const std::vector<std::string>& measures_of_stops() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> out;
-    for (const StopMeasure& one : table) out.emplace_back(one.name);
+    for (const StopMeasure& one : stop_measures) out.emplace_back(one.name);
     out.insert(out.end(), octave_measures().begin(), octave_measures().end());
     return out;
   }();
@@ -264,13 +264,13 @@ const MeasureInfo* stop_measure_info(const std::string& name) {
 }
 
 void put_stop_measures(CaseRecord& record, const std::string& stop, const StopReading& reading) {
-  for (const StopMeasure& one : table)
+  for (const StopMeasure& one : stop_measures)
     if (const Known value = one.value(reading)) put_measure(record, name_of(one.name, stop), *value);
 }
 
 std::vector<Column> stop_reading_columns(const StopReading& known) {
   std::vector<Column> columns;
-  for (const StopMeasure& one : table)
+  for (const StopMeasure& one : stop_measures)
     if (one.column && ((one.needs == Needs::window && known.pushed) || (one.needs == Needs::shocks && known.shocks) ||
                        (one.needs == Needs::tangent && known.wear_power)))
       columns.push_back({one.name, one.unit, fmt::format(fmt::runtime(one.text), "of the row")});
