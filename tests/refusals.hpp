@@ -10,8 +10,8 @@
 /// What a refusal must be, so that whoever reads it can act on it.
 namespace ricochet::testing {
 
-/// Matches "what does not fit; what to take instead". First comes a clause of four words or more that ends in a colon,
-/// a semicolon or a comma. After it comes an order with its object ("use …", "keep one", "lower `modes`").
+/// Matches "what does not fit: what to take instead". First comes a clause of four words or more that ends in a colon,
+/// a semicolon, a comma or a full stop. After it comes an order with its object ("use …", "Keep one", "lower `modes`").
 class CauseAndRemedy final : public Catch::MatcherBase<std::string> {
  public:
   bool match(const std::string& sentence) const override {
@@ -21,9 +21,10 @@ class CauseAndRemedy final : public Catch::MatcherBase<std::string> {
     int words = 0;
     bool cause = false;
     for (std::string word; text >> word;) {
+      if (word[0] >= 'A' && word[0] <= 'Z') word[0] = static_cast<char>(word[0] - 'A' + 'a');
       const bool order = std::find(orders.begin(), orders.end(), word) != orders.end();
       if (cause && order) return static_cast<bool>(text >> word);
-      cause = cause || (++words >= 4 && std::string(":;,").find(word.back()) != std::string::npos);
+      cause = cause || (++words >= 4 && std::string(":;,.").find(word.back()) != std::string::npos);
     }
     return false;
   }

@@ -19,7 +19,7 @@ std::optional<Refusal> meet_law(ContactLaw& law, const SemiDiscrete& problem, co
     if (lane.law.values() != lanes.front().law.values())
       return Refusal{
           "the contact law changes the stiffness of the structure with its parameters: lanes of one block cannot have "
-          "different ones, march them as problems of their own"};
+          "different ones. March them as problems of their own"};
   return std::nullopt;
 }
 
@@ -83,7 +83,7 @@ std::optional<Refusal> read_impulse(StageProgram& program, const Stage& stage, c
       std::abs(across) > 1e-12 * (std::abs(rate.z * base.w) + std::abs(rate.w * base.z)))
     return Refusal{
         "the time scheme's impulse moves the rate at contact otherwise than the displacement, and the law reads both: "
-        "use a law without damping, or another evaluation"};
+        "use an undamped law, or another evaluation"};
   program.rate_reach = base.z != 0 ? rate.z / base.z : base.w != 0 ? rate.w / base.w : 0.0;
   auto made = make_operator(whole.kind, *whole.model, R, 1);
   if (const auto* refusal = std::get_if<Refusal>(&made))

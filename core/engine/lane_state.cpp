@@ -238,8 +238,8 @@ std::string text(const LaneEnd& end) {
       return "a contact effort is not finite";
     case EndCause::law_not_converged:
       if (std::isinf(end.value))
-        return "the contact law has no finite force at the state that the step reaches: take a smaller step, or a "
-               "scheme (or an evaluation) whose step knows the force while it moves";
+        return "the contact law has no finite force at the state that the step reaches: take a smaller step. Otherwise "
+               "use a scheme, or an evaluation, whose step knows the force while it moves";
       if (end.count == 0) return fmt::format("the contact law found no solution (residual {:.3g})", end.value);
       return fmt::format("the contact law did not converge (residual {:.3g} after {} iterations)", end.value,
                          end.count);

@@ -186,11 +186,10 @@ void check_order(const std::vector<double>& x, const Eigen::VectorXd& lower, con
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     if (lower[row] <= upper[row] || pushed_back(beyond, 0.5 * (lower[row] - upper[row]))) continue;
-    throw BeyondStop(
-        "/scene/stops/lower",
-        fmt::format("at x = {:.6g} m the lower stop, {:.6g} m, is above the upper stop, {:.6g} m; expected lower ≤ "
-                    "upper everywhere, or a compliant law that lets points pass both",
-                    x[i], lower[row], upper[row]));
+    throw BeyondStop("/scene/stops/lower",
+                     fmt::format("at x = {:.6g} m the lower stop, {:.6g} m, is above the upper stop, {:.6g} m. "
+                                 "Expected lower ≤ upper everywhere, or a compliant law that lets points pass both",
+                                 x[i], lower[row], upper[row]));
   }
 }
 

@@ -51,8 +51,8 @@ class Nitsche final : public PointwiseContact {
   std::optional<Refusal> prepare_problem(ContactStructure& structure) override {
     if (theta_ != 1)
       return Refusal{
-          fmt::format("theta = {} makes the contact problem nonsymmetric, G S⁻¹ Hᵀ, and its points cannot be "
-                      "solved as the minimum that all laws here are: take theta = 1",
+          fmt::format("theta = {} makes the contact problem nonsymmetric, G S⁻¹ Hᵀ, and its points cannot be solved as "
+                      "the minimum that all laws here are: take 1",
                       theta_)};
     if (structure.space->elements.empty())
       return Refusal{"an oscillator has no elements that could report a reaction at its stop: take a penalty"};

@@ -286,7 +286,7 @@ class Projected : public MassStrategy {
       if (!move_mass(inertia.mass, given, group))
         return Refusal{
             "no dof near the contact points of this assembled structure is left to carry their mass in its rigid "
-            "motions: use a larger reach, fewer stops or the mass consistent"};
+            "motions: use a larger reach. Otherwise use fewer stops, or the mass consistent"};
     inertia.mass.prune([](Eigen::Index, Eigen::Index, double value) { return value != 0; });
     if (!positive_elsewhere(inertia.mass, contact, true))
       return Refusal{

@@ -16,8 +16,8 @@ using namespace plan_algebra;
 PlanOrRefusal laursen_chawla(const Parameters&, double h, const ProblemFacts& facts) {
   if (facts.contact && facts.mass_kernel_dimension > 0)
     return Refusal{
-        "a contact point without mass (singular mass) has no velocity that persistency could act on, and the "
-        "mid-point rule leaves the root −1 there: use a regular mass, or midpoint"};
+        "a contact point without mass (singular mass) has no velocity that persistency could act on: the mid-point "
+        "rule leaves the root −1 there. Use a regular mass, or midpoint"};
   const auto [q, v] = slots<2>();
   Stage step = mean_step(h, middle());
   step.impact = {v + z, at(1), VelocityGate{q, at(0), v, at(0), 1}};

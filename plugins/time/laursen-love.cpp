@@ -19,8 +19,8 @@ using namespace plan_algebra;
 PlanOrRefusal laursen_love(const Parameters&, double h, const ProblemFacts& facts) {
   if (facts.contact && facts.mass_kernel_dimension > 0)
     return Refusal{
-        "a contact point without mass (singular mass) has no velocity that could be changed alone, and the mid-point "
-        "rule leaves the root −1 there: use a regular mass, or midpoint"};
+        "a contact point without mass (singular mass) has no velocity that could be changed alone: the mid-point rule "
+        "leaves the root −1 there. Use a regular mass, or midpoint"};
   const auto [q, v] = slots<2>();
   const Combination way = h * v + h / 2 * z;
   const Levels moved = at(1.5) - at(0.5);

@@ -141,7 +141,7 @@ TEST_CASE("combinations that do not apply are refused in a sentence") {
     const auto* refusal = std::get_if<Refusal>(&result);
     return refusal ? refusal->sentence : std::string();
   };
-  CHECK(refused({"newmark-dumont-paoli", {{"beta", 0.2}}}, {"signorini"}).find("use beta ≥ 0.25") != std::string::npos);
+  CHECK(refused({"newmark-dumont-paoli", {{"beta", 0.2}}}, {"signorini"}).find("Use beta ≥ 0.25") != std::string::npos);
   CHECK(refused({"newmark-dumont-paoli", {{"beta", 0.0}}}, {"signorini"}).find("singular") != std::string::npos);
   CHECK(refused({"newmark", {{"beta", 0.2}}}, {"signorini"}).find("gamma/2") != std::string::npos);
   CHECK(refused({"newmark-dumont-paoli", {{"beta", 0.25}}}, {"signorini"}).empty());

@@ -57,7 +57,7 @@ TEST_CASE("a structure that cannot exist") {
 
 TEST_CASE("stops that cross, depend on time, have no value, or stand nowhere") {
   CHECK(refused([](SceneSpec& s) { s.stops.lower = Formula(0.2); }) ==
-        "/scene/stops/lower: at x = 0.007505 m the lower stop, 0.2 m, is above the upper stop, 0.1 m; expected "
+        "/scene/stops/lower: at x = 0.007505 m the lower stop, 0.2 m, is above the upper stop, 0.1 m. Expected "
         "lower ≤ upper everywhere, or a compliant law that lets points pass both");
   // They cross between two nodes of this mesh only.
   CHECK_THAT(refused([](SceneSpec& s) { s.stops.lower = in_x("abs(x-0.22) < 0.02 ? 0.3 : -0.1"); }),

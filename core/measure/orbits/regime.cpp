@@ -140,7 +140,7 @@ RegimeVerdict classify(const RegimeInput& input) {
     return {{Regime::undecided},
             0,
             fmt::format("not resolved by the step: readings {} period{} apart differ by {:.2g} at most, and the step "
-                        "places impacts to {:.2g} per period; take more steps per period",
+                        "places impacts to {:.2g} per period. Take more steps per period",
                         input.doubtful, input.doubtful == 1 ? "" : "s", input.doubtful_distance, input.placed)};
   if (r.period > 0) {
     std::string text = repeats_text(input) + fmt::format(", {:.4g} impacts per period", input.impacts_per_period);

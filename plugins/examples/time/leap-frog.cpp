@@ -67,8 +67,8 @@ PlanOrRefusal scheme(const Parameters& p, double h, const ProblemFacts& facts) {
   // What cannot work is refused, with the cause and what to take instead: the case becomes a row `refused`.
   if (facts.mass_kernel_dimension > 0)
     return Refusal{
-        "central differences need a regular mass matrix: without inertia nothing holds the kernel of this "
-        "one; take a consistent or a lumped mass, or an implicit scheme"};
+        "central differences need a regular mass matrix: without inertia nothing holds the kernel of this one. Take a "
+        "consistent or a lumped mass, or an implicit scheme"};
   const double e = p.real("restitution");
   const auto [q, d] = slots<2>();
   StepPlan plan;

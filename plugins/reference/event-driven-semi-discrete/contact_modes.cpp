@@ -338,7 +338,7 @@ ContactPoints::ContactPoints(const LinearStructure& structure, const ContactMode
   if (!rigid || massless) return;
   if (m > 1)
     throw Stopped{
-        fmt::format("{} contact points with inertia and rigid stops: simultaneous impacts have no unique law; use a "
+        fmt::format("{} contact points with inertia and rigid stops: simultaneous impacts have no unique law. Use a "
                     "singular mass whose kernel carries the contact, a compliant law, or stops at the tip alone",
                     m)};
   if (reach.squaredNorm() > 1e-9 * soft(0, 0))

@@ -193,7 +193,7 @@ void EventDriven::note_jump(const State& given, const State& released) {
   if (moved > 1e-18 * stored)
     notes_.push_back(fmt::format(
         "the initial state is off the constraint of the singular mass: at t = 0⁺ the massless part jumps to its "
-        "equilibrium, which holds {:.6g} J less; the sample at t = 0 is the state as it was given",
+        "equilibrium. The equilibrium holds {:.6g} J less. The sample at t = 0 is the state as it was given",
         moved));
 }
 
@@ -311,8 +311,8 @@ class EventDrivenSemiDiscrete final : public ReferenceSolver {
       found.motion = fine.run();
       found.coarser = EventDriven(problem, grid, 2).run();
       found.how = fmt::format(
-          "modes of each contact set of the {} dofs, exact between events; events watched twice per "
-          "radian of the fastest mode that matters, and polished to round-off",
+          "modes of each contact set of the {} dofs, exact between events. Events are watched twice per radian of the "
+          "fastest mode that matters, and polished to round-off",
           problem.discrete->mass.rows());
       found.notes = fine.notes();
       return found;

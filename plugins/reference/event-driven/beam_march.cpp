@@ -12,10 +12,10 @@ namespace ricochet::event_driven {
 
 std::variant<int, Refusal> BeamRun::march(ModalPhase& phase, std::array<Guard, 2>& guards, double tolerance) {
   if (out_.events.size() > settings_.events_per_period * (1 + state_.time / first_period_))
-    return Refusal{fmt::format(
-        "more than {:g} impacts and releases per period of the first mode by t = {:g} s: the tip chatters, which "
-        "modal phases cannot follow; raise `events`, add damping, or use another reference",
-        settings_.events_per_period, state_.time)};
+    return Refusal{
+        fmt::format("more than {:g} impacts and releases per period of the first mode by t = {:g} s: the tip chatters, "
+                    "which modal phases cannot follow. Raise `events`, add damping, or use another reference",
+                    settings_.events_per_period, state_.time)};
   Reading here = phase.read(state_);
   for (Guard& guard : guards) guard.read(state_.time, here.value);
   while (next_ < grid_.times.size()) {

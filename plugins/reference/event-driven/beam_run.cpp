@@ -67,7 +67,7 @@ BeamRun::Failure BeamRun::begin() {
   if (std::abs(step) > 1e-9 * scale_ || std::abs(slope) * L > 1e-6 * scale_)
     return Refusal{
         fmt::format("the initial displacement does not follow the clamp: at x = 0, u − φ is {:.3g} m and its slope "
-                    "{:.3g} where both are 0, and a continuous beam has no finite energy then; start from a shape "
+                    "{:.3g}, but both must be 0. A continuous beam has no finite energy otherwise. Start from a shape "
                     "that the clamp allows, or use `self`",
                     step, slope)};
   const double tip = problem_.displacement(L), touching = 1e-9 * scale_;

@@ -88,7 +88,7 @@ class EventDriven final : public ReferenceSolver {
     result.coarser = std::move(std::get<SampledMotion>(coarse));
     result.how = fmt::format(
         "continuous beam, exact between events: {} clamped–free modes in flight, as many clamped–pinned modes and a "
-        "lift in contact, events isolated within {:g} of the largest displacement; coarser: {} modes",
+        "lift in contact. Events are isolated within {:g} of the largest displacement. The coarser run has {} modes",
         settings_.modes, settings_.tolerance, half.modes);
     result.notes = notes(problem, result, run.initial_energy_left_out(), grid.times.empty() ? 0 : grid.times.back());
     return result;
@@ -108,24 +108,24 @@ class EventDriven final : public ReferenceSolver {
                       problem.structure.starts_with('o') ? "n" : "", problem.structure)};
     if (problem.other_beam)
       return Refusal{
-          "event-driven knows the uniform beam clamped at x = 0 and free at x = L, and this one has supports, "
-          "sections, masses, tension or a foundation of its own: use `event-driven-semi-discrete` or `self`"};
+          "event-driven knows the uniform beam clamped at x = 0 and free at x = L: this one has other supports, "
+          "sections, masses, tension or a foundation. Use `event-driven-semi-discrete` or `self`"};
     if (problem.right_fixed)
       return Refusal{
           "event-driven solves a beam that is clamped at x = 0 and free at x = L; this one is fixed at x = L"};
     const bool touched = stops_act(problem);
     if (touched && !only_the_tip(problem))
       return Refusal{
-          "event-driven knows stops at the tip only, where one contact phase has one set of modes; place the stops at "
+          "event-driven knows stops at the tip only, where one contact phase has one set of modes. Place the stops at "
           "\"tip\", or use `event-driven-semi-discrete`, which follows any points of a coarse mesh"};
     if (touched && (problem.contact_stiffness > 0 || problem.contact_nonlinear))
       return Refusal{
           "event-driven holds the tip on a rigid stop, and the contact law is compliant: its motion differs by the "
-          "penetration; use a rigid law, or `event-driven-semi-discrete`, which follows a linear spring"};
+          "penetration. Use a rigid law, or `event-driven-semi-discrete`, which follows a linear spring"};
     if (!problem.load_zero && !problem.load_constant)
       return Refusal{
           "the load depends on time, and event-driven has the exact solution of constant loads only: drop t from "
-          "`load` (the support may move), or use `self`"};
+          "`load`, or use `self`. The support may move"};
     if (!(problem.damping_stiffness >= 0 && problem.damping_mass >= 0))
       return Refusal{"event-driven needs damping coefficients that are not negative"};
     return resonance(problem, touched);
@@ -143,7 +143,7 @@ class EventDriven final : public ReferenceSolver {
             1e-7 * mode.stiffness(m))
           return Refusal{
               fmt::format("the support moves at the pulsation of undamped mode {} {} ({:.9g} rad/s), which grows "
-                          "without bound: add damping, or move the pulsation by more than 1e-7 of it",
+                          "without bound: add damping. Otherwise move the pulsation by more than 1e-7 of it",
                           m + 1, modes == &beam.free ? "of the free beam" : "of the beam held at its tip",
                           std::sqrt(mode.stiffness(m)))};
     }
@@ -158,8 +158,8 @@ class EventDriven final : public ReferenceSolver {
     if (touched && alpha == 0)
       found.push_back(
           "without stiffness-proportional damping the modes converge slowly: an impact loses the energy of those left "
-          "out, and breaks into many short contacts; impulses, energies and the first impact are known to a few "
-          "digits, late trajectories are not");
+          "out, and breaks into many short contacts. Impulses, energies and the first impact are known to a few "
+          "digits. Late trajectories are not known");
     if (left_out > 1e-4 && (alpha == 0 || alpha > 1e-3 * duration))
       found.push_back(fmt::format(
           "the initial state bends the beam at its free end, or moves it at the clamp: the modes hold all but "
@@ -168,14 +168,14 @@ class EventDriven final : public ReferenceSolver {
           alpha == 0 ? "and nothing damps that share"
                      : fmt::format("a share that lasts for a time of the order of α = {:g} s", alpha)));
     if (touched && problem.restitution > 0)
-      found.push_back(fmt::format(
-          "the restitution {:g} has no part in it: the tip of a continuous beam has no mass, and schemes tend to this "
-          "motion as the mesh is refined, whatever their coefficient",
-          problem.restitution));
+      found.push_back(
+          fmt::format("the restitution {:g} has no part in it: the tip of a continuous beam has no mass. Schemes tend "
+                      "to this motion as the mesh is refined, whatever their coefficient",
+                      problem.restitution));
     if (problem.projected)
       found.push_back(
-          "it starts from the formulas of the initial state, the methods from its projection on the mesh: the two "
-          "differ by an amount that the mesh decides");
+          "it starts from the formulas of the initial state, the methods from its projection on the mesh. The mesh "
+          "decides by how much the two differ");
     const BeamModes modes(BeamModes::End::free, settings_.modes, problem.length);
     const double highest = std::sqrt(problem.stiffness / problem.inertia) * modes.wave_number(settings_.modes - 1) *
                            modes.wave_number(settings_.modes - 1);

@@ -17,12 +17,12 @@ double value_of(const std::function<double(double)>& function, double x, double 
 ReferenceOrRefusal oscillator(const ReferenceProblem& problem, const SampleGrid& grid) {
   if (problem.contact_nonlinear)
     return Refusal{
-        "the contact law is not linear, and the flight on such a stop has no closed form: use the reference "
-        "self, or a rigid or linear law"};
+        "the contact law is not linear, and the flight on such a stop has no closed form: use the reference self. A "
+        "rigid or a linear law has a closed form"};
   if (!problem.load_constant)
     return Refusal{
-        "the load depends on t by a formula, and the flight under it has no closed form: use the structure's "
-        "own force F cos(ωt + ψ), or the reference self"};
+        "the load depends on t by a formula, and the flight under it has no closed form: use the reference self. The "
+        "structure's own force F cos(ωt + ψ) has a closed form"};
   OscillatorSpec spec;
   spec.mass = problem.inertia;
   spec.stiffness = problem.stiffness;
@@ -63,8 +63,8 @@ ReferenceOrRefusal oscillator(const ReferenceProblem& problem, const SampleGrid&
 
 Refusal no_bar(const std::string& why) {
   return Refusal{
-      "the bar has a closed form when it is undamped and unloaded, its ends stand still, and either it touches "
-      "nothing, or it is stretched linearly at rest on a rigid stop at 0 at its tip; here " +
+      "the bar has a closed form when it is undamped and unloaded and its ends stand still. It must also touch "
+      "nothing, or be stretched linearly at rest on a rigid stop at 0 at its tip. Here " +
       why + ": use event-driven-semi-discrete, or self"};
 }
 
@@ -157,7 +157,7 @@ class Exact final : public ReferenceSolver {
     if (problem.structure == "bar") return bar(problem, grid);
     return Refusal{
         fmt::format("closed forms are known for the oscillator and the bar, not for a {}: use event-driven (rigid "
-                    "stops at the tip, or none), event-driven-semi-discrete (on the mesh), or self",
+                    "stops at the tip, or none). Otherwise use event-driven-semi-discrete (on the mesh), or self",
                     problem.structure)};
   }
 };

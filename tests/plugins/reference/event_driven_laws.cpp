@@ -195,7 +195,7 @@ TEST_CASE("scenes without this reference are refused in a sentence") {
   problem = free_problem(1e-4);
   problem.other_beam = true;
   CHECK_THAT(refused(problem),
-             Contains("supports, sections") && Contains("use `event-driven-semi-discrete` or `self`"));
+             Contains("supports, sections") && Contains("Use `event-driven-semi-discrete` or `self`"));
   problem = free_problem(1e-4);
   problem.stops_at_tip = false;
   problem.stop_places = {0.5, length};
