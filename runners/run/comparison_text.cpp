@@ -193,9 +193,8 @@ std::string comparison_text(const StudyComparison& found, const StudyResults& a,
 
 Table comparison_table(const StudyComparison& found) {
   Table table{"differences",
-              "What two results folders have: an input, an entry of the environment, a case, a measure or a table of a "
-              "case, a line "
-              "of the answer.",
+              "What two results folders have differently. A row is an input, an entry of the environment, a case, its "
+              "measure or table, or a line of the answer.",
               {{"part", "", "input, environment, case, measure, table or answer."},
                {"case", "", "The case in A; in B where A has none."},
                {"case_b", "", "The same case in B, where its id differs."},

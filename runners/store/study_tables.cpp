@@ -36,8 +36,8 @@ const TableType<answers::Clause>& answers::answers_type() {
     type.add({"order", "1", "Number of the sentence in the answer, from 1."}, &Clause::order)
         .add({"form", "",
               "What is said: keeps, gains, differ, none (no difference), open (not told), apart (how far, as a share "
-              "of the scale), needs (the step that would tell), matters, part (matters in some combinations), value, "
-              "order, cheapest, limit, diagram, basin, status."},
+              "of the scale). Further words: needs (the step that would tell), matters, part (matters in some "
+              "combinations), value, order, cheapest, limit, diagram, basin, status."},
              &Clause::form)
         .add({"measure", "", "The measure that is spoken of."}, &Clause::measure)
         .add({"choice", "", "The choice that is spoken of: a role, or an axis of the study."}, &Clause::choice)
@@ -57,11 +57,10 @@ const TableType<answers::Clause>& answers::answers_type() {
         .add({"at_step", "", "The finest step of these methods: s, or a share of the period."}, &Clause::at_step)
         .add({"at_mesh", "1", "The finest mesh of these methods: elements."}, &Clause::at_mesh)
         .add({"sentence", "", "What is said of it; a sentence stands on the first of its rows."}, &Clause::sentence);
-    return TableType<Clause>{
-        "answers",
-        "What the study says to its question, in the order in which it is read: a row for each set of methods, or each "
-        "choice, that a sentence speaks of.",
-        type};
+    return TableType<Clause>{"answers",
+                             "What the study says to its question, in the order in which it is read. A row stands for "
+                             "each set of methods, or each choice, that a sentence speaks of.",
+                             type};
   }();
   return all;
 }

@@ -156,8 +156,8 @@ std::vector<MeasureInfo> comparison_measures() {
        "1 where the reference has the case's own mesh, so that the error is the time scheme's; 0 where it has none.",
        Of::computation},
       {"reference_of_law", "1",
-       "1 where the reference has the case's own stops; 0 where it has rigid ones and the case a compliant law, so "
-       "that the error is the law's as well.",
+       "1 where the reference has the case's own stops. 0 where it has rigid ones and the case a compliant law: the "
+       "error is then the law's as well.",
        Of::computation},
       {"declared_order", "1", "Order in the step that the scheme declares for such a run.", Of::computation},
       {"error.tip-linf", "m", "Largest difference of the tip's displacement from the reference, over the samples."},

@@ -308,8 +308,8 @@ TableType<TargetRow> precision_targets_type() {
   rows.add({"overlap", "", "Whether the repeats of both overlap, so that they are not told apart."},
            &TargetRow::overlap);
   rows.add({"share", "1",
-            "at_most over what the error of a motion at rest would be, a power of ten; empty where that "
-            "is not known: then at_most is one."},
+            "at_most over what the error of a motion at rest would be, a power of ten. Empty where that is not known: "
+            "then at_most is one."},
            &TargetRow::share);
   return {"precision_targets",
           "One error to be reached in one scene: the cheapest method with a step that was run, and the runner-up.",

@@ -120,10 +120,9 @@ std::vector<Field> continuation_keys() {
       kinds_of_points("switch", {"symmetry", "flip"}, Json::array({"symmetry", "flip"}),
                       "Kinds of points at which other branches begin that are followed too; null: none."),
       integer("switch_depth", {0, 8, false, false}, 1, "Branches on branches, at most so deep."),
-      optional(real(
-          "prominence", "as the parameter", positive, std::nullopt,
-          "Least way that the parameter goes back by at a fold; null: 1e-4 of the gap, or of the value, and of folds "
-          "that no other case has 25 times what the two finest steps disagree about.")),
+      optional(real("prominence", "as the parameter", positive, std::nullopt,
+                    "Least way that the parameter goes back by at a fold; null: 1e-4 of the gap, or of the value. For "
+                    "folds that no other case has, it is 25 times what the two finest steps disagree about.")),
       integer("multipliers", {1, 64, false, false}, 4, "Number of multipliers told, largest first."),
       kinds_of_points("stop_at", special_kinds, std::nullopt, "Kinds of points at which a branch ends; null: none."),
       std::move(marks),

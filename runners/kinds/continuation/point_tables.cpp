@@ -69,11 +69,10 @@ TableType<PointOrderRow> point_orders_type() {
            &PointOrderRow::used)
       .add({"verdict", "", "told: an interval no wider than ±0.5, above 0.3; not told."}, &PointOrderRow::verdict)
       .add({"reason", "", "Which sizes were used, or why the order is not told."}, &PointOrderRow::reason);
-  return {
-      "point_orders",
-      "A special point that has a name, with one method and one refinement, at the finest of the others at which most "
-      "sizes have it: the order by differences of successive sizes.",
-      rows};
+  return {"point_orders",
+          "A special point that has a name, with one method and one refinement: the order by differences of successive "
+          "sizes. The other refinements are the finest at which most sizes have it.",
+          rows};
 }
 
 TableType<PointLimitRow> point_limits_type(const SweptColumns& swept) {

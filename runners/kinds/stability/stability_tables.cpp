@@ -77,8 +77,8 @@ TableType<RestitutionRow> restitution_type() {
       .add({"rho_inf", "1", "What a step leaves of the highest frequencies, ρ∞; nothing for an explicit step."},
            &RestitutionRow::rho_inf);
   return {"restitution",
-          "What a free mass keeps of its speed at a rigid stop, over the phases of the step at which it arrives; from "
-          "the plan alone.",
+          "What a free mass keeps of its speed at a rigid stop, over the phases of the step at which it arrives. It "
+          "follows from the plan alone.",
           rows};
 }
 

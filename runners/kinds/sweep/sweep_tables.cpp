@@ -86,7 +86,7 @@ RowType<OrbitRow> orbit_row_type(int exponents, const SweptColumns& swept) {
             "the case says so."},
            &OrbitRow::exponent_method)
       .add({"exponent_twin", "1/s",
-            "The largest exponent by a second trajectory beside the first, as a check; empty where impacts have "
+            "The largest exponent by a second trajectory beside the first, as a check. Empty where impacts have "
             "inertia, as both would meet their stops at the same steps."},
            &OrbitRow::exponent_twin)
       .add({"marginal", "", "Roots of modulus one that are the scheme's own and not the motion's."},

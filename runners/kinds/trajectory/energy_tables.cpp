@@ -91,8 +91,8 @@ Table energy_ledger_table(const StudyResults& results) {
         "not declare."},
        {"end", "J", "The common energy at the end."},
        {"closes", "",
-        "exact: the residual is below 1e-8 of the energy brought in; not exact; not known: the scheme declares no work "
-        "form, so that works and residual are empty."}});
+        "exact: the residual is below 1e-8 of the energy brought in; otherwise not exact. Not known: the scheme "
+        "declares no work form, so that works and residual are empty."}});
   for (const CaseRecord* record : with_status(all_cases(results), "done")) {
     const auto of = [&](const char* name) { return measure(*record, name); };
     const auto start = of("energy_start"), end = of("energy_end");

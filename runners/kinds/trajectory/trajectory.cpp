@@ -70,8 +70,8 @@ std::vector<MeasureInfo> trajectory_measures() {
        "Energy after minus before the projection of the initial state on the constraint of a singular mass.",
        Of::motion, true, "energy_brought_in"},
       {"kernel_energy", "J",
-       "Energy of the initial state in the kernel of a singular mass, which no inertia holds: lost or left ringing at "
-       "any step, 0 after projection.",
+       "Energy of the initial state in the kernel of a singular mass, which no inertia holds. It is lost or left "
+       "ringing at any step, and 0 after projection.",
        Of::motion, true, "energy_brought_in"},
       {"deepest_penetration", "m", "Largest distance by which a contact point passed its stop.", Of::motion, false,
        "largest_tip_displacement"},
@@ -83,7 +83,7 @@ std::vector<MeasureInfo> trajectory_measures() {
       {"active_set_changes", "1", "Number of sub-steps at which the set of closed contact points changed.", Of::motion,
        true},
       {"impulse", "N s",
-       "Momentum that the contact efforts give, summed by magnitude over the contact points; what an effort of each "
+       "Momentum that the contact efforts give, summed by magnitude over the contact points. What an effort of each "
        "stage is worth follows from the scheme's plan."},
       {"peak_contact_force", "N",
        "Largest force at one contact point over the run, from every step. That of an impact on a rigid stop is its "
@@ -91,8 +91,8 @@ std::vector<MeasureInfo> trajectory_measures() {
       {"contact_time", "s", "Time in contact, summed over the contact points.", Of::motion, true},
       {"contact_force_mean", "N",
        "Mean of the contact force over the study's window, summed over the points, of a clearance along its first "
-       "component: times the window it is the impulse. "
-       "The instants of a step count by the momentum that an effort of each gives."},
+       "component. Times the window it is the impulse. The instants of a step count by the momentum that an effort of "
+       "each gives."},
       {"contact_force_deviation", "N", "Standard deviation of the contact force from that mean, over the window."},
       {"window_power", "W", "Energy lost at the stops in a second: mean over the parts of the study's window."},
       {"confidence.window_power", "W", "Half the 95 % interval of that mean (stationary block bootstrap of the parts).",
@@ -111,8 +111,8 @@ std::vector<MeasureInfo> trajectory_measures() {
        Of::motion, true},
       {"law_iterations", "1", "Most iterations that one solve of the contact law took."},
       {"dissipated_by_law", "J",
-       "Energy that a compliant law itself took out over the run, by the power that it reports: the share of a damper "
-       "in what is dissipated at contact.",
+       "Energy that a compliant law itself took out over the run, by the power that it reports. It is the share of a "
+       "damper in what is dissipated at contact.",
        Of::motion, false, "energy_brought_in"},
       {"dissipated_by_scheme", "J",
        "Energy that the scheme itself took out over the run, apart from damping and stops: numerical damping, where "

@@ -20,9 +20,9 @@ KindPage stability_page() {
 
 std::string restitution_html(const CaseView& view) {
   HtmlTable table(
-      "What a free mass keeps of its speed at a rigid stop, from the plan of each scheme alone: over the phases of the "
-      "step at which it arrives. Beyond 1 it is thrown back faster than it came. ρ∞: what a step leaves of the highest "
-      "frequencies.",
+      "What a free mass keeps of its speed at a rigid stop, over the phases of the step at which it arrives. It "
+      "follows from the plan of each scheme alone. Beyond 1 the mass is thrown back faster than it came. ρ∞: what a "
+      "step leaves of the highest frequencies.",
       {{"time scheme"}, {"least", true}, {"mean", true}, {"most", true}, {"ρ∞", true}});
   // It depends on the scheme alone: one row for cases that differ in the rest.
   const auto columns = view.varying_without({"mass", "contact", "elements"});
@@ -57,7 +57,7 @@ std::string why(const LimitRow& row) {
 std::string stability_html(const CaseView& view) {
   HtmlTable table(
       "Step limits in seconds. Open: the structure alone. Closed: predicted with points held on both sides, the worst "
-      "of several sets; observed in the scene itself, which is open as well: the ratio is to the smaller of both "
+      "of several sets. It is observed in the scene itself, which is open as well: the ratio is to the smaller of both "
       "predictions.",
       {{"method"},
        {"contact"},

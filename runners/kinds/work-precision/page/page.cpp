@@ -110,9 +110,9 @@ std::string work_precision_html(const CaseView& view) {
       {"runner-up"}, {"with step"},     {"run time (s)", true}, {"speed-up", true}, {"spreads"}};
   if (!scene.empty()) heads.insert(heads.begin() + 1, {"scene"});
   HtmlTable table(
-      "The cheapest method for a relative error of at most 10<sup>−k</sup>, 1 being a motion at rest: of the steps "
-      "that were run, the one that takes the least time. Spread: fastest to slowest repeat (in the time's tooltip); "
-      "where the spreads overlap, the two are not told apart.",
+      "The cheapest method for a relative error of at most 10<sup>−k</sup>, 1 being a motion at rest. It takes the "
+      "least time of the steps that were run. Spread: fastest to slowest repeat (in the time's tooltip); where the "
+      "spreads overlap, the two are not told apart.",
       std::move(heads));
   for (const TargetRow& row : type.read(view.results().derived)) {
     Quantity quantity = error_quantity(row.error);
