@@ -101,8 +101,8 @@ Verdict force_law_is_one(const Law& law) {
         if (!here.answered) return fails(fmt::format("the force at a depth of {:g} m is not finite", depth));
         if (side * p > 0)
           return fails(
-              fmt::format("pulls: {:g} N at the {} stop (p > 0 pushes up from the lower stop, p < 0 down from "
-                          "the upper one), depth {:g} m, speed {:g} m/s",
+              fmt::format("pulls: {:g} N at the {} stop, depth {:g} m, speed {:g} m/s. A force p > 0 pushes up from "
+                          "the lower stop, p < 0 down from the upper one",
                           p, side_name(side), depth, speed));
         if (speed == 0 && std::abs(p) < last * (1 - 1e-9))
           return fails(fmt::format("the force falls from {:g} to {:g} N as the depth grows to {:g} m", last,
@@ -157,8 +157,8 @@ Verdict solution_answers_the_force_law(const Law& law) {
       }
       if (difference > 1e-6 * largest + 10 * outcome.residual / flexibility)
         return fails(
-            fmt::format("{} point{}, reach {:g}: the efforts found differ by {:.3g} of {:.3g} N from what the "
-                        "law answers one point at the measures they lead to; it owns up to {:.3g} m",
+            fmt::format("{} point{}, reach {:g}: the efforts found differ by {:.3g} of {:.3g} N from what the law "
+                        "answers one point at the measures they lead to. The law states an error of {:.3g} m at most",
                         points, points == 1 ? "" : "s", reach, difference, largest, outcome.residual));
       if (outcome.residual > 1e-4 * 0.02)
         return fails(

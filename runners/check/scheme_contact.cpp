@@ -201,8 +201,8 @@ Verdict restitution_as_declared(const Scheme& scheme) {
   const std::vector<double> steps = contact_steps(plan), errors = errors_after_impact(scheme, steps, e);
   if (!(errors.back() <= 0.5 * errors.front() && errors.back() <= 0.02))
     return fails(
-        fmt::format("declares its restitution {}, e = {:g}; after one bounce of an oscillator the error is {:.2g} m at "
-                    "h = {:g} s and {:.2g} m at {:g} s, where it should vanish; a free mass rebounds with {}",
+        fmt::format("declares its restitution {}, e = {:g}. After one bounce of an oscillator the error is {:.2g} m at "
+                    "h = {:g} s and {:.2g} m at {:g} s. It should vanish. A free mass rebounds with {}",
                     word(declared), e, errors.front(), steps.front(), errors.back(), steps.back(), range_text(*range)));
   return fine(fmt::format("{}, e = {:g}: a free mass rebounds with {}", word(declared), e, range_text(*range)));
 }
@@ -235,7 +235,7 @@ Verdict start_at_a_stop(const Scheme& scheme) {
     if (!(last_lost <= std::max({round_off, way, 0.5 * first_lost}) && last_lost <= 0.02))
       return fails(
           fmt::format("a start {}: what stops and scheme take is wrong by {:.2g} J at h = {:g} s and {:.2g} J at {:g} "
-                      "s, where it should tend to m v² (1 − e²)/2 (e = {:g})",
+                      "s. What they take should tend to m v² (1 − e²)/2 (e = {:g})",
                       start.what, first_lost, steps.front(), last_lost, steps.back(), e));
     if (start.velocity == 0) continue;  // it errs by its way in a step at most: no order
     const MeasuredOrder measured = measured_order(steps, errors, 0.5);

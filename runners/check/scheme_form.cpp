@@ -168,8 +168,8 @@ Verdict singular_mass_as_declared(const Scheme& scheme) {
   const double reached = marcher.position(0).cwiseAbs().maxCoeff();
   if (!(reached < 10))
     return fails(
-        fmt::format("declares that the mass may be singular; a bar whose free end has no mass and that begins "
-                    "at 0.04 m is at {:.3g} m after 200 steps",
+        fmt::format("declares that the mass may be singular. A bar whose free end has no mass begins at 0.04 m and is "
+                    "at {:.3g} m after 200 steps",
                     reached));
   return fine("may be singular: a bar whose free end has no mass marches");
 }

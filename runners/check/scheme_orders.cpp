@@ -116,8 +116,8 @@ Verdict velocity_stands_right(const Scheme& scheme) {
   const double expected = std::min(2.0, declared_order(scheme));
   if (!measured.exact && measured.order < expected - slower)
     return fails(
-        fmt::format("the plan's velocity is no velocity at the time where it stands: it tends to q' with "
-                    "order {:.2f} (error {:.2g} m/s at the finest step), expected {:g}",
+        fmt::format("the plan's velocity is no velocity at the time where it stands: it tends to q' with order {:.2f}. "
+                    "The error is {:.2g} m/s at the finest step. Expected order {:g}",
                     measured.order, measured.finest, expected));
   return fine(numbers(measured));
 }
@@ -161,8 +161,8 @@ Verdict compliance_is_right(const Scheme& scheme) {
     const MeasuredOrder measured = measured_order(errors.steps, errors.displacement, 1);
     if (!measured.exact && measured.order < 1 - slower)
       return fails(
-          fmt::format("a spring{} that never opens, evaluated \"{}\", on a moving support does not tend to its "
-                      "closed form: order {:.2f}, error {:.3g} m at the finest step",
+          fmt::format("a spring{} that never opens, evaluated \"{}\", on a moving support does not tend to its closed "
+                      "form: order {:.2f}. The error is {:.3g} m at the finest step",
                       eta != 0 ? " with a dashpot" : "", evaluation_word(evaluation), measured.order, measured.finest));
     found += (found.empty() ? "" : ", ") + std::string(evaluation_word(evaluation)) +
              (measured.exact ? " exact" : fmt::format(" order {:.2f}", measured.order));

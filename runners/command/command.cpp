@@ -28,14 +28,14 @@ std::vector<Subcommand> all_commands() {
   const Option table{"table", "", "print a line for every case", &Args::table};
   const Option table_of_all{"table", "", "print all of it as CSV", &Args::table};
   const Option in_line{"inline", "",
-                       "run in this process alone, without workers: for a debugger (the default where all cases take "
-                       "less than a second and every plugin is Ricochet's own)",
+                       "run in this process alone, without workers: for a debugger. This is the default where all "
+                       "cases take less than a second and every plugin is Ricochet's own",
                        &Args::here};
   const Option isolate{"isolate", "", "run in worker processes, however short it is", &Args::isolate};
   const Option threads{"threads", "", "accepted for old scripts; changes nothing", {}};
   const Option part{"part", "K/N",
                     "run part K of N, its share of the cases, with a folder of its own (default: "
-                    "results/NAME-part-K-of-N); a case is not split; `ricochet merge` joins the parts",
+                    "results/NAME-part-K-of-N). A case is not split. `ricochet merge` joins the parts",
                     &Args::part};
   const Option part_shown{"part", "K/N", "show what part K of N would run", &Args::part};
   const Option cases{"cases", "", "also print a line for every case", &Args::cases};
@@ -54,13 +54,13 @@ std::vector<Subcommand> all_commands() {
                      &Args::out};
   const Option merged{"out", "DIR",
                       "the folder that is made, whole or not at all: a new or an empty one (required). Folders that "
-                      "one run would not have left are refused: of another study, program, plugin or arithmetic, under "
-                      "way, or with another result of the same case",
+                      "one run would not have left are refused: of another study, program, plugin or arithmetic, or "
+                      "under way. Different results of the same case are refused too",
                       &Args::out};
   const Option to{"to", "CSVDIR", "folder that receives the tables (required)", &Args::to};
   const Option curves{"curves", "",
                       fmt::format("all curves in one curves.csv, with the case before each sample, in place of a file "
-                                  "for each case; of more than {} cases there are no such files",
+                                  "for each case. With more than {} cases there are no such files",
                                   kMostCurveFiles),
                       &Args::curves};
   const Option parameter{"parameter", "VALUE", "value of a bifurcation study's parameter", &Args::parameter};

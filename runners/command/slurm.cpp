@@ -48,7 +48,7 @@ fs::path ranks_program() {
   if (!fs::exists(file, error))
     throw UsageError(file.string() +
                      " is not there: jobs on several machines need a build with -DRICOCHET_MPI=ON (and the MPI of the "
-                     "cluster); without it, `ricochet run --part K/N` in a job array runs parts of a study");
+                     "cluster). Without it, `ricochet run --part K/N` in a job array runs parts of a study");
   return file;
 }
 

@@ -160,7 +160,7 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
   if (is_marginal(*prepared.problem, steps))
     prepared.notes.push_back(
         "marginal: a step leaves all of the highest frequencies (ρ∞ = 1), and what has no mass here has no viscosity "
-        "either: once disturbed it goes on from step to step; use a scheme that damps them, or a stiffness damping");
+        "either. Once disturbed, it goes on from step to step. Use a scheme that damps them, or a stiffness damping");
   const double asked = thread_seconds();
   prepared.refusal = beyond_explicit_limit(prepared.problem, steps, study_case.step, [&](double h) {
     return scheme->plan(h, problem_facts(*prepared.problem, *law));

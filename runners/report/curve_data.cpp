@@ -107,8 +107,8 @@ void CurveData::put_floats(const std::string& key, std::span<const double> value
 std::string CurveData::thinning(bool files) const {
   if (thinned_ == 0) return "";
   return fmt::format(
-      "{} series of up to {} samples are thinned to {} for this page: of each small interval the smallest and the "
-      "largest sample are kept, so no peak is lost. The full series are in the store{}.",
+      "{} series of up to {} samples are thinned to {} for this page. The smallest and the largest sample of each "
+      "small interval are kept, so no peak is lost. The full series are in the store{}.",
       thinned_, longest_, limit_, files ? " and in curves/" : "");
 }
 

@@ -153,7 +153,7 @@ class FolderMerge {
     if (one.arithmetic == arithmetic_) return;
     refuse(source.folder,
            fmt::format("its case {} was computed with other last digits (arithmetic {}) than those of {} (arithmetic "
-                       "{}): processors or C libraries differ, and one run would not have left both",
+                       "{}). Processors or C libraries differ, and one run would not have left both",
                        one.id, one.arithmetic, arithmetic_of_.string(), arithmetic_));
   }
 

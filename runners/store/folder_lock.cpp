@@ -40,7 +40,7 @@ std::string lock_failure(const std::filesystem::path& file, int error) {
   const std::string failure = fmt::format("{}: cannot be locked: {}", file.string(), std::strerror(error));
   if (error == ENOSYS || error == EOPNOTSUPP)
     return failure +
-           "; this file system has no locks: it is to be mounted with them (of Lustre the option \"flock\", of NFS no "
+           "; this file system has no locks. Mount it with locks (of Lustre the option \"flock\", of NFS no "
            "\"nolock\"), or choose a folder on another one with --out";
   if (error == ENOLCK)
     return failure +

@@ -206,7 +206,7 @@ void prepare_schema(SQLite::Database& database, const std::filesystem::path& fil
       transaction.commit();
     } else if (version != kStoreVersion) {
       throw StoreError(
-          fmt::format("{}: this store has format version {}, this program reads and writes version {}; run with "
+          fmt::format("{}: this store has format version {}, this program reads and writes version {}. Run with "
                       "--fresh to forget it and run every case again, or choose another folder with --out",
                       file.string(), version, kStoreVersion));
     }

@@ -251,7 +251,7 @@ class IsolatedCases::Coordinator {
     if (ready.arithmetic != opening_.arithmetic)
       throw std::runtime_error(
           fmt::format("{} computes other last digits than this machine (another processor or C library): a study's "
-                      "results come from one arithmetic; ask the scheduler for nodes of one kind (--constraint)",
+                      "results come from one arithmetic. Ask the scheduler for nodes of one kind (--constraint)",
                       host));
   }
 

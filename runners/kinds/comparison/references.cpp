@@ -28,7 +28,7 @@ namespace {
 constexpr int cells = 64;
 constexpr const char* to_the_end = "the end of the run";
 constexpr const char* not_seen =
-    "the end of the run; how long two runs nearby stay together is not told: the schemes meet the stops at whole "
+    "the end of the run. How long two runs nearby stay together is not told: the schemes meet the stops at whole "
     "steps, which runs nearby share";
 
 // A motion marched to the end of the grid, or why there is none.

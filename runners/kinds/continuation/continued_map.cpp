@@ -135,9 +135,9 @@ void ContinuedMap::check_class(int scene) {
   }
   if (unresolved) {
     refusal_ = fmt::format(
-        "stops are met at whole steps by a mass that a step of {:.4g} s does not resolve: the map jumps where the step "
-        "of an impact changes, and its derivative is not the motion's; use a position-level scheme, a singular mass, "
-        "or bifurcation",
+        "stops are met at whole steps by a mass that a step of {:.4g} s does not resolve: the map has jumps. It jumps "
+        "where the step of an impact changes, and its derivative is not the motion's. Use a position-level scheme, a "
+        "singular mass, or bifurcation",
         program.h);
     return;
   }
@@ -175,8 +175,8 @@ void ContinuedMap::check_kernel(int scene) {
     alone = alone && std::abs(multiplier - 1.0) > one;
   if (!alone)
     refusal_ =
-        "the step has a root of modulus 1 on displacements without mass, so that no orbit stands alone; use "
-        "another weight of the scheme with damping of the stiffness, or a regular mass";
+        "the step has a root of modulus 1 on displacements without mass, so that no orbit stands alone. Use another "
+        "weight of the scheme with damping of the stiffness, or a regular mass";
 }
 
 // An end of the range, or the last value on the way to it from the first orbit at which the scene is possible.

@@ -14,8 +14,8 @@ namespace ricochet {
 constexpr const char* why_saturated =
     "these methods have no derivative, and a twin is as far away as orbits are within one period";
 constexpr const char* why_blind =
-    "this scheme changes the velocity at the step that finds a point at its stop, and the time of an impact moves with "
-    "the orbit by whole steps alone; the derivative of the step and a twin nearby do not see it, and would call a "
+    "this scheme changes the velocity at the step that finds a point at its stop. The time of an impact moves with the "
+    "orbit by whole steps alone. The derivative of the step and a twin nearby do not see this, and would call a "
     "chaotic orbit stable";
 
 constexpr const char* why_superstable =
@@ -23,10 +23,10 @@ constexpr const char* why_superstable =
     "(exponents −∞)";
 constexpr const char* why_outlived =
     "tangents grow along these orbits, which repeat all the same: what the step leaves open of their impacts does not "
-    "grow; take more steps per period";
+    "grow. Take more steps per period";
 constexpr const char* why_untold =
-    "impacts follow each other within a few steps, or at several points at once, and no point comes to rest of them: "
-    "what they make of a neighbour is not known; take more steps per period";
+    "impacts follow each other within a few steps, or at several points at once, and no point comes to rest of them. "
+    "What they make of a neighbour is not known. Take more steps per period";
 
 /// What the stability analysis says of roots of modulus one that are the scheme's.
 struct MarginalRoots {

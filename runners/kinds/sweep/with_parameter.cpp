@@ -241,11 +241,12 @@ void check_repeats(const Formula& load, const std::string& pointer, const std::s
       }
     }
   if (worst > tolerance * largest)
-    throw InputError(pointer, fmt::format("the load \"{}\" does not repeat with the forcing period of {:.6g} s: "
-                                          "at x = {:.6g} m it differs by {:.3g}{} between t = {:.6g} s and {:g} "
-                                          "period{} later; expected f(x, t + T) = f(x, t)",
-                                          shortened(load.text()), period, worst_x, worst,
-                                          unit.empty() ? "" : " " + unit, worst_t, worst_k, worst_k == 1 ? "" : "s"));
+    throw InputError(
+        pointer,
+        fmt::format("the load \"{}\" does not repeat with the forcing period of {:.6g} s. At x = {:.6g} m it differs "
+                    "by {:.3g}{} between t = {:.6g} s and {:g} period{} later. Expected f(x, t + T) = f(x, t)",
+                    shortened(load.text()), period, worst_x, worst, unit.empty() ? "" : " " + unit, worst_t, worst_k,
+                    worst_k == 1 ? "" : "s"));
 }
 
 }  // namespace
@@ -254,14 +255,15 @@ void check_forcing(const SceneSpec& scene) {
   const std::vector<Repeated> histories = histories_of(scene);
   for (const Repeated& one : histories)
     if (one.period == 0)
-      throw InputError(one.pointer,
-                       "says no period, and steps per period need one: expected \"period\" (s) of a table that repeats"
-                       ", \"pulsation\" (rad/s) of a formula that does, or of a displacement amplitude and pulsation");
+      throw InputError(
+          one.pointer,
+          "says no period, and steps per period need one: expected \"period\" (s) of a table that repeats, or "
+          "\"pulsation\" (rad/s) of a formula that does. A displacement may have an amplitude and a pulsation instead");
   const double pulsation = forcing_pulsation(scene);
   const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
   if (!(pulsation > 0))
     throw InputError("/scene/support/pulsation",
-                     fmt::format("no forcing has a period (the pulsation is 0); steps per period need one: expected a "
+                     fmt::format("no forcing has a period (the pulsation is 0). Steps per period need one: expected a "
                                  "pulsation above 0 of the support{}, or the period of a motion or a table",
                                  oscillator ? " or of the force" : ""));
   constexpr double tolerance = 1e-9;

@@ -96,7 +96,7 @@ TEST_CASE("a mass that the step does not resolve at its stop refuses the case") 
   Json study = tube_continuation();
   study["methods"] = Json::parse(R"({"mass": "consistent", "contact": "signorini",
                                      "time": {"name": "moreau-jean"}})");
-  check_says(refusal_of(study), {"stops are met at whole steps by a mass", "use a position-level scheme"});
+  check_says(refusal_of(study), {"stops are met at whole steps by a mass", "Use a position-level scheme"});
   study["methods"]["time"] = Json::parse(R"({"name": "newmark-dumont-paoli", "restitution": 0.5})");
   check_says(refusal_of(study), {"stops are met at whole steps by a mass"});
   // Position-level stops without restitution are a projection, whatever the mass.

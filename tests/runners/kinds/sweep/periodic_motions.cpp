@@ -259,7 +259,8 @@ TEST_CASE("what has no period, another one or a drift is told with what to give"
   CHECK(
       studies.refusal(moved(R"({"acceleration": {"file": "one.csv", "value": "a", "after": "zero"}})")) ==
       "/scene/motions/0/acceleration: says no period, and steps per period need one: expected \"period\" (s) of a "
-      "table that repeats, \"pulsation\" (rad/s) of a formula that does, or of a displacement amplitude and pulsation");
+      "table that repeats, or \"pulsation\" (rad/s) of a formula that does. A displacement may have an amplitude and a "
+      "pulsation instead");
   CHECK(
       studies.refusal(moved(R"json({"displacement": {"formula": "1e-4*sin(60*t)", "every": 1e-4, "period": 0.1
 }
