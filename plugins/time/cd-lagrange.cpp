@@ -30,8 +30,7 @@ PlanOrRefusal cd_lagrange(const Parameters& p, double h, const ProblemFacts& fac
   Stage start = equation(2 / h * M * z + C * v + K * q, at(0));
   start.impact = {next, at(0.5), VelocityGate{q, at(0), v, at(0), e}};
   for (auto& compliance : start.compliance) compliance = {q, at(0), v, at(0), {1}};
-  start.at(Evaluation::conserving)->before = q;
-  start.at(Evaluation::conserving)->before_bound = at(0);
+  start.at(Evaluation::conserving) = {q, at(0), v, at(0), {1}, q, at(0)};
   start.update = {q, next};
   StepPlan plan = plan_with({"q", "w"});
   plan.start = {start};

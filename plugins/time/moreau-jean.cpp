@@ -17,15 +17,11 @@ PlanOrRefusal moreau_jean(const Parameters& p, double h, const ProblemFacts& fac
   const double theta = p.real("theta"), e = p.real("restitution");
   const bool damps = theta != 0.5, massless_contact = facts.contact && facts.mass_kernel_dimension > 0;
   if (massless_contact && e > 0)
-    return Refusal{
-        fmt::format("restitution = {:g} has nothing to act on at a contact point without mass (singular mass): its "
-                    "velocity is not a state; use restitution 0, or a regular mass",
-                    e)};
+    return needs_mass(fmt::format("restitution = {:g}", e), "use restitution 0, or a regular mass");
   if (massless_contact && !damps)
     return Refusal{
-        "theta = 0.5 leaves the root −1 on the kernel of a singular mass, with or without damping: the velocity of a "
-        "contact point changes sign at every step and the approach test never holds; use theta > 0.5 or a regular "
-        "mass"};
+        "theta = 0.5 leaves the root −1 on the kernel of a singular mass, with or without damping: use theta > 0.5, or "
+        "a regular mass"};
   const auto [q, v] = slots<2>();
   const Combination next_v = v + z, next = q + h * v + h * theta * z, mean_v = v + theta * z;
   const Levels mean = (1 - theta) * at(0) + theta * at(1);

@@ -1,5 +1,4 @@
 #include "shared_steps.hpp"
-#include "stability_limit.hpp"
 
 namespace {
 
@@ -22,8 +21,7 @@ PlanOrRefusal noh_bathe(const Parameters& parameters, double h, const ProblemFac
   const double q1 = (1 - 2 * p) / (2 * p * (1 - p)), q2 = 0.5 - p * q1, q0 = 0.5 - q1 - q2;
   const auto [q, v, a, b] = slots<4>();
   // To the instant `now`, `step` later; an effort moves the position of the instant `next`, `ahead` later still.
-  const auto substep = [q = q, v = v, a = a](double step, double ahead, double now, double next,
-                                             const Combination& rate) {
+  const auto substep = [q = q, v = v, a = a](double step, double ahead, double now, double next, const auto& rate) {
     const Combination position = q + step * v + step * step / 2 * a;
     Stage stage = motion_at(now, position, v + step * a);
     stage.impact = {.value = position + ahead * rate + ahead * ahead / 2 * z, .bound = at(next)};
