@@ -81,10 +81,10 @@ std::vector<Reason> reasons_of(const Cases& cases, bool alike) {
   return out;
 }
 
-/// A whole clause of the reason that is not too long.
+/// Whole sentences of the reason, or a whole clause, that are not too long.
 std::string shortened(const std::string& reason) {
   if (reason.size() <= longest_reason) return reason;
-  for (const char* end : {"; ", ": ", ", "}) {
+  for (const char* end : {". ", "; ", ": ", ", "}) {
     const std::size_t at = reason.rfind(end, longest_reason);
     if (at != std::string::npos && at > 20) return reason.substr(0, at);
   }
