@@ -15,7 +15,7 @@ using namespace plan_algebra;
 /// where q + h v + ½h² a passes it. At ρ∞ = 1 the balance of ½|v|²_M + ½|q|²_K with Δq is whole; below none is known,
 /// as a load moves the filter σ too.
 PlanOrRefusal nonsmooth_generalised_alpha(const Parameters& p, double h, const ProblemFacts& facts) {
-  if (facts.mass_kernel_dimension > 0) return needs_mass("a velocity that jumps", "use generalised-alpha");
+  if (facts.mass_kernel_dimension > 0) return needs_mass("a velocity jump", "use generalised-alpha, or a regular mass");
   const AlphaMethod method = AlphaMethod::chung_hulbert(p.real("rho_inf"));
   const bool half = p.word("position") == "half", projected = p.word("position") == "projected";
   const bool trapezium = method.gamma == 0.5 && !projected;

@@ -262,10 +262,11 @@ void check_forcing(const SceneSpec& scene) {
   const double pulsation = forcing_pulsation(scene);
   const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
   if (!(pulsation > 0))
-    throw InputError("/scene/support/pulsation",
-                     fmt::format("no forcing has a period (the pulsation is 0). Steps per period need one: expected a "
-                                 "pulsation above 0 of the support{}, or the period of a motion or a table",
-                                 oscillator ? " or of the force" : ""));
+    throw InputError(
+        "/scene/support/pulsation",
+        fmt::format("no forcing has a period (the pulsation is 0), and steps per period need one. Expected: a "
+                    "pulsation above 0 of the support{}, or the period of a motion or a table",
+                    oscillator ? " or of the force" : ""));
   constexpr double tolerance = 1e-9;
   const double period = 2 * std::numbers::pi / pulsation;
   if (oscillator && oscillator->force.amplitude != 0) {

@@ -40,7 +40,7 @@ TEST_CASE("schemes that need inertia at the contact point refuse a singular mass
       {scheme("kane", {{"beta", 0.3}, {"gamma", 0.6}}), "inverse of the mass, which is singular",
        "use beta = 0.25 with gamma = 0.5, or a regular mass"},
       {scheme("moreau-jean", {{"restitution", 0.8}}), "restitution = 0.8", "use restitution 0, or a regular mass"},
-      {scheme("moreau-jean"), "theta = 0.5", "use theta > 0.5 or a regular mass"}};
+      {scheme("moreau-jean"), "theta = 0.5", "use theta > 0.5, or a regular mass"}};
   for (const Row& row : rows)
     for (const char* velocity : {"P1", "P0"}) {
       INFO(label(row.time) << " on " << velocity);
