@@ -105,7 +105,7 @@ inline void run(Marcher& made, double duration) {
   made.march(std::llround(duration / made.program().h) - made.step());
 }
 
-/// The tip at every step, of a march that runs to its end.
+/// The tip at every step, of a time integration that runs to its end.
 inline std::vector<double> tip_history(const SceneSpec& scene, int elements, const Methods& methods, double h,
                                        double duration, const CompileOptions& options = {}) {
   Marcher made = marcher(scene, elements, methods, h, options);

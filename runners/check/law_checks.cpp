@@ -292,7 +292,7 @@ Verdict points_have_own_sets(const Law& law) {
     if (together.effort(l) != apart.effort(l))
       return fails("equal sets for all points give other efforts than one set for the lane");
   const std::string key = together.law().parameter_of(ParameterRole::stiffness);
-  if (key.empty()) return fine("equal sets give the same bits");
+  if (key.empty()) return fine("equal sets give bitwise equal efforts");
   // Where no effort moves a measure, each point is alone with its set.
   constexpr int changed = 1;
   std::vector<Parameters> sets = copies(law);

@@ -336,9 +336,10 @@ void check_size(const StructureSpec& structure) {
   problem.contact.resize(0, n);
   const double seconds = std::min(predict_cost(OperatorKind::band, problem, {}, 1).step_seconds,
                                   predict_cost(OperatorKind::sparse, problem, {}, 1).step_seconds);
-  throw InputError("/scene/structure", fmt::format("{} dofs without mesh.modes: a march takes {:.2g} s per step; "
-                                                   "expected at most {}, or mesh.modes",
-                                                   n, seconds, most_dofs));
+  throw InputError("/scene/structure",
+                   fmt::format("{} dofs without mesh.modes: a time integration takes {:.2g} s per step; "
+                               "expected at most {}, or mesh.modes",
+                               n, seconds, most_dofs));
 }
 
 }  // namespace ricochet

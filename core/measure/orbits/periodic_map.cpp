@@ -2,6 +2,7 @@
 #include <cmath>
 #include <ricochet/engine/march_loads.hpp>
 #include <ricochet/engine/stage_state.hpp>
+#include <ricochet/measure/orbits/multipliers.hpp>
 #include <ricochet/measure/orbits/periodic_map.hpp>
 
 namespace ricochet {

@@ -164,7 +164,7 @@ class PeriodicMap {
   void set_period(int steps_per_period);
 };
 
-/// The tip where a march over a map begins, and its central velocity over two steps there, as the map's sign has it.
+/// The tip where steps over a map begin, and its central velocity over two steps there, as the map's sign has it.
 struct StrobeTip {
   double displacement = 0, velocity = 0;  ///< m, absolute; m/s
 };
@@ -184,7 +184,7 @@ struct ShotOrbit {
   int iterations = 0;
   double residual = 0;  ///< |P(x) − x|, m
   double nearest = 0;   ///< the least residual met, m
-  LaneEnd end;          ///< of a march that stopped
+  LaneEnd end;          ///< of steps that stopped
   /// Of residuals that alternate: a step and a row of v in which the last two contact sets differ; −1: none.
   long long step = -1;
   int row = -1;

@@ -17,7 +17,7 @@ Methods spring_methods(const char* evaluation) {
 
 }  // namespace
 
-TEST_CASE("a march over contacts is the composition of affine steps by its contact sets") {
+TEST_CASE("integration over contacts is the composition of affine steps by its contact sets") {
   const int steps = 200;
   for (const Methods& methods : {tube_methods(), spring_methods("implicit"), spring_methods("averaged")}) {
     INFO(methods.contact.name);

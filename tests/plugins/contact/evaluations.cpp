@@ -46,7 +46,7 @@ struct Run {
 
 Run bounced(const Choice& law, const Choice& time, bool losses = false, double h = 2e-3, int steps = 5000) {
   Marcher mass = marcher(bouncing_mass(), 1, {{"consistent"}, law, time}, h);
-  Kept kept(mass, losses);
+  EnergyDrift kept(mass, losses);
   mass.start(&kept);
   mass.march(steps, &kept);
   INFO(law.name << " with " << time.name);
@@ -138,7 +138,7 @@ TEST_CASE("a point that begins a step beyond its stop gets its energy back, push
   Marcher mass = marcher(scene, 1, {{"consistent"}, law_of("layer", "conserving"), midpoint}, 2e-3);
   const double before = 0.5 * 36 + 20 * 0.095 * 0.095 + mass.law().potential(-0.005, 0);
   REQUIRE(mass.law().potential(-0.005, 0) > 0.1);
-  Kept kept(mass);
+  EnergyDrift kept(mass);
   mass.start(&kept);
   mass.march(1, &kept);
   CHECK(kept.audit().energy(0).contact == 0);

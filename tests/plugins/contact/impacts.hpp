@@ -42,9 +42,9 @@ inline Bounce bounce(const Choice& law, double h, double duration = 0.25, const 
 /// E + U over a run, E the energy of the scheme. How far it moves from its first value, its largest gain in a step, its
 /// change at the end. Also the largest share of it that the stops held. `losses`: what the law says that it dissipated
 /// counts too.
-class Kept final : public StepObserver {
+class EnergyDrift final : public StepObserver {
  public:
-  explicit Kept(const Marcher& marcher, bool losses = false) : audit_(marcher), losses_(losses) {}
+  explicit EnergyDrift(const Marcher& marcher, bool losses = false) : audit_(marcher), losses_(losses) {}
   void stage_solved(const Marcher& marcher, const StageView& view) override { audit_.stage_solved(marcher, view); }
   void step_done(Marcher& marcher) override {
     audit_.step_done(marcher);

@@ -151,7 +151,7 @@ TEST_CASE("Nitsche's energy, that of K' and of its springs, is kept to round-off
   beam_of(scene).damping = {};
   const Choice time = GENERATE(Choice{"midpoint"}, Choice{"newmark-dumont-paoli", {{"beta", 0.5}}});
   Marcher beam = marcher(scene, 8, {{"consistent"}, nitsche(8, "conserving"), time}, 1e-4);
-  Kept kept(beam);
+  EnergyDrift kept(beam);
   beam.start(&kept);
   beam.march(4000, &kept);
   REQUIRE(beam.status(0).running);

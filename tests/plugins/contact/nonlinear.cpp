@@ -215,7 +215,7 @@ TEST_CASE("conserving springs give back to the scheme's energy what they took, t
   SceneSpec scene = working_set();
   scene.stops.place = StopsSpec::Place::nodes;
   Marcher beam = marcher(scene, 8, {{"consistent"}, law, {"newmark-dumont-paoli", {{"beta", beta}}}}, 2e-4);
-  Kept kept(beam);
+  EnergyDrift kept(beam);
   beam.start(&kept);
   beam.march(2500, &kept);
   REQUIRE(beam.status(0).running);

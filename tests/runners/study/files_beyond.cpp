@@ -134,7 +134,7 @@ TEST_CASE("matrices of more than 20000 dofs are refused with the time of a step"
   Json study = study_of("");
   study["scene"]["stops"][0]["at"]["node"] = "1";
   CHECK_THAT(refused(study, folder.path()),
-             Contains("/scene/structure: 20001 dofs without mesh.modes: a march takes ") &&
+             Contains("/scene/structure: 20001 dofs without mesh.modes: a time integration takes ") &&
                  Contains(" s per step; expected at most 20000, or mesh.modes"));
 }
 

@@ -17,7 +17,7 @@ TEST_CASE("agents: the same rows in thousands of orders of what is said, workers
     CAPTURE(seed);
     const Study study = study_of(seed);
     const std::size_t ranks = seed / 2 % 4;
-    Kept kept;
+    StoredRows kept;
     std::atomic<bool> stop{false};
     const Outcome outcome = run_scripts(study, seed, std::vector<Fate>(ranks), kept, stop, long_silence, some);
     check_all(study, kept);
@@ -42,7 +42,7 @@ TEST_CASE("agents: machines that vanish cost time, what those say that come back
       fate.after = 1 + static_cast<int>(luck() % 30);
       fate.absence = silence * (0.5 + 0.1 * static_cast<double>(luck() % 20));
     }
-    Kept kept;
+    StoredRows kept;
     std::atomic<bool> stop{false};
     lost += run_scripts(study, seed, fates, kept, stop, silence, some).lost;
     check_all(study, kept);
@@ -60,7 +60,7 @@ TEST_CASE("agents: a coordinator that was stopped for a while takes nobody for l
     prepare(world, study, seed, none);
     ScriptedNetwork network(world, seed, std::vector<Fate>(3), silence / 10);
     network.stop_rank_0(static_cast<int>(10 + seed), 2 * silence);
-    Kept kept;
+    StoredRows kept;
     std::atomic<bool> stop{false};
     std::atomic<int> lost{0};
     RemoteHosts remote(
@@ -89,7 +89,7 @@ TEST_CASE("agents: one whose messages are cut or nonsense costs at most its mach
     bool cut = false;
     for (Fate& fate : fates)
       if (fate.what == Fate::What::cut && std::exchange(cut, true)) fate.what = Fate::What::nonsense;
-    Kept kept;
+    StoredRows kept;
     std::atomic<bool> stop{false};
     lost += run_scripts(study, seed, fates, kept, stop, long_silence, none).lost;
     check_all(study, kept);
@@ -103,7 +103,7 @@ TEST_CASE("agents: a run that is stopped ends, keeps what was finished, and goes
   for (std::uint32_t seed = 0; seed < orders; ++seed) {
     CAPTURE(seed);
     const Study study = study_of(seed);
-    Kept kept;
+    StoredRows kept;
     std::atomic<bool> stop{false};
     std::thread somebody([&stop, wait = seed % 30] {
       std::this_thread::sleep_for(std::chrono::microseconds(100 * wait));

@@ -34,7 +34,7 @@ class ScriptedHost : public WorkerHost {
 };
 
 /// What a store keeps, and how often it was told each row.
-struct Kept {
+struct StoredRows {
   std::mutex mutex;
   std::map<std::string, std::string> checkpoints, rows;
   std::map<std::string, int> told;
@@ -74,7 +74,7 @@ inline std::map<std::string, std::string> expected_rows(const Study& study) {
 }
 
 /// Runs what is missing of the study on these machines, `stop` being raised by whoever likes.
-inline void run_missing(const Study& study, std::vector<std::shared_ptr<WorkerHost>> hosts, Kept& kept,
+inline void run_missing(const Study& study, std::vector<std::shared_ptr<WorkerHost>> hosts, StoredRows& kept,
                         std::atomic<bool>& stop) {
   const Registry registry;
   const RunContext context{study, registry, [](const StudyCase& one) { return one.id; }};
@@ -120,7 +120,7 @@ struct Outcome {
 };
 
 /// A run on this machine and on one for each of the fates.
-inline Outcome run_scripts(const Study& study, std::uint32_t seed, const std::vector<Fate>& fates, Kept& kept,
+inline Outcome run_scripts(const Study& study, std::uint32_t seed, const std::vector<Fate>& fates, StoredRows& kept,
                            std::atomic<bool>& stop, double silence, double crashes) {
   ScriptedWorld world;
   prepare(world, study, seed, crashes);
@@ -140,7 +140,7 @@ inline Outcome run_scripts(const Study& study, std::uint32_t seed, const std::ve
   return outcome;
 }
 
-inline void check_all(const Study& study, const Kept& kept) {
+inline void check_all(const Study& study, const StoredRows& kept) {
   CHECK((kept.rows == expected_rows(study)));
   for (const auto& [id, times] : kept.told) CHECK(times == 1);
 }

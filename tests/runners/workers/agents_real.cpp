@@ -90,7 +90,7 @@ TEST_CASE("agents: the real ones pass on what workers say and how they end, and 
         served +=
             static_cast<int>(serve_as_agent(end, facts, [&] { return std::make_unique<CountedWorker>(world, there); }));
       });
-    Kept kept;
+    StoredRows kept;
     {
       Exchange::End end(exchange, 0);
       RemoteHosts remote(end, [](const HostFacts&, const std::string&) { FAIL_CHECK("a machine is lost"); });

@@ -6,7 +6,7 @@
   const cloudGlyph = (shape, count) =>
       (count > 2500 ? {shape: "dot", size: count > 40000 ? 1.5 : 2} : {shape, size: count < 400 ? 6 : 5});
 
-  // Coverage of the shape, 0 to 255, in device pixels around its centre. Kept: pixels are slow to read back.
+  // Coverage of the shape, 0 to 255, in device pixels around its centre. It is stored, as pixels are slow to read back.
   const masks = new Map();
   function maskOf(glyph, ratio) {
     const key = glyph.shape + glyph.size + "/" + ratio;

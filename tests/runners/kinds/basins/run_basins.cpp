@@ -63,7 +63,7 @@ std::vector<Cell> cells(const CaseRecord& record, const std::string& name) {
   return out;
 }
 
-std::string bits(const CaseRecord& record) {
+std::string bytes_of(const CaseRecord& record) {
   std::string text = record.status + std::to_string(record.steps);
   for (const Row& row : record.tables.front().rows)
     for (const Cell& cell : row) text += csv_cell(cell);
@@ -185,10 +185,10 @@ TEST_CASE("Cells marched in batches of their own or many batches together are bi
   text["transient"] = {{"periods", 4}, {"at_most", 8}};
   text["keep"] = 16;
   const Opened opened(text);
-  const std::string wanted = bits(opened.run());
+  const std::string wanted = bytes_of(opened.run());
   // So many workers that three batches are marched at once.
   BlockThreads workers(opened.study.cases.front(), opened.registry, 64);
-  CHECK((bits(opened.run({{}, "key", &workers})) == wanted));
+  CHECK((bytes_of(opened.run({{}, "key", &workers})) == wanted));
 
   // Stopped with all three under way, and gone on with one at a time: what was kept is of no batch or of whole ones.
   std::map<std::string, std::string> kept;
@@ -204,15 +204,15 @@ TEST_CASE("Cells marched in batches of their own or many batches together are bi
   stop = false;
   context.blocks = nullptr;
   context.checkpoints.find = [&](const std::string& key) { return kept.count(key) ? kept[key] : ""; };
-  CHECK((bits(run_basins(opened.study.cases.front(), opened.registry, context, stop)) == wanted));
+  CHECK((bytes_of(run_basins(opened.study.cases.front(), opened.registry, context, stop)) == wanted));
 }
 
 TEST_CASE("Workers, interruptions and damage to what was stored do not change basins") {
   const Opened opened(grid_study(13, 13, true));
-  const std::string wanted = bits(opened.run());
+  const std::string wanted = bytes_of(opened.run());
   for (int run = 0; run < 3; ++run) {
     BlockThreads workers(opened.study.cases.front(), opened.registry, 2);
-    CHECK((bits(opened.run({{}, "key", &workers})) == wanted));
+    CHECK((bytes_of(opened.run({{}, "key", &workers})) == wanted));
   }
 
   std::map<std::string, std::string> kept;
@@ -234,7 +234,7 @@ TEST_CASE("Workers, interruptions and damage to what was stored do not change ba
     stop = false;
     try {
       const CaseRecord record = run_basins(opened.study.cases.front(), opened.registry, context, stop);
-      CHECK((bits(record) == wanted));  // not printed when it fails
+      CHECK((bytes_of(record) == wanted));  // not printed when it fails
       break;
     } catch (const Interrupted&) {
     }

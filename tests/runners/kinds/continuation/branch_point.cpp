@@ -30,12 +30,12 @@ struct Solved {
 };
 
 /// What a case leaves, as a folder of results holds it.
-struct Kept {
+struct RunResults {
   ScratchFolder here;
   OpenedContinuation opened;
   StudyResults results;
 
-  explicit Kept(const Json& text) : opened(opened_continuation(text)), results(results_header(opened.study)) {
+  explicit RunResults(const Json& text) : opened(opened_continuation(text)), results(results_header(opened.study)) {
     ::setenv("RICOCHET_PLUGIN_PATH", RICOCHET_PLUGIN_DIR, 1);
     const std::atomic<bool> stop{false};
     results.cases = {run_continuation(opened.study.cases.front(), *opened.registry, {}, stop)};
@@ -67,7 +67,7 @@ struct Kept {
 }  // namespace
 
 TEST_CASE("an orbit at a row's arc is that row, and its period closes") {
-  const Kept kept(tube_continuation());
+  const RunResults kept(tube_continuation());
   const auto rows = rows_of(kept.results.cases.front());
   REQUIRE(rows.size() > 20);
   for (std::size_t k = 0; k < rows.size(); k += 1 + rows.size() / 15) {
@@ -90,7 +90,7 @@ TEST_CASE("an orbit at a row's arc is that row, and its period closes") {
 }
 
 TEST_CASE("between two rows the orbit stands at its arc, whichever state it is followed from") {
-  const Kept kept(tube_continuation());
+  const RunResults kept(tube_continuation());
   const auto rows = rows_of(kept.results.cases.front());
   int between = 0;
   for (std::size_t k = 1; k < rows.size(); k += 1 + rows.size() / 15) {
@@ -116,7 +116,7 @@ TEST_CASE("by steps an orbit at a row's arc is that row, and between two rows th
   study["follow"] = "steps";
   study["parameter"] = {{"pointer", "/scene/support/amplitude"}, {"from", 0.084}, {"to", 0.086}};
   study["at_most"] = {{"pieces", 12}};
-  const Kept kept(study);
+  const RunResults kept(study);
   REQUIRE(kept.results.cases.front().status == "done");
   const auto rows = rows_of(kept.results.cases.front());
   REQUIRE(rows.size() > 4);
@@ -138,7 +138,7 @@ TEST_CASE("by steps an orbit at a row's arc is that row, and between two rows th
 TEST_CASE("a stable orbit that is solved is the one that a bifurcation study marches, at any phase") {
   Json study = tube_continuation();
   study["follow"] = "none";
-  const Kept kept(study);
+  const RunResults kept(study);
   const auto rows = rows_of(kept.results.cases.front());
   REQUIRE(rows.size() == 1);
   const Solved solved = kept.solve(rows[0].branch, 0);
@@ -160,7 +160,7 @@ TEST_CASE("a stable orbit that is solved is the one that a bifurcation study mar
 }
 
 TEST_CASE("what is asked of a branch in vain names what there is") {
-  const Kept kept(tube_continuation());
+  const RunResults kept(tube_continuation());
   const auto rows = rows_of(kept.results.cases.front());
   const auto refused = [&](const PointRequest& asked) {
     std::ostringstream out;
@@ -186,7 +186,7 @@ TEST_CASE("what is asked of a branch in vain names what there is") {
 }
 
 TEST_CASE("a case draws at most sixty orbits of a branch, special points among them") {
-  const Kept kept(tube_continuation());
+  const RunResults kept(tube_continuation());
   const CaseRecord& record = kept.results.cases.front();
   const NumberTable *portraits = branch_portraits_type().find(record.numbers),
                     *samples = branch_samples_type().find(record.numbers);

@@ -45,7 +45,7 @@ void add_all(OrbitScheduler& scheduler, const Sweep& sweep) {
 }
 
 /// Every orbit as bytes, in the order of the tasks.
-std::vector<std::string> bits(const OrbitScheduler& scheduler) {
+std::vector<std::string> bytes_of(const OrbitScheduler& scheduler) {
   std::vector<std::string> all;
   for (int i = 0; i < scheduler.count(); ++i)
     all.push_back(scheduler.finished(i) ? to_bytes(MarchedOrbits{{scheduler.orbit(i)}, {}}) : "");
@@ -94,7 +94,7 @@ std::vector<std::string> marched(const Sweep& sweep, int workers, int lanes) {
   add_all(scheduler, sweep);
   const std::atomic<bool> stop = false;
   scheduler.run(stop, nowhere);
-  return bits(scheduler);
+  return bytes_of(scheduler);
 }
 
 /// Marches, is stopped at every so many checkpoints, and goes on from the bytes until all is done.
@@ -121,7 +121,7 @@ std::vector<std::string> interrupted(const Sweep& sweep, int workers, int lanes,
       });
     } catch (const Interrupted&) {
     }
-    const std::vector<std::string> all = bits(scheduler);
+    const std::vector<std::string> all = bytes_of(scheduler);
     if (std::find(all.begin(), all.end(), "") == all.end()) return all;
     ++stops;
     REQUIRE(stops < 1000);
@@ -250,7 +250,7 @@ TEST_CASE("what is marched after the first run takes part as if it had been ther
     scheduler->add(sweep.task(2));
     scheduler->run(stop, nowhere);
   }
-  CHECK(difference(bits(once), bits(twice)) == "");
+  CHECK(difference(bytes_of(once), bytes_of(twice)) == "");
 }
 
 TEST_CASE("a budget that is spent ends the integration, and says so") {
