@@ -16,8 +16,6 @@
 namespace ricochet {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string json_said(const Json* value) {
   return value ? value->dump(-1, ' ', false, Json::error_handler_t::replace) : "";
 }

@@ -9,6 +9,7 @@
 #include <ricochet/loader/child.hpp>
 #include <set>
 
+#include "runners/json/json_text.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
@@ -19,7 +20,6 @@
 namespace ricochet {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Method = std::pair<std::string, std::string>;  // role, name
 
 // A large mesh may take its time; a plugin that is not done by then never is.

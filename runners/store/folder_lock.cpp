@@ -14,6 +14,7 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "runners/json/json_text.hpp"
 #include "runners/store/atomic_file.hpp"
 
 namespace ricochet {
@@ -130,7 +131,6 @@ bool RunIdentity::succeeds(const RunIdentity& other) const {
 }
 
 std::string RunIdentity::to_json() const {
-  using Json = nlohmann::ordered_json;
   return Json{{"host", host}, {"process", process}, {"started", started}, {"job", job}, {"restart", restart}}.dump(
       -1, ' ', false, Json::error_handler_t::replace);
 }

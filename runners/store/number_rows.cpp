@@ -10,6 +10,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "runners/json/json_text.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/folder_lock.hpp"
 #include "runners/store/read_store.hpp"
@@ -70,7 +71,6 @@ void bind_series(SQLite::Statement& statement, int index, const double* first, s
 }
 
 void insert_numbers(SQLite::Statement& add, const std::string& case_id, int& position, const NumberTable& table) {
-  using Json = nlohmann::ordered_json;
   // SQLite holds no more than a billion bytes in one place.
   constexpr std::size_t piece = numbers_in_piece;
   for (std::size_t first = 0; first == 0 || first < table.rows(); first += piece, ++position)

@@ -8,6 +8,7 @@
 #include <ricochet/measure/motion/orders.hpp>
 #include <set>
 
+#include "runners/json/json_text.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/study/body_keys.hpp"
@@ -15,8 +16,6 @@
 
 namespace ricochet {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::vector<std::string> without(std::vector<std::string> columns, const std::string& one) {
   std::erase(columns, one);

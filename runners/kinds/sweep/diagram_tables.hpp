@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "runners/json/json_text.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/store/record.hpp"
 #include "runners/table/table_reader.hpp"
@@ -16,8 +17,6 @@
 namespace ricochet::dynamics {
 
 // What the cases of a bifurcation study left, in the shape that comparisons need: cases × values × starts.
-
-using Json = nlohmann::ordered_json;
 
 /// Tip and mirrored tip of one run's section, in SI units.
 struct SectionReadings {

@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "runners/json/json_text.hpp"
 #include "runners/kinds/sweep/march_point.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
@@ -22,8 +23,6 @@
 
 namespace ricochet {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* contact_word = "contact";  // beyond a grazing, whatever class of motion it is
 

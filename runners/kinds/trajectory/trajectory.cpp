@@ -7,6 +7,7 @@
 #include <map>
 
 #include "runners/answers/uncertainty.hpp"
+#include "runners/json/json_text.hpp"
 #include "runners/kinds/all_kinds.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/trajectory/energy_tables.hpp"
@@ -318,8 +319,6 @@ KindPointer trajectory_kind() {
 }
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 const std::vector<std::string> roles = {"mass", "contact", "time"};
 

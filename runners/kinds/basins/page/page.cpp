@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "runners/json/json_text.hpp"
 #include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/report/case_view.hpp"
@@ -28,7 +29,6 @@ KindPage basins_page() {
 }
 
 nlohmann::ordered_json basin_data(const CaseView& view, CurveData& blocks) {
-  using Json = nlohmann::ordered_json;
   const Basins basins = basins_of(view.results());
   Json labels = Json::array(), grids = Json::array();
   for (const BasinLabel& label : basins.labels)
