@@ -36,6 +36,11 @@ struct TimedMarch {
 struct CaseRunner {
   /// Runs one case; throws Interrupted where `stop` became true.
   std::function<CaseRecord(const StudyCase&, const std::atomic<bool>& stop)> run;
+  /// Runs cases that cost little, one after the other, with one message to a worker; `ended` is told each record in
+  /// order, one of status `failed` too. Throws Interrupted where `stop` became true. Empty: cases run one by one.
+  std::function<void(const std::vector<const StudyCase*>&, const std::function<void(CaseRecord)>& ended,
+                     const std::atomic<bool>& stop)>
+      run_several;
   /// Called once, when the store is open and before any case runs; throws InputError for what only shows then. May be
   /// empty.
   std::function<void(CheckpointStore, const std::atomic<bool>& stop)> open;

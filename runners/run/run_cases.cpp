@@ -21,12 +21,35 @@ namespace {
 // One of cases that are alike is planned; where that tells nothing (it may be refused), a few more.
 constexpr std::size_t most_tried = 16;
 
+// What travels to a worker together: a message costs a part of a millisecond.
+constexpr double least_seconds = 0.05;
+constexpr std::size_t most_together = 64;
+using Together = std::vector<const PendingCase*>;
+
 /// Runs `body` on so many threads, this one among them, until each has returned; `body` must not throw.
 void on_threads(int threads, const std::function<void()>& body) {
   std::vector<std::thread> others;
   for (int i = 1; i < threads; ++i) others.emplace_back(body);
   body();
   for (std::thread& one : others) one.join();
+}
+
+/// Runs cases one after the other; `ended` is told each record.
+void run_together(const CaseRunner& runner, const Together& cases, const std::atomic<bool>& stop,
+                  const std::function<void(const CaseRecord&)>& ended) {
+  if (cases.size() == 1) return ended(run_guarded(runner, *cases.front()->study_case, stop));
+  std::vector<const StudyCase*> all;
+  for (const PendingCase* one : cases) all.push_back(one->study_case);
+  std::size_t next = 0;
+  runner.run_several(
+      all,
+      [&](CaseRecord record) {
+        const StudyCase& study_case = *all[next++];
+        record.id = study_case.id;
+        record.axes = study_case.axes;
+        ended(record);
+      },
+      stop);
 }
 
 }  // namespace
@@ -40,23 +63,36 @@ int run_cases(const StudyRunner& runner, std::vector<PendingCase> pending, int a
     if (a.predicted_seconds != b.predicted_seconds) return a.predicted_seconds > b.predicted_seconds;
     return by_id && a.study_case->id < b.study_case->id;
   });
-  std::atomic<std::size_t> next{0};
+  at_once = std::max(1, std::min(at_once, static_cast<int>(pending.size())));
+  std::size_t next = 0;
+  std::mutex taking;
+  // None where all are taken.
+  const auto take = [&] {
+    const std::lock_guard guard(taking);
+    const std::size_t left = pending.size() - next, shares = 4 * static_cast<std::size_t>(at_once);
+    const std::size_t most = runner.cases.run_several ? std::clamp(left / shares, std::size_t{1}, most_together) : 1;
+    Together cases;
+    double seconds = 0;
+    while (!stop && next < pending.size() && cases.size() < most && seconds < least_seconds) {
+      cases.push_back(&pending[next++]);
+      // Of what nobody predicted one at a time.
+      seconds += cases.back()->predicted_seconds > 0 ? cases.back()->predicted_seconds : least_seconds;
+    }
+    return cases;
+  };
   std::atomic<int> finished{0};
   std::mutex failing;
   std::exception_ptr failure;
-  const auto take = [&]() -> const PendingCase* {
-    const std::size_t i = next++;
-    return i < pending.size() && !stop ? &pending[i] : nullptr;
-  };
-  on_threads(std::max(1, std::min(at_once, static_cast<int>(pending.size()))), [&] {
+  on_threads(at_once, [&] {
     try {
-      const PendingCase* one = take();
-      if (one) events.begins(*one);
-      while (one) {
-        const CaseRecord record = run_guarded(runner.cases, *one->study_case, stop);
-        one = take();
-        events.finished(record, one);
-        ++finished;
+      for (Together cases = take(); !cases.empty(); cases = take()) {
+        events.begins(cases);
+        std::size_t ended = 0;
+        run_together(runner.cases, cases, stop, [&](const CaseRecord& record) {
+          ++ended;
+          events.finished(record, ended < cases.size() ? cases[ended] : nullptr);
+          ++finished;
+        });
       }
     } catch (const Interrupted&) {
     } catch (...) {

@@ -195,13 +195,15 @@ class FolderRun {
                         }
                       });
     CaseEvents events;
-    events.begins = [&](const PendingCase& one) {
-      store_.begins({one.study_case->id}, Store::Stage::run);
-      progress.started(one.study_case->id, one.predicted_seconds);
+    events.begins = [&](const std::vector<const PendingCase*>& cases) {
+      std::vector<std::string> ids;
+      for (const PendingCase* one : cases) ids.push_back(one->study_case->id);
+      store_.begins(ids, Store::Stage::run);
+      progress.started(ids.front(), cases.front()->predicted_seconds);
     };
     events.finished = [&](const CaseRecord& record, const PendingCase* next) {
       note_failure(record);
-      store_.save({&record, 1}, next ? next->study_case->id : "");
+      store_.save({&record, 1});
       progress.finished(record.id);
       if (next) progress.started(next->study_case->id, next->predicted_seconds);
     };

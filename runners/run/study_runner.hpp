@@ -48,9 +48,9 @@ struct PendingCase {
 
 /// What run_cases() reports.
 struct CaseEvents {
-  /// A case begins: before any of its code runs, in the thread that will run it. Not for one that `finished` named.
-  std::function<void(const PendingCase&)> begins;
-  /// A case ended, in the thread that ran it; `next`, where not null, begins now.
+  /// Cases begin, one after the other: before any of their code runs, in the thread that will run them.
+  std::function<void(const std::vector<const PendingCase*>&)> begins;
+  /// A case ended, in the thread that ran it; `next`, where not null, is the one that begun behind it and runs now.
   std::function<void(const CaseRecord&, const PendingCase* next)> finished;
 };
 
@@ -60,9 +60,10 @@ struct CaseEvents {
 std::vector<CaseRecord> time_cases(const StudyRunner& runner, const Study& study, const StudyResults& results,
                                    int repeats, const std::atomic<bool>& stop);
 
-/// Runs the cases, so many at once, longest predicted first so that all end together. Ends early when `stop` becomes
-/// true. An exception of an event sets `stop` and is thrown once all cases under way are back. Returns the number of
-/// cases that finished.
+/// Runs the cases, so many at once, longest predicted first so that all end together. Cases that cost little travel to
+/// a worker together: 50 ms of predicted work, and no more than leaves each worker four times as much. Ends early when
+/// `stop` becomes true. An exception of an event sets `stop` and is thrown once all cases under way are back. Returns
+/// the number of cases that finished.
 int run_cases(const StudyRunner& runner, std::vector<PendingCase> pending, int at_once, std::atomic<bool>& stop,
               const CaseEvents& events);
 

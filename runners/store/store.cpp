@@ -9,6 +9,7 @@
 #include <ctime>
 #include <numeric>
 
+#include "runners/json/json_text.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/folder_lock.hpp"
@@ -19,8 +20,6 @@
 
 namespace ricochet {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string text_of(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -268,7 +267,7 @@ void Store::save_progress(const std::string& text) {
   });
 }
 
-void Store::save(std::span<const CaseRecord> records, const std::string& next) {
+void Store::save(std::span<const CaseRecord> records) {
   const std::lock_guard guard(mutex_);
   const auto size = std::accumulate(records.begin(), records.end(), std::size_t{0},
                                     [](std::size_t sum, const CaseRecord& record) { return sum + bytes_of(record); });
@@ -278,7 +277,6 @@ void Store::save(std::span<const CaseRecord> records, const std::string& next) {
       save_one(record, false);
       insert(ended, record.id);
     }
-    if (!next.empty()) note_begin(next, Stage::run);
   });
 }
 

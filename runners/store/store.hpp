@@ -139,9 +139,9 @@ class Store {
   /// How far the run is, in words, and now: for who looks from elsewhere (read_store.hpp).
   void save_progress(const std::string& text);
 
-  /// Adds finished cases, which are no longer under way; in the same transaction `next` begins, unless it is "".
+  /// Adds finished cases, which are no longer under way.
   /// Measures that are not finite are left out, with a note. May be called from several threads.
-  void save(std::span<const CaseRecord> records, const std::string& next = "");
+  void save(std::span<const CaseRecord> records);
 
   /// Adds what a running case has so far, to be shown and to be replaced by save(). A later begin() does not keep it;
   /// load() marks it as partial. May be called from several threads.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <initializer_list>
 #include <optional>
 #include <ricochet/contract/errors.hpp>
@@ -97,16 +98,17 @@ class IsolatedCases::Coordinator {
 
   bool times() const { return static_cast<bool>(kind_.time); }
 
-  CaseAnswer ask(Word word, const StudyCase& study_case, const std::atomic<bool>& stop) {
-    const Limit limit = limit_of(study_case);
+  bool blocks() const { return static_cast<bool>(kind_.block); }
+
+  /// `attempt`: 2 where a worker was lost with the case before.
+  CaseAnswer ask(Word word, const StudyCase& study_case, const std::atomic<bool>& stop, int attempt = 1) {
     const auto stopping = [&] { return stop.load(); };
     // Each pending case was planned before the first one ran.
     if (word == Word::plan) ++open_;
     const OpenCase open(open_, word == Word::run);
-    for (int attempt = 1;;) {
+    for (;;) {
       const Taken taken = take(place_of(word), stopping);
-      Reply reply = talk_of_case(taken.member, {word, to_bytes(CaseOrder{study_case.id, limit.seconds, share()})},
-                                 study_case.id, stopping);
+      Reply reply = talk_of_case(taken.member, Message{word, to_bytes(order_of(study_case))}, study_case.id, stopping);
       if (!reply.lost && reply.message.word == Word::interrupted) {
         places_.give_back(taken.member);
         throw Interrupted{};
@@ -115,11 +117,48 @@ class IsolatedCases::Coordinator {
         places_.give_back(taken.member);
         return std::move(*answer);
       }
-      if (stop) throw Interrupted{};
-      if (reply.lost->end.host_lost) continue;
-      if (reply.lost->given_up && !limit.ours) throw std::runtime_error(over_budget(*reply.lost->given_up));
-      if (attempt++ < attempts) continue;
-      throw std::runtime_error(sentence(*reply.lost));
+      count_loss(*reply.lost, study_case, attempt, stop);
+    }
+  }
+
+  /// Runs the cases one after the other. The one with which a worker is lost is asked for again alone.
+  void ask_several(const std::vector<const StudyCase*>& cases, const std::function<void(CaseRecord)>& ended,
+                   const std::atomic<bool>& stop) {
+    const auto stopping = [&] { return stop.load(); };
+    for (std::size_t k = 0; k < cases.size();) {
+      const Taken taken = take(Where::anywhere, stopping);
+      std::vector<CaseOrder> orders;
+      for (std::size_t i = k; i < cases.size(); ++i) orders.push_back(order_of(*cases[i]));
+      std::optional<Message> order = Message{Word::several, to_bytes(orders)};
+      Reply reply;
+      for (; k < cases.size(); ++k) {
+        reply = talk_of_case(taken.member, std::exchange(order, std::nullopt), cases[k]->id, stopping);
+        if (!reply.lost && reply.message.word == Word::interrupted) {
+          places_.give_back(taken.member);
+          throw Interrupted{};
+        }
+        auto answer = answer_in<CaseAnswer>(reply, {Word::ran}, *taken.member->worker);
+        if (!answer) break;
+        --open_;
+        ended(std::move(answer->record));
+      }
+      if (!reply.lost) {
+        places_.give_back(taken.member);
+        return;
+      }
+      int attempt = 1;
+      std::exception_ptr failure;
+      try {
+        count_loss(*reply.lost, *cases[k], attempt, stop);
+      } catch (const std::runtime_error&) {
+        failure = std::current_exception();
+      }
+      CaseRunner again;
+      again.run = [&](const StudyCase& study_case, const std::atomic<bool>&) {
+        if (failure) std::rethrow_exception(failure);
+        return ask(Word::run, study_case, stop, attempt).record;
+      };
+      ended(run_guarded(again, *cases[k++], stop));
     }
   }
 
@@ -149,8 +188,20 @@ class IsolatedCases::Coordinator {
     const bool counts_;
   };
 
+  CaseOrder order_of(const StudyCase& study_case) const {
+    return {study_case.id, limit_of(study_case).seconds, share()};
+  }
+
+  /// A worker was lost with a case: returns where the case may be tried again, throws what fails it.
+  static void count_loss(const Lost& lost, const StudyCase& study_case, int& attempt, const std::atomic<bool>& stop) {
+    if (stop) throw Interrupted{};
+    if (lost.end.host_lost) return;
+    if (lost.given_up && !limit_of(study_case).ours) throw std::runtime_error(over_budget(*lost.given_up));
+    if (attempt++ == attempts) throw std::runtime_error(sentence(lost));
+  }
+
   /// talk(), and what the worker claimed or began for its case is let go, however it ends.
-  Reply talk_of_case(const MemberPointer& member, Message order, const std::string& id,
+  Reply talk_of_case(const MemberPointer& member, std::optional<Message> order, const std::string& id,
                      const std::function<bool()>& stopping) {
     const auto let_go = [this](const MemberPointer* one) {
       claims_.release((*one)->number);
@@ -195,7 +246,8 @@ class IsolatedCases::Coordinator {
       Reply reply;
       do {
         const Taken taken = take(Where::anywhere, stopping);
-        reply = talk(taken.member, {Word::block, to_bytes(request)}, request.id, stopping, after_stop, block.tell);
+        reply =
+            talk(taken.member, Message{Word::block, to_bytes(request)}, request.id, stopping, after_stop, block.tell);
         if (auto status = answer_in<BlockStatus>(reply, {Word::block_status}, *taken.member->worker)) {
           places_.give_back(taken.member);
           return block.tell(std::move(*status));
@@ -228,7 +280,7 @@ class IsolatedCases::Coordinator {
       taken.member->worker = taken.member->host->start();
       WorkerStudy opening = opening_;
       opening.memory = taken.member->host->memory();
-      Reply reply = talk(taken.member, {Word::study, to_bytes(opening)}, "", stopping, after_stop);
+      Reply reply = talk(taken.member, Message{Word::study, to_bytes(opening)}, "", stopping, after_stop);
       if (const auto ready = answer_in<WorkerReady>(reply, {Word::ready}, *taken.member->worker)) {
         check(*ready, name);
         return taken;
@@ -255,11 +307,12 @@ class IsolatedCases::Coordinator {
                       host));
   }
 
-  /// Sends an order for a case and serves the worker until it is done with it. `patience`: s for coming back after
-  /// `stopping`.
-  Reply talk(const MemberPointer& member, Message order, const std::string& id, const std::function<bool()>& stopping,
-             double patience, const std::function<void(BlockStatus)>& so_far = {}) {
-    order.about = 1;
+  /// Sends an order for a case, unless it has it already, and serves the worker until it is done with it. `patience`: s
+  /// for coming back after `stopping`.
+  Reply talk(const MemberPointer& member, std::optional<Message> order, const std::string& id,
+             const std::function<bool()>& stopping, double patience,
+             const std::function<void(BlockStatus)>& so_far = {}) {
+    if (order) order->about = 1;
     Worker& worker = *member->worker;
     Reply reply;
     std::optional<GivenUp> given_up;
@@ -272,7 +325,7 @@ class IsolatedCases::Coordinator {
       if (checkpoints_.waiting && (waits || !call.empty())) checkpoints_.waiting(id, call);
       waits = !call.empty();
     };
-    Channel::Heard state = worker.send(order) ? Channel::Heard::silence : Channel::Heard::gone;
+    Channel::Heard state = !order || worker.send(*order) ? Channel::Heard::silence : Channel::Heard::gone;
     while (state != Channel::Heard::gone) {
       state = worker.receive(reply.message, poll_interval);
       if (!told_to_stop && stopping()) {
@@ -377,6 +430,11 @@ CaseRunner IsolatedCases::runner() {
   runner.run = [coordinator = coordinator_](const StudyCase& study_case, const std::atomic<bool>& stop) {
     return coordinator->ask(Word::run, study_case, stop).record;
   };
+  // A case whose blocks others march waits for them: no other one stands behind it.
+  if (!coordinator_->blocks())
+    runner.run_several = [coordinator = coordinator_](
+                             const std::vector<const StudyCase*>& cases, const std::function<void(CaseRecord)>& ended,
+                             const std::atomic<bool>& stop) { coordinator->ask_several(cases, ended, stop); };
   if (coordinator_->times())
     runner.time = [coordinator = coordinator_](const StudyCase& study_case, const std::atomic<bool>& stop) {
       const CaseAnswer answer = coordinator->ask(Word::time, study_case, stop);

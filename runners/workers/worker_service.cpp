@@ -14,6 +14,7 @@
 #include <optional>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/loader/catalogue.hpp>
+#include <unordered_map>
 
 #include "runners/kinds/kind.hpp"
 #include "runners/march/seconds.hpp"
@@ -153,22 +154,32 @@ class WorkerService : public BlockService {
     if (order.word == Word::study) return tell({Word::ready, to_bytes(open(order.content)), order.about});
     stop_ = false;
     if (order.word == Word::block) return serve_block(message_from<BlockRequest>(order.content), order.about);
-    const auto request = message_from<CaseOrder>(order.content);
-    const StudyCase& study_case = *find_case(*study_, request.id);
+    if (order.word != Word::several) {
+      serve_case(order.word, message_from<CaseOrder>(order.content), order.about);
+      return;
+    }
+    for (const CaseOrder& one : message_from<std::vector<CaseOrder>>(order.content))
+      if (!serve_case(Word::run, one, order.about)) return;
+  }
+
+  /// False: interrupted.
+  bool serve_case(Word word, const CaseOrder& request, std::uint32_t about) {
+    const StudyCase& study_case = *case_of_.at(request.id);
     share_ = request.share;
     CaseAnswer answer;
-    const Caught caught = watched(request.budget, order.about, [&] { answer = answer_to(order.word, study_case); });
-    if (caught.interrupted) return tell({Word::interrupted, "", order.about});
+    const Caught caught = watched(request.budget, about, [&] { answer = answer_to(word, study_case); });
+    if (caught.interrupted) {
+      tell({Word::interrupted, "", about});
+      return false;
+    }
     answer.error = caught.error;
     answer.pointer = caught.pointer;
-    tell({order.word == Word::plan  ? Word::planned
-          : order.word == Word::run ? Word::ran
-                                    : Word::timed,
-          to_bytes(answer), order.about});
+    tell({word == Word::plan ? Word::planned : word == Word::run ? Word::ran : Word::timed, to_bytes(answer), about});
+    return true;
   }
 
   void serve_block(const BlockRequest& request, std::uint32_t about) {
-    const StudyCase& study_case = *find_case(*study_, request.id);
+    const StudyCase& study_case = *case_of_.at(request.id);
     const auto status = [&](BlockStatus::What what, std::string content) {
       tell({Word::block_status, to_bytes(BlockStatus{what, std::move(content)}), about});
     };
@@ -253,6 +264,7 @@ class WorkerService : public BlockService {
       catalogue_.emplace(standard_catalogue(plugins));
       study_ = parse_study(wanted.study, *catalogue_, registry_);
       identity_.emplace(*study_, registry_);
+      for (const StudyCase& one : study_->cases) case_of_.emplace(one.id, &one);
       width_ = wanted.width;
       cases_ = find_kind(study_->kind)
                    ->start({*study_, registry_, [this](const StudyCase& one) { return identity_->of(one); }, this});
@@ -292,6 +304,7 @@ class WorkerService : public BlockService {
   Registry registry_;
   std::optional<Study> study_;
   std::optional<StudyIdentity> identity_;
+  std::unordered_map<std::string, const StudyCase*> case_of_;  // by id
   CaseRunner cases_;
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -89,7 +89,8 @@ TEST_CASE("store: a case that begins is there before it ends, and gone once its 
     CHECK(store.left_under_way().empty());  // none of them runs yet
     store.begins({first}, Store::Stage::run);
     CHECK(store.left_under_way() == Ids{first});
-    store.save({results.cases.data(), 1}, second);
+    store.save({results.cases.data(), 1});
+    store.begins({second}, Store::Stage::run);
     CHECK(store.left_under_way() == Ids{second});
   }
   CHECK(count(folder.path(), "begun") == 1);

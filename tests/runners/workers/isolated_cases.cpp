@@ -136,6 +136,41 @@ TEST_CASE("workers: a case that ends its process twice is failed, and the others
   CHECK_THAT(second.messages, Contains("0 to run"));
 }
 
+TEST_CASE("workers: of hundreds of small cases, which travel together, those that end their process alone are failed") {
+  const ScratchFolder scratch;
+  Json study = Json::parse(R"({"name": "small", "kind": "trajectory", "step": 0.01, "duration": 0.2, "scene": {
+    "structure": {"type": "oscillator", "mass": 1}, "stops": {"lower": -0.1, "upper": 0.1}, "initial": {}},
+    "methods": {"mass": "consistent", "contact": {"name": "stumbles"}, "time": "moreau-jean"}})");
+  study["scene"]["structure"]["stiffness"] = {10, 11, 12};
+  for (int i = 1; i <= 100; ++i) study["scene"]["initial"]["velocity"].push_back(0.05 * i);
+  study["methods"]["contact"]["beyond"] = 4.9;  // at velocity level: m/s
+  const std::string options = "--plugin '" RICOCHET_STUMBLING "'";
+  const Ended here = run(scratch, study, "here", "--inline " + options);
+  INFO(here.messages);
+  REQUIRE(here.code == 0);
+  study["methods"]["contact"]["how"] = "segv";
+  const Ended workers = run(scratch, study, "workers", options);
+  INFO(workers.messages << workers.out);
+  CHECK(workers.code == 3);
+  const Rows sound = rows_of(scratch / "here/cases.csv"), rows = rows_of(scratch / "workers/cases.csv");
+  REQUIRE(sound.size() == 300);
+  REQUIRE(rows.size() == 300);
+  std::size_t failed = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    std::map<std::string, std::string> was = sound[i];
+    for (const char* column : {"case", "contact.how"}) was[column] = rows[i].at(column);
+    if (rows[i].at("status") != "failed") {
+      CHECK(was == rows[i]);
+      continue;
+    }
+    ++failed;
+    CHECK(was.at("initial.velocity") == rows[i].at("initial.velocity"));
+    CHECK_THAT(rows[i].at("reason"), Contains("its process was ended twice by signal 11"));
+  }
+  CHECK(failed > 0);
+  CHECK(failed < 10);
+}
+
 TEST_CASE("workers: a call that never returns costs its case the budget") {
   const ScratchFolder scratch;
   Json study = stumbling("sleep", 7e-3);
