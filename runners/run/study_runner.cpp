@@ -104,9 +104,12 @@ class FolderRun {
       return kept_.count(id) != 0 ||
              std::none_of(cases_.begin(), cases_.end(), [&](const StudyCase* one) { return one->id == id; });
     });
-    if (!left.empty())
-      tell(fmt::format("an earlier run ended while {} {} under way: run again", fmt::join(left, ", "),
-                       left.size() == 1 ? "was" : "were"));
+    constexpr std::size_t named = 8;
+    const std::size_t all = left.size();
+    left.resize(std::min(all, named));
+    if (all > 0)
+      tell(fmt::format("an earlier run ended while {}{} {} under way: run again", fmt::join(left, ", "),
+                       all > named ? fmt::format(" and {} more", all - named) : "", all == 1 ? "was" : "were"));
     store_.nothing_under_way();
   }
 
