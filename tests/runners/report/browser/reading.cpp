@@ -7,6 +7,7 @@
 #include "tests/runners/report/browser/browser.hpp"
 #include "tests/runners/report/browser/driven.hpp"
 
+using namespace ricochet;
 using namespace ricochet::browser;
 using Catch::Matchers::Contains;
 
