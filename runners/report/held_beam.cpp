@@ -2,12 +2,13 @@
 
 #include <algorithm>
 
-#include "runners/json/json_text.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/sketch_pieces.hpp"
 
 namespace ricochet::report {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_named = 8, most_spans = 8;
 constexpr int shown_digits = 4;

@@ -6,13 +6,14 @@
 #include <cmath>
 #include <tuple>
 
-#include "runners/json/json_text.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/sketch_pieces.hpp"
 #include "runners/study/body_keys.hpp"
 
 namespace ricochet::report {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 // Pixels of the drawing: where a structure begins, how long it is, and how far stops may lie off.
 constexpr double sketch_width = 640, sketch_height = 184, sketch_left = 76, sketch_span = 480, together_span = 420,

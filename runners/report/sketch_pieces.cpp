@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runners/json/json_text.hpp"
 #include "runners/report/html.hpp"
 
 namespace ricochet::report {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_sketch_labels = 12;
 // Along z, of a beam in two planes, as it is seen from the side and above.

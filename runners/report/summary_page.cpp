@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "runners/json/json_text.hpp"
 #include "runners/report/assets.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/scene_sketch.hpp"
@@ -181,6 +180,7 @@ Fill identity_fill(const StudyResults& results) {
 /// Text as a CSS string.
 std::string css_string(const std::string& text) {
   // What is no UTF-8 is replaced on the way through JSON.
+  using Json = nlohmann::ordered_json;
   const auto legible = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
   std::string out = "\"";
   for (const char c : legible)

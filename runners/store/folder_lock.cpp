@@ -14,7 +14,6 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
-#include "runners/json/json_text.hpp"
 #include "runners/store/atomic_file.hpp"
 
 namespace ricochet {
@@ -41,7 +40,7 @@ std::string lock_failure(const std::filesystem::path& file, int error) {
   const std::string failure = fmt::format("{}: cannot be locked: {}", file.string(), std::strerror(error));
   if (error == ENOSYS || error == EOPNOTSUPP)
     return failure +
-           "; this file system has no locks. Mount it with locks (of Lustre the option \"flock\", of NFS no "
+           "; this file system has no locks: it is to be mounted with them (of Lustre the option \"flock\", of NFS no "
            "\"nolock\"), or choose a folder on another one with --out";
   if (error == ENOLCK)
     return failure +
@@ -131,8 +130,9 @@ bool RunIdentity::succeeds(const RunIdentity& other) const {
 }
 
 std::string RunIdentity::to_json() const {
-  return Json{{"host", host}, {"process", process}, {"started", started}, {"job", job}, {"restart", restart}}.dump(
-      -1, ' ', false, Json::error_handler_t::replace);
+  const nlohmann::ordered_json all = {
+      {"host", host}, {"process", process}, {"started", started}, {"job", job}, {"restart", restart}};
+  return all.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 RunIdentity RunIdentity::from_json(const std::string& json) {

@@ -10,7 +10,6 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "runners/json/json_text.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/folder_lock.hpp"
 #include "runners/store/read_store.hpp"
@@ -86,7 +85,8 @@ void insert_numbers(SQLite::Statement& add, const std::string& case_id, int& pos
       add.bind(6, column);
       add.bind(7);
       if (const auto* words = table.words_of(column))
-        add.bind(7, Json(*words).dump(-1, ' ', false, Json::error_handler_t::replace));
+        add.bind(7,
+                 nlohmann::ordered_json(*words).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
       bind_series(add, 8, values.data() + first, std::min(piece, values.size() - first));
       add.exec();
     }

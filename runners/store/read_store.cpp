@@ -10,7 +10,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "runners/json/json_text.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/number_rows.hpp"
@@ -20,6 +19,8 @@
 
 namespace ricochet {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 /// Calls `row(record, statement)` for each row of these columns of `table`, in the order of `order`: of all cases, or
 /// of the only one.

@@ -9,7 +9,6 @@
 #include <ctime>
 #include <numeric>
 
-#include "runners/json/json_text.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/folder_lock.hpp"
@@ -20,6 +19,8 @@
 
 namespace ricochet {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 std::string text_of(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);

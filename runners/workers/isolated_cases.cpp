@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <exception>
 #include <initializer_list>
 #include <optional>
 #include <ricochet/contract/errors.hpp>
@@ -13,6 +11,7 @@
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/march/study_identity.hpp"
+#include "runners/workers/lost_worker.hpp"
 #include "runners/workers/worker_messages.hpp"
 #include "runners/workers/worker_process.hpp"
 
@@ -24,28 +23,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double poll_interval = 0.25;  // s between two readings of `stop`
 constexpr double after_stop = 6;        // s for coming back; for a case that waits for its blocks, a little longer
-constexpr double longest_call = 60;     // s for one call of a plugin's function, where a case has no budget
-constexpr int attempts = 2;
-
-/// A worker ended, or gave up.
-struct Lost {
-  WorkerEnd end;
-  std::optional<GivenUp> given_up;
-};
-
-/// What a worker said in the end, or how it was lost.
-struct Reply {
-  Message message;
-  std::optional<Lost> lost;
-};
-
-/// One that says what is no message is ended, and lost.
-Lost ended_for_nonsense(Worker& worker) {
-  worker.kill();
-  Lost lost{worker.end(), {}};
-  if (!lost.end.host_lost) lost.end.cause = "this program: what it said was no message";
-  return lost;
-}
+constexpr int attempts = 2;             // to open a study
 
 /// What a worker answered; nothing where it was lost, as it is where it says something else.
 template <class T>
@@ -117,7 +95,8 @@ class IsolatedCases::Coordinator {
         places_.give_back(taken.member);
         return std::move(*answer);
       }
-      count_loss(*reply.lost, study_case, attempt, stop);
+      if (stop) throw Interrupted{};
+      if (failed_by(*reply.lost, study_case, attempt)) throw std::runtime_error(sentence(*reply.lost, study_case));
     }
   }
 
@@ -146,16 +125,11 @@ class IsolatedCases::Coordinator {
         places_.give_back(taken.member);
         return;
       }
-      int attempt = 1;
-      std::exception_ptr failure;
-      try {
-        count_loss(*reply.lost, *cases[k], attempt, stop);
-      } catch (const std::runtime_error&) {
-        failure = std::current_exception();
-      }
+      if (stop) throw Interrupted{};
       CaseRunner again;
       again.run = [&](const StudyCase& study_case, const std::atomic<bool>&) {
-        if (failure) std::rethrow_exception(failure);
+        int attempt = 1;
+        if (failed_by(*reply.lost, study_case, attempt)) throw std::runtime_error(sentence(*reply.lost, study_case));
         return ask(Word::run, study_case, stop, attempt).record;
       };
       ended(run_guarded(again, *cases[k++], stop));
@@ -189,15 +163,7 @@ class IsolatedCases::Coordinator {
   };
 
   CaseOrder order_of(const StudyCase& study_case) const {
-    return {study_case.id, limit_of(study_case).seconds, share()};
-  }
-
-  /// A worker was lost with a case: returns where the case may be tried again, throws what fails it.
-  static void count_loss(const Lost& lost, const StudyCase& study_case, int& attempt, const std::atomic<bool>& stop) {
-    if (stop) throw Interrupted{};
-    if (lost.end.host_lost) return;
-    if (lost.given_up && !limit_of(study_case).ours) throw std::runtime_error(over_budget(*lost.given_up));
-    if (attempt++ == attempts) throw std::runtime_error(sentence(lost));
+    return {study_case.id, longest_call_of(study_case), share()};
   }
 
   /// talk(), and what the worker claimed or began for its case is let go, however it ends.
@@ -217,21 +183,6 @@ class IsolatedCases::Coordinator {
     return width / std::clamp(open_.load(), 1, width);
   }
 
-  /// How long a call of a plugin's function may last for a case.
-  struct Limit {
-    double seconds = 0;
-    bool ours = false;  ///< the case has no budget
-  };
-  static Limit limit_of(const StudyCase& study_case) {
-    const double budget = budget_of(study_case);
-    return std::isfinite(budget) ? Limit{budget, false} : Limit{longest_call, true};
-  }
-
-  static std::string over_budget(const GivenUp& call) {
-    return fmt::format("plugin {} did not return from {}() within the budget of {:g} s", call.plugin, call.function,
-                       call.budget);
-  }
-
   /// Has a block marched by a worker, for the one that asked.
   void march(const BlockPool::Block& block, const std::function<bool()>& stopping) {
     const auto tell = [&](BlockStatus::What what, std::string content) {
@@ -241,8 +192,7 @@ class IsolatedCases::Coordinator {
       BlockRequest request = block.request;
       const StudyCase* const study_case = find_case(context_.study, request.id);
       if (!study_case) throw std::runtime_error("a block of no case");
-      const Limit limit = limit_of(*study_case);
-      request.budget = limit.seconds;
+      request.budget = longest_call_of(*study_case);
       Reply reply;
       do {
         const Taken taken = take(Where::anywhere, stopping);
@@ -254,21 +204,13 @@ class IsolatedCases::Coordinator {
         }
       } while (reply.lost->end.host_lost && !stopping());
       if (stopping()) return tell(BlockStatus::What::interrupted, "");
-      if (reply.lost->given_up && !limit.ours)
-        return tell(BlockStatus::What::gave_up, over_budget(*reply.lost->given_up));
-      tell(BlockStatus::What::lost, sentence(*reply.lost));
+      const bool over = over_budget(*reply.lost, *study_case);
+      tell(over ? BlockStatus::What::gave_up : BlockStatus::What::lost, sentence(*reply.lost, *study_case));
     } catch (const Interrupted&) {
       tell(BlockStatus::What::interrupted, "");
     } catch (const std::exception& error) {
       tell(BlockStatus::What::failed, error.what());
     }
-  }
-
-  static std::string sentence(const Lost& lost) {
-    if (lost.given_up)
-      return fmt::format("plugin {} did not return from {}() within {:g} s; its process was ended twice",
-                         lost.given_up->plugin, lost.given_up->function, lost.given_up->budget);
-    return lost.end.sentence("twice");
   }
 
   /// A worker that has opened the study.

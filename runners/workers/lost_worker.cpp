@@ -1,0 +1,44 @@
+#include "runners/workers/lost_worker.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "runners/march/prepare_case.hpp"
+
+namespace ricochet {
+
+Lost ended_for_nonsense(Worker& worker) {
+  worker.kill();
+  Lost lost{worker.end(), {}};
+  if (!lost.end.host_lost) lost.end.cause = "this program: what it said was no message";
+  return lost;
+}
+
+double longest_call_of(const StudyCase& study_case) {
+  constexpr double longest = 60;
+  const double budget = budget_of(study_case);
+  return std::isfinite(budget) ? budget : longest;
+}
+
+bool over_budget(const Lost& lost, const StudyCase& study_case) {
+  return lost.given_up && std::isfinite(budget_of(study_case));
+}
+
+bool failed_by(const Lost& lost, const StudyCase& study_case, int& attempt) {
+  constexpr int attempts = 2;
+  if (lost.end.host_lost) return false;
+  return over_budget(lost, study_case) || attempt++ == attempts;
+}
+
+std::string sentence(const Lost& lost, const StudyCase& study_case) {
+  if (!lost.given_up) return lost.end.sentence("twice");
+  const GivenUp& call = *lost.given_up;
+  if (over_budget(lost, study_case))
+    return fmt::format("plugin {} did not return from {}() within the budget of {:g} s", call.plugin, call.function,
+                       call.budget);
+  return fmt::format("plugin {} did not return from {}() within {:g} s; its process was ended twice", call.plugin,
+                     call.function, call.budget);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,38 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "runners/study/study.hpp"
+#include "runners/workers/worker_messages.hpp"
+
+namespace ricochet {
+
+/// A worker ended, or gave up.
+struct Lost {
+  WorkerEnd end;
+  std::optional<GivenUp> given_up;
+};
+
+/// What a worker said in the end, or how it was lost.
+struct Reply {
+  Message message;
+  std::optional<Lost> lost;
+};
+
+/// Ends one that said what is no message.
+Lost ended_for_nonsense(Worker& worker);
+
+/// s that a call of a plugin's function may last for this case: its budget, or 60 where it has none.
+double longest_call_of(const StudyCase& study_case);
+
+/// Whether a call lasted longer than the budget that the case states.
+bool over_budget(const Lost& lost, const StudyCase& study_case);
+
+/// Whether the case fails by the loss: it has a budget and used it up, or a second worker is lost with it. `attempt`
+/// counts these workers from 1; a machine that is gone does not count.
+bool failed_by(const Lost& lost, const StudyCase& study_case, int& attempt);
+
+/// "plugin contact 'x' (x.so), solve(): its process was ended twice by …": why it failed.
+std::string sentence(const Lost& lost, const StudyCase& study_case);
+
+}  // namespace ricochet
