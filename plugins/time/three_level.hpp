@@ -28,7 +28,7 @@ struct ThreeLevel {
     if (facts.mass_kernel_dimension > 0 && beta < 0.25)
       return Refusal{
           fmt::format("beta = {:g} < 0.25 makes the kernel of a singular mass diverge at any step (roots of βr² + "
-                      "(1−2β)r + β outside the unit circle): raise beta. Use beta ≥ 0.25 of newmark-dumont-paoli",
+                      "(1−2β)r + β outside the unit circle). Use beta ≥ 0.25 of newmark-dumont-paoli",
                       beta)};
     const auto [q, d] = slots<2>();
     StepPlan plan;
