@@ -52,7 +52,7 @@ class Nitsche final : public PointwiseContact {
     if (theta_ != 1)
       return Refusal{
           fmt::format("theta = {} makes the contact problem nonsymmetric, G S⁻¹ Hᵀ, and its points cannot be solved as "
-                      "the minimum that all laws here are: take 1",
+                      "the minimum that all laws are: take theta = 1",
                       theta_)};
     if (structure.space->elements.empty())
       return Refusal{"an oscillator has no elements that could report a reaction at its stop: take a penalty"};
