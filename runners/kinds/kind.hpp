@@ -37,7 +37,8 @@ struct CaseRunner {
   /// Runs one case; throws Interrupted where `stop` became true.
   std::function<CaseRecord(const StudyCase&, const std::atomic<bool>& stop)> run;
   /// Runs cases that cost little, one after the other, with one message to a worker; `ended` is told each record in
-  /// order, one of status `failed` too. Throws Interrupted where `stop` became true. Empty: cases run one by one.
+  /// order, with id and axes, one of status `failed` too. Throws Interrupted where `stop` became true. Empty: cases run
+  /// one by one.
   std::function<void(const std::vector<const StudyCase*>&, const std::function<void(CaseRecord)>& ended,
                      const std::atomic<bool>& stop)>
       run_several;

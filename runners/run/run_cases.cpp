@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 #include <ricochet/measure/statistics/quantiles.hpp>
+#include <span>
 #include <thread>
 
 #include "runners/march/prepare_case.hpp"
@@ -24,7 +25,6 @@ constexpr std::size_t most_tried = 16;
 // What travels to a worker together: a message costs a part of a millisecond.
 constexpr double least_seconds = 0.05;
 constexpr std::size_t most_together = 64;
-using Together = std::vector<const PendingCase*>;
 
 /// Runs `body` on so many threads, this one among them, until each has returned; `body` must not throw.
 void on_threads(int threads, const std::function<void()>& body) {
@@ -35,21 +35,12 @@ void on_threads(int threads, const std::function<void()>& body) {
 }
 
 /// Runs cases one after the other; `ended` is told each record.
-void run_together(const CaseRunner& runner, const Together& cases, const std::atomic<bool>& stop,
+void run_together(const CaseRunner& runner, std::span<const PendingCase> cases, const std::atomic<bool>& stop,
                   const std::function<void(const CaseRecord&)>& ended) {
-  if (cases.size() == 1) return ended(run_guarded(runner, *cases.front()->study_case, stop));
+  if (cases.size() == 1) return ended(run_guarded(runner, *cases.front().study_case, stop));
   std::vector<const StudyCase*> all;
-  for (const PendingCase* one : cases) all.push_back(one->study_case);
-  std::size_t next = 0;
-  runner.run_several(
-      all,
-      [&](CaseRecord record) {
-        const StudyCase& study_case = *all[next++];
-        record.id = study_case.id;
-        record.axes = study_case.axes;
-        ended(record);
-      },
-      stop);
+  for (const PendingCase& one : cases) all.push_back(one.study_case);
+  runner.run_several(all, ended, stop);
 }
 
 }  // namespace
@@ -71,26 +62,25 @@ int run_cases(const StudyRunner& runner, std::vector<PendingCase> pending, int a
     const std::lock_guard guard(taking);
     const std::size_t left = pending.size() - next, shares = 4 * static_cast<std::size_t>(at_once);
     const std::size_t most = runner.cases.run_several ? std::clamp(left / shares, std::size_t{1}, most_together) : 1;
-    Together cases;
+    const std::size_t first = next;
     double seconds = 0;
-    while (!stop && next < pending.size() && cases.size() < most && seconds < least_seconds) {
-      cases.push_back(&pending[next++]);
-      // Of what nobody predicted one at a time.
-      seconds += cases.back()->predicted_seconds > 0 ? cases.back()->predicted_seconds : least_seconds;
+    while (!stop && next < pending.size() && next - first < most && seconds < least_seconds) {
+      const double predicted = pending[next++].predicted_seconds;
+      seconds += predicted > 0 ? predicted : least_seconds;  // of what nobody predicted, one at a time
     }
-    return cases;
+    return std::span<const PendingCase>(pending).subspan(first, next - first);
   };
   std::atomic<int> finished{0};
   std::mutex failing;
   std::exception_ptr failure;
   on_threads(at_once, [&] {
     try {
-      for (Together cases = take(); !cases.empty(); cases = take()) {
+      for (std::span<const PendingCase> cases = take(); !cases.empty(); cases = take()) {
         events.begins(cases);
         std::size_t ended = 0;
         run_together(runner.cases, cases, stop, [&](const CaseRecord& record) {
           ++ended;
-          events.finished(record, ended < cases.size() ? cases[ended] : nullptr);
+          events.finished(record, ended < cases.size() ? &cases[ended] : nullptr);
           ++finished;
         });
       }

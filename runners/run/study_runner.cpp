@@ -12,6 +12,7 @@
 
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
+#include "runners/report/html.hpp"
 #include "runners/run/finish_run.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/atomic_file.hpp"
@@ -105,11 +106,9 @@ class FolderRun {
              std::none_of(cases_.begin(), cases_.end(), [&](const StudyCase* one) { return one->id == id; });
     });
     constexpr std::size_t named = 8;
-    const std::size_t all = left.size();
-    left.resize(std::min(all, named));
-    if (all > 0)
-      tell(fmt::format("an earlier run ended while {}{} {} under way: run again", fmt::join(left, ", "),
-                       all > named ? fmt::format(" and {} more", all - named) : "", all == 1 ? "was" : "were"));
+    if (!left.empty())
+      tell(fmt::format("an earlier run ended while {} {} under way: run again", report::list_text(left, named),
+                       left.size() == 1 ? "was" : "were"));
     store_.nothing_under_way();
   }
 
@@ -198,11 +197,11 @@ class FolderRun {
                         }
                       });
     CaseEvents events;
-    events.begins = [&](const std::vector<const PendingCase*>& cases) {
+    events.begins = [&](std::span<const PendingCase> cases) {
       std::vector<std::string> ids;
-      for (const PendingCase* one : cases) ids.push_back(one->study_case->id);
+      for (const PendingCase& one : cases) ids.push_back(one.study_case->id);
       store_.begins(ids, Store::Stage::run);
-      progress.started(ids.front(), cases.front()->predicted_seconds);
+      progress.started(ids.front(), cases.front().predicted_seconds);
     };
     events.finished = [&](const CaseRecord& record, const PendingCase* next) {
       note_failure(record);

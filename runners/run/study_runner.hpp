@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -49,7 +50,7 @@ struct PendingCase {
 /// What run_cases() reports.
 struct CaseEvents {
   /// Cases begin, one after the other: before any of their code runs, in the thread that will run them.
-  std::function<void(const std::vector<const PendingCase*>&)> begins;
+  std::function<void(std::span<const PendingCase>)> begins;
   /// A case ended, in the thread that ran it; `next`, where not null, is the one that begun behind it and runs now.
   std::function<void(const CaseRecord&, const PendingCase* next)> finished;
 };

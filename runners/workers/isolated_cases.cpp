@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <initializer_list>
 #include <optional>
 #include <ricochet/contract/errors.hpp>
 
@@ -24,18 +23,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double poll_interval = 0.25;  // s between two readings of `stop`
 constexpr double after_stop = 6;        // s for coming back; for a case that waits for its blocks, a little longer
 constexpr int attempts = 2;             // to open a study
-
-/// What a worker answered; nothing where it was lost, as it is where it says something else.
-template <class T>
-std::optional<T> answer_in(Reply& reply, std::initializer_list<Word> words, Worker& worker) {
-  if (reply.lost) return std::nullopt;
-  if (std::find(words.begin(), words.end(), reply.message.word) != words.end()) try {
-      return message_from<T>(reply.message.content);
-    } catch (const NoMessage&) {
-    }
-  reply.lost = ended_for_nonsense(worker);
-  return std::nullopt;
-}
 
 }  // namespace
 
@@ -78,61 +65,41 @@ class IsolatedCases::Coordinator {
 
   bool blocks() const { return static_cast<bool>(kind_.block); }
 
-  /// `attempt`: 2 where a worker was lost with the case before.
-  CaseAnswer ask(Word word, const StudyCase& study_case, const std::atomic<bool>& stop, int attempt = 1) {
+  /// `before`: how a worker was lost with the case, where one was.
+  CaseAnswer ask(Word word, const StudyCase& study_case, const std::atomic<bool>& stop, const Lost* before = nullptr) {
     const auto stopping = [&] { return stop.load(); };
     // Each pending case was planned before the first one ran.
     if (word == Word::plan) ++open_;
     const OpenCase open(open_, word == Word::run);
+    int attempt = 1;
+    const auto count = [&](const Lost& lost) {
+      if (stop) throw Interrupted{};
+      if (failed_by(lost, study_case, attempt)) throw std::runtime_error(sentence(lost, study_case));
+    };
+    if (before) count(*before);
     for (;;) {
       const Taken taken = take(place_of(word), stopping);
-      Reply reply = talk_of_case(taken.member, Message{word, to_bytes(order_of(study_case))}, study_case.id, stopping);
-      if (!reply.lost && reply.message.word == Word::interrupted) {
-        places_.give_back(taken.member);
-        throw Interrupted{};
-      }
+      Reply reply = talk_of_case(taken.member, Message{word, to_bytes(std::vector{order_of(study_case)})},
+                                 study_case.id, stopping);
       if (auto answer = answer_in<CaseAnswer>(reply, {Word::planned, Word::ran, Word::timed}, *taken.member->worker)) {
         places_.give_back(taken.member);
         return std::move(*answer);
       }
-      if (stop) throw Interrupted{};
-      if (failed_by(*reply.lost, study_case, attempt)) throw std::runtime_error(sentence(*reply.lost, study_case));
+      count(*reply.lost);
     }
   }
 
   /// Runs the cases one after the other. The one with which a worker is lost is asked for again alone.
-  void ask_several(const std::vector<const StudyCase*>& cases, const std::function<void(CaseRecord)>& ended,
+  void run_several(const std::vector<const StudyCase*>& cases, const std::function<void(CaseRecord)>& ended,
                    const std::atomic<bool>& stop) {
-    const auto stopping = [&] { return stop.load(); };
-    for (std::size_t k = 0; k < cases.size();) {
-      const Taken taken = take(Where::anywhere, stopping);
-      std::vector<CaseOrder> orders;
-      for (std::size_t i = k; i < cases.size(); ++i) orders.push_back(order_of(*cases[i]));
-      std::optional<Message> order = Message{Word::several, to_bytes(orders)};
-      Reply reply;
-      for (; k < cases.size(); ++k) {
-        reply = talk_of_case(taken.member, std::exchange(order, std::nullopt), cases[k]->id, stopping);
-        if (!reply.lost && reply.message.word == Word::interrupted) {
-          places_.give_back(taken.member);
-          throw Interrupted{};
-        }
-        auto answer = answer_in<CaseAnswer>(reply, {Word::ran}, *taken.member->worker);
-        if (!answer) break;
-        --open_;
-        ended(std::move(answer->record));
-      }
-      if (!reply.lost) {
-        places_.give_back(taken.member);
-        return;
-      }
-      if (stop) throw Interrupted{};
+    for (std::size_t next = 0; next < cases.size(); ++next) {
+      const std::optional<Lost> lost = run_by_one_worker(cases, next, ended, stop);
+      if (!lost) return;
       CaseRunner again;
       again.run = [&](const StudyCase& study_case, const std::atomic<bool>&) {
-        int attempt = 1;
-        if (failed_by(*reply.lost, study_case, attempt)) throw std::runtime_error(sentence(*reply.lost, study_case));
-        return ask(Word::run, study_case, stop, attempt).record;
+        return ask(Word::run, study_case, stop, &*lost).record;
       };
-      ended(run_guarded(again, *cases[k++], stop));
+      ended(run_guarded(again, *cases[next], stop));
     }
   }
 
@@ -145,6 +112,28 @@ class IsolatedCases::Coordinator {
   /// machine.
   Where place_of(Word word) const {
     return word == Word::time || (word == Word::run && kind_.block) ? Where::here : Where::anywhere;
+  }
+
+  /// The cases from `next` on, which counts those that ended. How the worker was lost; nothing where all have ended.
+  std::optional<Lost> run_by_one_worker(const std::vector<const StudyCase*>& cases, std::size_t& next,
+                                        const std::function<void(CaseRecord)>& ended, const std::atomic<bool>& stop) {
+    const auto stopping = [&] { return stop.load(); };
+    const Taken taken = take(Where::anywhere, stopping);
+    std::vector<CaseOrder> orders;
+    for (std::size_t i = next; i < cases.size(); ++i) orders.push_back(order_of(*cases[i]));
+    std::optional<Message> message = Message{Word::run, to_bytes(orders)};
+    for (; next < cases.size(); ++next) {
+      const StudyCase& one = *cases[next];
+      Reply reply = talk_of_case(taken.member, std::exchange(message, std::nullopt), one.id, stopping);
+      auto answer = answer_in<CaseAnswer>(reply, {Word::ran}, *taken.member->worker);
+      if (!answer) return reply.lost;
+      --open_;
+      answer->record.id = one.id;
+      answer->record.axes = one.axes;
+      ended(std::move(answer->record));
+    }
+    places_.give_back(taken.member);
+    return std::nullopt;
   }
 
   /// A case that runs is open until it has.
@@ -166,15 +155,23 @@ class IsolatedCases::Coordinator {
     return {study_case.id, longest_call_of(study_case), share()};
   }
 
-  /// talk(), and what the worker claimed or began for its case is let go, however it ends.
+  /// talk(), and what the worker claimed or began for its case is let go, however it ends. Throws Interrupted.
   Reply talk_of_case(const MemberPointer& member, std::optional<Message> order, const std::string& id,
                      const std::function<bool()>& stopping) {
     const auto let_go = [this](const MemberPointer* one) {
       claims_.release((*one)->number);
       pool_.forget((*one)->number);
     };
-    const std::unique_ptr<const MemberPointer, decltype(let_go)> in_work(&member, let_go);
-    return talk(member, std::move(order), id, stopping, 2 * after_stop);
+    Reply reply;
+    {
+      const std::unique_ptr<const MemberPointer, decltype(let_go)> in_work(&member, let_go);
+      reply = talk(member, std::move(order), id, stopping, 2 * after_stop);
+    }
+    if (!reply.lost && reply.message.word == Word::interrupted) {
+      places_.give_back(member);
+      throw Interrupted{};
+    }
+    return reply;
   }
 
   /// Workers for each case that is left.
@@ -376,7 +373,7 @@ CaseRunner IsolatedCases::runner() {
   if (!coordinator_->blocks())
     runner.run_several = [coordinator = coordinator_](
                              const std::vector<const StudyCase*>& cases, const std::function<void(CaseRecord)>& ended,
-                             const std::atomic<bool>& stop) { coordinator->ask_several(cases, ended, stop); };
+                             const std::atomic<bool>& stop) { coordinator->run_several(cases, ended, stop); };
   if (coordinator_->times())
     runner.time = [coordinator = coordinator_](const StudyCase& study_case, const std::atomic<bool>& stop) {
       const CaseAnswer answer = coordinator->ask(Word::time, study_case, stop);

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <initializer_list>
 #include <optional>
 #include <string>
 
@@ -21,6 +23,18 @@ struct Reply {
 
 /// Ends one that said what is no message.
 Lost ended_for_nonsense(Worker& worker);
+
+/// What a worker answered; nothing where it was lost, as it is where it says something else.
+template <class T>
+std::optional<T> answer_in(Reply& reply, std::initializer_list<Message::Word> words, Worker& worker) {
+  if (reply.lost) return std::nullopt;
+  if (std::find(words.begin(), words.end(), reply.message.word) != words.end()) try {
+      return message_from<T>(reply.message.content);
+    } catch (const NoMessage&) {
+    }
+  reply.lost = ended_for_nonsense(worker);
+  return std::nullopt;
+}
 
 /// s that a call of a plugin's function may last for this case: its budget, or 60 where it has none.
 double longest_call_of(const StudyCase& study_case);

@@ -210,9 +210,6 @@ std::string to_bytes(const WorkerStudy& message) {
 std::string to_bytes(const WorkerReady& message) {
   return packed(message, message_mark);
 }
-std::string to_bytes(const CaseOrder& message) {
-  return packed(message, message_mark);
-}
 std::string to_bytes(const std::vector<CaseOrder>& message) {
   return packed(message, message_mark);
 }
@@ -246,7 +243,6 @@ T message_from(const std::string& bytes) {
 }
 template WorkerStudy message_from(const std::string&);
 template WorkerReady message_from(const std::string&);
-template CaseOrder message_from(const std::string&);
 template std::vector<CaseOrder> message_from(const std::string&);
 template BlockRequest message_from(const std::string&);
 template BlockStatus message_from(const std::string&);

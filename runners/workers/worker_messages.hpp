@@ -19,14 +19,13 @@ constexpr double alive_every = 1, lost_after = 60;
 struct Message {
   enum class Word : char {
     // to a worker
-    study = 'S',    ///< WorkerStudy: opens it; answered by `ready`
-    plan = 'p',     ///< a case: predicts its cost; answered by `planned`
-    run = 'r',      ///< a case: answered by `ran`
-    several = 'n',  ///< cases to be run: each answered by `ran`, in order
-    time = 't',     ///< a case: answered by `timed`
-    block = 'b',    ///< BlockRequest: marches a block of a case; answered by `block_status`
-    stop = 'x',     ///< ends what is under way; answered by `interrupted`
-    answer = 'a',   ///< to what the worker asked
+    study = 'S',   ///< WorkerStudy: opens it; answered by `ready`
+    plan = 'p',    ///< cases: predicts their cost; each answered by `planned`, in order
+    run = 'r',     ///< cases: each answered by `ran`, in order
+    time = 't',    ///< cases: each answered by `timed`, in order
+    block = 'b',   ///< BlockRequest: marches a block of a case; answered by `block_status`
+    stop = 'x',    ///< ends what is under way; answered by `interrupted`
+    answer = 'a',  ///< to what the worker asked
     // from a worker
     ready = 'R',
     planned = 'P',
@@ -133,7 +132,6 @@ struct ShelfMessage {
 
 std::string to_bytes(const WorkerStudy& message);
 std::string to_bytes(const WorkerReady& message);
-std::string to_bytes(const CaseOrder& message);
 std::string to_bytes(const std::vector<CaseOrder>& message);
 std::string to_bytes(const BlockRequest& message);
 std::string to_bytes(const BlockStatus& message);
@@ -153,7 +151,6 @@ template <class T>
 T message_from(const std::string& bytes);
 extern template WorkerStudy message_from(const std::string&);
 extern template WorkerReady message_from(const std::string&);
-extern template CaseOrder message_from(const std::string&);
 extern template std::vector<CaseOrder> message_from(const std::string&);
 extern template BlockRequest message_from(const std::string&);
 extern template BlockStatus message_from(const std::string&);

@@ -154,12 +154,8 @@ class WorkerService : public BlockService {
     if (order.word == Word::study) return tell({Word::ready, to_bytes(open(order.content)), order.about});
     stop_ = false;
     if (order.word == Word::block) return serve_block(message_from<BlockRequest>(order.content), order.about);
-    if (order.word != Word::several) {
-      serve_case(order.word, message_from<CaseOrder>(order.content), order.about);
-      return;
-    }
     for (const CaseOrder& one : message_from<std::vector<CaseOrder>>(order.content))
-      if (!serve_case(Word::run, one, order.about)) return;
+      if (!serve_case(order.word, one, order.about)) return;
   }
 
   /// False: interrupted.

@@ -93,7 +93,7 @@ inline void run_missing(const Study& study, std::vector<std::shared_ptr<WorkerHo
     pending.push_back({&one, 1, one.id});
   }
   CaseEvents events;
-  events.begins = [](const std::vector<const PendingCase*>&) {};
+  events.begins = [](std::span<const PendingCase>) {};
   events.finished = [&](const CaseRecord& record, const PendingCase*) {
     const std::lock_guard guard(kept.mutex);
     kept.rows[record.id] = to_bytes(record);

@@ -110,7 +110,7 @@ void ScriptedWorker::hear(const Message& message) {
 }
 
 void ScriptedWorker::begin_case(const Message& order) {
-  id_ = message_from<CaseOrder>(order.content).id;
+  id_ = message_from<std::vector<CaseOrder>>(order.content).front().id;
   order_ = order.about;
   questions_.clear();
   blocks_.clear();
