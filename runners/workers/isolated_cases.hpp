@@ -125,7 +125,7 @@ class BlockPool {
   void begin(Block block);
   /// Stops one: one that has not begun is told to be interrupted at once.
   void stop(int owner, std::uint32_t about);
-  /// Stops all blocks of an owner that is gone.
+  /// Stops all blocks of an owner that is gone. None of them is marched any more when it returns.
   void forget(int owner);
 
  private:
@@ -140,7 +140,7 @@ class BlockPool {
   const int width_;
   const March march_;
   std::mutex mutex_;
-  std::condition_variable changed_;
+  std::condition_variable changed_, came_back_;
   std::deque<Block> waiting_;
   std::list<Marching> marching_;
   std::vector<std::thread> threads_;

@@ -127,10 +127,14 @@ void BlockPool::stop(int owner, std::uint32_t about) {
 }
 
 void BlockPool::forget(int owner) {
-  const std::lock_guard guard(mutex_);
+  std::unique_lock lock(mutex_);
   std::erase_if(waiting_, [&](const Block& one) { return one.owner == owner; });
   for (Marching& one : marching_)
     if (one.owner == owner) one.stop = true;
+  // What they tell of a case, and keep for it, goes to who may be gone once the case has ended.
+  came_back_.wait(lock, [&] {
+    return std::none_of(marching_.begin(), marching_.end(), [&](const Marching& one) { return one.owner == owner; });
+  });
 }
 
 void BlockPool::work() {
@@ -147,6 +151,7 @@ void BlockPool::work() {
     march_(block, [&] { return marching.stop.load(); });
     lock.lock();
     marching_.erase(place);
+    came_back_.notify_all();
     ++free_;
   }
 }

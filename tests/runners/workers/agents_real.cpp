@@ -1,4 +1,7 @@
+#include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <functional>
 #include <thread>
 #include <utility>
 
@@ -106,6 +109,24 @@ TEST_CASE("agents: the real ones pass on what workers say and how they end, and 
     CHECK(served == ranks - 1);
     CHECK(there == 0);
   }
+}
+
+TEST_CASE("agents: no block of a case is marched any more once the case is let go") {
+  constexpr int owner = 7;
+  std::atomic<bool> begun{false}, came_back{false};
+  BlockPool pool(2, [&](const BlockPool::Block& block, const std::function<bool()>& stopping) {
+    if (block.owner != owner) return;
+    begun = true;
+    while (!stopping()) std::this_thread::yield();
+    // A while in which who does not wait would be seen.
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    came_back = true;
+  });
+  pool.begin({{}, owner, 1, [](BlockStatus) {}});
+  pool.begin({{}, owner + 1, 1, [](BlockStatus) {}});
+  while (!begun) std::this_thread::yield();
+  pool.forget(owner);
+  CHECK(came_back);
 }
 
 TEST_CASE("agents: a machine whose workers cannot be started says why") {
