@@ -217,7 +217,7 @@ ChildOutcome run_in_child(const std::function<std::string()>& work, double secon
   const bool in_time = watch.until(from_now(seconds));
   if (!in_time) {
     // First asked what it does, then ended whatever it does.
-    constexpr double patience = 0.5;
+    constexpr double patience = 3;  // s, which a child that shares its processor may need to answer
     ::kill(child, SIGALRM);
     if (!watch.until(from_now(patience))) watch.kill();
   }

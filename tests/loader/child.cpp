@@ -18,7 +18,9 @@ using End = ChildOutcome::End;
 
 namespace {
 
-constexpr double long_enough = 60;
+constexpr double long_enough = 600;  // s: no child here needs a second of a processor
+// Until then a child has begun, whatever else the machine does.
+constexpr double soon = 1;
 
 const PluginIdentity mine{"time", "mine", "here.so"};
 
@@ -84,16 +86,14 @@ TEST_CASE("a child that does not return says which plugin's function it was in")
     CHECK(outcome.sentence() == place + "ended the process with exit code " + std::to_string(code));
   }
   SECTION("a loop without end") {
-    const auto begin = std::chrono::steady_clock::now();
     const ChildOutcome outcome = asked(
         [] {
           for (std::atomic<int> k = 0;; ++k) {
           }
         },
-        0.2);
+        soon);
     CHECK(outcome.end == End::timeout);
-    CHECK(outcome.sentence() == place + "did not end within 0.2 s");
-    CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(20));
+    CHECK(outcome.sentence() == place + "did not end within 1 s");
   }
   SECTION("a loop that no signal ends") {
     const ChildOutcome outcome = asked(
@@ -101,8 +101,8 @@ TEST_CASE("a child that does not return says which plugin's function it was in")
           std::signal(SIGALRM, SIG_IGN);
           for (;;) ::pause();
         },
-        0.2);
-    CHECK(outcome.sentence() == "did not end within 0.2 s");
+        soon);
+    CHECK(outcome.sentence() == "did not end within 1 s");
   }
 }
 
