@@ -100,14 +100,13 @@ bool UnderWay::ended() const {
   return ::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid != 0;
 }
 
-// mpirun waits for ever where a rank of it is killed before all are there: nothing of the program is left then.
+// mpirun waits for ever where a rank of it is killed before all are there: nothing of the program is left then. How
+// long it takes to begin one says nothing.
 void UnderWay::give_up_a_launcher() {
   if (command_line_of("/proc/" + std::to_string(process_)).find("mpirun") == std::string::npos) return;
   constexpr int looks = 200, enough = 100;  // per look, ms
   for (int idle = 0; !ended() && idle < looks; ::usleep(1000 * enough)) {
-    std::vector<pid_t> left = below("ricochet");
-    std::erase(left, process_);
-    idle = left.empty() ? idle + 1 : 0;
+    idle = below("ricochet").empty() && seen_ ? idle + 1 : 0;
   }
   if (!ended()) ::kill(-process_, SIGKILL);
 }
@@ -116,7 +115,7 @@ Ended UnderWay::finish(int signal) {
   if (signal != 0) ::kill(process_, signal);
   give_up_a_launcher();
   // Half of the time that a test has: who hangs is ended, and what it told is to be read.
-  constexpr int looks = 60000, between = 5;  // ms
+  constexpr int looks = 180000, between = 5;  // ms
   for (int i = 0; i < looks && !ended(); ++i) ::usleep(1000 * between);
   if (!ended()) ::kill(-process_, SIGKILL);
   ::waitpid(process_, &status_, 0);
@@ -128,9 +127,11 @@ Ended UnderWay::finish(int signal) {
 std::vector<pid_t> UnderWay::below(const std::string& words) const {
   std::vector<pid_t> found = processes(words);
   std::erase_if(found, [&](pid_t one) {
+    if (one == process_) return true;
     while (one > 1 && one != process_) one = parent_of(one);
     return one != process_;
   });
+  seen_ = seen_ || !found.empty();
   return found;
 }
 

@@ -46,7 +46,7 @@ class UnderWay {
 
   pid_t process() const { return process_; }
   bool ended() const;
-  /// Sends a signal to the program, and waits; after five minutes it is killed.
+  /// Sends a signal to the program, and waits; after fifteen minutes it is killed.
   Ended finish(int signal = 0);
   /// Processes below it with these words in their command line, "ricochet worker".
   std::vector<pid_t> below(const std::string& words) const;
@@ -57,6 +57,7 @@ class UnderWay {
   const ScratchFolder& scratch_;
   pid_t process_ = -1;
   int status_ = 0;
+  mutable bool seen_ = false;  // something of the program below it
 };
 
 /// The ranks below a process: a rank's number, or minus one for any but 0.

@@ -10,11 +10,11 @@
 #include "runners/march/study_identity.hpp"
 #include "tests/runners/mpi/launch.hpp"
 #include "tests/runners/same_tables.hpp"
+#include "tests/runners/workers/linger.hpp"
 
 using namespace launch;
 using Catch::Contains;
 using quick_studies::Json;
-using quick_studies::longer;
 using quick_studies::study_of;
 using quick_studies::stumbling;
 using same_tables::check_same;
@@ -134,13 +134,13 @@ TEST_CASE("ranks: one beside which the program is missing, or is another build, 
 TEST_CASE("ranks: a run that USR1 stops ends with 130, leaves no worker behind, and goes on to the same tables") {
   if (without_mpi()) return;
   const ScratchFolder scratch;
-  const Json study = longer();
-  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "here") + " --inline")).code == 0);
+  const Json study = linger::study();
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "here") + " --inline" + linger::plugin)).code == 0);
+  const std::string words = run_words(scratch, study, "out") + linger::plugin;
   {
-    UnderWay run(scratch, ranks(3, run_words(scratch, study, "out")));
-    constexpr int tries = 2000;
-    for (int i = 0; i < tries && !run.ended() && !fs::exists(scratch / "out/results.sqlite"); ++i) ::usleep(10000);
-    ::usleep(800000);
+    const linger::Held held;
+    UnderWay run(scratch, ranks(3, words));
+    REQUIRE(linger::comes_true([&] { return run.ended() || linger::marches(scratch / "out"); }));
     REQUIRE_FALSE(run.ended());
     const std::vector<pid_t> workers = run.below("ricochet worker");
     CHECK_FALSE(workers.empty());
@@ -148,13 +148,10 @@ TEST_CASE("ranks: a run that USR1 stops ends with 130, leaves no worker behind, 
     INFO(stopped.messages);
     CHECK(stopped.code == 130);
     CHECK(stopped.told("interrupted: ") == 1);
-    const auto any_left = [&] {
-      return std::any_of(workers.begin(), workers.end(), [](pid_t one) { return ::kill(one, 0) == 0; });
-    };
-    for (int i = 0; i < tries && any_left(); ++i) ::usleep(10000);
-    CHECK_FALSE(any_left());
+    CHECK(linger::comes_true(
+        [&] { return std::none_of(workers.begin(), workers.end(), [](pid_t one) { return ::kill(one, 0) == 0; }); }));
   }
-  const Ended again = to_its_end(scratch, ranks(2, run_words(scratch, study, "out")));
+  const Ended again = to_its_end(scratch, ranks(2, words));
   INFO(again.messages);
   CHECK(again.code == 0);
   check_same(scratch / "here", scratch / "out");

@@ -8,9 +8,11 @@
 
 #include "tests/runners/mpi/cluster.hpp"
 #include "tests/runners/same_tables.hpp"
+#include "tests/runners/workers/linger.hpp"
 
 using namespace launch;
 using Catch::Contains;
+using linger::comes_true;
 using quick_studies::Json;
 using quick_studies::study_of;
 using same_tables::check_same;
@@ -18,42 +20,27 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Waits for what the cluster does; gives up after some minutes, which only a hung one needs.
-bool comes_true(const std::function<bool()>& condition) {
-  constexpr int tries = 3000;
-  constexpr useconds_t between = 50000;
-  for (int i = 0; i < tries; ++i, ::usleep(between))
-    if (condition()) return true;
-  return false;
-}
-
 bool ended(const std::string& state) {
   return state == "COMPLETED" || state == "FAILED" || state == "CANCELLED" || state == "TIMEOUT" ||
          state == "NODE_FAIL";
 }
 
-/// A sweep that is under way for long enough to be disturbed.
-Json long_sweep() {
-  Json study = quick_studies::longer();
-  study["parameter"]["count"] = 49;
-  return study;
-}
-
 /// The job script that the command prints, for a study in OUT.json.
-std::string script(const ScratchFolder& scratch, const Json& study, const std::string& out) {
+std::string script(const ScratchFolder& scratch, const Json& study, const std::string& out,
+                   const std::string& options = "") {
   write_text(scratch / (out + ".json"), study.dump());
-  const Ended printed = to_its_end(scratch, program("slurm '" + (scratch / (out + ".json")).string() + "' --out '" +
-                                                    (scratch / out).string() + "' --nodes 2 --cpus 2 --time 10"));
+  const Ended printed =
+      to_its_end(scratch, program("slurm '" + (scratch / (out + ".json")).string() + "' --out '" +
+                                  (scratch / out).string() + "' --nodes 2 --cpus 2 --time 10" + options));
   INFO(printed.messages);
   REQUIRE(printed.code == 0);
   return printed.out;
 }
 
-/// A job of the script with the longer study, once it has kept something.
+/// A job of the script with a study that lingers, once it marches.
 std::string job_under_way(const Cluster& cluster, const ScratchFolder& scratch) {
-  const std::string job = cluster.submit(script(scratch, long_sweep(), "out"));
-  REQUIRE(comes_true([&] { return fs::exists(scratch / "out/results.sqlite"); }));
-  ::usleep(700000);
+  const std::string job = cluster.submit(script(scratch, linger::study(), "out", linger::plugin));
+  REQUIRE(comes_true([&] { return linger::marches(scratch / "out") || ended(cluster.of_job(job, "JobState")); }));
   REQUIRE(cluster.of_job(job, "JobState") == "RUNNING");
   return job;
 }
@@ -155,9 +142,12 @@ TEST_CASE("slurm: a job whose ranks were never started has not ended well, whate
 TEST_CASE("slurm: a job that is warned by USR1 keeps what it has, goes back into the queue and on to the same tables") {
   WITH_A_CLUSTER(cluster);
   const ScratchFolder scratch;
-  REQUIRE(to_its_end(scratch, program(run_words(scratch, long_sweep(), "threads"))).code == 0);
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, linger::study(), "threads") + linger::plugin)).code == 0);
+  const linger::Held held;
   const std::string job = job_under_way(cluster, scratch);
   cluster.answer("scancel --signal=USR1 " + job);
+  REQUIRE(comes_true([&] { return cluster.of_job(job, "JobState") != "RUNNING"; }));
+  held.let_go();
   goes_on(cluster, job);
   const std::string said = read_text(cluster.job_output());
   INFO(said);
@@ -168,10 +158,12 @@ TEST_CASE("slurm: a job that is warned by USR1 keeps what it has, goes back into
 TEST_CASE("slurm: a job that loses a node goes back into the queue and on to the same tables") {
   WITH_A_CLUSTER(cluster);
   const ScratchFolder scratch;
-  REQUIRE(to_its_end(scratch, program(run_words(scratch, long_sweep(), "threads"))).code == 0);
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, linger::study(), "threads") + linger::plugin)).code == 0);
+  const linger::Held held;
   const std::string job = job_under_way(cluster, scratch);
   cluster.cut_off("n2");
   REQUIRE(comes_true([&] { return cluster.of_job(job, "Restarts") == "1"; }));
+  held.let_go();
   cluster.switch_on("n2");
   goes_on(cluster, job);
   INFO(read_text(cluster.job_output()));

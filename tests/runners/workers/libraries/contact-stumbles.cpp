@@ -19,8 +19,15 @@ namespace {
   return depth < 0 ? 0 : overflow(depth + 1) + room[7];
 }
 
+void linger() {
+  static const char* const held = std::getenv("RICOCHET_TEST_HELD");
+  constexpr useconds_t pause = 50000;
+  if (held && ::access(held, F_OK) == 0) ::usleep(pause);
+}
+
 void misbehave(const std::string& how) {
   if (how == "none") return;
+  if (how == "linger") return linger();
   std::fputs("too deep for me\n", stderr);
   if (how == "segv") ::raise(SIGSEGV);
   if (how == "abort") std::abort();
@@ -62,9 +69,10 @@ void register_all(Registry& registry) {
        .summary = "a rigid law that stumbles",
        .text = "It keeps one point within its stops, as long as it is not asked for too much.",
        .source = "none",
-       .parameters = {word_parameter("how",
-                                     {"none", "segv", "abort", "exit", "leave", "overflow", "kill", "greedy", "sleep"},
-                                     "none", "what it does that no plugin may do"),
+       .parameters = {word_parameter(
+                          "how",
+                          {"none", "segv", "abort", "exit", "leave", "overflow", "kill", "greedy", "sleep", "linger"},
+                          "none", "what it does that no plugin may do"),
                       real_parameter("beyond", "m", 1e9, {.low = 0}, "the depth of a step from which it does so")}},
       [](const Parameters& p) { return std::make_unique<Stumbles>(p.word("how"), p.real("beyond")); });
 }
