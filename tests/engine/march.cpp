@@ -50,8 +50,9 @@ TEST_CASE("memory stays flat over ten million steps") {
   const long before = resident();
   beam.march(10000000);
   CHECK(beam.status(0).running);
-  // Some pages come and go with the test program itself (a sanitizer's shadow: 22); a byte per step would be 2400.
-  CHECK(resident() - before <= 64);
+  // Some pages come and go with the test program itself (a sanitizer's shadow: 22), and the system may make huge pages
+  // of 512 out of what was resident in part. A byte per step would be 2400.
+  CHECK(resident() - before <= 2 * 512 + 64);
 }
 
 TEST_CASE("a lane that diverges is frozen with step, time and cause, and the others go on") {

@@ -1,3 +1,4 @@
+#include <sched.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -5,7 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <thread>
+#include <string>
 
 #include "tests/runners/command/spoken_command.hpp"
 
@@ -38,11 +39,16 @@ TEST_CASE("A plan shows cases, refusals with reasons and cost, and runs nothing"
 TEST_CASE("A plan and the doctor say how many processors may be used, and what allows no more") {
   const Folder here;
   here.write("tiny.json", tiny().dump(1));
-  if (std::thread::hardware_concurrency() < 2) return;
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (::sched_getaffinity(0, sizeof allowed, &allowed) != 0 || CPU_COUNT(&allowed) < 2) return;
+  int one = 0;
+  while (!CPU_ISSET(one, &allowed)) ++one;
   CHECK_THAT(here.run("plan tiny.json", "SLURM_CPUS_PER_TASK=1").out,
              Contains("\ncores that this process may use: 1 of ") && Contains("(SLURM_CPUS_PER_TASK)"));
   CHECK_THAT(here.run("doctor", "SLURM_CPUS_ON_NODE=1").out, Contains("(SLURM_CPUS_ON_NODE)"));
-  CHECK_THAT(here.run("run tiny.json --isolate --out there", "taskset -c 0").err, Contains("on 1 worker\n"));
+  CHECK_THAT(here.run("run tiny.json --isolate --out there", "taskset -c " + std::to_string(one)).err,
+             Contains("on 1 worker\n"));
   CHECK_THAT(read(here / "there/report.html"), Contains("(the affinity of this process)"));
   for (const char* words : {"plan tiny.json", "run tiny.json --out other", "run tiny.json --out other --jobs 1"}) {
     const Outcome wrong = here.run(words, "SLURM_CPUS_PER_TASK=all");

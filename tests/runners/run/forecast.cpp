@@ -1,4 +1,5 @@
 // Laws of a forecast, and no figure: machines differ.
+#include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <functional>
@@ -94,7 +95,29 @@ TEST_CASE("forecast: a reference that is solved costs what solving it takes, and
   CHECK(seconds < 0.5);
 }
 
-TEST_CASE("forecast: a sweep and a range of steps take what their plans predict, within a factor") {
+namespace {
+
+/// What the one case of a study takes of a processor, over what its plan predicts: the least of three runs, which other
+/// programs disturb the least.
+double taken_over_predicted(const Json& study) {
+  Planned planned(study);
+  REQUIRE(planned.study.cases.size() == 1);
+  const StudyCase& one = planned.study.cases.front();
+  double least = 1e300;
+  for (int run = 0; run < 3; ++run) {
+    const CaseRunner runner =
+        find_kind(planned.study.kind)->start({planned.study, planned.registry, [](const StudyCase&) { return ""; }});
+    const std::atomic<bool> stop = false;
+    if (runner.open) runner.open({}, stop);
+    const CaseRecord record = runner.run(one, stop);
+    least = std::min(least, record.setup_seconds + record.run_seconds);
+  }
+  return least / planned.cases.front().plan.predicted_seconds;
+}
+
+}  // namespace
+
+TEST_CASE("forecast: a sweep and a range of steps take what their plans predict, as a trajectory does") {
   Json sweep = Json::parse(R"({
     "name": "sweep", "kind": "bifurcation",
     "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.2,
@@ -103,26 +126,25 @@ TEST_CASE("forecast: a sweep and a range of steps take what their plans predict,
                 "time": {"name": "newmark-dumont-paoli", "restitution": 0.5}},
     "parameter": {"pointer": "/scene/structure/force/pulsation", "from": 2, "to": 3, "count": 24},
     "steps_per_period": 400, "start": ["rest"], "transient": {"periods": 60, "at_most": 200}, "keep": 20})");
+  Json trajectory = swinging_beam("trajectory");
+  trajectory["mesh"]["elements"] = 6;
+  trajectory["methods"]["mass"] = "consistent";
+  trajectory["step"] = 1e-6;
+  trajectory["march"] = "every-step";
   Json range = swinging_beam("stability");
   range.erase("step");
   range["mesh"]["elements"] = 6;
   range["methods"]["mass"] = "consistent";
   range["steps"] = {{"from", 1e-5}, {"to", 1e-3}, {"count", 16}};
+  // How fast a machine is, or how much of it is to be had, goes into all of them alike. What it has of each instruction
+  // goes into steps of one lane and of eight by 4 at most, and the model of cost is good for a factor of 3.
+  const double here = taken_over_predicted(trajectory);
   for (const Json& study : {sweep, range}) {
-    Planned planned(study);
-    REQUIRE(planned.study.cases.size() == 1);
-    const StudyCase& one = planned.study.cases.front();
-    const Kind& kind = *find_kind(planned.study.kind);
-    const CaseRunner runner = kind.start({planned.study, planned.registry, [](const StudyCase&) { return ""; }});
-    const std::atomic<bool> stop = false;
-    if (runner.open) runner.open({}, stop);
-    const CaseRecord record = runner.run(one, stop);
-    const double taken = record.setup_seconds + record.run_seconds,
-                 predicted = planned.cases.front().plan.predicted_seconds;
-    // Three, and what else the machine does. Sanitized code is not what is predicted.
-    CHECK(predicted < 6 * taken);
-#ifndef RICOCHET_SANITIZED
-    CHECK(taken < 6 * predicted);
+    const double there = taken_over_predicted(study);
+    CAPTURE(here, there);
+#ifndef RICOCHET_SANITIZED  // sanitized code is not what is predicted
+    CHECK(there < 12 * here);
+    CHECK(here < 12 * there);
 #endif
   }
 }

@@ -88,6 +88,15 @@ class Child {
 
   pid_t process() const { return process_; }
   void send(int signal) const { ::kill(process_, signal); }
+  /// Whether no signal waits for it: those that were sent have been handled, or are about to be.
+  bool heard() const {
+    std::istringstream status(read_text("/proc/" + std::to_string(process_) + "/status"));
+    bool none = true;
+    for (std::string line; std::getline(status, line);)
+      if (line.starts_with("SigPnd:") || line.starts_with("ShdPnd:"))
+        none = none && line.find_first_not_of("0\t ", 7) == std::string::npos;
+    return none;
+  }
   std::string messages() const { return read_text(messages_); }
   /// The exit code, or minus the signal that ended it.
   int wait() {
@@ -102,9 +111,10 @@ class Child {
   std::filesystem::path messages_;
 };
 
-/// Waits until `condition`, which another process makes true; gives up after a minute, which only a hung child needs.
+/// Waits until `condition`, which another process makes true; gives up after ten minutes, which only a hung child
+/// needs.
 bool wait_for(const std::function<bool()>& condition) {
-  constexpr int tries = 12000;
+  constexpr int tries = 120000;
   for (int i = 0; i < tries; ++i) {
     if (condition()) return true;
     ::usleep(5000);
@@ -221,9 +231,9 @@ TEST_CASE("interruption: a scheduler's warning may come twice, and an order to s
   child.send(SIGUSR1);
   REQUIRE(wait_for([&] { return child.messages().find("stopping") != std::string::npos; }));
   child.send(SIGUSR1);
-  ::usleep(100000);
+  REQUIRE(wait_for([&] { return child.heard(); }));
   child.send(SIGTERM);
-  ::usleep(100000);
+  REQUIRE(wait_for([&] { return child.heard(); }));
   CHECK(::waitpid(child.process(), nullptr, WNOHANG) == 0);
   child.send(SIGTERM);
   CHECK(child.wait() == 130);

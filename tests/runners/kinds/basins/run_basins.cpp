@@ -247,7 +247,7 @@ TEST_CASE("Workers, interruptions and damage to what was stored do not change ba
 
 TEST_CASE("A budget that is spent leaves rows that say so") {
   Json study = grid_study(25, 25, false);
-  study["budget"] = 1e-3;
+  study["budget"] = 1e-6;
   const CaseRecord record = run(study);
   CHECK(record.status == "failed");
   const auto status = cells(record, "status");

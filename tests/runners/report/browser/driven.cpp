@@ -66,7 +66,7 @@ nlohmann::json driven(const std::string& folder, const nlohmann::json& steps) {
   fs::create_directories(here);
   fs::remove(here / "answers.json");
   std::ofstream(here / "steps.json") << steps;
-  const std::string command = "timeout 500 node '" RICOCHET_SOURCE_DIR "/tests/runners/report/browser/drive.js' '" +
+  const std::string command = "timeout 1500 node '" RICOCHET_SOURCE_DIR "/tests/runners/report/browser/drive.js' '" +
                               (here / "steps.json").string() + "' '" + (here / "answers.json").string() + "'";
   INFO(command);
   REQUIRE(std::system(command.c_str()) == 0);

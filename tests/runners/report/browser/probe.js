@@ -233,7 +233,7 @@
     const playing = film.state().playing;
     // Until it has moved, or has had time to.
     await new Promise((done) => {
-      const until = performance.now() + 5000;
+      const until = performance.now() + 300000;
       (function
            look() { film.state().k > back || performance.now() > until ? done() : requestAnimationFrame(look); })();
     });
