@@ -1,4 +1,5 @@
 // Points, shocks, statistics of stops and spectra of a trajectory, by closed forms and by what they must add up to.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -235,37 +236,6 @@ TEST_CASE("observers of stops leave the motion as it is") {
       CHECK(measure(full, name).value() == Approx(value).epsilon(1e-11).margin(1e-12));
   CHECK(full.curve.columns.size() == lean.curve.columns.size());
   CHECK(curve_of(full, "tip_displacement") == curve_of(lean, "tip_displacement"));
-}
-
-TEST_CASE("shocks and spectra of steps that flights leave out are those of every step") {
-  Json study = tube();
-  study["scene"].erase("load");
-  study["scene"]["initial"] = {{"velocity", "-2*x"}};
-  study["scene"]["stops"][0].erase("tangent");
-  study["methods"]["contact"] = GENERATE(Json("signorini"), Json{{"name", "penalty"}, {"stiffness", 1e5}});
-  study["duration"] = 0.4;
-  study["window"] = {{"from", 0.1}, {"to", 0.3}};
-  study["outputs"] = Json::parse(R"({"shocks": {"rest": 1e-3}, "rate": 1000, "segment": 0.1,
-      "spectra": [{"of": "end", "quantity": "displacement"}, {"of": "end", "quantity": "force"}]})");
-  study["march"] = {"every-step", "flights"};
-  const std::vector<CaseRecord> both = CaseRuns().of(study);
-  REQUIRE(both.size() == 2);
-  for (const CaseRecord& record : both) REQUIRE(record.status == "done");
-  CHECK(measure(both[1], "steps_visited").value() < measure(both[0], "steps_visited").value());
-  const NumberTable &a = *find_table(both[0].numbers, "shocks"), &b = *find_table(both[1].numbers, "shocks");
-  REQUIRE(a.rows() > 2);
-  REQUIRE(a.rows() == b.rows());
-  // Round-off, times what the motion makes of it.
-  for (const char* column : {"t_begin", "peak_force", "impulse", "duration", "rebounds"})
-    for (std::size_t i = 0; i < a.rows(); ++i)
-      CHECK(b.numbers(column)->at(i) == Approx(a.numbers(column)->at(i)).epsilon(1e-6));
-  for (const char* name : {"window_displacement_rms[end]", "window_force[end]", "window_displacement_max[plate]"})
-    CHECK(measure(both[1], name).value() == Approx(measure(both[0], name).value()).epsilon(1e-6));
-  const auto &s = *find_table(both[0].numbers, "spectra")->numbers("density"),
-             &t = *find_table(both[1].numbers, "spectra")->numbers("density");
-  REQUIRE(s.size() == t.size());
-  const double largest = *std::max_element(s.begin(), s.begin() + static_cast<std::ptrdiff_t>(s.size() / 2));
-  for (std::size_t k = 0; k < s.size() / 2; ++k) CHECK(t[k] == Approx(s[k]).margin(1e-6 * largest));
 }
 
 TEST_CASE("a swing has its spectrum at its frequency, with half its squared amplitude") {
