@@ -83,13 +83,13 @@ bool DiagramSpeaker::random_starts() const {
 
 /// Where the reference has several motions at one value, which these are, and whether all cases have several there.
 void DiagramSpeaker::say_coexistence(say::Answer& answer) const {
-  struct Stretch {
+  struct MotionRange {
     double from, to;
     std::vector<std::string> motions;
   };
   std::map<std::string, Motions> motions_by_case = motions_of(results_);
   const Motions& own = motions_by_case[reference_->id];
-  std::vector<Stretch> stretches;
+  std::vector<MotionRange> stretches;
   std::set<double> several;
   for (const auto& [value, motions] : own) {
     if (!stretches.empty() && stretches.back().motions == motions)
@@ -98,7 +98,7 @@ void DiagramSpeaker::say_coexistence(say::Answer& answer) const {
       stretches.push_back({value, value, motions});
     if (motions.size() > 1) several.insert(value);
   }
-  std::erase_if(stretches, [](const Stretch& one) { return one.motions.size() < 2; });
+  std::erase_if(stretches, [](const MotionRange& one) { return one.motions.size() < 2; });
   if (stretches.empty()) {
     if (random_starts() && !own.empty())
       answer.say("No value of the parameter has more than one motion, whatever the start.",
@@ -111,7 +111,7 @@ void DiagramSpeaker::say_coexistence(say::Answer& answer) const {
   Sentence said;
   constexpr std::size_t told = 4;
   for (std::size_t k = 0; k < stretches.size(); ++k) {
-    const Stretch& one = stretches[k];
+    const MotionRange& one = stretches[k];
     const std::string list = list_of(one.motions);
     Clause part{.form = "diagram", .who = list, .methods = reference_->id};
     part.value = static_cast<double>(one.motions.size());
