@@ -33,7 +33,8 @@ class StudyIdentity {
   Fingerprints fingerprints_;
 };
 
-/// The files of a case's mass, contact and time plugins; "" for a method of the program itself.
+/// The libraries of a case's mass, contact and time plugins; "" for a method of the program itself. A plan has none:
+/// the case holds it.
 std::vector<std::filesystem::path> libraries_of(const StudyCase& study_case, const Registry& registry);
 
 }  // namespace ricochet

@@ -20,6 +20,10 @@ bool states_plan(const Json& entry) {
   return (name != entry.end() && *name == stated_plan) || (plan != entry.end() && plan->is_object());
 }
 
+bool is_plan_file(const fs::path& file) {
+  return file.extension() == ".json";
+}
+
 PlanSource source_of(const Json& entry, const std::string& pointer, const fs::path& folder) {
   const auto file = entry.find(file_key), plan = entry.find(plan_key);
   if (file != entry.end() && plan != entry.end())
@@ -48,6 +52,21 @@ PlanSource source_of(const Json& entry, const std::string& pointer, const fs::pa
   }
 }
 
+// What states the plan of an entry: its keys, or the plan beside the plugins whose name it has. Nothing for a library.
+std::optional<PlanSource> find_source(const Json& entry, const std::string& pointer, const fs::path& folder,
+                                      const Catalogue& catalogue) {
+  if (states_plan(entry)) return source_of(entry, pointer, folder);
+  const auto name = entry.find("name");
+  if (name == entry.end() || !name->is_string()) return std::nullopt;
+  const fs::path* const provider = catalogue.provider(Role::time, name->get<std::string>());
+  if (!provider || !is_plan_file(*provider)) return std::nullopt;
+  try {
+    return read_plan_file(*provider);
+  } catch (const InputError& error) {
+    throw InputError(pointer_to(pointer, "name"), error.what());
+  }
+}
+
 // Whether the name is free, or stands for this very plan already; throws where it stands for something else.
 bool is_new(const PlanSource& source, const std::string& name, const std::string& where, const Json& before,
             const Catalogue& catalogue, const Registry& registry) {
@@ -64,7 +83,7 @@ bool is_new(const PlanSource& source, const std::string& name, const std::string
   const auto& all = catalogue.provided();
   const auto provider = std::find_if(
       all.begin(), all.end(), [&](const Provided& method) { return method.role == Role::time && method.name == name; });
-  const bool plan_file = provider != all.end() && provider->file.extension() == ".json";
+  const bool plan_file = provider != all.end() && is_plan_file(provider->file);
   if (provider != all.end() && !plan_file) refuse(provider->file.string());
   if (!registry.manual(Role::time, name)) return true;
   // Named before in this study, from a plugin folder.
@@ -114,9 +133,11 @@ bool holds_plan(const fs::path& file) {
 
 std::optional<PlanSource> take_stated_plan(Json& entry, const std::string& pointer, const fs::path& folder,
                                            const Json& before, Catalogue& catalogue, Registry& registry) {
-  if (!states_plan(entry)) return std::nullopt;
-  PlanSource source = source_of(entry, pointer, folder);
-  const std::string where = source.file.empty() ? source.pointer : pointer_to(pointer, file_key);
+  std::optional<PlanSource> found = find_source(entry, pointer, folder, catalogue);
+  if (!found) return std::nullopt;
+  PlanSource& source = *found;
+  const std::string where =
+      source.file.empty() ? source.pointer : pointer_to(pointer, entry.contains(file_key) ? file_key : "name");
   std::string name;
   Registry methods;
   try {
@@ -138,21 +159,21 @@ std::optional<PlanSource> take_stated_plan(Json& entry, const std::string& point
   entry.erase(file_key);
   entry.erase(plan_key);
   entry["name"] = name;
-  return source;
+  return found;
 }
 
 void add_plans(const fs::path& folder, Catalogue& catalogue) {
   std::error_code ignored;
   std::vector<fs::path> files;
   for (const auto& item : fs::directory_iterator(folder, ignored))
-    if (item.path().extension() == ".json" && holds_plan(item.path())) files.push_back(item.path());
+    if (is_plan_file(item.path()) && holds_plan(item.path())) files.push_back(item.path());
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) add_plan(file, catalogue, false);
 }
 
 Catalogue standard_catalogue(const std::vector<fs::path>& files) {
   std::vector<fs::path> libraries, plans;
-  for (const fs::path& file : files) (file.extension() == ".json" ? plans : libraries).push_back(file);
+  for (const fs::path& file : files) (is_plan_file(file) ? plans : libraries).push_back(file);
   Catalogue catalogue = Catalogue::standard(libraries);
   for (const fs::path& folder : catalogue.folders()) add_plans(folder, catalogue);
   for (const fs::path& file : plans) add_plan(file, catalogue, true);

@@ -38,10 +38,11 @@ void register_plan(const PlanSource& source, Registry& registry);
 inline constexpr const char* stated_plan = "plan";
 
 /// An entry of `methods.time` may state its scheme itself. It does by "file", a path relative to `folder`, the study's,
-/// or by "plan", as resolved studies have it. This reads the plan, registers it under its own name, and leaves in
-/// `entry` this name and the parameters. Within a study a name stands for one scheme. Throws InputError when the name
-/// is that of a plugin or of another plan among `before` (complete entries). Throws it for whatever is wrong with the
-/// plan, too.
+/// or by "plan", as resolved studies have it. It may also have the name of a plan beside the plugins. This reads the
+/// plan once, registers it under its own name, and leaves in `entry` this name and the parameters. So what a study runs
+/// and keeps is what was read here, whatever becomes of the file. Within a study a name stands for one scheme. Throws
+/// InputError when the name is that of a library's method or of another plan among `before` (complete entries). Throws
+/// it for whatever is wrong with the plan, too.
 std::optional<PlanSource> take_stated_plan(Json& entry, const std::string& pointer, const std::filesystem::path& folder,
                                            const Json& before, Catalogue& catalogue, Registry& registry);
 

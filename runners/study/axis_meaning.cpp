@@ -77,7 +77,7 @@ Column parameter_meaning(const std::string& column, const std::string& role, con
     const MethodChoice& method = role == "mass" ? one.mass : role == "contact" ? one.contact : one.time;
     const bool known =
         std::any_of(said.begin(), said.end(), [&](const auto& other) { return other.first == method.name; });
-    if (known || method.plan) continue;
+    if (known) continue;
     const Role of = role == "mass" ? Role::mass : role == "contact" ? Role::contact : Role::time;
     const PluginManual* manual = registry.manual(of, method.name);
     if (!manual) continue;
@@ -181,7 +181,7 @@ std::vector<Column> axis_meanings(const Study& study, const Registry& registry) 
 std::map<std::string, std::string> method_words(const Study& study, const Registry& registry) {
   std::map<std::string, std::string> words;
   const auto add = [&](const char* name, Role role, const MethodChoice& method) {
-    const PluginManual* manual = method.plan ? nullptr : registry.manual(role, method.name);
+    const PluginManual* manual = registry.manual(role, method.name);
     if (manual && !manual->words.empty()) words[std::string(name) + " " + method.name] = manual->words;
   };
   for (const StudyCase& one : study.cases) {

@@ -19,7 +19,7 @@ class StudyFiles;
 struct MethodChoice {
   std::string name;
   Parameters parameters;
-  std::shared_ptr<const std::string> plan = {};  ///< the plan that the study states for it; null for a plugin
+  std::shared_ptr<const std::string> plan = {};  ///< that states it; null where a library provides it
 };
 
 /// How the id of a case begins that a reference solves; those of the axes are hexadecimal.

@@ -39,7 +39,9 @@ class IsolatedCases::Coordinator {
           march(block, stopping);
         }) {
     opening_.study = context.study.resolved.dump();
-    for (const auto& plugin : options.plugins) opening_.plugins.push_back(std::filesystem::absolute(plugin).string());
+    // Plans travel with the study.
+    for (const auto& plugin : options.plugins)
+      if (plugin.extension() != ".json") opening_.plugins.push_back(std::filesystem::absolute(plugin).string());
     opening_.width = places_.width();
     opening_.arithmetic = arithmetic_digest();
   }

@@ -139,7 +139,8 @@ std::string References::key(const StudyCase& study_case, const MethodChoice& cho
   }
   if (marched) {
     content["time"] = content_of(study_case.time);
-    if (const std::string file = registry_.file(Role::time, study_case.time.name); !file.empty())
+    if (const std::string file = registry_.file(Role::time, study_case.time.name);
+        !study_case.time.plan && !file.empty())
       content["libraries"].push_back(file_hash(file));
     content["elements"] = study_case.elements;
     content["refined"] = {smallest_step_, coarsest_, finest_};

@@ -200,7 +200,25 @@ TEST_CASE("a plan beside the plugins is a scheme with the name it states", "[pla
   reading.read(study_with({{"name", "mine"}, {"theta", 0.75}}), {});
   CHECK(reading.study.cases.front().time.name == "mine");
   CHECK(reading.registry.file(Role::time, "mine") == (here / "mine.json").string());
-  CHECK_FALSE(reading.study.cases.front().time.plan);
+  REQUIRE(reading.study.cases.front().time.plan);
+  // It is read once: what becomes of the file changes neither scheme nor fingerprint, nor what others open.
+  const std::string before = fingerprint(reading, 0);
+  write_text(here / "mine.json", theta_plan("mine", "1").dump(1));
+  const auto order = [](Reading& one) {
+    const auto scheme = one.registry.time("mine")->make(one.study.cases.front().time.parameters);
+    return std::get<StepPlan>(scheme->plan(0.1, {})).facts.order;
+  };
+  CHECK(order(reading) == 2);
+  CHECK(fingerprint(reading, 0) == before);
+  Reading worker;
+  add_plans(here.path(), worker.catalogue);
+  worker.read(reading.study.resolved, {});
+  CHECK(order(worker) == 2);
+  CHECK(fingerprint(worker, 0) == before);
+  Reading later;
+  add_plans(here.path(), later.catalogue);
+  later.read(study_with({{"name", "mine"}, {"theta", 0.75}}), {});
+  CHECK(fingerprint(later, 0) != before);
   // A plan that the study states comes before one of the same name in a folder.
   Reading stated;
   add_plans(here.path(), stated.catalogue);
