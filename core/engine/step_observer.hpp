@@ -1,11 +1,9 @@
 #pragma once
-#include <array>
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
 #include <ricochet/engine/compile.hpp>
 #include <span>
-#include <stdexcept>
 #include <vector>
 
 namespace ricochet {
@@ -69,8 +67,6 @@ class StepObserver {
 /// The observers of an integration, in the order in which they are told. Refers to them.
 class Observers {
  public:
-  static constexpr std::size_t most = 8;
-
   Observers() = default;
   Observers(StepObserver* one) { add(one); }
   Observers(std::initializer_list<StepObserver*> all) {
@@ -78,13 +74,11 @@ class Observers {
   }
   /// Null adds nobody.
   void add(StepObserver* one) {
-    if (!one) return;
-    if (count_ == most) throw std::logic_error("an integration has too many observers");
-    all_[count_++] = one;
+    if (one) all_.push_back(one);
   }
-  bool empty() const { return count_ == 0; }
+  bool empty() const { return all_.empty(); }
   StepObserver* const* begin() const { return all_.data(); }
-  StepObserver* const* end() const { return all_.data() + count_; }
+  StepObserver* const* end() const { return all_.data() + all_.size(); }
   /// The next step that one of them has to be shown.
   long long next_shown() const {
     long long next = StepObserver::never;
@@ -93,8 +87,7 @@ class Observers {
   }
 
  private:
-  std::array<StepObserver*, most> all_{};
-  std::size_t count_ = 0;
+  std::vector<StepObserver*> all_;
 };
 
 /// A step of one lane that was marched and not shown: no stage of it looked at a stop.

@@ -105,8 +105,8 @@ void add_impacts(CaseRecord& record, const StopContacts& contacts, const SemiDis
 
 void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher& marcher, const StopWatches& watches) {
   put_measure(record, "impacts", static_cast<double>(contacts.count()));
-  if (!marcher.program().contact) return;
   const SemiDiscrete& problem = *marcher.program().problem;
+  if (!marcher.program().contact) return add_stop_tables(record, problem, watches);
   const StopList& list = contacts.list();
   Table stops = stops_head();
   const bool named = !problem.stops.empty();
