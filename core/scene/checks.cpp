@@ -114,9 +114,9 @@ void check_load(const SceneSpec& scene, const FiniteElementSpace& space) {
   const bool oscillator = std::holds_alternative<OscillatorSpec>(scene.structure);
   for (std::size_t k = 0; k < scene.load.terms.size(); ++k) {
     const LoadTerm& term = scene.load.terms[k];
-    const char* one_point = "an oscillator has one point; expected an entry {\"force\": formula in t, in N}";
+    const char* one_point = "an oscillator has one point, x = 0; expected an entry {\"force\": formula in t, in N}";
     require(!oscillator || term.force, load_pointer(k, "shape"), one_point);
-    require(!oscillator || !term.at, load_pointer(k, "at"), one_point);
+    require(!oscillator || term.at.value_or(0) == 0, load_pointer(k, "at"), one_point);
     require(!term.place || term.force, load_pointer(k, "body"),
             "the scene has one structure; expected no body of the load");
     require(!term.place, load_pointer(k, "at"),

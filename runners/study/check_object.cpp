@@ -160,9 +160,9 @@ Json check_starts(const Field& field, const Json& value, const std::string& poin
   return result;
 }
 
-// A list of any length of objects, each of its own name, in the place of one object.
+// A list of any length of objects, each of its own name, in the place of one object. An empty one is the key left out.
 Json check_listed(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
-  if (value.empty()) throw InputError(pointer, "an empty list; leave " + field.key() + " out for none");
+  if (value.empty()) return check_object(field.nested.front(), *field.fallback, pointer, axes);
   Json result = Json::array();
   for (std::size_t i = 0; i < value.size(); ++i)
     result.push_back(check_object(field.listed.front(), value[i], pointer_to(pointer, i), axes));

@@ -236,6 +236,10 @@ SceneSpec read_scene(const Json& given, StudyFiles* files) {
   spec.support = {support.at("amplitude").get<double>(), support.at("pulsation").get<double>(),
                   support.at("phase").get<double>()};
   spec.load = read_load(scene.at("load"), "/scene/load", files, scene.value("seed", 0LL));
+  // An oscillator is its one point.
+  if (std::holds_alternative<OscillatorSpec>(spec.structure))
+    for (LoadTerm& term : spec.load.terms)
+      if (term.at == 0.0 && term.towards == Place{}) term.at.reset();
   const Json motions = scene.value("motions", Json::array());
   for (std::size_t i = 0; i < motions.size(); ++i)
     spec.motions.push_back(read_motion(motions[i], pointer_to("/scene/motions", i), files));

@@ -263,7 +263,7 @@ ObjectForm scene() {
                     real("phase", "rad", any, 0.0, "ψ of the motion of the supports.")};
 
   ObjectForm point;
-  point.fields = {place("at", Json(nullptr), "Where the force acts: x in m, or a place; an oscillator has none."),
+  point.fields = {place("at", Json(nullptr), "Where the force acts: x in m, or a place; an oscillator needs none."),
                   single(formula("force", "N", "t", false, std::nullopt, "Force F(t); or a table, or a spectrum."))};
   point.fields.back().given.push_back(load_history("N"));
   point.fields.front().plain = true;

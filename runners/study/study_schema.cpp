@@ -149,8 +149,7 @@ class SchemaWriter {
         return {{"type", Json::array({"object", "null"})}};
       case Field::Form::object:
         if (!field.listed.empty())
-          return either("array", {{"items", object(field.listed.front())}, {"minItems", 1}},
-                        object(field.nested.front()));
+          return either("array", {{"items", object(field.listed.front())}}, object(field.nested.front()));
         if (!field.given.empty())
           return {{"anyOf", Json::array({object(field.nested.front()),
                                          {{"type", "object"},
