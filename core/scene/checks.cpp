@@ -360,7 +360,7 @@ void check_scene(const SceneSpec& shared, int elements, const ForceBeyond& beyon
   check_motions(scene);
   check_magnitudes(scene, elements);
   check_variables(scene);
-  if (!scene.stops.named.empty()) check_named_stops(scene, space);
+  if (!scene.stops.named.empty()) check_named_stops(scene, space, beyond);
   require(!scene.initial.equilibrium || (scene.initial.displacement.is_zero() && scene.initial.dofs.empty()),
           "/scene/initial/equilibrium", "stands beside a displacement; expected one of both");
   check_points(scene, space);

@@ -25,14 +25,15 @@ std::string stop_pointer(std::size_t number, const char* key) {
   return fmt::format("/scene/stops/{}{}", number, key);
 }
 
-void check_bounds(const NamedStop& stop, std::size_t number) {
+void check_bounds(const NamedStop& stop, std::size_t number, const ForceBeyond& beyond) {
   if (!stop.lower && !stop.upper)
     throw InputError(stop_pointer(number, ""),
                      fmt::format("stop {} has no bound; expected lower, upper or both, in m", stop.name));
-  if (stop.lower && stop.upper && *stop.lower > *stop.upper)
-    throw InputError(stop_pointer(number, "/lower"),
-                     fmt::format("stop {}: lower {:.6g} m > upper {:.6g} m; expected lower ≤ upper", stop.name,
-                                 *stop.lower, *stop.upper));
+  if (stop.lower && stop.upper && *stop.lower > *stop.upper && !(beyond && beyond(0.5 * (*stop.lower - *stop.upper))))
+    throw BeyondStop(stop_pointer(number, "/lower"),
+                     fmt::format("stop {}: lower {:.6g} m > upper {:.6g} m. Expected lower ≤ upper, or a compliant law "
+                                 "that lets points pass both",
+                                 stop.name, *stop.lower, *stop.upper));
 }
 
 }  // namespace
@@ -216,35 +217,28 @@ std::string tip_choice(const SceneSpec& scene) {
   return scene.stops.named.empty() ? "the place of the first load" : "the place of stop " + scene.stops.named[0].name;
 }
 
-void check_named_stops(const SceneSpec& scene, const FiniteElementSpace& space) {
+void check_named_stops(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond) {
   std::map<std::string, std::size_t> names;
-  std::vector<PlaceRow> rows;
   for (std::size_t i = 0; i < scene.stops.named.size(); ++i) {
     const NamedStop& stop = scene.stops.named[i];
     check_name(stop.name, stop_pointer(i, "/name"));
     if (const auto [first, fresh] = names.emplace(stop.name, i);
         !fresh && !(stop.side && scene.stops.named[first->second].entry == stop.entry))
       throw InputError(stop_pointer(i, "/name"), fmt::format("two stops are called \"{}\"", stop.name));
-    check_bounds(stop, i);
+    check_bounds(stop, i, beyond);
     if (stop.side && stop.side->number == 0) check_clearance(scene, space, stop, i);
     if (stop.to && scene.support.amplitude != 0 && !space.given)
       throw InputError(stop_pointer(i, "/to"),
                        fmt::format("stop {} is between two points of a structure whose clamp moves; expected an "
                                    "amplitude of 0, or a stop on the ground",
                                    stop.name));
-    rows.push_back(stop_row(scene, space, stop, i));
-    if (rows.back().free.empty())
+    if (stop_row(scene, space, stop, i).free.empty())
       throw InputError(stop_pointer(i, "/at"),
                        stop.to == stop.at
                            ? fmt::format("stop {} joins a place to itself; expected two places, or no `to`", stop.name)
                        : stop.to
                            ? fmt::format("stop {} joins two held dofs: nothing there can move", stop.name)
                            : fmt::format("stop {} is where the structure is held: nothing there can move", stop.name));
-    for (std::size_t j = 0; j < i; ++j)
-      if (rows[j].free == rows[i].free && rows[j].held == rows[i].held)
-        throw InputError(stop_pointer(i, "/at"), fmt::format("stops {} and {} are the same row: use one with both "
-                                                             "bounds",
-                                                             scene.stops.named[j].name, stop.name));
   }
 }
 

@@ -63,10 +63,10 @@ PlaceRow given_tip(const AssembledSpec& spec, const SceneSpec& scene);
 /// study says it.
 std::string tip_choice(const SceneSpec& scene);
 
-/// Throws InputError for names that are none or stand twice, and for bounds that are missing or cross. The same for
-/// places that are not there, stops at which nothing can move, and two stops on one row. The same for a stop between
-/// two points of a structure whose clamp moves.
-void check_named_stops(const SceneSpec& scene, const FiniteElementSpace& space);
+/// Throws InputError for names that are none or stand twice, and for bounds that are missing. The same for places that
+/// are not there, and stops at which nothing can move. The same for a stop between two points of a structure whose
+/// clamp moves. Throws BeyondStop for bounds of a stop that cross where no law pushes back.
+void check_named_stops(const SceneSpec& scene, const FiniteElementSpace& space, const ForceBeyond& beyond);
 
 /// Throws BeyondStop where the initial displacement of a beam, a bar or an oscillator is beyond a stop of the list and
 /// nothing pushes back.

@@ -10,6 +10,7 @@
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/coincident_stops.hpp>
 #include <ricochet/scene/massless_part.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/planes.hpp>
@@ -339,6 +340,8 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   if (scene.initial.equilibrium) load->assemble(0, (still.resize(problem.space.dofs), still.data()));
   add_support(scene, points.on_supports, problem, *load);
   observe_rows(scene, problem);
+  if (law_decides && !law->absent() && !law->reads())
+    if (auto refusal = keep_nearest_bounds(problem)) return *refusal;
   interpolate_initial(scene, problem);
   if (problem.basis) march_in_basis(scene, whole, problem, *load);
   if (bodies && problem.damping.matrix)

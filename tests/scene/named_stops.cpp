@@ -1,6 +1,7 @@
 // Stops that have names: rows of places, and what a list of them may not be.
 #include <ricochet/scene/named_stops.hpp>
 
+#include "tests/refusals.hpp"
 #include "tests/scene/structure/beam_files.hpp"
 #include "tests/scene/working_set.hpp"
 
@@ -63,8 +64,10 @@ TEST_CASE("lists of stops that cannot be are refused by name and pointer") {
         "/scene/stops/0/name: \"a b\"; expected a name of 1 to 40 letters, digits, '-' or '_'");
   CHECK(fault(with_stops(beam, {{"a", at_x(1), {}, {}, 0.1}, {"a", at_x(0.5), {}, {}, 0.1}})) ==
         "/scene/stops/1/name: two stops are called \"a\"");
-  CHECK(fault(with_stops(beam, {{"a", at_x(1), {}, 4e-4, -4e-4}})) ==
-        "/scene/stops/0/lower: stop a: lower 0.0004 m > upper -0.0004 m; expected lower ≤ upper");
+  CHECK(
+      fault(with_stops(beam, {{"a", at_x(1), {}, 4e-4, -4e-4}})) ==
+      "/scene/stops/0/lower: stop a: lower 0.0004 m > upper -0.0004 m. Expected lower ≤ upper, or a compliant law that "
+      "lets points pass both");
   CHECK(fault(with_stops(beam, {{"a", at_x(1), {}, {}, {}}})) ==
         "/scene/stops/0: stop a has no bound; expected lower, upper or both, in m");
   CHECK(fault(with_stops(beam, {{"a", at_x(0), {}, {}, 0.1}})) ==
@@ -73,8 +76,6 @@ TEST_CASE("lists of stops that cannot be are refused by name and pointer") {
         "/scene/stops/0/at/x: 1.2 m is beyond the beam; expected 0 to 1 m");
   CHECK(fault(with_stops(beam, {{"a", at_node("N1"), {}, {}, 0.1}})) ==
         "/scene/stops/0/at: a beam has no nodes that are called; expected {\"x\": position in m}");
-  CHECK(fault(with_stops(beam, {{"a", at_x(1), {}, {}, 0.1}, {"b", at_x(1), {}, -0.1, {}}})) ==
-        "/scene/stops/1/at: stops a and b are the same row: use one with both bounds");
   CHECK(fault(with_stops(beam, {{"a", at_x(1), {}, 0.1, 0.2}})) ==
         "/scene/initial/displacement: the initial displacement is 0 m at stop a, beyond the lower stop at 0.1 m; "
         "expected a state between the stops, or a compliant law that lets points pass them");
@@ -83,6 +84,78 @@ TEST_CASE("lists of stops that cannot be are refused by name and pointer") {
   CHECK(fault(shaken) ==
         "/scene/stops/0/to: stop a is between two points of a structure whose clamp moves; expected an amplitude of 0, "
         "or a stop on the ground");
+}
+
+namespace {
+
+/// What a law sees of stops, or why it does not.
+SemiDiscreteOrRefusal seen(const SceneSpec& scene, const char* law_name) {
+  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static Registry registry;
+  REQUIRE(catalogue.require(Role::contact, law_name, registry));
+  const auto* entry = registry.contact(law_name);
+  REQUIRE(entry);
+  std::map<std::string, ParameterValue> values;
+  for (const auto& spec : entry->manual.parameters) {
+    if (spec.key == "stiffness") values[spec.key] = 1e5;
+    if (spec.fallback) values.try_emplace(spec.key, *spec.fallback);
+  }
+  const Parameters parameters(values);
+  const auto law = entry->make(parameters);
+  return discretise(scene, 4, *mass("consistent"), law.get(), &parameters);
+}
+
+std::string refusal(const SemiDiscreteOrRefusal& answer) {
+  return std::holds_alternative<Refusal>(answer) ? std::get<Refusal>(answer).sentence : "";
+}
+
+}  // namespace
+
+TEST_CASE("of stops at one place a rigid law keeps the nearest bounds, and a compliant one all") {
+  const auto at = at_x(1);
+  const SceneSpec scene = with_stops(
+      unit_beam(), {{"far", at, {}, -0.2, 0.3}, {"near", at, {}, -0.1, 0.2}, {"other", at_x(0.5), {}, {}, 9}});
+  const auto rigid = seen(scene, "signorini"), soft = seen(scene, "penalty");
+  REQUIRE(std::holds_alternative<SemiDiscrete>(rigid));
+  REQUIRE(std::holds_alternative<SemiDiscrete>(soft));
+  const auto& kept = std::get<SemiDiscrete>(rigid);
+  CHECK(std::isinf(kept.lower[0]));
+  CHECK(std::isinf(kept.upper[0]));
+  CHECK(kept.lower[1] == -0.1);
+  CHECK(kept.upper[1] == 0.2);
+  CHECK(kept.upper[2] == 9);
+  CHECK(kept.notes == std::vector<std::string>{
+                          "stop far: a rigid law never meets its lower bound, behind that of near at one place",
+                          "stop far: a rigid law never meets its upper bound, behind that of near at one place"});
+  CHECK(std::get<SemiDiscrete>(soft).upper == Eigen::Vector3d(0.3, 0.2, 9));
+  CHECK(std::get<SemiDiscrete>(soft).notes.empty());
+}
+
+TEST_CASE("stops whose bounds a rigid law cannot tell apart, or cross, are its refusals") {
+  const auto at = at_x(1);
+  const auto answer = seen(with_stops(unit_beam(), {{"a", at, {}, {}, 0.1}, {"b", at, {}, -1, 0.1}}), "signorini");
+  CHECK(refusal(answer) ==
+        "stops a and b have one bound at one place, and a rigid law knows only the sum of their forces: keep one of "
+        "them, or use a compliant law");
+  CHECK_THAT(refusal(answer), names_cause_and_remedy());
+  // Behind a nearer one it does not matter which of them acts.
+  CHECK(refusal(seen(with_stops(unit_beam(), {{"a", at, {}, {}, 0.1}, {"b", at, {}, -1, 0.1}, {"c", at, {}, {}, 0.05}}),
+                     "signorini")) == "");
+  const SceneSpec held = with_stops(unit_beam(), {{"a", at, {}, 1e-4, {}}, {"b", at, {}, {}, -1e-4}});
+  CHECK(refusal(seen(held, "signorini")).find("the initial displacement is 0 m at stop a") == 0);
+  CHECK(refusal(seen(held, "penalty")) == "");
+  const SceneSpec gripped = with_stops(unit_beam(), {{"a", at, {}, 1e-4, -1e-4}});
+  CHECK(refusal(seen(gripped, "signorini")).find("stop a: lower 0.0001 m > upper -0.0001 m") == 0);
+  CHECK(refusal(seen(gripped, "penalty")) == "");
+}
+
+TEST_CASE("a stop that is turned round, or weighted, is at the same place") {
+  const SceneSpec scene =
+      with_stops(unit_beam(), {{"a", at_x(1), at_x(0.5), {}, 0.2}, {"b", at_x(0.5), at_x(1), -0.1, {}}});
+  const auto answer = seen(scene, "signorini");
+  REQUIRE(std::holds_alternative<SemiDiscrete>(answer));
+  CHECK(std::isinf(std::get<SemiDiscrete>(answer).upper[0]));
+  CHECK(std::get<SemiDiscrete>(answer).lower[1] == -0.1);
 }
 
 TEST_CASE("a scene of given matrices has places, no x") {
