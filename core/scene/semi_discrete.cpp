@@ -17,6 +17,7 @@
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/stop_parameters.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
+#include <ricochet/scene/structure/missing_residuals.hpp>
 #include <ricochet/scene/supports.hpp>
 #include <stdexcept>
 
@@ -340,6 +341,7 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   if (scene.initial.equilibrium) load->assemble(0, (still.resize(problem.space.dofs), still.data()));
   add_support(scene, points.on_supports, problem, *load);
   observe_rows(scene, problem);
+  for (std::string& note : missing_residuals(scene, problem.space)) problem.notes.push_back(std::move(note));
   if (law_decides && !law->absent() && !law->reads())
     if (auto refusal = keep_nearest_bounds(problem)) return *refusal;
   interpolate_initial(scene, problem);
