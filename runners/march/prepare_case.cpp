@@ -134,6 +134,15 @@ std::optional<double> scheme_restitution(const StudyCase& study_case, const Regi
   return value_of_role(scheme.manual.parameters, study_case.time.parameters, ParameterRole::restitution);
 }
 
+std::optional<double> largest_restitution(const StudyCase& study_case, const SemiDiscrete& problem,
+                                          const Registry& registry) {
+  const std::optional<double> common = scheme_restitution(study_case, registry);
+  if (!common || problem.own.empty()) return common;
+  double largest = 0;
+  for (const StopParameters& own : problem.own) largest = std::max(largest, own.restitution.value_or(*common));
+  return largest;
+}
+
 Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
   Prepared prepared;
   prepared.steps = whole_steps(study_case, prepared.notes);

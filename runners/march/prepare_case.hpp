@@ -74,6 +74,9 @@ std::unique_ptr<TimeScheme> make_scheme(const StudyCase& study_case, const Regis
 
 /// The restitution coefficient that the study gives the scheme, or nothing where it takes none.
 std::optional<double> scheme_restitution(const StudyCase& study_case, const Registry& registry);
+/// The largest of its stops then, those with a restitution of their own among them.
+std::optional<double> largest_restitution(const StudyCase& study_case, const SemiDiscrete& problem,
+                                          const Registry& registry);
 
 /// Item and reason of everything that a program does without.
 std::vector<std::pair<std::string, std::string>> left_out_pairs(const std::vector<LeftOut>& items);

@@ -9,6 +9,7 @@
 #include "runners/march/load_changes.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
+#include "runners/march/struck_together.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
@@ -90,6 +91,8 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   const double run = thread_seconds(), budget = budget_of(study_case);
   ImpactRecorder recorder(marcher);
   StopContacts contacts(marcher, recorder);
+  StruckTogether struck(marcher);
+  recorder.tell(&struck);
   MotionSampler sampler(marcher, set.grid, &recorder);
   sampler.march([&] {
     if (stop) throw Interrupted{};
@@ -125,6 +128,7 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   }
   std::vector<std::string> doubts = load_changes(study_case.scene, study_case.step, prepared.steps);
   doubts.push_back(GapWatch::crossed(marcher, recorder));
+  doubts.push_back(struck.told(marcher, largest_restitution(study_case, *marcher.program().problem, registry)));
   add_doubts(record, doubts);
   return record;
 }

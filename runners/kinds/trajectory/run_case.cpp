@@ -17,6 +17,7 @@
 #include "runners/march/load_changes.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
+#include "runners/march/struck_together.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
@@ -121,6 +122,7 @@ struct Watched {
   TangentWatch tangents;
   ImpactRecorder recorder;
   StopContacts contacts;
+  StruckTogether struck;
   OutputWatch outputs;
   WindowMeans means;
   ForceWindow forces;
@@ -133,6 +135,7 @@ struct Watched {
         tangents(marcher, asked_outputs(study_case).window),
         recorder(marcher),
         contacts(marcher, recorder),
+        struck(marcher),
         outputs(study_case, marcher, contacts),
         means(study_case.settings, marcher, audit, &contacts),
         forces(study_case.settings, marcher),
@@ -146,6 +149,7 @@ struct Watched {
       contacts.tell(&tangents);
     }
     observers.add(&recorder);
+    recorder.tell(&struck);
     if (outputs.any()) observers.add(&outputs);
     if (means.asked()) observers.add(&means);
     if (has_window(study_case.settings)) observers.add(&forces);
@@ -250,7 +254,8 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   const std::shared_ptr<const SemiDiscrete> problem = prepared.problem;
   Marcher marcher(std::move(*prepared.program));
   Watched watched(study_case, marcher, prepared.steps);
-  auto& [audit, tangents, recorder, contacts, outputs, means, forces, orbits, snapshots, sampler, observers] = watched;
+  auto& [audit, tangents, recorder, contacts, struck, outputs, means, forces, orbits, snapshots, sampler, observers] =
+      watched;
   record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 
   const double run = thread_seconds(), budget = budget_of(study_case);
@@ -294,6 +299,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   add_contact(record, contacts, marcher, {&outputs, &tangents});
   doubts.push_back(GapWatch::crossed(marcher, recorder));
   doubts.push_back(sampler.gaps().passed());
+  doubts.push_back(struck.told(marcher, largest_restitution(study_case, *problem, registry)));
   add_doubts(record, doubts);
   if (orbits.any()) record.numbers.push_back(orbits.finish());
   if (snapshots.taken()) record.numbers.push_back(table_of(snapshots.finish()));

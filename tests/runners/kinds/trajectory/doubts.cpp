@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "runners/store/record_values.hpp"
 #include "tests/runners/kinds/trajectory/case_runs.hpp"
@@ -81,4 +82,61 @@ TEST_CASE("a load that no step sees is told, and a case that fails keeps it as a
   CHECK_THAT(failed.reason, Contains("budget") && !Contains("comes and goes"));
   CHECK(std::any_of(failed.notes.begin(), failed.notes.end(),
                     [](const std::string& note) { return note.find("comes and goes") != std::string::npos; }));
+}
+
+namespace {
+
+/// Balls of 1 kg in a row, `gap` apart, the first thrown at 1 m/s.
+Json cradle(int balls, double gap, double restitution, const Json& law) {
+  Json study = Json::parse(R"json({
+    "name": "cradle", "kind": "trajectory",
+    "scene": {"initial": {"b0": {"velocity": 1}}},
+    "methods": {"mass": "consistent", "time": [{"name": "moreau-jean"}, {"name": "newmark-dumont-paoli", "beta": 0.5}]},
+    "step": 1e-4, "duration": 0.1, "samples": 10})json");
+  for (int i = 0; i < balls; ++i) {
+    study["scene"]["bodies"][fmt::format("b{}", i)] = {{"type", "oscillator"}, {"mass", 1}, {"stiffness", 0}};
+    if (i > 0)
+      study["scene"]["stops"].push_back({{"name", fmt::format("s{}", i)},
+                                         {"at", {{"body", fmt::format("b{}", i - 1)}}},
+                                         {"to", {{"body", fmt::format("b{}", i)}}},
+                                         {"upper", gap}});
+  }
+  for (Json& time : study["methods"]["time"]) time["restitution"] = restitution;
+  study["methods"]["contact"] = law;
+  return study;
+}
+
+/// What the cases of a study say of themselves, each once.
+std::set<std::string> reasons(const Json& study) {
+  std::set<std::string> out;
+  for (const CaseRecord& record : CaseRuns().of(study)) {
+    CHECK(record.status == "done");
+    out.insert(record.reason);
+  }
+  return out;
+}
+
+std::set<std::string> struck(int contacts) {
+  return {fmt::format("{} contacts were struck in one step: rigid laws choose among outcomes, first at t = 0.0001 s",
+                      contacts)};
+}
+
+}  // namespace
+
+TEST_CASE("contacts that one step strikes together are told where their outcome is the law's choice") {
+  CHECK(reasons(cradle(5, 0, 1, rigid)) == struck(4));
+  CHECK(reasons(cradle(3, 0, 0.5, rigid)) == struck(2));
+  // Without restitution the balls go on together, one after the other or at once.
+  CHECK(reasons(cradle(4, 0, 0, rigid)) == std::set<std::string>{""});
+  // One after the other.
+  CHECK(reasons(cradle(4, 1e-3, 1, rigid)) == std::set<std::string>{""});
+  // Springs decide by themselves.
+  CHECK(reasons(cradle(4, 0, 1, {{"name", "penalty"}, {"stiffness", 1e6}})) == std::set<std::string>{""});
+  // Two contacts at once that do not know of each other.
+  Json apart = cradle(3, 0, 1, rigid);
+  apart["scene"]["bodies"]["b3"] = apart["scene"]["bodies"]["b0"];
+  apart["scene"]["stops"] = Json::parse(R"([{"name": "a", "at": {"body": "b0"}, "to": {"body": "b1"}, "upper": 0},
+                                            {"name": "b", "at": {"body": "b2"}, "to": {"body": "b3"}, "upper": 0}])");
+  apart["scene"]["initial"]["b2"] = {{"velocity", 1}};
+  CHECK(reasons(apart) == std::set<std::string>{""});
 }
