@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
+#include <vector>
 
 #include "power_law.hpp"
 
@@ -22,6 +23,16 @@ double element_stiffness(const ContactStructure& structure) {
 // Rows that are one displacement dof, exactly: points at nodes.
 bool stands_at_node(const SparseRows& rows, Eigen::Index i) {
   return rows.row(i).nonZeros() == 1 && rows.row(i).sum() == 1;
+}
+
+// Of rows that stand at nodes.
+bool share_a_node(const SparseRows& rows) {
+  std::vector<Eigen::Index> dofs;
+  for (Eigen::Index i = 0; i < rows.outerSize(); ++i)
+    for (SparseRows::InnerIterator entry(rows, i); entry; ++entry)
+      if (entry.value() != 0) dofs.push_back(entry.col());
+  std::sort(dofs.begin(), dofs.end());
+  return std::adjacent_find(dofs.begin(), dofs.end()) != dofs.end();
 }
 
 /// λ_max(s K⁻¹ sᵀ) = λ_max(H K Hᵀ) as s = H K; its bound by the largest row sum where that is enough for κ.
@@ -63,6 +74,9 @@ class Nitsche final : public PointwiseContact {
             fmt::format("contact point {} of {} lies within an element, where the elements report no "
                         "reaction: put the stops at nodes of the mesh",
                         i + 1, H.rows())};
+    if (share_a_node(H))
+      return Refusal{
+          "two stops stand at one node, where the elements report one reaction: keep one of them, or use a penalty"};
     const double scale = element_stiffness(structure), kappa = gamma_ * scale;
     const SparseRows s = H * structure.stiffness;
     const double limit = coercivity_limit(s * H.transpose(), kappa);

@@ -103,6 +103,12 @@ TEST_CASE("what Nitsche's method cannot do is refused in a sentence") {
   SceneSpec between = beam_scene(StopsSpec::Place::positions);
   between.stops.positions = {0.7};
   CHECK_THAT(refusal(between, 8, nitsche(10)), Contains("nodes"));
+  SceneSpec stages = beam_scene();
+  stages.stops = {};
+  Place tip;
+  tip.x = std::get<BeamSpec>(stages.structure).length;
+  stages.stops.named = {{"soft", tip, {}, {}, 0.1}, {"hard", tip, {}, {}, 0.2}};
+  CHECK_THAT(refusal(stages, 8, nitsche(10)), Contains("two stops stand at one node") && names_cause_and_remedy());
   // Lanes share the matrices.
   const SceneSpec scene = beam_scene();
   const auto problem = problem_of(scene, 8, {"consistent"}, nitsche(10));
