@@ -52,10 +52,10 @@ Fill html_section(const std::string& html) {
 }
 
 /// What every page has, around the figures of its kind.
-constexpr const char* shared_scripts[] = {"format",  "later",      "data",          "cases",      "short_names",
-                                          "dataset", "options",    "method_curves", "strips",     "figure_section",
-                                          "theme",   "chart_data", "figure",        "case_map",   "picture",
-                                          "paper",   "dot_rows",   "side_panel",    "case_panel", "case_pick"};
+constexpr const char* shared_scripts[] = {
+    "format",       "later",         "data",   "cases",          "short_names", "dataset",    "options",
+    "fitted_lines", "method_curves", "strips", "figure_section", "theme",       "chart_data", "figure",
+    "case_map",     "picture",       "paper",  "dot_rows",       "side_panel",  "case_panel", "case_pick"};
 constexpr const char* page_scripts[] = {"snapshots",     "film_stage", "space_time",    "film", "sorting",
                                         "column_filter", "case_table", "verdict_words", "page"};
 

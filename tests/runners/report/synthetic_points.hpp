@@ -15,6 +15,7 @@ struct PointLaw {
   double fold = 0.1005653, contact = 0.07917924475, torus = 0.08495;
   double of_step = 279.2, of_mesh = 0.1, mesh_order = 3.8, of_compliance = 11;  ///< of the fold
   double noise = 1e-7;  ///< half intervals of fold and first contact
+  double spread = 0;    ///< of_step of one mass and stop over that of the one before, less 1
 };
 
 /// Portraits of every fifth orbit: a circle of the tip over half a period, between stops that push at its ends.
@@ -54,8 +55,10 @@ inline CaseRecord points_case(const std::string& mass, double stiffness, int ele
   record.status = "done";
   const double h2 = 1.0 / steps / steps, compliance = stiffness > 0 ? 1 / stiffness : 0;
   const bool folds = !(mass == "rough" && elements == 10);
-  double fold = law.fold - law.of_step * h2 - law.of_mesh * std::pow(elements, -law.mesh_order) -
-                law.of_compliance * compliance - (mass == "rough" ? 3e-5 : 0);
+  const double method = (mass == "rough" ? 4 : 0) + (stiffness > 0 ? std::log10(stiffness) - 3 : 0);
+  double fold = law.fold - law.of_step * std::pow(1 + law.spread, method) * h2 -
+                law.of_mesh * std::pow(elements, -law.mesh_order) - law.of_compliance * compliance -
+                (mass == "rough" ? 3e-5 : 0);
   // The softest stop has another fold.
   if (stiffness > 0 && stiffness < 2e4) fold = 0.0931;
   const double contact = law.contact - 0.0466 * h2, torus = law.torus + 40 * h2, start = 0.08;

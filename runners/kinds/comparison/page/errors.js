@@ -94,8 +94,7 @@
       const out = ricochet.view(
                 this.x, quantity, ricochet.logAxis(this.x, this.xRange, false), [y, ricochet.gutterAxis()]),
             mark = ricochet.outcomeMarks();
-      out.option.grid.right = 78;
-      const ends = [];
+      const lines = new ricochet.FittedLines(out);
       const ofCase = (curve, find) => curve.cases.map((one) => find(one, [this.refined, error])).find(Boolean),
             all = [], zeros = [];
       for (const curve of facet.curves) {
@@ -104,20 +103,12 @@
         const rows = this.rows(done, error).map((row) => ({...row, text: pointText(row, quantity, said)}));
         all.push(...rows);
         zeros.push(...rows.filter((row) => !(row.value > 0)).map((row) => curve.name + " at " + exact(row.at)));
-        if (line) {
-          ends.push({
-            line,
-            place: Math.log(line.to) / Math.log(this.xRange.high / this.xRange.low),
-            height: Math.log(Math.max(line.error_to, lowest)) / Math.log(y.max / y.min),
-            series: out.option.series.length
-          });
-          ricochet.draw(out, lineRows(line, said), {x: "at", y: "error"}, slope(curve, line));
-        }
+        if (line) lines.draw(lineRows(line, said), {x: "at", y: "error"}, curve, line.order);
         ricochet.draw(out, rows.filter((row) => row.value > 0), {x: "at", y: "value"}, errors.curve(curve));
         ricochet.drawMarks(
             out, curve, curve.cases.filter((one) => !done.includes(one)).map((one) => mark(one, this.place(one))));
       }
-      labelTogether(ends, out.option.series);
+      lines.label();
       // The highest at each place.
       const floors =
           all.filter((row) => row.floor > 0 && all.every((other) => other.at !== row.at || other.floor <= row.floor))
@@ -150,36 +141,6 @@
   }
   const lineRows =
       (line, text) => [{at: line.from, error: line.error_from, text}, {at: line.to, error: line.error_to, text}];
-  // Ends of lines whose labels would lie on each other share one.
-  const labelWidth = 0.3, labelHeight = 0.085;  // of a chart
-  const cut = (list, along, gap) => list.sort((a, b) => a[along] - b[along]).reduce((groups, one) => {
-    const last = groups[groups.length - 1];
-    if (last && one[along] - last[last.length - 1][along] < gap) last.push(one);
-    else groups.push([one]);
-    return groups;
-  }, []);
-  function labelTogether(ends, series) {
-    const {order} = ricochet.format;
-    for (const same of cut(ends, "place", labelWidth).flatMap((column) => cut(column, "height", labelHeight))) {
-      const orders = same.map(({line}) => line.order), low = order(Math.min(...orders)),
-            high = order(Math.max(...orders)), middle = same[same.length >> 1];
-      for (const one of same)
-        if (one !== middle) delete series[one.series].endLabel;
-      if (same.length > 1)
-        Object.assign(
-            series[middle.series].endLabel, {formatter: low === high ? low : low + " to " + high, color: ricochet.ink});
-    }
-  }
-  const slope = ({name, colour}, {order}) => ({
-    type: "line",
-    name,
-    symbol: "none",
-    z: 1,
-    color: colour,
-    lineStyle: {color: ricochet.lighten(colour, 0.72), width: 7, cap: "round"},
-    labelLayout: {moveOverlap: "shiftY"},
-    endLabel: {show: true, formatter: ricochet.format.order(order), color: colour, fontSize: 11, distance: 8},
-  });
   const floorArea = (alone) => ({
     ...errors.floorLine,
     symbol: alone ? "rect" : "none",

@@ -64,26 +64,16 @@
       if (ys.empty) ys.include(1e-9, 1e-6);
       const up = ricochet.logAxis(y, ys, true),
             out = ricochet.view(x, y, ricochet.logAxis(x, xs, false), [up, ricochet.gutterAxis()]);
-      out.option.grid.right = 46;
+      const fitted = new ricochet.FittedLines(out);
       const without = rows.filter((row) => row.distance === 0);
       for (const [k, method] of this.methods.entries()) {
         const own = {name: this.methodName(method), colour: colourOf(k), style: 0};
         const line = this.lines.find((one) => one.name === name && one.refined === refined && one.method === method);
         if (line)
-          ricochet.draw(
-              out,
+          fitted.draw(
               [{at: line.from, distance: line.distance_from}, {at: line.to, distance: line.distance_to}].map(
                   (one) => ({...one, text: "order " + ricochet.format.order(line.order)})),
-              {x: "at", y: "distance"}, {
-                type: "line",
-                name: own.name,
-                symbol: "none",
-                z: 1,
-                color: own.colour,
-                lineStyle: {color: ricochet.lighten(own.colour, 0.72), width: 7, cap: "round"},
-                endLabel: {show: true, formatter: ricochet.format.order(line.order), color: own.colour, fontSize: 11},
-                labelLayout: {moveOverlap: "shiftY"},
-              });
+              {x: "at", y: "distance"}, own, line.order);
         const points = shown.filter((row) => row.method === method)
                            .map((row) => ({
                                   case: row.case,
@@ -112,6 +102,7 @@
                                 }));
         ricochet.drawMarks(out, own, absent);
       }
+      fitted.label();
       if (without.length)
         out.notes.push(
             ricochet.format.count(without.length, "point is", "points are") +

@@ -90,3 +90,25 @@ TEST_CASE("figures of continuation draw branches, points, multipliers and turns"
   CHECK(figure(page, "turns").at("charts").size() == 8);
   require_works(page, results.cases.size());
 }
+
+TEST_CASE("labels of fitted orders never lie on each other, however near their lines end", "[report][browser]") {
+  if (left_out()) return;
+  std::vector<Page> pages;
+  for (const double spread : {0.05, 0.3}) {
+    synthetic::PointLaw law;
+    law.spread = spread;
+    pages.push_back(
+        page_of("spread-" + std::to_string(pages.size()), with_tables(synthetic::points({2000, 4000, 8000}, law))));
+    pages.back().controls = false;
+  }
+  const browser::Json read = read_back("labels", pages);
+  for (const auto& [name, page] : read.items()) {
+    INFO(name);
+    size_t labels = 0;
+    for (const browser::Json& chart : figure(page, "points").at("charts")) {
+      CHECK(chart.at("views")[0].at("collisions") == browser::Json::array());
+      for (const browser::Json& one : chart.at("views")[0].at("series")) labels += one.contains("endLabel");
+    }
+    CHECK(labels > 0);
+  }
+}
