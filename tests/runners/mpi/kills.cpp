@@ -139,21 +139,21 @@ TEST_CASE("kills: rank 0 ends the run, the next one goes on") {
 TEST_CASE("kills: of two starts of one job on one folder the later one has it, the earlier one ends with 5") {
   if (without_mpi()) return;
   const ScratchFolder scratch;
-  const Json study = linger::study();
-  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "here") + " --inline" + linger::plugin)).code == 0);
-  const std::string words = ranks_program() + " " + run_words(scratch, study, "out") + linger::plugin;
+  const Json study = lingering::study();
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "here") + " --inline" + lingering::plugin)).code == 0);
+  const std::string words = ranks_program() + " " + run_words(scratch, study, "out") + lingering::plugin;
   // Said behind mpirun, which asks Slurm for nodes where it sees a job of it.
   const auto start = [&](int restart) {
     return mpirun("-n 2 env SLURM_JOB_ID=4711 SLURM_RESTART_COUNT=" + std::to_string(restart) + " " + words);
   };
-  const linger::Held held;
+  const lingering::Held held;
   UnderWay first(scratch, start(0));
-  REQUIRE(linger::comes_true([&] { return first.ended() || linger::marches(scratch / "out"); }));
+  REQUIRE(lingering::comes_true([&] { return first.ended() || lingering::marches(scratch / "out"); }));
   REQUIRE_FALSE(first.ended());
   const ScratchFolder elsewhere;
   UnderWay second(elsewhere, start(1));
   // It has the folder when it tells of its workers.
-  REQUIRE(linger::comes_true(
+  REQUIRE(lingering::comes_true(
       [&] { return second.ended() || read_text(elsewhere / "told").find(" workers on ") != std::string::npos; }));
   CHECK_FALSE(first.ended());
   held.let_go();

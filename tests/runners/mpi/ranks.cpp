@@ -134,13 +134,13 @@ TEST_CASE("ranks: one beside which the program is missing, or is another build, 
 TEST_CASE("ranks: a run that USR1 stops ends with 130, leaves no worker behind, and goes on to the same tables") {
   if (without_mpi()) return;
   const ScratchFolder scratch;
-  const Json study = linger::study();
-  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "here") + " --inline" + linger::plugin)).code == 0);
-  const std::string words = run_words(scratch, study, "out") + linger::plugin;
+  const Json study = lingering::study();
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "here") + " --inline" + lingering::plugin)).code == 0);
+  const std::string words = run_words(scratch, study, "out") + lingering::plugin;
   {
-    const linger::Held held;
+    const lingering::Held held;
     UnderWay run(scratch, ranks(3, words));
-    REQUIRE(linger::comes_true([&] { return run.ended() || linger::marches(scratch / "out"); }));
+    REQUIRE(lingering::comes_true([&] { return run.ended() || lingering::marches(scratch / "out"); }));
     REQUIRE_FALSE(run.ended());
     const std::vector<pid_t> workers = run.below("ricochet worker");
     CHECK_FALSE(workers.empty());
@@ -148,7 +148,7 @@ TEST_CASE("ranks: a run that USR1 stops ends with 130, leaves no worker behind, 
     INFO(stopped.messages);
     CHECK(stopped.code == 130);
     CHECK(stopped.told("interrupted: ") == 1);
-    CHECK(linger::comes_true(
+    CHECK(lingering::comes_true(
         [&] { return std::none_of(workers.begin(), workers.end(), [](pid_t one) { return ::kill(one, 0) == 0; }); }));
   }
   const Ended again = to_its_end(scratch, ranks(2, words));

@@ -12,7 +12,7 @@
 
 using namespace launch;
 using Catch::Contains;
-using linger::comes_true;
+using lingering::comes_true;
 using quick_studies::Json;
 using quick_studies::study_of;
 using same_tables::check_same;
@@ -39,8 +39,8 @@ std::string script(const ScratchFolder& scratch, const Json& study, const std::s
 
 /// A job of the script with a study that lingers, once it marches.
 std::string job_under_way(const Cluster& cluster, const ScratchFolder& scratch) {
-  const std::string job = cluster.submit(script(scratch, linger::study(), "out", linger::plugin));
-  REQUIRE(comes_true([&] { return linger::marches(scratch / "out") || ended(cluster.of_job(job, "JobState")); }));
+  const std::string job = cluster.submit(script(scratch, lingering::study(), "out", lingering::plugin));
+  REQUIRE(comes_true([&] { return lingering::marches(scratch / "out") || ended(cluster.of_job(job, "JobState")); }));
   REQUIRE(cluster.of_job(job, "JobState") == "RUNNING");
   return job;
 }
@@ -142,8 +142,9 @@ TEST_CASE("slurm: a job whose ranks were never started has not ended well, whate
 TEST_CASE("slurm: a job that is warned by USR1 keeps what it has, goes back into the queue and on to the same tables") {
   WITH_A_CLUSTER(cluster);
   const ScratchFolder scratch;
-  REQUIRE(to_its_end(scratch, program(run_words(scratch, linger::study(), "threads") + linger::plugin)).code == 0);
-  const linger::Held held;
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, lingering::study(), "threads") + lingering::plugin)).code ==
+          0);
+  const lingering::Held held;
   const std::string job = job_under_way(cluster, scratch);
   cluster.answer("scancel --signal=USR1 " + job);
   REQUIRE(comes_true([&] { return cluster.of_job(job, "JobState") != "RUNNING"; }));
@@ -158,8 +159,9 @@ TEST_CASE("slurm: a job that is warned by USR1 keeps what it has, goes back into
 TEST_CASE("slurm: a job that loses a node goes back into the queue and on to the same tables") {
   WITH_A_CLUSTER(cluster);
   const ScratchFolder scratch;
-  REQUIRE(to_its_end(scratch, program(run_words(scratch, linger::study(), "threads") + linger::plugin)).code == 0);
-  const linger::Held held;
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, lingering::study(), "threads") + lingering::plugin)).code ==
+          0);
+  const lingering::Held held;
   const std::string job = job_under_way(cluster, scratch);
   cluster.cut_off("n2");
   REQUIRE(comes_true([&] { return cluster.of_job(job, "Restarts") == "1"; }));

@@ -190,7 +190,7 @@ namespace {
 class Running {
  public:
   Running(const ScratchFolder& scratch, const Json& study, const std::string& out,
-          const std::string& options = std::string("--isolate") + linger::plugin)
+          const std::string& options = std::string("--isolate") + lingering::plugin)
       : out_(scratch / out) {
     const std::string line = "exec env RICOCHET_PLUGIN_PATH= " + command_line(scratch, study, out, options);
     process_ = ::fork();
@@ -245,7 +245,7 @@ TEST_CASE("workers: a call that never returns is told by case, plugin and functi
   study["methods"]["contact"] = Json::parse(R"(["signorini", {"name": "stumbles", "how": "sleep", "beyond": 0}])");
   Running running(scratch, study, "out", "--plugin '" RICOCHET_STUMBLING "'");
   const auto told = [&] { return read_text(scratch / "told"); };
-  linger::comes_true([&] { return told().find("solve() has not returned for") != std::string::npos; });
+  lingering::comes_true([&] { return told().find("solve() has not returned for") != std::string::npos; });
   CHECK_THAT(told(), Contains("waiting for case") && Contains("plugin contact 'stumbles'"));
   CHECK(running.finish(SIGINT) == 130);
   CHECK_THAT(told(), Contains("interrupted: 2 of 4"));
@@ -253,14 +253,14 @@ TEST_CASE("workers: a call that never returns is told by case, plugin and functi
 
 TEST_CASE("workers: one that another program kills costs nothing but time") {
   const ScratchFolder scratch;
-  const Json study = linger::study();
-  REQUIRE(run(scratch, study, "here", std::string("--inline") + linger::plugin).code == 0);
+  const Json study = lingering::study();
+  REQUIRE(run(scratch, study, "here", std::string("--inline") + lingering::plugin).code == 0);
   for (std::size_t which = 0; which < 4; ++which) {
     CAPTURE(which);
     const std::string out = "killed-" + std::to_string(which);
-    const linger::Held held;
+    const lingering::Held held;
     Running running(scratch, study, out);
-    REQUIRE(linger::comes_true([&] { return running.ended() || linger::marches(scratch / out); }));
+    REQUIRE(lingering::comes_true([&] { return running.ended() || lingering::marches(scratch / out); }));
     const std::vector<pid_t> children = running.children();
     REQUIRE_FALSE(children.empty());
     CHECK(::kill(children[which % children.size()], SIGKILL) == 0);
@@ -297,29 +297,29 @@ TEST_CASE("workers: a run that is stopped or killed goes on to the same tables, 
   const int signal = GENERATE(SIGINT, SIGTERM, SIGUSR1, SIGKILL);
   CAPTURE(signal);
   const ScratchFolder scratch;
-  const Json study = linger::study();
+  const Json study = lingering::study();
   // For all signals once.
   static const ScratchFolder undisturbed;
   if (!fs::exists(undisturbed / "here"))
-    REQUIRE(run(undisturbed, study, "here", std::string("--inline") + linger::plugin).code == 0);
+    REQUIRE(run(undisturbed, study, "here", std::string("--inline") + lingering::plugin).code == 0);
   std::vector<pid_t> children;
   {
-    const linger::Held held;
+    const lingering::Held held;
     Running running(scratch, study, "out");
-    REQUIRE(linger::comes_true([&] { return running.ended() || linger::marches(scratch / "out"); }));
+    REQUIRE(lingering::comes_true([&] { return running.ended() || lingering::marches(scratch / "out"); }));
     REQUIRE_FALSE(running.ended());
     children = running.children();
     CHECK(running.finish(signal) == (signal == SIGKILL ? -SIGKILL : 130));
   }
   CHECK_FALSE(children.empty());
-  CHECK(linger::comes_true(
+  CHECK(lingering::comes_true(
       [&] { return std::none_of(children.begin(), children.end(), [](pid_t one) { return ::kill(one, 0) == 0; }); }));
-  const Ended again = run(scratch, study, "out", std::string("--isolate") + linger::plugin);
+  const Ended again = run(scratch, study, "out", std::string("--isolate") + lingering::plugin);
   INFO(again.messages);
   CHECK(again.code == 0);
   if (signal == SIGKILL)
     CHECK_THAT(again.messages, Matches("[^]*an earlier run ended while .* under way: run again[^]*"));
   check_same(undisturbed / "here", scratch / "out");
-  const Ended kept = run(scratch, study, "out", std::string("--inline") + linger::plugin);
+  const Ended kept = run(scratch, study, "out", std::string("--inline") + lingering::plugin);
   CHECK_THAT(kept.messages, Contains("0 to run"));
 }

@@ -13,7 +13,7 @@
 
 /// \file
 /// A study that is under way for as long as a test wants, however fast the machine is.
-namespace linger {
+namespace lingering {
 
 /// The sweep of quick_studies::longer() with a law that takes its time while a `Held` lives: minutes, then. No
 /// processor is busy meanwhile.
@@ -58,4 +58,4 @@ inline bool marches(const std::filesystem::path& folder) {
   }
 }
 
-}  // namespace linger
+}  // namespace lingering
