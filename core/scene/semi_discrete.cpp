@@ -19,6 +19,7 @@
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/structure/missing_residuals.hpp>
 #include <ricochet/scene/supports.hpp>
+#include <ricochet/scene/whole_load.hpp>
 #include <stdexcept>
 
 namespace ricochet {
@@ -166,24 +167,6 @@ void project_on_mass_constraint(SemiDiscrete& problem) {
 }
 
 namespace {
-
-// An oscillator's harmonic force is one more term of its load.
-LoadSpec whole_load(const SceneSpec& scene) {
-  LoadSpec load = scene.load;
-  const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
-  if (!oscillator || oscillator->force.amplitude == 0) return load;
-  const auto& force = oscillator->force;
-  if (force.pulsation == 0 && !load.formula.uses_t())
-    load.formula = Formula(load.formula(0) + force.amplitude * std::cos(force.phase));
-  else
-    load.terms.push_back(
-        {.force = true,
-         .at = std::nullopt,
-         .shape = Formula(),
-         .history = Formula(fmt::format("({})*cos(({})*t + ({}))", force.amplitude, force.pulsation, force.phase),
-                            "/scene/structure/force", "t")});
-  return load;
-}
 
 // The structure itself, before any law.
 ContactStructure structure_of(const SemiDiscrete& problem) {

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/whole_load.hpp>
 #include <set>
 
 namespace ricochet {
@@ -256,8 +257,7 @@ std::vector<std::string> load_changes(const SceneSpec& shared, double step, long
   const std::vector<Signal> signals = signals_of(scene);
   std::vector<SignalSampler> samplers;
   double largest = 0;
-  if (const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure))
-    largest = std::abs(oscillator->force.amplitude);
+  for (const HarmonicForce& one : harmonic_forces(scene)) largest = std::max(largest, std::abs(one.force.amplitude));
   for (const Signal& signal : signals)
     largest = std::max(largest, samplers.emplace_back(signal, step, steps).largest());
   std::set<double> passing;

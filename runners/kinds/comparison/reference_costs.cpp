@@ -11,6 +11,7 @@
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/supports.hpp>
+#include <ricochet/scene/whole_load.hpp>
 #include <set>
 
 #include "runners/kinds/comparison/references.hpp"
@@ -178,9 +179,11 @@ ReferenceProblem reference_problem(const StudyCase& study_case, const Registry& 
   problem.support_amplitude = scene.support.amplitude;
   problem.support_pulsation = scene.support.pulsation;
   problem.support_phase = scene.support.phase;
-  problem.load_zero = scene.load.is_zero();
-  problem.load_constant = !scene.load.uses_t();
-  problem.load = [load = scene.load](double x, double t) { return load.spread(x, t); };
+  // The force of one oscillator is described beside its load.
+  const LoadSpec load_of_all = problem.structure == "oscillator" ? scene.load : whole_load(scene);
+  problem.load_zero = load_of_all.is_zero();
+  problem.load_constant = !load_of_all.uses_t();
+  problem.load = [load = load_of_all](double x, double t) { return load.spread(x, t); };
   problem.displacement = of_x(scene.initial.displacement);
   problem.velocity = of_x(scene.initial.velocity);
   problem.projected = scene.initial.projection == InitialSpec::Projection::constraint;

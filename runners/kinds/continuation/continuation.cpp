@@ -9,6 +9,7 @@
 #include "runners/kinds/stored_study.hpp"
 #include "runners/kinds/sweep/sweep.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
+#include "runners/march/prepare_case.hpp"
 
 namespace ricochet {
 namespace {
@@ -47,7 +48,10 @@ class ContinuationKind final : public Kind {
     runner.open = [checkpoints](CheckpointStore opened, const std::atomic<bool>&) { *checkpoints = std::move(opened); };
     runner.run = [checkpoints, key = context.key, &registry = context.registry](const StudyCase& study_case,
                                                                                 const std::atomic<bool>& stop) {
-      return run_continuation(study_case, registry, CaseContext{*checkpoints, key(study_case), nullptr}, stop);
+      CaseRecord record =
+          run_continuation(study_case, registry, CaseContext{*checkpoints, key(study_case), nullptr}, stop);
+      if (!study_case.of_reference) add_doubts(record, load_doubts(study_case));
+      return record;
     };
     return runner;
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "runners/json/json_text.hpp"
+#include "runners/kinds/sweep/forcing.hpp"
 #include "runners/kinds/sweep/sweep.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <ricochet/scene/checks.hpp>
 
+#include "runners/kinds/sweep/forcing.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/prepare_case.hpp"
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "runners/kinds/sweep/forcing.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/study/study.hpp"
 
@@ -85,6 +86,7 @@ void describe_march(PlanOrRecord& out, const ForcedScenes& scenes, const StudyCa
   out.operator_name = scenes.operator_chosen();
   out.left_out = march_left_out(scenes, study_case);
   out.notes = scenes.notes(0);
+  if (std::string note = forcing_note(study_case.scene); !note.empty()) out.notes.push_back(std::move(note));
 }
 
 }  // namespace ricochet

@@ -1,14 +1,11 @@
 #include "runners/kinds/sweep/sweep.hpp"
 
-#include <numbers>
-
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/stored_study.hpp"
 #include "runners/kinds/sweep/block_orders.hpp"
 #include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
-#include "runners/march/load_changes.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/fields.hpp"
@@ -73,9 +70,7 @@ CaseRunner SweepKind::start(const RunContext& context) const {
   runner.run = [this, checkpoints, blocks = context.blocks, key = context.key, &registry = context.registry](
                    const StudyCase& study_case, const std::atomic<bool>& stop) {
     CaseRecord record = run(study_case, registry, CaseContext{*checkpoints, key(study_case), blocks}, stop);
-    if (const double pulsation = forcing_pulsation(study_case.scene); pulsation > 0)
-      add_doubts(record, load_changes(study_case.scene, 2 * std::numbers::pi / pulsation / study_case.steps_per_period,
-                                      study_case.steps_per_period));
+    add_doubts(record, load_doubts(study_case));
     return record;
   };
   runner.block = [marcher = std::make_shared<BlockMarcher>(context.registry)](

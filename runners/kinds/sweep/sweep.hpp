@@ -77,6 +77,10 @@ void mark_sweep(const Json& settings, const Registry& registry, StudyCase& study
 /// initial state where no orbit begins there.
 bool some_value_possible(const StudyCase& study_case);
 
+/// What the steps of a case do not resolve of its load (load_changes()), at the first or the last value of what is
+/// swept.
+std::vector<std::string> load_doubts(const StudyCase& study_case);
+
 /// Refuses a study in which no value of any case is possible, or nothing is forced at any value while the section is a
 /// strobe.
 void check_values(const Study& study);

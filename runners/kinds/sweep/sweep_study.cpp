@@ -5,12 +5,15 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <numbers>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <set>
 
 #include "runners/json/json_text.hpp"
+#include "runners/kinds/sweep/forcing.hpp"
 #include "runners/kinds/sweep/sweep.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
+#include "runners/march/load_changes.hpp"
 #include "runners/study/check_object.hpp"
 
 namespace ricochet {
@@ -281,6 +284,34 @@ bool some_value_possible(const StudyCase& study_case) {
     }
   };
   return any_place(axes, possible);
+}
+
+std::vector<std::string> load_doubts(const StudyCase& study_case) {
+  std::vector<GridAxis> axes;
+  if (const Json& settings = study_case.settings;
+      settings.contains("axes") || settings.at("parameter").contains("values"))
+    axes = swept_axes(settings);
+  else
+    axes = {{settings.at("parameter").at("pointer").get<std::string>(),
+             {settings.at("parameter").at("from").get<double>(), settings.at("parameter").at("to").get<double>()}}};
+  std::vector<std::pair<std::string, double>> first, last;
+  for (const GridAxis& axis : axes) {
+    first.emplace_back(axis.pointer, axis.values.front());
+    last.emplace_back(axis.pointer, axis.values.back());
+  }
+  const StudyCase still = at_rest(study_case);
+  for (std::vector<std::pair<std::string, double>> place : {first, last}) {
+    std::erase_if(place, [](const auto& value) { return names_initial_state(value.first); });
+    try {
+      const SceneSpec scene = with_parameters(still, place).scene;
+      const double pulsation = forcing_pulsation(scene);
+      if (!(pulsation > 0)) continue;
+      const double step = 2 * std::numbers::pi / pulsation / study_case.steps_per_period;
+      if (auto found = load_changes(scene, step, study_case.steps_per_period); !found.empty()) return found;
+    } catch (const InputError&) {  // a value that no orbit has
+    }
+  }
+  return {};
 }
 
 void check_values(const Study& study) {

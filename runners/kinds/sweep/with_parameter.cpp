@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/supports.hpp>
 
 #include "runners/json/json_text.hpp"
+#include "runners/kinds/sweep/forcing.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/study/check_object.hpp"
@@ -174,121 +174,6 @@ StudyCase at_rest(const StudyCase& study_case) {
                                  {"velocity", "0"},
                                  {"projection", one.scene_json["initial"].value("projection", "none")}};
   return one;
-}
-
-namespace {
-
-// A history that is no harmonic of the support or an oscillator, and after what it repeats.
-struct Repeated {
-  std::string pointer;
-  double period = 0;  // s; 0: it says none
-};
-
-std::vector<Repeated> histories_of(const SceneSpec& scene) {
-  std::vector<Repeated> out;
-  const auto add = [&](const MotionSpec& motion, const std::string& pointer) {
-    out.push_back({pointer + (motion.accelerates ? "/acceleration" : "/displacement"), motion.period});
-  };
-  for (std::size_t i = 0; i < scene.motions.size(); ++i) add(scene.motions[i], pointer_to("/scene/motions", i));
-  for (const NamedStop& stop : scene.stops.named)
-    if (stop.motion) add(*stop.motion, pointer_to("/scene/stops", stop.entry) + "/moves_with");
-  for (std::size_t i = 0; i < scene.load.terms.size(); ++i)
-    if (const LoadTerm& term = scene.load.terms[i]; term.table)
-      out.push_back({pointer_to("/scene/load", i) + (term.force ? "/force" : "/time"), term.table->period});
-  return out;
-}
-
-}  // namespace
-
-double forcing_pulsation(const SceneSpec& scene) {
-  const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
-  const OscillatorSpec::Force force = oscillator ? oscillator->force : OscillatorSpec::Force{};
-  if (scene.support.amplitude != 0 && scene.support.pulsation > 0) return scene.support.pulsation;
-  if (force.amplitude != 0 && force.pulsation > 0) return force.pulsation;
-  if (scene.support.pulsation > 0) return scene.support.pulsation;
-  if (force.pulsation > 0) return force.pulsation;
-  double longest = 0;
-  for (const Repeated& one : histories_of(scene)) longest = std::max(longest, one.period);
-  return longest > 0 ? 2 * std::numbers::pi / longest : 0;
-}
-
-bool is_forced(const SceneSpec& scene) {
-  const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
-  return (scene.support.amplitude != 0 && scene.support.pulsation > 0) ||
-         (oscillator && oscillator->force.amplitude != 0 && oscillator->force.pulsation > 0) || scene.load.uses_t() ||
-         moves_by_histories(scene);
-}
-
-namespace {
-
-// That a part of the load repeats with the period of the forcing, wherever it is looked at.
-void check_repeats(const Formula& load, const std::string& pointer, const std::string& unit, double period,
-                   double length) {
-  if (!load.uses_t()) return;
-  constexpr double tolerance = 1e-9;
-  constexpr int places = 9, phases = 64;
-  double largest = 0, worst = 0, worst_x = 0, worst_t = 0, worst_k = 0;
-  for (int i = 0; i < places; ++i)
-    for (int j = 0; j < phases; ++j) {
-      const double x = length * i / (places - 1);
-      const double t = period * (j + 0.5 * std::numbers::inv_pi) / phases;
-      const double value = load(x, t);
-      largest = std::max(largest, std::abs(value));
-      for (const double k : {1.0, 2.0, 7.0, 50.0, 300.0, 2000.0}) {
-        const double change = std::abs(load(x, t + k * period) - value);
-        if (change <= worst) continue;
-        worst = change, worst_x = x, worst_t = t, worst_k = k;
-      }
-    }
-  if (worst > tolerance * largest)
-    throw InputError(
-        pointer,
-        fmt::format("the load \"{}\" does not repeat with the forcing period of {:.6g} s. At x = {:.6g} m it differs "
-                    "by {:.3g}{} between t = {:.6g} s and {:g} period{} later. Expected f(x, t + T) = f(x, t)",
-                    shortened(load.text()), period, worst_x, worst, unit.empty() ? "" : " " + unit, worst_t, worst_k,
-                    worst_k == 1 ? "" : "s"));
-}
-
-}  // namespace
-
-void check_forcing(const SceneSpec& scene) {
-  const std::vector<Repeated> histories = histories_of(scene);
-  for (const Repeated& one : histories)
-    if (one.period == 0)
-      throw InputError(
-          one.pointer,
-          "says no period, and steps per period need one: expected \"period\" (s) of a table that repeats, or "
-          "\"pulsation\" (rad/s) of a formula that does. A displacement may have an amplitude and a pulsation instead");
-  const double pulsation = forcing_pulsation(scene);
-  const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
-  if (!(pulsation > 0))
-    throw InputError(
-        "/scene/support/pulsation",
-        fmt::format("no forcing has a period (the pulsation is 0), and steps per period need one. Expected: a "
-                    "pulsation above 0 of the support{}, or the period of a motion or a table",
-                    oscillator ? " or of the force" : ""));
-  constexpr double tolerance = 1e-9;
-  const double period = 2 * std::numbers::pi / pulsation;
-  if (oscillator && oscillator->force.amplitude != 0) {
-    const double ratio = oscillator->force.pulsation / pulsation;
-    if (std::abs(ratio - std::round(ratio)) > tolerance * std::max(1.0, ratio))
-      throw InputError("/scene/structure/force/pulsation",
-                       fmt::format("the force of {:.6g} rad/s does not repeat with the period of the support, {:.6g} "
-                                   "rad/s; expected a whole multiple of it",
-                                   oscillator->force.pulsation, pulsation));
-  }
-  for (const Repeated& one : histories)
-    if (const double ratio = period / one.period; std::abs(ratio - std::round(ratio)) > tolerance * ratio)
-      throw InputError(one.pointer, fmt::format("repeats after {:.9g} s, and the forcing after {:.9g} s; expected a "
-                                                "whole fraction of that",
-                                                one.period, period));
-  const LoadSpec load = scene.load;  // formulas keep their variables inside: evaluate our own copies
-  check_repeats(load.formula, "/scene/load", "N/m", period, structure_length(scene));
-  for (std::size_t i = 0; i < load.terms.size(); ++i) {
-    const LoadTerm& term = load.terms[i];
-    check_repeats(term.history, fmt::format("/scene/load/{}/{}", i, term.force ? "force" : "time"),
-                  term.force ? "N" : "", period, 0);
-  }
 }
 
 std::vector<double> parameter_values(const Json& settings) {

@@ -30,20 +30,6 @@ StudyCase with_parameters(const StudyCase& study_case, const std::vector<std::pa
 /// The case at rest in the laboratory frame, u = u_t = 0, whatever its scene's initial state.
 StudyCase at_rest(const StudyCase& study_case);
 
-/// ω of the forcing (rad/s): of the support where it moves, else of the oscillator's force. Where neither has an
-/// amplitude, the first pulsation that is given still sets the period. Else the longest period of a motion or a table.
-/// 0: no period at all.
-double forcing_pulsation(const SceneSpec& scene);
-
-/// Whether anything changes with time: the support, the oscillator's force, the load, motions.
-bool is_forced(const SceneSpec& scene);
-
-/// Throws InputError unless the scene has a forcing period T = 2π/ω and everything that changes with time repeats with
-/// it. The pulsation of an oscillator's force is a multiple of ω. Motions and tables have a period that is a whole
-/// fraction of T. A load has f(x, t + kT) = f(x, t) to 1e-9 of its largest value, read at 9 places, 64 phases and k =
-/// 1, 2, 7, 50, 300, 2000.
-void check_forcing(const SceneSpec& scene);
-
 /// The values of the parameter, ascending.
 std::vector<double> parameter_values(const Json& settings);
 

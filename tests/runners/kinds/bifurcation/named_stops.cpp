@@ -1,4 +1,5 @@
 // Stops that have names, and matrices that are given, in sweeps.
+#include "runners/kinds/sweep/forcing.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "tests/runners/kinds/sweep/sweep_case.hpp"
 #include "tests/runners/scratch_folder.hpp"

@@ -293,10 +293,13 @@ TEST_CASE("what has no period, another one or a drift is told with what to give"
                                   "start": {"velocity": null}})")) ==
         "/scene/motions/0/start/velocity: null is the start of what repeats; expected a number, or a period");
   Json two = moved(R"({"displacement": {"amplitude": 1e-4, "pulsation": 60}})");
-  two["scene"]["stops"][0]["moves_with"] = Json::parse(R"({"displacement": {"amplitude": 1e-4, "pulsation": 90}})");
-  CHECK(studies.refusal(two) ==
-        "/scene/stops/0/moves_with/displacement: repeats after 0.0698131701 s, and the forcing after 0.104719755 s; "
-        "expected a whole fraction of that");
+  two["scene"]["stops"][0]["moves_with"] = Json::parse(R"({"displacement": {"amplitude": 1e-4, "pulsation": 91.7}})");
+  CHECK_THAT(studies.refusal(two),
+             Contains("/scene/stops/0/moves_with/displacement: the motion of the stop a does not repeat with a motion: "
+                      "91.7 rad/s and 60 rad/s (") &&
+                 Contains("no common period"));
+  two["scene"]["stops"][0]["moves_with"]["displacement"]["pulsation"] = 90;  // 2 and 3 periods are one of both
+  CHECK_NOTHROW(studies.study(two));
   CHECK_THAT(studies.refusal(moved(R"({"displacement": {"amplitud": 1e-4, "pulsation": 60}})")),
              Contains("unknown key \"amplitud\"; did you mean \"amplitude\"?"));
   Json swept = moved(R"({"displacement": {"amplitude": 1e-4, "pulsation": 60}})");

@@ -20,16 +20,6 @@ std::string problem_of(const StudyCase& one, const std::string& pointer, double 
   return testing::input_error([&] { with_parameter(one, pointer, value); }, "");
 }
 
-std::string forcing_problem(const SceneSpec& scene) {
-  return testing::input_error([&] { check_forcing(scene); }, "");
-}
-
-SceneSpec shaken(const std::string& load) {
-  SceneSpec scene = first_case().scene;
-  scene.load = Formula(load, "/scene/load", "xt");
-  return scene;
-}
-
 }  // namespace
 
 TEST_CASE("A case at a value is the case that the study would make of the value") {
@@ -143,9 +133,9 @@ TEST_CASE("Impossible values are refused with their place") {
   CHECK_THAT(problem_of(one, "/scene/structure/section/wall", 0.02), StartsWith("/scene/structure/section/wall: "));
   CHECK_THAT(problem_of(one, "/scene/stops/lower", 0.3), StartsWith("/scene/stops/"));
   CHECK_THAT(problem_of(one, "/scene/support/pulsation", 0), StartsWith("/scene/support/pulsation: "));
-  // The load repeats every 2π/10 s: with the period of 5 rad/s too, with that of 11 rad/s not.
+  // The load repeats every 2π/10 s: with the period of 5 rad/s too, with that of 11.7 rad/s not.
   CHECK(problem_of(one, "/scene/support/pulsation", 5).empty());
-  CHECK_THAT(problem_of(one, "/scene/support/pulsation", 11), StartsWith("/scene/load: "));
+  CHECK_THAT(problem_of(one, "/scene/support/pulsation", 11.7), StartsWith("/scene/load: "));
   CHECK_THAT(problem_of(one, "/scene/support/amplitude", std::nan("")), Contains("not a finite"));
   CHECK_THAT(problem_of(one, "/scene/support/amplitud", 0.1), StartsWith("/scene/support/amplitud: names no"));
   CHECK_THAT(problem_of(one, "/scene/stops/at", 0.1), Contains("names no"));
@@ -158,36 +148,6 @@ TEST_CASE("Two parameters are changed together: only the pair has to be possible
   CHECK((*at.scene.stops.lower)(1) == 0.2);
   CHECK(at.scene.initial.displacement(1) == 0.205);
   CHECK_FALSE(problem_of(one, "/scene/stops/lower", 0.2).empty());
-}
-
-TEST_CASE("The pulsation of a forcing is that of what moves") {
-  SceneSpec scene = parse(small_basins()).cases.front().scene;
-  CHECK(forcing_pulsation(scene) == 2.2);
-  CHECK(is_forced(scene));
-  scene.support = {0, 10, 0};
-  CHECK(forcing_pulsation(scene) == 2.2);  // the support does not move
-  scene.support.amplitude = 0.1;
-  CHECK(forcing_pulsation(scene) == 10);
-  CHECK_THAT(forcing_problem(scene), StartsWith("/scene/structure/force/pulsation: "));
-  std::get<OscillatorSpec>(scene.structure).force.pulsation = 30;  // every third of it is the support's
-  CHECK(forcing_problem(scene).empty());
-  scene.support.amplitude = 0;
-  std::get<OscillatorSpec>(scene.structure).force = {};
-  CHECK(forcing_pulsation(scene) == 10);  // still the period in which steps are counted
-  CHECK_FALSE(is_forced(scene));
-  scene.support.pulsation = 0;
-  CHECK(forcing_pulsation(scene) == 0);
-  CHECK_THAT(forcing_problem(scene), StartsWith("/scene/support/pulsation: "));
-}
-
-TEST_CASE("A load must repeat with the forcing, whatever else it does") {
-  CHECK(forcing_problem(shaken("x^2")).empty());
-  CHECK(forcing_problem(shaken("x*cos(10*t) + 3*sin(40*t)^3 + 1")).empty());
-  CHECK(forcing_problem(shaken("sin(10*t + 3*x)")).empty());
-  for (const char* load : {"sin(10.0001*t)", "sin(5*t)", "exp(-t)", "t", "x*t", "t > 3 ? 1 : 0", "t > 100 ? 1 : 0"}) {
-    INFO(load);
-    CHECK_THAT(forcing_problem(shaken(load)), StartsWith("/scene/load: ") && Contains("period"));
-  }
 }
 
 TEST_CASE("Starts and values are read from the settings") {
