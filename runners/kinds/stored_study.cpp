@@ -9,6 +9,7 @@
 #include "runners/kinds/trajectory/trajectory.hpp"
 #include "runners/plan_files/plan_file.hpp"
 #include "runners/report/html.hpp"
+#include "runners/study/case_id.hpp"
 #include "runners/study/load_study.hpp"
 
 namespace ricochet {
@@ -58,8 +59,8 @@ const CaseRecord& find_case(const StudyResults& results, const std::string& id) 
   std::vector<const CaseRecord*> found;
   std::vector<std::string> ids;
   for (const CaseRecord& record : results.cases) {
-    if (record.id == id) return record;
-    if (record.id.starts_with(id)) found.push_back(&record);
+    if (record.id == id_of_today(id)) return record;
+    if (begins_id(record.id, id)) found.push_back(&record);
     ids.push_back(record.id);
   }
   if (found.size() == 1) return *found.front();

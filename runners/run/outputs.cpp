@@ -10,6 +10,7 @@
 #include "runners/kinds/kind.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/study/case_id.hpp"
 #include "runners/table/text.hpp"
 
 namespace ricochet {
@@ -208,13 +209,11 @@ std::string curve_rows(const std::string& id, const Curve& curve, const std::vec
 }  // namespace
 
 void remove_stale(const std::filesystem::path& folder, const char* extension, const std::set<std::string>& wanted) {
-  constexpr std::size_t digits = 10;
   std::vector<std::filesystem::path> stale;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     const std::string stem = entry.path().stem().string();
-    if (entry.path().extension() == extension && stem.size() == digits &&
-        stem.find_first_not_of("0123456789abcdef") == std::string::npos && wanted.count(stem) == 0)
+    if (entry.path().extension() == extension && is_former_id(former_id(stem)) && wanted.count(stem) == 0)
       stale.push_back(entry.path());
   }
   for (const auto& file : stale) std::filesystem::remove(file, ignored);

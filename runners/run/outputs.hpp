@@ -40,7 +40,8 @@ Table write_curve_table(const std::filesystem::path& folder, const StudyResults&
 void remove_curve_files(const std::filesystem::path& folder);
 void remove_curve_table(const std::filesystem::path& folder);
 
-/// Removes the files of `folder` that are named like a case (ten hexadecimal digits) and are not of these.
+/// Removes the files of `folder` that are named like a case (c and ten hexadecimal digits, or these alone) and are not
+/// of these.
 void remove_stale(const std::filesystem::path& folder, const char* extension, const std::set<std::string>& wanted);
 
 }  // namespace ricochet

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "runners/store/atomic_file.hpp"
+#include "runners/study/case_id.hpp"
 #include "runners/study/fields.hpp"
 
 namespace ricochet {
@@ -62,7 +63,7 @@ const std::string& program_hash() {
 }
 
 std::string Fingerprints::of(const StudyCase& study_case, const std::vector<std::filesystem::path>& libraries) {
-  Json content = {{"id", study_case.id},
+  Json content = {{"id", former_id(study_case.id)},
                   {"kind", kind_},
                   {"program", program_},
                   {"scene", study_case.scene_json},

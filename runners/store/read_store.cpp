@@ -16,6 +16,7 @@
 #include "runners/store/record_values.hpp"
 #include "runners/store/schema.hpp"
 #include "runners/store/store.hpp"
+#include "runners/study/case_id.hpp"
 
 namespace ricochet {
 namespace {
@@ -195,6 +196,7 @@ StudyResults read_tables(SQLite::Database& database) {
   for (CaseRecord& record : results.cases) cases[record.id] = &record;
   const auto later = std::make_shared<StoredSeries>(database.getFilename());
   if (!cases.empty()) read_rows(database, cases, later.get());
+  for (CaseRecord& record : results.cases) record.id = id_of_today(record.id);
   results.environment = read_environment(database);
   tell_arithmetics(results);
   return results;
@@ -208,12 +210,14 @@ StudyResults read_head(SQLite::Database& database) {
 }
 
 std::optional<CaseRecord> read_case(SQLite::Database& database, const std::string& id) {
-  SQLite::Statement row(database, fmt::format("SELECT {} FROM cases WHERE id = ?", kStoredCase));
+  SQLite::Statement row(database, fmt::format("SELECT {} FROM cases WHERE id = ? OR id = ?", kStoredCase));
   row.bind(1, id);
+  row.bind(2, former_id(id));
   if (!row.executeStep()) return std::nullopt;
   CaseRecord record = case_of(row);
-  std::map<std::string, CaseRecord*> only = {{id, &record}};
+  std::map<std::string, CaseRecord*> only = {{record.id, &record}};
   read_rows(database, only, nullptr);
+  record.id = id_of_today(record.id);
   return record;
 }
 
@@ -274,8 +278,8 @@ std::vector<StoreReader::Finished> StoreReader::finished() const {
                            "SELECT id, fingerprint, status, arithmetic FROM cases WHERE fingerprint != '' "
                            "ORDER BY position");
     while (rows.executeStep())
-      found.push_back({rows.getColumn(0).getString(), rows.getColumn(1).getString(), rows.getColumn(2).getString(),
-                       rows.getColumn(3).getString()});
+      found.push_back({id_of_today(rows.getColumn(0).getString()), rows.getColumn(1).getString(),
+                       rows.getColumn(2).getString(), rows.getColumn(3).getString()});
   });
   return found;
 }
@@ -331,8 +335,8 @@ RunStatus read_status(const std::filesystem::path& folder) {
     }
     SQLite::Statement begun(database, "SELECT case_id, stage, since FROM begun ORDER BY since, case_id");
     while (begun.executeStep())
-      status.under_way.push_back(
-          {begun.getColumn(0).getString(), begun.getColumn(1).getString(), begun.getColumn(2).getString()});
+      status.under_way.push_back({id_of_today(begun.getColumn(0).getString()), begun.getColumn(1).getString(),
+                                  begun.getColumn(2).getString()});
     SQLite::Statement epoch(database, "SELECT run FROM epoch");
     if (epoch.executeStep()) status.run = RunIdentity::from_json(epoch.getColumn(0).getString());
   });

@@ -78,7 +78,7 @@ std::vector<Column> axis_columns(const StudyResults& results, const std::vector<
 }
 
 Column case_column() {
-  return {"case", "", "The case: ten hexadecimal digits that depend on its axes alone, the same in every table."};
+  return {"case", "", "The case: c and ten hexadecimal digits that depend on its axes alone, the same in every table."};
 }
 
 std::vector<Column> place_columns(const StudyResults& results) {

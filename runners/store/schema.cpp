@@ -19,6 +19,7 @@
 
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/study/case_id.hpp"
 
 namespace ricochet {
 namespace {
@@ -299,6 +300,13 @@ void copy_rows(SQLite::Database& database, const char* from, const std::string& 
             new_key, key);
 }
 
+// Of the ids of earlier programs.
+std::string ten_digits() {
+  std::string pattern;
+  for (int k = 0; k < 10; ++k) pattern += "[0-9a-f]";
+  return pattern;
+}
+
 /// The key under which an environment is kept; cases that ran together share it.
 std::int64_t keep(SQLite::Database& database, const Environment& environment) {
   const std::string entries = nlohmann::ordered_json(environment.entries)
@@ -311,6 +319,26 @@ std::int64_t keep(SQLite::Database& database, const Environment& environment) {
 }
 
 }  // namespace
+
+std::vector<std::string> name_as_today(SQLite::Database& database) {
+  const std::string pattern = ten_digits(), letter(1, case_letter);
+  std::vector<std::string> former;
+  SQLite::Statement find(database, "SELECT id FROM cases WHERE id GLOB ?");
+  find.bind(1, pattern);
+  while (find.executeStep()) former.push_back(find.getColumn(0).getString());
+  find.reset();
+  if (!former.empty()) {
+    // Rows name their case: until all do, some name one that is not there.
+    database.exec("PRAGMA defer_foreign_keys=ON");
+    for (const auto& [table, columns] : kRowsOfCases)
+      execute(database, fmt::format("UPDATE {} SET case_id = ? || case_id WHERE case_id GLOB ?", table), letter,
+              pattern);
+    execute(database, "UPDATE cases SET id = ? || id WHERE id GLOB ?", letter, pattern);
+  }
+  execute(database, "UPDATE begun SET case_id = ? || case_id WHERE case_id GLOB ?", letter, pattern);
+  execute(database, "UPDATE aside_cases SET id = ? || id WHERE id GLOB ?", letter, pattern);
+  return former;
+}
 
 void set_aside(SQLite::Database& database, const std::vector<std::string>& ids, const Environment& environment) {
   if (ids.empty()) return;

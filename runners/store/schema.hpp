@@ -34,6 +34,10 @@ void guarded(const std::filesystem::path& file, const SQLite::Database* database
 /// of curves, nor of tables of numbers (impacts): their series are packed, and SQL cannot read doubles out of a blob.
 void make_views(SQLite::Database& database, const StudyResults& results);
 
+/// Gives cases of earlier programs their ids of today (runners/study/case_id.hpp), inside a transaction. Returns the
+/// former ones.
+std::vector<std::string> name_as_today(SQLite::Database& database);
+
 // Cases of earlier versions of a study are kept in the store beside those that are asked for, by fingerprint. They have
 // their measures, curves, tables and environment, and are seen by nobody until they are asked for again. Each call is
 // made inside a transaction.

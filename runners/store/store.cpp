@@ -16,6 +16,7 @@
 #include "runners/store/read_store.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/schema.hpp"
+#include "runners/study/case_id.hpp"
 
 namespace ricochet {
 namespace {
@@ -60,6 +61,13 @@ void remove_curve(const std::filesystem::path& folder, const std::string& id) {
   std::error_code error;
   std::filesystem::remove(file, error);
   if (error) throw StoreError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
+}
+
+// One that is not there, or stays, is written anew.
+void rename_curve(const std::filesystem::path& folder, const std::string& former) {
+  std::error_code ignored;
+  std::filesystem::rename(folder / "curves" / (former + ".csv"), folder / "curves" / (id_of_today(former) + ".csv"),
+                          ignored);
 }
 
 }  // namespace
@@ -109,6 +117,7 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
     }
     name.reset();
     epoch_.raise(*database_, file_);
+    for (const std::string& id : name_as_today(*database_)) rename_curve(file_.parent_path(), id);
     kept = settle_rows();
     SQLite::Statement state(*database_, "INSERT OR REPLACE INTO study(key, value) VALUES(?, ?)");
     insert(state, "name", text_of(study.name));
@@ -237,7 +246,7 @@ std::vector<std::string> Store::left_under_way() const {
   std::vector<std::string> ids;
   guarded(file_, database_.get(), [&] {
     SQLite::Statement begun(*database_, "SELECT case_id FROM begun WHERE stage = 'run'");
-    while (begun.executeStep()) ids.push_back(begun.getColumn(0).getString());
+    while (begun.executeStep()) ids.push_back(id_of_today(begun.getColumn(0).getString()));
   });
   return ids;
 }

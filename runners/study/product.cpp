@@ -13,6 +13,7 @@
 #include "runners/json/json_text.hpp"
 #include "runners/plan_files/plan_file.hpp"
 #include "runners/study/body_keys.hpp"
+#include "runners/study/case_id.hpp"
 #include "runners/study/check_object.hpp"
 
 namespace ricochet {
@@ -56,7 +57,7 @@ std::string CaseIds::next(const StudyCase& study_case, const std::string& kind) 
   if (!study_case.settings.is_null()) all["settings"] = study_case.settings;
   std::string text = all.dump();
   while (true) {
-    std::string id = fmt::format("{:016x}", hash(text)).substr(0, 10);
+    std::string id = id_of_today(fmt::format("{:016x}", hash(text)).substr(0, 10));
     const auto [known, fresh] = canonical_.emplace(id, text);
     if (fresh || known->second == text) return id;
     text += '#';

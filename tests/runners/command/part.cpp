@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "runners/store/store.hpp"
+#include "runners/study/case_id.hpp"
 #include "tests/runners/command/said.hpp"
 
 using namespace ricochet;
@@ -39,7 +40,7 @@ std::set<std::string> planned_ids(const std::string& text) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);)
     if (const std::string word = line.substr(0, line.find(' '));
-        word.size() == 10 && word.find_first_not_of("0123456789abcdef") == std::string::npos)
+        word.size() == 11 && word.front() == 'c' && is_former_id(word.substr(1)))
       ids.insert(word);
   return ids;
 }

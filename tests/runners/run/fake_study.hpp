@@ -19,7 +19,7 @@ inline ricochet::Study fake_study(int count) {
   for (int i = 0; i < count; ++i) {
     ricochet::StudyCase one;
     char id[16];
-    std::snprintf(id, sizeof id, "%010x", 0xabc000 + i);
+    std::snprintf(id, sizeof id, "c%010x", 0xabc000 + i);
     one.id = id;
     one.mass.name = i % 2 == 0 ? "even" : "odd";
     one.contact.name = "touch";

@@ -98,9 +98,9 @@ TEST_CASE("summary: a study without axes names its case") {
   StudyResults results;
   results.columns = {"mass"};
   results.cases = {ended("done", "")};
-  results.cases[0].id = "0123456789";
+  results.cases[0].id = "c0123456789";
   results.cases[0].axes = {{"mass", "lumped"}};
-  CHECK(case_table(results) == "case        outcome\n0123456789  done\n");
+  CHECK(case_table(results) == "case         outcome\nc0123456789  done\n");
 }
 
 TEST_CASE("summary: a stability case whose march contradicts its spectrum is said, counted and no success") {

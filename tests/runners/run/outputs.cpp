@@ -19,7 +19,7 @@ StudyResults results_with_points() {
   results.kind = "bifurcation";
   results.columns = {"mass"};
   CaseRecord record;
-  record.id = "0123456789";
+  record.id = "c0123456789";
   record.axes = {{"mass", "singular"}};
   record.status = "done";
   record.numbers = {
@@ -30,7 +30,7 @@ StudyResults results_with_points() {
 }
 
 constexpr const char* points =
-    "case,mass,parameter,start\n0123456789,singular,0.07,rest\n0123456789,singular,0.08,up\n";
+    "case,mass,parameter,start\nc0123456789,singular,0.07,rest\nc0123456789,singular,0.08,up\n";
 
 }  // namespace
 
@@ -44,7 +44,8 @@ TEST_CASE("outputs: tables of numbers stand beside cases.csv, those for the repo
   CHECK(read_text(folder / "export/points.csv") == points);
 }
 
-TEST_CASE("outputs: of tables that the folder had, those that the results have no longer go, and a third party's stay") {
+TEST_CASE(
+    "outputs: of tables that the folder had, those that the results have no longer go, and a third party's stay") {
   const ScratchFolder folder;
   const auto page = [](const StudyResults&) { return std::string("page"); };
   write_outputs(folder.path(), results_with_points(), page);
@@ -71,11 +72,11 @@ TEST_CASE("outputs: tables of one study are not written over those of another") 
   write_tables(folder / "tables", one);
   CHECK_THROWS_WITH(write_tables(folder / "tables", other),
                     Catch::Contains("of the study \"sweep\", not of \"other\"") && Catch::Contains("folder"));
-  CHECK(std::filesystem::exists(folder / "tables/curves/0123456789.csv"));
+  CHECK(std::filesystem::exists(folder / "tables/curves/c0123456789.csv"));
   // The same study again, with fewer cases: none of what it had before stays.
   one.cases.clear();
   write_tables(folder / "tables", one);
-  CHECK_FALSE(std::filesystem::exists(folder / "tables/curves/0123456789.csv"));
+  CHECK_FALSE(std::filesystem::exists(folder / "tables/curves/c0123456789.csv"));
   std::filesystem::remove(folder / "tables/study.json");
   CHECK_THROWS_WITH(write_tables(folder / "tables", one), Catch::Contains("that it does not name"));
 }
@@ -131,7 +132,7 @@ StudyResults results_with_curves(std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     CaseRecord record;
     char id[24];
-    std::snprintf(id, sizeof id, "%010zx", i);
+    std::snprintf(id, sizeof id, "c%010zx", i);
     record.id = id;
     record.axes = {{"step", static_cast<double>(i)}};
     record.status = "done";
@@ -159,7 +160,7 @@ TEST_CASE("outputs: of more cases than a folder is to have files no curve is wri
   CHECK(has_curve_files(refused));
 
   write_outputs(folder.path(), results_with_curves(3), page);
-  CHECK(std::filesystem::exists(folder / "curves/0000000002.csv"));
+  CHECK(std::filesystem::exists(folder / "curves/c0000000002.csv"));
   CHECK_THAT(dictionary_in(folder.path()), Catch::Contains("curves,energy"));
   CHECK(read_text(folder / "report.html") == "each case has its own in curves/ID.csv");
   write_outputs(folder.path(), results_with_curves(kMostCurveFiles + 1), page);
@@ -167,7 +168,7 @@ TEST_CASE("outputs: of more cases than a folder is to have files no curve is wri
   CHECK_THAT(dictionary_in(folder.path()), !Catch::Contains("curves,energy"));
   CHECK_THAT(read_text(folder / "report.html"), Catch::Contains("ricochet export") && Catch::Contains("--curves"));
   write_outputs(folder.path(), results_with_curves(3), page);
-  CHECK(std::filesystem::exists(folder / "curves/0000000002.csv"));
+  CHECK(std::filesystem::exists(folder / "curves/c0000000002.csv"));
 }
 
 TEST_CASE("outputs: all curves in one table are those of the files, case by case") {
@@ -181,17 +182,17 @@ TEST_CASE("outputs: all curves in one table are those of the files, case by case
     store.save(results.cases);
   }
   write_tables(folder / "csv", read_store(folder / "store"));
-  CHECK(std::filesystem::exists(folder / "csv/curves/0000000000.csv"));
+  CHECK(std::filesystem::exists(folder / "csv/curves/c0000000000.csv"));
   write_tables(folder / "csv", read_store(folder / "store"), true);
   CHECK_FALSE(std::filesystem::exists(folder / "csv/curves"));
   CHECK(read_text(folder / "csv/curves.csv") ==
         "case,t,energy,force\n"
-        "0000000000,0,0.3333333333333333,\n0000000000,0.5,0,\n"
-        "0000000001,0,0.3333333333333333,\n0000000001,0.5,1,\n"
-        "0000000002,0,,7\n0000000002,0.5,,8\n"
-        "0000000003,0,0.3333333333333333,\n0000000003,0.5,3,\n");
+        "c0000000000,0,0.3333333333333333,\nc0000000000,0.5,0,\n"
+        "c0000000001,0,0.3333333333333333,\nc0000000001,0.5,1,\n"
+        "c0000000002,0,,7\nc0000000002,0.5,,8\n"
+        "c0000000003,0,0.3333333333333333,\nc0000000003,0.5,3,\n");
   CHECK_THAT(dictionary_in(folder / "csv"), Catch::Contains("curves,case") && Catch::Contains("curves,force"));
   write_tables(folder / "csv", read_store(folder / "store"));
   CHECK_FALSE(std::filesystem::exists(folder / "csv/curves.csv"));
-  CHECK(std::filesystem::exists(folder / "csv/curves/0000000003.csv"));
+  CHECK(std::filesystem::exists(folder / "csv/curves/c0000000003.csv"));
 }

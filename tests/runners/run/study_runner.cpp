@@ -21,7 +21,7 @@ TEST_CASE("run: every file of a study is there, and the exit code is 0") {
   const auto out = scratch / "out";
   REQUIRE(run(fake_study(4), {out, 2, false}) == 0);
   CHECK(run.runs == 4);
-  for (const char* file : {"results.sqlite", "study.json", "cases.csv", "report.html", "curves/0000abc000.csv"})
+  for (const char* file : {"results.sqlite", "study.json", "cases.csv", "report.html", "curves/c0000abc000.csv"})
     CHECK(std::filesystem::exists(out / file));
   CHECK(read_text(out / "report.html") == "<html>4 cases</html>\n");
   CHECK_THAT(run.summary, Contains("4 cases: 4 done") && Contains("report.html") && !Contains("3 impacts"));
@@ -73,7 +73,7 @@ TEST_CASE("run: an edited study keeps the results of what it was, and has them a
   const RunOptions options{scratch / "out", 1, false};
   REQUIRE(run(fake_study(4), options) == 0);
   CHECK_THAT(run.messages, !Contains("aside"));
-  const std::string cases = read_text(options.out / "cases.csv"), curve = "curves/0000abc001.csv";
+  const std::string cases = read_text(options.out / "cases.csv"), curve = "curves/c0000abc001.csv";
   const std::string before = read_text(options.out / curve);
   Study edited = fake_study(4);
   for (StudyCase& one : edited.cases) one.samples = 30;  // the same ids
@@ -105,7 +105,7 @@ TEST_CASE("run: a run that ends between two versions loses neither, and no curve
   FakeRun run(scratch);
   const RunOptions options{scratch / "out", 1, false};
   REQUIRE(run(fake_study(4), options) == 0);
-  const std::string cases = read_text(options.out / "cases.csv"), curve = "curves/0000abc000.csv";
+  const std::string cases = read_text(options.out / "cases.csv"), curve = "curves/c0000abc000.csv";
   const std::string before = read_text(options.out / curve);
   Study edited = fake_study(4);
   for (StudyCase& one : edited.cases) one.samples = 30;
@@ -134,9 +134,9 @@ TEST_CASE("run: a changed study runs what changed, and shows nothing of what lef
   REQUIRE(run(study, options) == 0);
   CHECK(run.runs == 1);
   CHECK(read_store(options.out).cases.size() == 4);
-  CHECK_FALSE(std::filesystem::exists(options.out / "curves/0000abc003.csv"));
-  CHECK(std::filesystem::exists(options.out / "curves/0000abc004.csv"));
-  CHECK(read_text(options.out / "cases.csv").find("0000abc003") == std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(options.out / "curves/c0000abc003.csv"));
+  CHECK(std::filesystem::exists(options.out / "curves/c0000abc004.csv"));
+  CHECK(read_text(options.out / "cases.csv").find("c0000abc003") == std::string::npos);
 }
 
 TEST_CASE("run: excluded cases are rows with their reason, and nothing runs for them") {
@@ -335,10 +335,10 @@ TEST_CASE("report and export: from the store alone") {
   std::filesystem::remove_all(out / "curves");
   CHECK(rebuild_report_with(run.runner.render, out) == 0);
   CHECK(read_text(out / "cases.csv") == cases);
-  CHECK(std::filesystem::exists(out / "curves/0000abc002.csv"));
+  CHECK(std::filesystem::exists(out / "curves/c0000abc002.csv"));
   CHECK(export_tables(out, scratch / "tables") == 0);
   CHECK(read_text(scratch / "tables/cases.csv") == cases);
-  for (const char* table : {"measures", "left_out", "notes", "environment", "curves/0000abc000"})
+  for (const char* table : {"measures", "left_out", "notes", "environment", "curves/c0000abc000"})
     CHECK(std::filesystem::exists(scratch / ("tables/" + std::string(table) + ".csv")));
   CHECK(rebuild_report_with(run.runner.render, scratch / "absent") == 5);
   CHECK(export_tables(scratch / "absent", scratch / "tables") == 5);

@@ -22,7 +22,7 @@ using Catch::Contains;
 
 namespace {
 
-const std::vector<ExpectedCase> kBoth = {{"0123456789", "f1"}, {"abcdefabcd", "f2"}};
+const std::vector<ExpectedCase> kBoth = {{"c0123456789", "f1"}, {"cabcdefabcd", "f2"}};
 
 std::string bytes_of(const ScratchFolder& folder) {
   return read_text(folder / "results.sqlite");
@@ -38,7 +38,7 @@ TEST_CASE("epoch: every write of a run that lost its folder is refused, names th
   first.begin(results, kBoth);
   first.save({results.cases.data(), 1});
   Store second = Store::unlocked(folder.path());
-  CHECK(second.begin(results, kBoth) == std::set<std::string>{"0123456789"});
+  CHECK(second.begin(results, kBoth) == std::set<std::string>{"c0123456789"});
   const std::string before = bytes_of(folder);
   const std::vector<std::function<void()>> writes = {[&] {
                                                        first.save({results.cases.data() + 1, 1});
@@ -47,7 +47,7 @@ TEST_CASE("epoch: every write of a run that lost its folder is refused, names th
                                                        first.save({results.cases.data() + 1, 1});
                                                      },
                                                      [&] { first.save_partial(results.cases[1]); },
-                                                     [&] { first.begins({"abcdefabcd"}, Store::Stage::run); },
+                                                     [&] { first.begins({"cabcdefabcd"}, Store::Stage::run); },
                                                      [&] { first.nothing_under_way(); },
                                                      [&] { first.save_motion("key", "content"); },
                                                      [&] {

@@ -16,7 +16,7 @@ namespace {
 
 StudyCase sample_case() {
   StudyCase one;
-  one.id = "0123456789";
+  one.id = "c0123456789";
   one.axes = {{"mass", "consistent"}, {"step", 1e-4}};
   one.scene_json = {{"structure", {{"length", 1.501}}}};
   one.mass.name = "consistent";
@@ -40,7 +40,7 @@ TEST_CASE("fingerprint: the same case has the same one, and any change of it ano
   const std::string reference = print_of(sample_case());
   CHECK(reference == print_of(sample_case()));
   const std::vector<std::function<void(StudyCase&)>> changes = {
-      [](StudyCase& c) { c.id = "0123456780"; },
+      [](StudyCase& c) { c.id = "c0123456780"; },
       [](StudyCase& c) { c.scene_json["structure"]["length"] = 1.5010000000000001; },  // one unit in the last place
       [](StudyCase& c) { c.mass.name = "lumped"; },
       [](StudyCase& c) { c.contact.name = "none"; },

@@ -65,7 +65,7 @@ TEST_CASE("stored series: of a case that is no longer there nothing is read in p
     results.cases[0].curve.columns = {{0, 1}, {5, 7}};
     store.save(results.cases);
     CHECK_THROWS_WITH(early.cases[0].curve.columns[1].get(),
-                      Catch::Contains("case 0123456789 changed while it was read"));
+                      Catch::Contains("case c0123456789 changed while it was read"));
   }
   SECTION("the folder") {
     std::filesystem::remove_all(folder.path());

@@ -91,7 +91,7 @@ TEST_CASE("records: the numbers of all cases stand behind case and axes, in colu
   StudyResults results = sample_results();
   // A case with other columns, and a second one of the same.
   CaseRecord other;
-  other.id = "00000000ff";
+  other.id = "c00000000ff";
   other.axes = {{"mass", "lumped"}, {"step", 0.5}};
   other.numbers = {{"points", named_columns({"index", "parameter"}), {{3, 4}, {0.25, -0.0}}, {}}};
   results.cases.push_back(other);
@@ -103,11 +103,11 @@ TEST_CASE("records: the numbers of all cases stand behind case and axes, in colu
   write_numbers_csv(results, heads[0], [&](std::string_view piece) { text += piece; });
   CHECK(text ==
         "case,mass,mass.velocity,step,parameter,start,tip_displacement,index\n"
-        "0123456789,singular,P1,1e-05,0.07,\"a, b\",1e-300,\n"
-        "0123456789,singular,P1,1e-05,0.08,rest,,\n"
-        "0123456789,singular,P1,1e-05,0.08,,0.1,\n"  // no word of that number
-        "00000000ff,lumped,,0.5,0.25,,,3\n"
-        "00000000ff,lumped,,0.5,-0,,,4\n");
+        "c0123456789,singular,P1,1e-05,0.07,\"a, b\",1e-300,\n"
+        "c0123456789,singular,P1,1e-05,0.08,rest,,\n"
+        "c0123456789,singular,P1,1e-05,0.08,,0.1,\n"  // no word of that number
+        "c00000000ff,lumped,,0.5,0.25,,,3\n"
+        "c00000000ff,lumped,,0.5,-0,,,4\n");
   text.clear();
   write_numbers_csv(results, heads[1], [&](std::string_view piece) { text += piece; });
   CHECK(text == "case,mass,mass.velocity,step,parameter,speed\n");

@@ -14,7 +14,7 @@ inline ricochet::StudyResults sample_results() {
   results.expected_cases = 2;
 
   ricochet::CaseRecord done;
-  done.id = "0123456789";
+  done.id = "c0123456789";
   done.axes = {{"mass", "singular"}, {"mass.velocity", "P1"}, {"step", 1e-5}};
   done.status = "done";
   done.steps = 5000;
@@ -36,7 +36,7 @@ inline ricochet::StudyResults sample_results() {
   done.numbers = {points, portraits, none};
 
   ricochet::CaseRecord refused;
-  refused.id = "abcdefabcd";
+  refused.id = "cabcdefabcd";
   refused.axes = {{"mass", "lumped"}, {"step", 1e-4}};
   refused.status = "refused";
   refused.reason = "β = 0 leaves S \"singular\",\nuse β ≥ 1/4";

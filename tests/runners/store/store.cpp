@@ -62,14 +62,14 @@ TEST_CASE("store: kept are the cases whose fingerprint is the same, others and f
     CHECK(store.begin(sample_results(), kExpected).size() == 2);
   }
   SECTION("one fingerprint changed") {
-    const auto kept = store.begin(sample_results(), {{"0123456789", "f1"}, {"abcdefabcd", "other"}});
-    CHECK(kept == std::set<std::string>{"0123456789"});
+    const auto kept = store.begin(sample_results(), {{"c0123456789", "f1"}, {"cabcdefabcd", "other"}});
+    CHECK(kept == std::set<std::string>{"c0123456789"});
     CHECK(store.load().cases.size() == 1);
   }
   SECTION("one case left the study, and the order changed") {
-    const auto kept = store.begin(sample_results(), {{"new", "f3"}, {"abcdefabcd", "f2"}});
-    CHECK(kept == std::set<std::string>{"abcdefabcd"});
-    CHECK(store.load().cases.front().id == "abcdefabcd");
+    const auto kept = store.begin(sample_results(), {{"new", "f3"}, {"cabcdefabcd", "f2"}});
+    CHECK(kept == std::set<std::string>{"cabcdefabcd"});
+    CHECK(store.load().cases.front().id == "cabcdefabcd");
   }
   SECTION("a case that is set aside, or dropped, leaves nothing in any table") {
     store.begin(sample_results(), {});
@@ -82,7 +82,7 @@ TEST_CASE("store: kept are the cases whose fingerprint is the same, others and f
 TEST_CASE("store: what an edit no longer asks for is set aside, and comes back whole when it is asked for again") {
   const ScratchFolder folder;
   fill(folder.path());
-  const std::vector<ExpectedCase> edited = {{"0123456789", "g1"}, {"abcdefabcd", "g2"}};
+  const std::vector<ExpectedCase> edited = {{"c0123456789", "g1"}, {"cabcdefabcd", "g2"}};
   StudyResults after = sample_results();
   after.cases[0].measures = {{"impacts", 3}};
   {
@@ -95,16 +95,16 @@ TEST_CASE("store: what an edit no longer asks for is set aside, and comes back w
   }
   SECTION("undone") {
     Store store(folder.path(), false);
-    CHECK(store.begin(sample_results(), kExpected) == std::set<std::string>{"0123456789"});
+    CHECK(store.begin(sample_results(), kExpected) == std::set<std::string>{"c0123456789"});
     CHECK(store.returned() == 1);
     CHECK(store.aside() == 1);  // that of the edited study now
     const StudyResults back = store.load();
     REQUIRE(back.cases.size() == 1);
     check_equal(back.cases[0], sample_results().cases[0]);
-    CHECK(store.begin(sample_results(), edited) == std::set<std::string>{"0123456789"});
+    CHECK(store.begin(sample_results(), edited) == std::set<std::string>{"c0123456789"});
     check_equal(store.load().cases[0], after.cases[0]);
     // As if nothing had been aside: the order of the study, too.
-    CHECK(store.begin(sample_results(), {{"other", "o"}, {"0123456789", "f1"}}).size() == 1);
+    CHECK(store.begin(sample_results(), {{"other", "o"}, {"c0123456789", "f1"}}).size() == 1);
     CHECK(count(folder.path(), "cases WHERE position = 1") == 1);
   }
   SECTION("fresh") {
@@ -130,8 +130,8 @@ TEST_CASE("store: failed cases are kept aside, refused and unfinished ones are n
   store.save({results.cases.data() + 1, 1});
   store.begin(results, {});
   CHECK(store.aside() == 1);
-  CHECK(store.begin(results, kExpected) == std::set<std::string>{"abcdefabcd"});
-  CHECK(store.failed() == std::set<std::string>{"abcdefabcd"});
+  CHECK(store.begin(results, kExpected) == std::set<std::string>{"cabcdefabcd"});
+  CHECK(store.failed() == std::set<std::string>{"cabcdefabcd"});
 }
 
 TEST_CASE("store: an environment goes with its cases") {
@@ -140,15 +140,15 @@ TEST_CASE("store: an environment goes with its cases") {
   const Entries old = sample_results().environment.entries, now = {{"program", "newer"}, {"cores", "2"}};
   fill(folder.path());
   Store store(folder.path(), false);
-  store.begin(sample_results(), {{"0123456789", "g1"}, {"abcdefabcd", "g2"}});
+  store.begin(sample_results(), {{"c0123456789", "g1"}, {"cabcdefabcd", "g2"}});
   store.save(sample_results().cases);
   store.save_environment({now});
   store.begin(sample_results(), kExpected);
   CHECK(store.load().environment.entries == old);
   // One case of each.
-  store.begin(sample_results(), {{"0123456789", "f1"}, {"abcdefabcd", "f2"}});
+  store.begin(sample_results(), {{"c0123456789", "f1"}, {"cabcdefabcd", "f2"}});
   store.save(sample_results().cases);
-  store.begin(sample_results(), {{"0123456789", "g1"}, {"abcdefabcd", "f2"}});
+  store.begin(sample_results(), {{"c0123456789", "g1"}, {"cabcdefabcd", "f2"}});
   CHECK(store.load().environment.entries ==
         Entries{{"program", "ricochet"}, {"cores", "2"}, {"program (earlier cases)", "newer"}});
 }
@@ -157,12 +157,12 @@ TEST_CASE("store: the curve file of a case goes with its row, before another tak
   const ScratchFolder folder;
   fill(folder.path());
   std::filesystem::create_directory(folder / "curves");
-  const auto file = folder / "curves/0123456789.csv";
+  const auto file = folder / "curves/c0123456789.csv";
   write_text(file, "old");
   Store store(folder.path(), false);
   store.begin(sample_results(), kExpected);
   CHECK(std::filesystem::exists(file));
-  store.begin(sample_results(), {{"0123456789", "g1"}});
+  store.begin(sample_results(), {{"c0123456789", "g1"}});
   CHECK_FALSE(std::filesystem::exists(file));
   write_text(file, "new");
   store.begin(sample_results(), kExpected);

@@ -16,7 +16,7 @@ using namespace ricochet;
 
 namespace store_tests {
 
-inline const std::vector<ExpectedCase> kExpected = {{"0123456789", "f1"}, {"abcdefabcd", "f2"}};
+inline const std::vector<ExpectedCase> kExpected = {{"c0123456789", "f1"}, {"cabcdefabcd", "f2"}};
 
 inline void fill(const std::filesystem::path& folder) {
   Store store(folder, false);
