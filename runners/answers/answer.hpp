@@ -32,6 +32,18 @@ struct Answer {
 
 /// Cases that gave no result, one sentence for each status: "Not run: 4 of 48 cases (…): why."
 std::vector<Sentence> ended(const Compared& study);
+/// What makes figures of finished cases doubtful: the sentence of the first case; of the others it may differ in
+/// numbers.
+struct Doubt {
+  std::string text;
+  bool differs = false;  ///< between cases, in its numbers
+  Cases cases;
+};
+/// Doubts by kind, in the order of the study.
+std::vector<Doubt> doubts_of(const StudyResults& results);
+/// The same, a sentence each: "Doubtful: 2 of 3 cases (…): …"; of more than four kinds three.
+std::vector<Sentence> doubted(const Compared& study);
+
 /// What becomes of the cases: who runs, who does not, and why.
 std::vector<Sentence> status(const Compared& study);
 

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <regex>
 #include <set>
+#include <string_view>
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/numbers_in_words.hpp"
@@ -163,7 +165,70 @@ void add_refused_references(const Compared& study, std::vector<Sentence>& out) {
   }
 }
 
+/// "Not run: 4 of 48 cases (those with …): why."; `how`: the status and the word for it.
+Sentence told_of(const Compared& study, const Listed& methods, const SetNames& names,
+                 const std::pair<std::string, std::string>& how, const Cases& some, const std::string& reason) {
+  const std::size_t total = study.results().cases.size();
+  const std::set<const CaseRecord*> chosen(some.begin(), some.end());
+  const Members members = members_where(methods, [&](const CaseRecord* one) { return chosen.contains(one); });
+  bool whole = true;
+  for (const std::size_t k : members)
+    for (const CaseRecord* one : methods.cases[k]) whole = whole && chosen.contains(one);
+  const std::string who = names.of(members) + (whole ? "" : at_steps(study, some));
+  constexpr std::size_t longest = 120;
+  const std::string own = without_count(who).empty() ? who : without_count(who),
+                    shown = own.size() <= longest ? own : names.shared(members);
+  std::string text = fmt::format("{}: {} of {} case{}{}", how.second, some.size(), total, total == 1 ? "" : "s",
+                                 some.size() == total ? "" : " (" + shown + ")");
+  if (!reason.empty()) text += ": " + reason;
+  if (!text.ends_with('.') && !text.ends_with("…")) text += ".";
+  return {text, {status_clause(how.first, who, some.size(), total)}};
+}
+
+/// A sentence without its numbers, lists of them being one: doubts of one kind are alike.
+std::string without_numbers(const std::string& text) {
+  static const std::regex number(R"([-+]?[0-9][0-9.]*(e[-+]?[0-9]+)?)"), list(R"(#(( to |, )#)+)"), more(" and # more");
+  return std::regex_replace(std::regex_replace(std::regex_replace(text, number, "#"), list, "#"), more, "");
+}
+
 }  // namespace
+
+std::vector<Doubt> doubts_of(const StudyResults& results) {
+  InOrderMet<std::string, Doubt> kinds;
+  constexpr std::string_view between = "; ";
+  for (const CaseRecord& record : results.cases) {
+    if (record.partial || record.status != "done") continue;
+    for (std::size_t begin = 0; begin < record.reason.size();) {
+      const std::size_t end = std::min(record.reason.find(between, begin), record.reason.size());
+      const std::string text = record.reason.substr(begin, end - begin);
+      Doubt& one = kinds[without_numbers(text)];
+      if (one.cases.empty()) one.text = text;
+      one.differs = one.differs || text != one.text;
+      one.cases.push_back(&record);
+      begin = end + between.size();
+    }
+  }
+  std::vector<Doubt> out;
+  for (auto& [key, doubt] : std::move(kinds).list()) out.push_back(std::move(doubt));
+  return out;
+}
+
+std::vector<Sentence> doubted(const Compared& study) {
+  constexpr std::size_t most = 4;
+  const std::vector<Doubt> doubts = doubts_of(study.results());
+  std::vector<Sentence> out;
+  if (doubts.empty()) return out;
+  const Listed methods = methods_of(study);
+  const SetNames names(study, methods.firsts);
+  const std::size_t told = doubts.size() <= most ? doubts.size() : most - 1;
+  for (std::size_t k = 0; k < told; ++k)
+    out.push_back(told_of(study, methods, names, {"doubtful", "Doubtful"}, doubts[k].cases,
+                          doubts[k].text + (doubts[k].differs ? ", in the first of them" : "")));
+  if (told < doubts.size())
+    out.push_back({fmt::format("{} more doubts are in reasons.csv.", doubts.size() - told),
+                   {status_clause("doubtful", "", 0, study.results().cases.size())}});
+  return out;
+}
 
 std::vector<Sentence> ended(const Compared& study) {
   std::vector<Sentence> out;
@@ -178,20 +243,7 @@ std::vector<Sentence> ended(const Compared& study) {
     const bool refused = status == "refused";
     const std::string verb = refused ? "Not run" : capitalised(status);
     const auto say = [&](const Cases& some, const std::string& reason) {
-      const std::set<const CaseRecord*> chosen(some.begin(), some.end());
-      const Members members = members_where(methods, [&](const CaseRecord* one) { return chosen.contains(one); });
-      bool whole = true;
-      for (const std::size_t k : members)
-        for (const CaseRecord* one : methods.cases[k]) whole = whole && chosen.contains(one);
-      const std::string who = names.of(members) + (whole ? "" : at_steps(study, some));
-      constexpr std::size_t longest = 120;
-      const std::string own = without_count(who).empty() ? who : without_count(who),
-                        shown = own.size() <= longest ? own : names.shared(members);
-      std::string text = fmt::format("{}: {} of {} case{}{}", verb, some.size(), total, total == 1 ? "" : "s",
-                                     some.size() == total ? "" : " (" + shown + ")");
-      if (!reason.empty()) text += ": " + reason;
-      if (!text.ends_with('.') && !text.ends_with("…")) text += ".";
-      out.push_back({text, {status_clause(status, who, some.size(), total)}});
+      out.push_back(told_of(study, methods, names, {status, verb}, some, reason));
     };
     // Where each case says its own figures, none speaks for the others.
     const std::vector<Reason> reasons = reasons_of(cases, refused);

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <map>
-#include <regex>
-#include <string_view>
 
 #include "runners/answers/answer.hpp"
 #include "runners/kinds/kind.hpp"
@@ -42,35 +40,15 @@ void derive_tables(StudyResults& results) {
   for (Table& table : report::page_tables(results, page_of(results.kind))) results.derived.push_back(std::move(table));
 }
 
-namespace {
-
-/// A sentence without its numbers, lists of them being one: doubts of one kind are alike.
-std::string without_numbers(const std::string& text) {
-  static const std::regex number(R"([-+]?[0-9][0-9.]*(e[-+]?[0-9]+)?)"), list(R"(#(( to |, )#)+)"), more(" and # more");
-  return std::regex_replace(std::regex_replace(std::regex_replace(text, number, "#"), list, "#"), more, "");
-}
-
-}  // namespace
-
 Table reasons_table(const StudyResults& results) {
   std::vector<std::pair<std::pair<std::string, std::string>, Cases>> groups;  // by status and reason
-  std::map<std::string, std::string> kinds;
-  for (const CaseRecord& record : results.cases) {
-    if (record.partial) continue;
-    if (record.status == "done") {
-      constexpr std::string_view between = "; ";
-      for (std::size_t begin = 0; begin < record.reason.size();) {
-        const std::size_t end = std::min(record.reason.find(between, begin), record.reason.size());
-        const std::string doubt = record.reason.substr(begin, end - begin);
-        // The first of a kind speaks for all.
-        const std::string& first = kinds.try_emplace(without_numbers(doubt), doubt).first->second;
-        in_order_met(groups, std::pair(record.status, first)).push_back(&record);
-        begin = end + between.size();
-      }
-      continue;
-    }
-    in_order_met(groups, std::pair(record.status, record.reason)).push_back(&record);
-  }
+  for (const answers::Doubt& doubt : answers::doubts_of(results))
+    groups.emplace_back(std::pair(std::string("done"), doubt.text), doubt.cases);
+  for (const CaseRecord& record : results.cases)
+    if (!record.partial && record.status != "done")
+      in_order_met(groups, std::pair(record.status, record.reason)).push_back(&record);
+  const auto first = [&](const auto& group) { return group.second.front(); };
+  std::stable_sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) { return first(a) < first(b); });
   std::vector<ReasonRow> rows;
   for (const auto& [said, cases] : groups) rows.push_back({said.first, said.second, cases.size(), cases.front()->id});
   return reasons_type().with(rows);
@@ -172,10 +150,16 @@ std::vector<std::string> observed_measures(const StudyResults& results) {
 }
 
 Table answers_table(const StudyResults& results) {
-  if (answers_itself(results)) return find_kind(results.kind)->answers(results).table();
   const std::vector<std::string> names = asked(results);
   const bool status_first = !names.empty() && names.front() == status_asked;
-  return answers::measure_answer(answers::Compared(results), observed_measures(results), status_first).table();
+  const answers::Compared study(results);
+  answers::Answer answer = answers_itself(results)
+                               ? find_kind(results.kind)->answers(results)
+                               : answers::measure_answer(study, observed_measures(results), status_first);
+  // Behind the headline: no sentence that is cut off.
+  const std::vector<answers::Sentence> doubts = answers::doubted(study);
+  answer.sentences.insert(answer.sentences.begin() + (answer.sentences.empty() ? 0 : 1), doubts.begin(), doubts.end());
+  return answer.table();
 }
 
 std::vector<Table> evidence_tables(const StudyResults& results) {

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"
 #include "runners/kinds/basins/basins.hpp"
+#include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/study/axis_meaning.hpp"
 
@@ -48,15 +50,19 @@ class BasinSpeaker {
       : study_(study), fractions_(basin_fractions_type().read(study.results().derived)) {
     std::map<std::string, CaseEnds> by_id;
     for (const FractionRow& row : fractions_) by_id[row.id].ends[row.attractor] = &row;
-    for (const CellRow& cell : cells_type().read(study.results().derived))
+    for (const CellRow& cell : cells_type().read(study.results().derived)) {
+      ++cells_[cell.id];
+      no_starts_[cell.id] += cell.regime == no_start;
       if (cell.status.value_or("done") == "done" && by_id.contains(cell.id))
         (cell.attractor ? by_id[cell.id].decided : by_id[cell.id].undecided) += 1;
+    }
     for (const CaseRecord& record : study.results().cases)
       if (const auto found = by_id.find(record.id); found != by_id.end()) {
         found->second.record = &record;
         (found->second.undecided_share() > half_of_them ? vague_ : cases_).push_back(found->second);
       }
   }
+  std::optional<Sentence> no_starts() const;
   void say_undecided(say::Answer& answer) const;
   void say_ends(say::Answer& answer) const;
   void say_border(say::Answer& answer) const;
@@ -92,7 +98,8 @@ class BasinSpeaker {
 
   const say::Compared& study_;
   std::vector<FractionRow> fractions_;
-  std::vector<CaseEnds> cases_, vague_;  ///< those with half of their starts decided, and the others
+  std::map<std::string, std::size_t> cells_, no_starts_;  ///< of each case; those that begin beyond a stop
+  std::vector<CaseEnds> cases_, vague_;                   ///< those with half of their starts decided, and the others
 };
 
 std::string BasinSpeaker::names(const std::vector<const CaseEnds*>& group) const {
@@ -100,6 +107,32 @@ std::string BasinSpeaker::names(const std::vector<const CaseEnds*>& group) const
   std::vector<std::string> out;
   for (const CaseEnds* one : group) out.push_back(name(*one->record));
   return out.size() <= few ? say::and_names(out) : fmt::format("{} of {} cases", out.size(), cases_.size());
+}
+
+/// Cells that begin beyond a stop, once for all cases.
+std::optional<Sentence> BasinSpeaker::no_starts() const {
+  std::size_t least = 0, most = 0, of = 0, cases = 0;
+  std::string ids;
+  for (const auto& [id, beyond] : no_starts_) {
+    if (beyond == 0) continue;
+    least = cases == 0 ? beyond : std::min(least, beyond);
+    most = std::max(most, beyond);
+    of = std::max(of, cells_.at(id));
+    ids += (ids.empty() ? "" : " ") + id;
+    ++cases;
+  }
+  if (cases == 0) return std::nullopt;
+  Clause clause{.form = "basin", .measure = "no starts", .methods = ids};
+  clause.value = static_cast<double>(most);
+  clause.low = static_cast<double>(least);
+  clause.high = static_cast<double>(of);
+  clause.unit = "cells";
+  clause.status = no_start;
+  const std::string count = least == most ? std::to_string(most) : fmt::format("{} to {}", least, most);
+  return Sentence{
+      fmt::format("{} of {} cells begin beyond a stop{}: they are no starts, and no share counts them.", count, of,
+                  cases == cells_.size() ? "" : fmt::format(" in {} of {} cases", cases, cells_.size())),
+      {clause}};
 }
 
 /// Of what is not decided nothing is told.
@@ -273,6 +306,7 @@ answers::Answer basins_answer(const answers::Compared& study) {
   basins.say_border(answer);
   basins.say_fractal(answer);
   if (answer.sentences.empty()) answer.say("No cell was decided.", Clause{.form = "status", .status = "none"});
+  if (auto beyond = basins.no_starts()) answer.sentences.insert(answer.sentences.begin() + 1, std::move(*beyond));
   for (Sentence& one : answers::ended(study)) answer.say(std::move(one));
   return answer;
 }
