@@ -135,6 +135,7 @@ JudgedOrbit judge(const Orbit& orbit, const SectionPlan& plan, const std::option
   RegimeInput input;
   input.contact = touches(orbit);
   input.rests = orbit.rests;
+  input.sticks = orbit.lasting > 0;
   input.recurrence = out.recurrence;
   input.zero_one = out.zero_one;
   input.exponent = exponent;
@@ -183,7 +184,8 @@ std::optional<MotionClass> rough_class(const Orbit& orbit, const SectionPlan& pl
   if (orbit.rests) return MotionClass{Regime::at_rest};
   const OrbitPeriod found = orbit_period(orbit, plan);
   const int period = found.doubtful > 0 ? 0 : found.recurrence.period;
-  return period > 0 ? MotionClass{Regime::periodic, period} : MotionClass{Regime::undecided};
+  if (period == 0) return MotionClass{Regime::undecided};
+  return MotionClass{orbit.lasting > 0 ? Regime::chattering : Regime::periodic, period};
 }
 
 }  // namespace ricochet

@@ -11,14 +11,18 @@ namespace ricochet {
 namespace {
 
 // In the order of Regime.
-constexpr std::array<const char*, 7> regime_words = {"no contact", "at rest",   "periodic", "quasi-periodic",
-                                                     "chaotic",    "undecided", "failed"};
+constexpr std::array<const char*, 8> regime_words = {"no contact",     "at rest", "periodic",  "chattering",
+                                                     "quasi-periodic", "chaotic", "undecided", "failed"};
 constexpr double longest_told = 1e9;  // forcing periods; beyond, a cell holds no period
 
 std::optional<Regime> regime_of(std::string_view word) {
   for (std::size_t k = 0; k < regime_words.size(); ++k)
     if (word == regime_words[k]) return static_cast<Regime>(k);
   return std::nullopt;
+}
+
+bool says_period(std::optional<Regime> regime) {
+  return regime && MotionClass{*regime}.repeats();
 }
 
 }  // namespace
@@ -29,7 +33,7 @@ const char* text(Regime regime) {
 
 std::string text(const MotionClass& motion) {
   const std::string word = text(motion.regime);
-  return motion.regime == Regime::periodic ? word + " " + std::to_string(motion.period) : word;
+  return motion.repeats() ? word + " " + std::to_string(motion.period) : word;
 }
 
 std::optional<MotionClass> motion_class(std::string_view words) {
@@ -39,7 +43,8 @@ std::optional<MotionClass> motion_class(std::string_view words) {
     const char *begin = words.data() + space + 1, *end = words.data() + words.size();
     int period = 0;
     if (const auto read = std::from_chars(begin, end, period); read.ec == std::errc() && read.ptr == end)
-      return regime_of(words.substr(0, space)) == Regime::periodic ? motion_class("periodic", period) : std::nullopt;
+      return says_period(regime_of(words.substr(0, space))) ? motion_class(words.substr(0, space), period)
+                                                            : std::nullopt;
   }
   return motion_class(words, std::nullopt);
 }
@@ -47,7 +52,7 @@ std::optional<MotionClass> motion_class(std::string_view words) {
 std::optional<MotionClass> motion_class(std::string_view regime, std::optional<double> period) {
   const auto known = regime_of(regime);
   if (!known) return std::nullopt;
-  if (*known != Regime::periodic) return MotionClass{*known, 0};
+  if (!says_period(known)) return MotionClass{*known, 0};
   if (!period || !(*period >= 1) || !(*period < longest_told)) return std::nullopt;
   return MotionClass{*known, static_cast<int>(*period)};
 }
@@ -147,7 +152,8 @@ RegimeVerdict classify(const RegimeInput& input) {
     if (input.exponent) text += ", " + exponent_text(*input.exponent);
     if (grows(input))
       return {{Regime::undecided}, r.period, text + ": an orbit that repeats and grows is contradictory"};
-    return {{Regime::periodic, r.period}, r.period, text + cut};
+    if (input.sticks) text += "; a point that rebounds comes to rest on its stop, so the step counts its impacts";
+    return {{input.sticks ? Regime::chattering : Regime::periodic, r.period}, r.period, text + cut};
   }
   const std::string impacts = fmt::format(", {:.4g} impacts per period", input.impacts_per_period);
   if (input.exponent) {

@@ -9,22 +9,26 @@ namespace ricochet {
 
 /// What an orbit of a forced structure does in the long run, but for its period. `failed`: it was not followed to its
 /// end. `at_rest`: what touches its stop rests on it, the contact never opens; what else there is may move, as the
-/// linear structure held there does.
-enum class Regime { no_contact, at_rest, periodic, quasi_periodic, chaotic, undecided, failed };
+/// linear structure held there does. `chattering`: it repeats, and within a period a point that is thrown back with a
+/// share of its speed comes to rest on its stop: it has hit it without number.
+enum class Regime { no_contact, at_rest, periodic, chattering, quasi_periodic, chaotic, undecided, failed };
 
 /// The class of an orbit: its regime and, of a periodic one, after how many forcing periods it repeats. Two orbits of
 /// different classes are different motions.
 struct MotionClass {
   Regime regime = Regime::undecided;
-  int period = 0;  ///< ≥ 1 where the regime is periodic, else 0
+  int period = 0;  ///< ≥ 1 where the regime is periodic or chattering, else 0
+
+  /// Whether the class says a period.
+  bool repeats() const { return regime == Regime::periodic || regime == Regime::chattering; }
 
   /// Whether it is known what the orbit does.
   bool decided() const { return regime != Regime::undecided && regime != Regime::failed; }
   bool operator==(const MotionClass&) const = default;
 };
 
-/// The word of a regime, as in the column `class` of the tables: "no contact", "at rest", "periodic", "quasi-periodic",
-/// "chaotic", "undecided", "failed".
+/// The word of a regime, as in the column `class` of the tables: "no contact", "at rest", "periodic", "chattering",
+/// "quasi-periodic", "chaotic", "undecided", "failed".
 const char* text(Regime regime);
 /// The same with the period of what has one: "periodic 3".
 std::string text(const MotionClass& motion);
@@ -43,6 +47,7 @@ int cycle_of(const MotionClass& motion, int period);
 struct RegimeInput {
   bool contact = false;   ///< whether any stop was touched
   bool rests = false;     ///< whether the contact never opened
+  bool sticks = false;    ///< whether a point that rebounds came to rest on its stop
   Recurrence recurrence;  ///< of its section
   std::optional<Interval>
       exponent;  ///< largest Lyapunov exponent, 1/s; −∞: superstable; those owed to the scheme are set apart
@@ -64,8 +69,9 @@ struct RegimeVerdict {
 
 /// 1. No contact: no stop was touched. At rest: one was, and that contact never opened.
 /// 2. Undecided: the step does not tell whether the section repeats at a shorter lag than the one found, or at all.
-/// 3. Periodic: the section repeats. An exponent whose interval lies above zero contradicts that: undecided. Not so
-///    where T is known and the growth it means over the window, e^{low T window}, is less than 2.
+/// 3. Periodic: the section repeats; chattering where a point that rebounds came to rest. An exponent whose interval
+///    lies above zero contradicts that: undecided. Not so where T is known and the growth it means over the window,
+///    e^{low T window}, is less than 2.
 /// 4. Chaotic: the exponent's interval lies above zero; without an exponent, K > 0.8.
 /// 5. Quasi-periodic: the exponent's interval holds zero and K < 0.2. Without an exponent, K < 0.2 and the section does
 ///    not approach an orbit. It does where distances halved over the window.

@@ -4,7 +4,9 @@
 #include <limits>
 #include <numbers>
 #include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/measure/orbits/impact_jump.hpp>
 #include <ricochet/measure/orbits/section_march.hpp>
+#include <ricochet/measure/stability/plan_restitution.hpp>
 
 namespace ricochet {
 
@@ -16,6 +18,24 @@ namespace {
 
 constexpr int impact_periods = 64;     // whose impacts are kept
 constexpr double least_rebound = 0.1;  // of the speed of an impact
+
+/// Points with mass that a rigid law throws back with a tenth of their speed or more.
+std::vector<bool> thrown_points(const Marcher& marcher) {
+  const Program& program = marcher.program();
+  const SemiDiscrete& problem = *program.problem;
+  std::vector<bool> thrown(static_cast<std::size_t>(problem.points()), false);
+  if (!program.contact || marcher.law().reads()) return thrown;
+  const double of_all = std::abs(plan_restitution(program.plan, program.h).value_or(0));
+  bool any = false;
+  for (std::size_t i = 0; i < thrown.size(); ++i) {
+    thrown[i] = (i < problem.own.size() ? problem.own[i].restitution.value_or(of_all) : of_all) >= least_rebound;
+    any = any || thrown[i];
+  }
+  if (!any) return thrown;
+  const std::vector<bool> massive = points_with_mass(problem);
+  for (std::size_t i = 0; i < thrown.size(); ++i) thrown[i] = thrown[i] && massive[i];
+  return thrown;
+}
 
 double central(const std::vector<double>& before, const std::vector<double>& after, std::size_t lane, double h) {
   return (after[lane] - before[lane]) / (2 * h);
@@ -33,6 +53,7 @@ class SectionMarch::Watch final : public StepObserver {
         h_(marcher.program().h),
         offset_(marcher.program().velocity_offset) {
     tips_.resize(orbits.size());
+    thrown_ = thrown_points(marcher);
     // Contact alone is read of most steps, and flights keep it; where extrema are wanted, the tip is told of each.
     if (marcher.program().flight) asks_.next_shown = never;
   }
@@ -149,6 +170,7 @@ class SectionMarch::Watch final : public StepObserver {
               Orbit& orbit) const {
     if (contact.point < 0) return;
     if (closed && ++contact.steps <= briefest_contact) return;
+    orbit.lasting += contact.steps > briefest_contact && thrown_[static_cast<std::size_t>(contact.point)];
     if (!closed) {
       const double after = velocity(marcher, view, lane, model_.contact(), static_cast<int>(contact.point)) +
                            marcher.lift_rate(lane, static_cast<int>(contact.point), view.from);
@@ -249,6 +271,7 @@ class SectionMarch::Watch final : public StepObserver {
   std::array<std::array<int, 2>, 32> counts_{};
   std::array<std::array<bool, 2>, 32> asked_{};  // sides in contact at the present instant
   std::vector<Tips> tips_;
+  std::vector<bool> thrown_;  // of the contact points
 };
 
 SectionMarch::SectionMarch(Program program, const SectionPlan& plan) : marcher_(std::move(program)), plan_(plan) {
@@ -370,6 +393,7 @@ void SectionMarch::complete(Orbit& orbit) const {
   std::fill(orbit.impact_counts.begin(), orbit.impact_counts.end(), 0);
   orbit.most_on_a_side = 0;
   orbit.rebounds = 0;
+  orbit.lasting = 0;
   if (plan_.section == SectionKind::impact) orbit.points = {};
 }
 

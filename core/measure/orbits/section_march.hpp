@@ -91,6 +91,9 @@ struct Orbit {
   std::vector<std::int64_t> pushed;
   bool arrived = false;  ///< a point came to its stop in the kept periods, after more than longest_loose steps
   bool rests = false;    ///< of a complete one: stops were touched all the time, and no point arrived at one
+  /// Contacts of the kept periods that lasted, more than briefest_contact steps, of points with mass that a rigid law
+  /// throws back with a share of their speed.
+  long long lasting = 0;
   /// The largest sum of |v₊ − v₋| over one of the kept periods (m/s). It counts contacts of at most briefest_contact
   /// steps that leave with a tenth of their speed or more.
   /// A step h places their instants to within h, which moves what follows by up to h times this.

@@ -22,7 +22,9 @@ using say::Clause, say::Sentence, say::percent, say::short_number;
 constexpr double border_moves = 0.005;  // share of the cells
 
 std::string motion_of(const FractionRow& row) {
-  if (row.regime == "periodic") return fmt::format("period {}", row.period.value_or(1));
+  const std::string period = fmt::format("period {}", row.period.value_or(1));
+  if (row.regime == text(Regime::periodic)) return period;
+  if (row.regime == text(Regime::chattering)) return period + " with chatter";
   return row.regime;
 }
 

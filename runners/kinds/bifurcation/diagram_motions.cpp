@@ -28,6 +28,7 @@ constexpr std::size_t most_stretches = 6, most_speeds = 6;
 
 std::string motion_words(std::string motion) {
   if (motion.starts_with("periodic ")) return "period " + motion.substr(9);
+  if (motion.starts_with("chattering ")) return "period " + motion.substr(11) + " with chatter";
   return motion == "chaotic" ? "chaos" : motion;
 }
 
@@ -138,8 +139,11 @@ void DiagramSpeaker::say_changes(say::Answer& answer) const {
   };
   std::erase_if(changes, [&](const ChangeRow& one) {
     if (!robust_at(one.value)) return true;
-    return !one.from.starts_with("periodic") || !one.to.starts_with("periodic") || std::isnan(one.value) ||
-           (!start_.empty() && one.start != start_);
+    const auto repeats = [](const std::string& words) {
+      const auto motion = motion_class(words);
+      return motion && motion->repeats();
+    };
+    return !repeats(one.from) || !repeats(one.to) || std::isnan(one.value) || (!start_.empty() && one.start != start_);
   });
   if (changes.empty()) return;
   const std::vector<ShiftRow> shifts = shifts_type().read(results_.derived);

@@ -74,8 +74,8 @@ void serialize(Archive& archive, Orbit& orbit) {
   archive(orbit.task, orbit.stage, orbit.transient_periods, orbit.kept_periods, orbit.settled, orbit.end,
           orbit.end_words, orbit.stopped_period, orbit.settling, orbit.readings, orbit.strobed, orbit.points,
           orbit.impacts, orbit.impact_counts, orbit.contact_steps, orbit.most_on_a_side, orbit.closed, orbit.pushed,
-          orbit.arrived, orbit.rests, orbit.rebounds, orbit.rebounds_so_far, orbit.brief, orbit.verdict, orbit.entry,
-          orbit.now);
+          orbit.arrived, orbit.rests, orbit.lasting, orbit.rebounds, orbit.rebounds_so_far, orbit.brief, orbit.verdict,
+          orbit.entry, orbit.now);
 }
 
 template <class Archive>

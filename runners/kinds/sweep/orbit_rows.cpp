@@ -197,7 +197,7 @@ void add_shares(CaseRecord& record, const std::vector<OrbitView>& views) {
   for (const OrbitView& view : views) {
     if (!view.complete()) continue;
     ++orbits;
-    periodic += view.judged.verdict.motion.regime == Regime::periodic;
+    periodic += view.judged.verdict.motion.repeats();
     chaotic += view.judged.verdict.motion.regime == Regime::chaotic;
     impacts += impacts_per_period(*view.orbit);
     if (!view.exponents.values.empty())

@@ -13,10 +13,10 @@ const Column attractor_column{
 namespace {
 
 const Column start_column{start_name, "", "Where the orbit begins: rest, state, up, down or random-NUMBER."};
-const Column class_column{
-    "class", "",
-    "no contact, at rest (what touches its stop never leaves it), periodic, quasi-periodic, chaotic, undecided, or "
-    "failed: what the orbit is in the long run."};
+const Column class_column{"class", "",
+                          "no contact, at rest (what touches its stop never leaves it), periodic, chattering, "
+                          "quasi-periodic, chaotic, undecided, or "
+                          "failed: what the orbit is in the long run."};
 const Column period_column{"period", "1", "Forcing periods after which a periodic orbit repeats."};
 const Column status_column{"status", "", "done, refused, diverged or failed."};
 const Column reason_column{"reason", "", "Why the orbit was refused or stopped."};

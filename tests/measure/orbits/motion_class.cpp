@@ -73,3 +73,16 @@ TEST_CASE("motion class: what is undecided or failed is not decided") {
 }
 
 }  // namespace motion_class_tests
+
+TEST_CASE("motion class: what chatters to its end is another motion than what hits and leaves") {
+  const MotionClass single{Regime::periodic, 2}, complete{Regime::chattering, 2};
+  CHECK_FALSE(single == complete);
+  CHECK(text(complete) == "chattering 2");
+  CHECK(motion_class("chattering 2") == complete);
+  CHECK(motion_class("chattering", 2.0) == complete);
+  CHECK_FALSE(motion_class("chattering"));
+  CHECK(cycle_of(complete, 0) == 2);
+  CHECK(complete.repeats());
+  CHECK(complete.decided());
+  CHECK_FALSE(MotionClass{Regime::at_rest}.repeats());
+}

@@ -67,7 +67,8 @@
       const status = this.cell(id, "status", o);
       if (status && status !== "done") return status;
       const name = this.cell(id, "class", o) || "undecided", period = this.cell(id, "period", o);
-      return name === "periodic" && period ? "period " + period : name;
+      if (!period) return name;
+      return name === "periodic" ? "period " + period : name === "chattering" ? "period " + period + " with chatter" : name;
     }
     // "0.1234 (0.12 to 0.13) 1/s"; "" where there is none.
     interval(id, name, o) {

@@ -25,6 +25,7 @@ size_t regime_group(std::string_view regime, std::optional<int> period) {
     case Regime::at_rest:
       return 1;
     case Regime::periodic:
+    case Regime::chattering:
       return motion->period <= 4 ? static_cast<size_t>(motion->period) + 1 : motion->period <= 8 ? 6 : 7;
     case Regime::quasi_periodic:
       return 8;
