@@ -63,13 +63,6 @@ void remove_curve(const std::filesystem::path& folder, const std::string& id) {
   if (error) throw StoreError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
 }
 
-// One that is not there, or stays, is written anew.
-void rename_curve(const std::filesystem::path& folder, const std::string& former) {
-  std::error_code ignored;
-  std::filesystem::rename(folder / "curves" / (former + ".csv"), folder / "curves" / (id_of_today(former) + ".csv"),
-                          ignored);
-}
-
 }  // namespace
 
 Store::Store(const std::filesystem::path& folder, bool fresh, bool locked) : file_(folder / "results.sqlite") {
@@ -117,7 +110,10 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
     }
     name.reset();
     epoch_.raise(*database_, file_);
-    for (const std::string& id : name_as_today(*database_)) rename_curve(file_.parent_path(), id);
+    const std::filesystem::path curves = file_.parent_path() / "curves";
+    std::error_code ignored;  // a curve that is not there, or stays, is written anew
+    for (const std::string& id : name_as_today(*database_))
+      std::filesystem::rename(curves / (id + ".csv"), curves / (id_of_today(id) + ".csv"), ignored);
     kept = settle_rows();
     SQLite::Statement state(*database_, "INSERT OR REPLACE INTO study(key, value) VALUES(?, ?)");
     insert(state, "name", text_of(study.name));
