@@ -89,7 +89,7 @@ TEST_CASE("A force of a list of loads is a number of the scene, a list of values
   CHECK(pushed.load.terms[1].history(0, 0) == -3);
   CHECK(pushed.load.terms[0].history(0, 0) == 1);
   CHECK(with_parameter(one, "/scene/load/0/time", 4).scene.load.terms[0].history(0, 0) == 4);
-  study["scene"]["load"][0]["time"] = "cos(11*t)";
+  study["scene"]["load"][0]["time"] = "cos(11.7*t)";
   CHECK_THAT(refusal(study), StartsWith("/scene/load/0/time: ") && Contains("does not repeat"));
 }
 
@@ -132,7 +132,7 @@ TEST_CASE("Impossible values are refused with their place") {
   CHECK_THAT(problem_of(one, "/scene/structure/length", -1), StartsWith("/scene/structure/length: ") && Contains("m"));
   CHECK_THAT(problem_of(one, "/scene/structure/section/wall", 0.02), StartsWith("/scene/structure/section/wall: "));
   CHECK_THAT(problem_of(one, "/scene/stops/lower", 0.3), StartsWith("/scene/stops/"));
-  CHECK_THAT(problem_of(one, "/scene/support/pulsation", 0), StartsWith("/scene/support/pulsation: "));
+  CHECK(problem_of(one, "/scene/support/pulsation", 0).empty());  // the load has a period
   // The load repeats every 2π/10 s: with the period of 5 rad/s too, with that of 11.7 rad/s not.
   CHECK(problem_of(one, "/scene/support/pulsation", 5).empty());
   CHECK_THAT(problem_of(one, "/scene/support/pulsation", 11.7), StartsWith("/scene/load: "));
