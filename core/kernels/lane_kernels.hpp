@@ -9,7 +9,7 @@
 /// Instruction sets are chosen when the table is asked for, never by the ABI.
 namespace ricochet {
 
-/// The most blocks that a kernel combines: the slots of a plan, and one more where the unknown z is measured with them.
+/// The most slots that a kernel takes, and the most terms of a sum over them: the unknown z may stand beside the slots.
 /// Up to four slots are written out; beyond, the same operations run in the same order from a loop. A count outside of
 /// 1 … limit is a std::logic_error, and nothing is written.
 constexpr int most_lane_slots = 8;
@@ -137,7 +137,7 @@ struct LaneRows {
 };
 
 struct LaneKernels {
-  /// out = Σ_j weight[j] x_j, j < count ≤ most_lane_slots, over `size` doubles.
+  /// out = Σ_j weight[j] x_j, j < count ≤ most_lane_terms, over `size` doubles.
   void (*combine)(long size, int count, const double* const* x, const double* weight, double* out);
   /// x_j ← Σ_i weight[j·(count+1)+i] x_i + weight[j·(count+1)+count] z, all j at once, then combined = Σ_j next[j] x_j
   /// of the new slots (null: not wanted); count ≤ most_lane_slots, over `size` doubles.

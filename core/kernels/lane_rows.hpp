@@ -230,9 +230,9 @@ RICOCHET_INLINE void update_body(long size, double* const* x, const double* z, c
 
 // The same for any count, term by term in the same order. Two vectors at a time: a sum waits for its last term.
 RICOCHET_INLINE void combine_general(long size, int count, const double* const* x, const double* weight, double* out) {
-  check_count("combine", count, most_lane_slots);
-  const double* in[most_lane_slots];
-  double w[most_lane_slots];
+  check_count("combine", count, most_lane_terms);
+  const double* in[most_lane_terms];
+  double w[most_lane_terms];
   for (int j = 0; j < count; ++j) {
     in[j] = x[j];
     w[j] = weight[j];

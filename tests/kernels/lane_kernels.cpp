@@ -78,10 +78,13 @@ struct Slots {
     return pointers;
   }
 
-  // Combination; updated slots; their combination; diagonal step; measure with and without offset (of one term more).
+  // Combination; updated slots; their combination; diagonal step; measure with and without offset, and combination, of
+  // one term more.
   std::vector<Block> outcome(const LaneKernels& kernels) const {
-    Block combined(rows, lanes), following(rows, lanes), diagonal(rows, lanes), measured(3, lanes), bare(3, lanes);
+    Block combined(rows, lanes), following(rows, lanes), diagonal(rows, lanes), measured(3, lanes), bare(3, lanes),
+        whole(rows, lanes);
     kernels.combine(static_cast<long>(z.size()), count, read().data(), next.data(), combined.data());
+    kernels.combine(static_cast<long>(z.size()), count + 1, read().data(), weight.data(), whole.data());
     kernels.diagonal_step(rows, count, coefficient.data(), read().data(), scale.data(), diagonal.data());
     kernels.measure(matrix(), count + 1, read().data(), weight.data(), scale.data(), measured.data());
     kernels.measure(matrix(), count + 1, read().data(), weight.data(), nullptr, bare.data());
@@ -92,7 +95,7 @@ struct Slots {
       kernels.update(static_cast<long>(z.size()), count, slot.data(), z.data(), update.data(),
                      one == &with ? next.data() : nullptr, following.data());
     }
-    std::vector<Block> all = {combined, following, diagonal, measured, bare};
+    std::vector<Block> all = {combined, following, diagonal, measured, bare, whole};
     for (int j = 0; j < count; ++j) {
       all.push_back(with.x[static_cast<std::size_t>(j)]);
       all.push_back(without.x[static_cast<std::size_t>(j)]);
@@ -108,14 +111,15 @@ struct Slots {
       for (std::size_t j = 0; j < terms; ++j) sum += w[from + j] * x[j].at(i, l);
       return sum;
     };
-    std::vector<std::vector<double>> all(5 + 2 * n);
+    std::vector<std::vector<double>> all(6 + 2 * n);
     for (int i = 0; i < rows; ++i) {
       all[0].push_back(at(next, 0, n, i));
+      all[5].push_back(at(weight, 0, n + 1, i));
       double sum = 0;
       for (std::size_t j = 0; j < n; ++j) {
         const double fresh = at(update, j * (n + 1), n, i) + update[j * (n + 1) + n] * z.at(i, l);
-        all[5 + 2 * j].push_back(fresh);
         all[6 + 2 * j].push_back(fresh);
+        all[7 + 2 * j].push_back(fresh);
         sum += next[j] * fresh;
       }
       all[1].push_back(sum);
@@ -323,14 +327,15 @@ TEST_CASE("a number of slots that no kernel takes is an error and writes nothing
     const std::vector<double> weights(400, 0.5);
     const long size = static_cast<long>(slots.z.size());
     double* z = slots.z.data();
-    CHECK_THROWS_AS(kernels.combine(size, count, slots.read().data(), weights.data(), z), std::logic_error);
     CHECK_THROWS_AS(kernels.update(size, count, written.data(), z, weights.data(), weights.data(), z),
                     std::logic_error);
     CHECK_THROWS_AS(kernels.update(size, count, written.data(), z, weights.data(), nullptr, nullptr), std::logic_error);
     CHECK_THROWS_AS(
         kernels.diagonal_step(Slots::rows, count, weights.data(), slots.read().data(), slots.scale.data(), z),
         std::logic_error);
+    // The unknown may stand beside the slots in a sum.
     const int terms = count <= 0 ? count : count + most_lane_terms - most_lane_slots;
+    CHECK_THROWS_AS(kernels.combine(size, terms, slots.read().data(), weights.data(), z), std::logic_error);
     CHECK_THROWS_AS(kernels.measure(slots.matrix(), terms, slots.read().data(), weights.data(), nullptr, z),
                     std::logic_error);
     for (std::size_t j = 0; j <= slots.x.size(); ++j) {
