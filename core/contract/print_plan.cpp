@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ricochet/contract/momentum_weights.hpp>
 #include <ricochet/contract/stage_facts.hpp>
 #include <ricochet/contract/step_plan.hpp>
 
@@ -189,11 +190,10 @@ std::string print_plan(const StepPlan& given) {
   text += "\n";
   for (const Stage& stage : plan.start)
     text += fmt::format("start{}\n", plan.start_advances ? " (moves time by h)" : "") + stage_text(stage, plan.slots);
-  const std::vector<double> momentum =
-      wrong ? std::vector<double>() : momentum_weights(plan, stage_efforts(plan.stages, std::nullopt));
+  const EffortMomenta momenta = wrong ? EffortMomenta{} : effort_momenta(plan, std::nullopt);
   for (std::size_t k = 0; k < plan.stages.size(); ++k)
     text += fmt::format("stage {}: S z = b + Hᵀp{}\n", k + 1,
-                        wrong ? "" : stands_text(derived.stages[k], plan.stages.size(), momentum[k], derived.h)) +
+                        wrong ? "" : stands_text(derived.stages[k], plan.stages.size(), momenta.stages[k], derived.h)) +
             stage_text(plan.stages[k], plan.slots);
   Combination velocity = plan.velocity;
   text += "velocity: " + combination_text(velocity, plan.slots);
@@ -207,6 +207,7 @@ std::string print_plan(const StepPlan& given) {
                 fmt::format("|{}|²_{}", combination_text(c, plan.slots), matrix_name(term.matrix)));
   }
   text += "scheme energy: " + (energy.empty() ? "none is declared" : energy) + "\n";
+  if (!momenta.why_none.empty()) text += "no contact: " + momenta.why_none + "\n";
   if (wrong) text += "ill-formed: " + *wrong + "\n";
   return text;
 }

@@ -5,7 +5,7 @@
 
 /// \file
 /// What follows from the numbers of a plan and need not be declared. It is found by marching a free unit mass. Of each
-/// stage: when it stands, what it moves the position by, its levels of stops, the momentum that its effort gives.
+/// stage: when it stands, what it moves the position by, its levels of stops. Momenta: momentum_weights.hpp.
 namespace ricochet {
 
 /// One stage. Times are in steps, from the time when the step begins.
@@ -50,12 +50,5 @@ struct StageEffort {
 /// Those of each stage, as a law that reads this evaluation (none: a rigid law) meets them.
 using StageEfforts = std::vector<StageEffort>;
 StageEfforts stage_efforts(const std::vector<Stage>& stages, const std::optional<Evaluation>& evaluation);
-
-/// The momentum (N s per N, hence seconds) that one effort of 1 N finally gives to a free mass. Each stage finds that
-/// effort once, for a number of its own. A plan of one stage has h, Bathe's two have (h/3, 2h/3), a stage that only
-/// projects has 0. Not finite where the velocity never settles.
-std::vector<double> momentum_weights(const StepPlan& plan, const StageEfforts& efforts);
-/// The same of an effort that a stage of the start rule finds; `start`: the weights of its stages.
-double start_momentum(const StepPlan& plan, std::size_t stage, const StageEfforts& start, const StageEfforts& efforts);
 
 }  // namespace ricochet

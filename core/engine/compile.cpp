@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ricochet/contract/momentum_weights.hpp>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/left_out.hpp>
@@ -205,14 +206,17 @@ std::vector<double> work_efforts(const WorkForm& work, std::size_t stage, const 
 }
 
 // What an effort of each stage is worth, and which stages share a contact instant.
-void add_contact_facts(Program& program) {
+std::optional<Refusal> add_contact_facts(Program& program) {
   const StageEfforts efforts = efforts_read(program.stages), start = efforts_read(program.start);
-  const std::vector<double> momentum = momentum_weights(program.plan, efforts);
+  const EffortMomenta momenta = effort_momenta(program.plan, start, efforts);
+  if (program.contact && !momenta.why_none.empty())
+    return Refusal{"contact gives no definite impulse under this time scheme, as " + momenta.why_none +
+                   ": use another time scheme, or the contact law none"};
   StageProgram* last = nullptr;
   for (std::size_t k = 0; k < program.stages.size(); ++k) {
     StageProgram& stage = program.stages[k];
-    stage.momentum = std::isfinite(momentum[k]) ? momentum[k] : program.h;
     if (!stage.reads_contact) continue;
+    stage.momentum = momenta.stages[k];
     if (const auto& work = program.plan.stages[k].work) stage.work_effort = work_efforts(*work, k, efforts, true);
     stage.opens_instant = !last || std::abs(stage.facts.instant - last->facts.instant) > 1e-9;
     if (last && stage.opens_instant) last->closes_instant = true;
@@ -223,13 +227,13 @@ void add_contact_facts(Program& program) {
     StageProgram& stage = program.start[k];
     if (!stage.reads_contact) continue;
     stage.opens_instant = stage.closes_instant = true;
-    const double given = start_momentum(program.plan, k, start, efforts);
-    stage.momentum = std::isfinite(given) ? given : program.h;
+    stage.momentum = momenta.start[k];
     if (const auto& work = program.plan.start[k].work)
       stage.work_effort = work_efforts(*work, k, start, false);
     else
       stage.work_effort = {momentum_at_once(program.plan, program.plan.start[k])};
   }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -352,7 +356,7 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
     return Refusal{"the time scheme has no impact measure for a rigid law: use a penalty"};
   }
   connect_works(program);
-  add_contact_facts(program);
+  if (auto refusal = add_contact_facts(program)) return *refusal;
   if (program.kind == OperatorKind::band && mass_only && problem->inertia.assembled()) {
     bool diagonal = true;
     const SparseMatrix& mass = problem->inertia.mass;

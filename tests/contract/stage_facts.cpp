@@ -1,4 +1,5 @@
 // What is derived of a plan: when its stages stand, the levels of its stops, what momentum its efforts give.
+#include <ricochet/contract/momentum_weights.hpp>
 #include <ricochet/contract/stage_facts.hpp>
 
 #include "tests/composed_plan.hpp"
@@ -85,7 +86,7 @@ TEST_CASE("a stage that does not move the position asks when its stop is looked 
   CHECK(derived.stages[1].from == 1);
   CHECK(derived.stages[1].to == 1);
   CHECK(derived.stages[1].instant == 1);
-  const auto momentum = momentum_weights(derived.plan, stage_efforts(derived.plan.stages, std::nullopt));
+  const auto momentum = effort_momenta(derived.plan, std::nullopt).stages;
   CHECK(momentum[0] == Approx(h));
   CHECK(momentum[1] == 0);  // it changes no velocity
 }
@@ -100,7 +101,7 @@ TEST_CASE("the position moves by its increment, found without the digits that a 
 
 TEST_CASE("momenta of one effort: h in a plan of one stage whatever its weights, shares of h where there are more") {
   const auto momentum = [](const StepPlan& plan, std::optional<Evaluation> evaluation) {
-    return momentum_weights(plan, stage_efforts(plan.stages, evaluation));
+    return effort_momenta(plan, evaluation).stages;
   };
   std::vector<Choice> times = of_second_order();
   times.push_back({"newmark", {{"beta", 0.36}, {"gamma", 0.7}}});
@@ -128,7 +129,7 @@ TEST_CASE("momenta of one effort: h in a plan of one stage whatever its weights,
 
 TEST_CASE("the start rule's efforts give what they give to a mass that starts") {
   const auto given = [](const StepPlan& plan, std::size_t stage, std::optional<Evaluation> evaluation) {
-    return start_momentum(plan, stage, stage_efforts(plan.start, evaluation), stage_efforts(plan.stages, evaluation));
+    return effort_momenta(plan, evaluation).start.at(stage);
   };
   // Half a step: of the first trapezium, and of the symmetric start q₁ − q₋₁ = 2h v₀.
   CHECK(given(plan({"newmark"}), 0, std::nullopt) == Approx(h / 2).epsilon(1e-9));
@@ -165,6 +166,7 @@ TEST_CASE("without inertia nothing tells where a stage stands: everything is ask
   CHECK(derived.stages[0].to == 1);
   CHECK(derived.plan.stages[0].impact->bound.size() == 1);
   CHECK(derived.plan.stages[0].impact->bound[0].at == 1);
-  CHECK(std::isnan(momentum_weights(massless, stage_efforts(massless.stages, std::nullopt))[0]));
+  CHECK(std::isnan(effort_momenta(massless, std::nullopt).stages[0]));
+  CHECK(effort_momenta(massless, std::nullopt).why_none == "a stage of the plan solves without M");
   CHECK(print_plan(massless).find("stage 1") != std::string::npos);
 }
