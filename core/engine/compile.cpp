@@ -5,6 +5,7 @@
 #include <ricochet/contract/momentum_weights.hpp>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/cost_model.hpp>
+#include <ricochet/engine/indefinite_step.hpp>
 #include <ricochet/engine/left_out.hpp>
 #include <ricochet/scene/stop_parameters.hpp>
 #include <stdexcept>
@@ -57,6 +58,16 @@ std::optional<Refusal> read_contact(StageProgram& program, const Stage& stage, c
   return std::nullopt;
 }
 
+// The operator of S or R of a stage, with its weights in the plan.
+OperatorOrRefusal definite_operator(const Program& whole, const FoldedStage& folded, int lanes, const char* name,
+                                    const OperatorWeights& weights) {
+  try {
+    return make_operator(whole.kind, *whole.model, folded, lanes);
+  } catch (const IndefiniteMatrix& found) {
+    blame_indefinite(found, name, weights, *whole.problem);
+  }
+}
+
 // What a law reads moves with z and w by one set of columns. They are those of the measure, or of the rate where no
 // effort moves the measure.
 std::optional<Refusal> read_impulse(StageProgram& program, const Stage& stage, const Program& whole) {
@@ -86,7 +97,7 @@ std::optional<Refusal> read_impulse(StageProgram& program, const Stage& stage, c
         "the time scheme's impulse moves the rate at contact otherwise than the displacement, and the law reads both: "
         "use an undamped law, or another evaluation"};
   program.rate_reach = base.z != 0 ? rate.z / base.z : base.w != 0 ? rate.w / base.w : 0.0;
-  auto made = make_operator(whole.kind, *whole.model, R, 1);
+  auto made = definite_operator(whole, R, 1, "R of an impulse", stage.impulse->R);
   if (const auto* refusal = std::get_if<Refusal>(&made))
     return Refusal{"the scheme's impulse has no solution (" + refusal->sentence +
                    "): use a regular mass, or a scheme without impulse"};
@@ -116,7 +127,7 @@ std::optional<Refusal> fill(StageProgram& program, const Stage& stage, const Pro
   }
   program.driven = program.folded.driven() || !stage.load.empty();
   if (!program.folded.solves() || (!program.driven && !program.reads_contact)) return std::nullopt;
-  auto made = make_operator(whole.kind, *whole.model, program.folded, whole.width);
+  auto made = definite_operator(whole, program.folded, whole.width, "S", stage.matrix);
   if (auto* refusal = std::get_if<Refusal>(&made)) return *refusal;
   program.op = std::move(std::get<std::unique_ptr<StageOperator>>(made));
   return std::nullopt;
@@ -282,6 +293,7 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   if (program.tangents > 0 && program.law->reads() && !program.law->offers_slopes())
     return Refusal{"the contact law offers no slopes, hence no tangents: its exponents are those of twins"};
   if (auto refusal = meet_law(*program.law, *problem, lanes)) return *refusal;
+  check_stiffness_of_law(*problem);
   if (auto refusal = refuse_own(*program.law, problem->own, problem->stops)) return *refusal;
   if (auto refusal = refuse_restitution(program)) return *refusal;
   program.own_sets = sets_per_point(*program.law, problem->own);

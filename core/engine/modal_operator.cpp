@@ -1,4 +1,8 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+#include <ricochet/engine/indefinite_step.hpp>
 #include <ricochet/engine/stage_operator.hpp>
 
 namespace ricochet {
@@ -28,6 +32,11 @@ class ModalOperator final : public StageOperator {
     for (int i = 0; i < rows_; ++i) {
       double weight = stage.mass * M[i] + stage.stiffness * K[i];
       if (C.size() > 0) weight += stage.damping * C[i];
+      // The eigenvalues μ = M are known to round-off of the largest one.
+      constexpr double round_off = 1e-12;
+      const double lost =
+          round_off * (std::abs(stage.mass) * M.cwiseAbs().maxCoeff() + std::abs(stage.stiffness * K[i]));
+      if (weight < -lost) negative_ = i;
       const double inverse = 1 / weight;
       inverse_.push_back(inverse);
       for (std::size_t j = 0; j < stage.mass_history.size(); ++j) {
@@ -40,11 +49,11 @@ class ModalOperator final : public StageOperator {
     if (lanes == 1 && slots_ == 2) columns_ = mode_columns(rows_, coefficient_);
   }
 
-  std::optional<std::string> check() const {
-    for (const double inverse : inverse_)
-      if (!std::isfinite(inverse) || inverse <= 0) return std::string("the matrix of the step is singular on a mode");
-    return std::nullopt;
+  bool solves() const {
+    return std::all_of(inverse_.begin(), inverse_.end(), [](double x) { return std::isfinite(x) && x > 0; });
   }
+  /// A mode on which S is negative; −1: none.
+  int negative() const { return negative_; }
 
   bool keeps_combination() const override { return false; }
   bool takes_update() const override { return slots_ == 2; }
@@ -92,7 +101,7 @@ class ModalOperator final : public StageOperator {
 
  private:
   const LaneKernels& kernels_;
-  int rows_, slots_, lanes_;
+  int rows_, slots_, lanes_, negative_ = -1;
   std::vector<double> coefficient_, inverse_, columns_;
   const double* point_ = nullptr;
   Block unknown_, zero_scale_;
@@ -102,7 +111,8 @@ class ModalOperator final : public StageOperator {
 
 OperatorOrRefusal make_modal_operator(const MarchModel& model, const FoldedStage& stage, int lanes) {
   auto modal = std::make_unique<ModalOperator>(model, stage, lanes);
-  if (const auto wrong = modal->check()) return Refusal{*wrong};
+  if (modal->negative() >= 0) throw IndefiniteMatrix{fmt::format("mode {} of {}", modal->negative() + 1, model.rows())};
+  if (!modal->solves()) return Refusal{"the matrix of the step is singular on a mode"};
   return std::unique_ptr<StageOperator>(std::move(modal));
 }
 

@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <ricochet/engine/indefinite_step.hpp>
 #include <ricochet/engine/stage_operator.hpp>
 #include <ricochet/kernels/band_ldlt.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
@@ -9,6 +12,17 @@ namespace {
 
 bool any(const std::vector<double>& weights) {
   return std::any_of(weights.begin(), weights.end(), [](double w) { return w != 0; });
+}
+
+// Throws IndefiniteMatrix where a pivot has the wrong sign: those of `dofs` are positive, those of the border negative.
+void refuse_indefinite(const SparseLdlt& ldlt, const SparseMatrix& whole, const std::vector<int>& order, int dofs) {
+  constexpr double round_off = 1e-10;  // of a diagonal that all but cancels
+  for (std::size_t i = 0; i < ldlt.pivot().size(); ++i) {
+    const int row = ldlt.order()[i];
+    const double pivot = order[static_cast<std::size_t>(row)] < dofs ? ldlt.pivot()[i] : -ldlt.pivot()[i];
+    if (pivot < -round_off * std::abs(whole.coeff(row, row)))
+      throw IndefiniteMatrix{fmt::format("pivot {} of {}", i + 1, ldlt.size())};
+  }
 }
 
 // What band and sparse operators share: the right-hand side by band products, and M x of a mass that is not assembled.
@@ -104,7 +118,12 @@ class BandOperator final : public StageOperator {
         rows_(model.rows()) {}
 
   std::optional<std::string> factorise(const QuasiDefinite& matrix) {
-    if (auto wrong = ldlt_.factorise(matrix)) return wrong;
+    if (auto wrong = ldlt_.factorise(matrix)) {
+      std::vector<int> order;
+      const SparseMatrix whole = matrix.assemble(order);
+      if (SparseLdlt ldlt; ldlt.factorise(whole)) refuse_indefinite(ldlt, whole, order, rows_);
+      return wrong;
+    }
     if (assembly_.stiffness_alone()) nodes_ = NodeBand(stiffness_, assembly_.shape(), ldlt_);
     if (nodes_.border()) border_ = Block(nodes_.nodes(), lanes_);
     zero_scale_ = Block(1, lanes_);
@@ -256,8 +275,9 @@ class SparseOperator final : public StageOperator {
   std::optional<std::string> factorise(const QuasiDefinite& matrix) {
     std::vector<int> order;
     SparseLdlt ldlt;
-    if (!ldlt.factorise(matrix.assemble(order)))
-      return "the matrix of the step is singular (CHOLMOD: " + ldlt.reason() + ")";
+    const SparseMatrix whole = matrix.assemble(order);
+    if (!ldlt.factorise(whole)) return "the matrix of the step is singular (CHOLMOD: " + ldlt.reason() + ")";
+    refuse_indefinite(ldlt, whole, order, rows_);
     // The border's part of the right-hand side is zero, unless M x goes through it.
     const int known = assembly_.mass_through_border() ? assembly_.right_hand_side().rows() : rows_;
     lanes_through_ = SparseSubstitution(ldlt, order, known, rows_);
@@ -359,8 +379,10 @@ QuasiDefinite stage_system(const MarchModel& model, const FoldedStage& stage) {
 OperatorOrRefusal make_operator(OperatorKind kind, const MarchModel& model, const FoldedStage& stage, int lanes) {
   if (kind == OperatorKind::modal) return make_modal_operator(model, stage, lanes);
   const Inertia& inertia = model.inertia();
-  if (inertia.inverted() && stage.stiffness == 0 && !model.problem().damping.matrix)
+  if (inertia.inverted() && stage.stiffness == 0 && !model.problem().damping.matrix) {
+    if (stage.mass < 0) throw IndefiniteMatrix{"every motion"};
     return std::make_unique<InverseOperator>(model, stage, lanes);
+  }
   if (!inertia.assembled() && stage.mass < 0)
     return Refusal{"the step weights a mass negatively that is not assembled: use the mass consistent or lumped"};
   if (!inertia.assembled() && stage.mass == 0 && stage.uses_mass())

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ricochet/contract/plugin_call.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
 
@@ -129,6 +130,15 @@ std::unique_ptr<TimeScheme> make_scheme(const StudyCase& study_case, const Regis
       .make(study_case.time.parameters);
 }
 
+void name_indefinite(const IndefiniteStep& wrong, const StudyCase& study_case, const Registry& registry) {
+  const auto fault = [&](Role role, const std::string& name, const char* function) {
+    throw PluginFault({role_name(role), name, registry.file(role, name)}, function, wrong.what());
+  };
+  if (wrong.of == IndefiniteStep::Of::scheme) fault(Role::time, study_case.time.name, "plan");
+  if (wrong.of == IndefiniteStep::Of::law) fault(Role::contact, study_case.contact.name, "prepare_problem");
+  throw wrong;
+}
+
 std::optional<double> scheme_restitution(const StudyCase& study_case, const Registry& registry) {
   const auto& scheme = registered(registry.time(study_case.time.name), Role::time, study_case.time.name);
   return value_of_role(scheme.manual.parameters, study_case.time.parameters, ParameterRole::restitution);
@@ -183,12 +193,16 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
   CompileOptions options;
   options.expected_steps = prepared.steps;
   options.march = march_way(study_case);
-  auto compiled = compile(prepared.problem, steps, study_case.step, std::move(law),
-                          {scene_lane(*prepared.problem, study_case.contact.parameters)}, options);
-  if (const auto* refusal = std::get_if<Refusal>(&compiled))
-    prepared.refusal = refusal->sentence;
-  else
-    prepared.program.emplace(std::move(std::get<Program>(compiled)));
+  try {
+    auto compiled = compile(prepared.problem, steps, study_case.step, std::move(law),
+                            {scene_lane(*prepared.problem, study_case.contact.parameters)}, options);
+    if (const auto* refusal = std::get_if<Refusal>(&compiled))
+      prepared.refusal = refusal->sentence;
+    else
+      prepared.program.emplace(std::move(std::get<Program>(compiled)));
+  } catch (const IndefiniteStep& wrong) {
+    name_indefinite(wrong, study_case, registry);
+  }
   return prepared;
 }
 

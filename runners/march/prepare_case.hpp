@@ -4,6 +4,7 @@
 #include <optional>
 #include <ricochet/contract/registry.hpp>
 #include <ricochet/contract/step_plan.hpp>
+#include <ricochet/engine/indefinite_step.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <string>
@@ -71,6 +72,10 @@ MarchWay march_way(const StudyCase& study_case);
 std::unique_ptr<MassStrategy> make_mass(const StudyCase& study_case, const Registry& registry);
 std::unique_ptr<ContactLaw> make_law(const StudyCase& study_case, const Registry& registry);
 std::unique_ptr<TimeScheme> make_scheme(const StudyCase& study_case, const Registry& registry);
+
+/// Throws the fault of the plugin of a case whose numbers make a step indefinite; the error itself where it is the
+/// structure's.
+[[noreturn]] void name_indefinite(const IndefiniteStep& wrong, const StudyCase& study_case, const Registry& registry);
 
 /// The restitution coefficient that the study gives the scheme, or nothing where it takes none.
 std::optional<double> scheme_restitution(const StudyCase& study_case, const Registry& registry);

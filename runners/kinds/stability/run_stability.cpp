@@ -89,7 +89,11 @@ class StabilityRun {
     const bool observe = case_.settings.value("observe", true);
     if (observe) {
       say_horizon();
-      for (Side& side : sides) this->observe(side);
+      try {
+        for (Side& side : sides) this->observe(side);
+      } catch (const IndefiniteStep& wrong) {
+        name_indefinite(wrong, case_, registry_);
+      }
     }
     record_.run_seconds = thread_seconds() - begin_ - record_.setup_seconds;
     record_.status = "done";

@@ -63,6 +63,8 @@ int ForcedScenes::add(SceneVariant variant) {
     if (scene.group == static_cast<int>(beyond_limit_.size()))
       beyond_limit_.push_back(beyond_explicit_limit(problem, std::get<StepPlan>(plan), h, plan_at));
     scene.refusal = beyond_limit_[static_cast<std::size_t>(scene.group)];
+  } catch (const IndefiniteStep& wrong) {
+    name_indefinite(wrong, case_, registry_);
   } catch (const InputError& error) {
     scene.refusal = (error.pointer().empty() ? "" : error.pointer() + ": ") + error.what();
     scene.no_start = dynamic_cast<const BeyondStop*>(&error) != nullptr;

@@ -101,6 +101,40 @@ TEST_CASE("a plan runs alike however it is stated and wherever its cases run", "
   same_tables::check_same(here / "alone", here / "merged");
 }
 
+TEST_CASE("a plan whose C has the wrong sign fails its cases by name, whatever the kind of study", "[plan-file]") {
+  const Folder here;
+  Json plan = plan_text("0.5");
+  plan["stages"][0]["matrix"] = "M - gamma*h*C + beta*h*h*K";
+  here.write("wrong.json", plan.dump(1));
+  for (const std::string kind : {"trajectory", "stability", "bifurcation"}) {
+    Json study = study_with(kind, {{"name", "plan"}, {"file", "wrong.json"}});
+    study["scene"]["structure"]["damping"]["stiffness"] = 1e-2;
+    if (kind != "trajectory") study.erase("step"), study.erase("samples");
+    if (kind == "stability") study["steps"] = {{"from", 1e-5}, {"to", 1e-4}, {"count", 2}};
+    if (kind == "bifurcation") {
+      study.erase("duration");
+      study["scene"].erase("initial");
+      study["scene"]["support"] = {{"amplitude", 0.08}, {"pulsation", 10}};
+      study.update(Json::parse(R"({
+        "parameter": {"pointer": "/scene/support/amplitude", "from": 0.07, "to": 0.08, "count": 2},
+        "steps_per_period": 2000, "transient": {"periods": 16, "at_most": 32}, "keep": 16, "section": "strobe"})"));
+    }
+    here.write("study.json", study.dump());
+    const Outcome said = here.run("run study.json --inline --table --out " + kind);
+    INFO(kind << "\n" << said.err << said.out);
+    CHECK(said.code == 3);
+    bool named = false;
+    for (const auto& row : same_tables::rows_of(here / (kind + "/cases.csv")))
+      if (row.at("time") == "my-newmark") {
+        CHECK(row.at("status") == "failed");
+        CHECK_THAT(row.at("reason"), Contains("plugin time 'my-newmark'") && Contains("S is indefinite") &&
+                                         Contains("the plan weighs C by -"));
+        named = true;
+      }
+    CHECK(named);
+  }
+}
+
 TEST_CASE("a convergence study, which workers run, knows a plan by its file, from another folder", "[plan-file]") {
   const Folder here;
   fs::create_directories(here / "studies/plans");
