@@ -90,15 +90,35 @@ Place turned(const Place& place, const TangentSpec& tangent) {
   return out;
 }
 
+// Whether a beam stands at a place, which has a slope there.
+bool bends(const SceneSpec& scene, const Place& place, const std::string& pointer) {
+  const JoinedBodies* bodies = bodies_of(scene.structure);
+  const StructureSpec& own = bodies ? bodies->of(place, pointer).alone.structure : scene.structure;
+  return place.x && std::holds_alternative<BeamSpec>(own);
+}
+
+// What a stop may say of its tangent, given what it said: something that its places have, or nothing.
+[[noreturn]] void refuse_tangent(const SceneSpec& scene, const NamedStop& stop, const std::string& pointer) {
+  const auto both = [&](auto&& has) { return has(stop.at) && (!stop.to || has(*stop.to)); };
+  const bool slope = both([&](const Place&place) { return bends(scene, place, pointer); }),
+             node = both([](const Place&place) { return !place.node.empty(); });
+  const std::string why = stop.side                        ? "is a clearance, which knows its circle"
+                          : stop.tangent->slope_radius > 0 ? "has no beam, whose slope it could be"
+                                                           : "is not at a node";
+  const std::string remedy = slope                ? "give slope_radius, or leave tangent out"
+                             : node && !stop.side ? "give direction or component"
+                                                  : "leave tangent out";
+  throw InputError(pointer, fmt::format("stop {} {}: {}", stop.name, why, remedy));
+}
+
 // Of a clearance: u₁, u₂, and of a surface that bends r θ₁, r θ₂.
 std::vector<PlaceRow> round_tangents(const SceneSpec& scene, const FiniteElementSpace& space, const NamedStop& stop,
                                      std::size_t number) {
   std::vector<PlaceRow> rows{axis_row(scene, space, stop, number, 0), axis_row(scene, space, stop, number, 1)};
   if (!stop.tangent) return rows;
   const std::string pointer = tangent_pointer(number) + "/slope_radius";
-  if (!(stop.tangent->slope_radius > 0))
-    throw InputError(tangent_pointer(number),
-                     fmt::format("{} is a clearance, which knows its circle; expected slope_radius", stop.name));
+  const bool slopes = bends(scene, stop.at, pointer) && (!stop.to || bends(scene, *stop.to, pointer));
+  if (!(stop.tangent->slope_radius > 0) || !slopes) refuse_tangent(scene, stop, tangent_pointer(number));
   const auto turned_by = [&](const Place& at, const std::optional<Place>& to) {
     const PlaceRow row = section_row(scene, space, at, ShapeOf::rotation, pointer);
     return scaled(to ? difference(row, section_row(scene, space, *to, ShapeOf::rotation, pointer)) : row,
@@ -115,14 +135,10 @@ PlaceRow tangent_row(const SceneSpec& scene, const FiniteElementSpace& space, co
   const std::string pointer = tangent_pointer(number);
   const auto row = [&](const Place& place) {
     if (tangent.slope_radius > 0) {
-      if (!place.x)
-        throw InputError(pointer + "/slope_radius",
-                         "the slope is that of a beam; expected direction or component, or a stop at {\"x\"}");
+      if (!bends(scene, place, pointer)) refuse_tangent(scene, stop, pointer);
       return scaled(section_row(scene, space, place, ShapeOf::rotation, pointer), tangent.slope_radius);
     }
-    if (place.node.empty())
-      throw InputError(pointer, fmt::format("stop {} is not at a node; expected {}", stop.name,
-                                            place.x ? "slope_radius" : "a stop at {\"node\"}"));
+    if (place.node.empty()) refuse_tangent(scene, stop, pointer);
     return place_row(scene, space, turned(place, tangent), pointer);
   };
   return stop.to ? difference(row(stop.at), row(*stop.to)) : row(stop.at);

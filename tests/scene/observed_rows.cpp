@@ -1,5 +1,7 @@
 // Points and tangents: rows that are read, what supports add to them, and what they may not be.
+#include <ricochet/scene/clearances.hpp>
 #include <ricochet/scene/observed_rows.hpp>
+#include <ricochet/scene/structure/assembled_structure.hpp>
 
 #include "tests/scene/structure/beam_files.hpp"
 #include "tests/scene/working_set.hpp"
@@ -136,13 +138,14 @@ TEST_CASE("points and tangents that cannot be are refused by name and pointer") 
     other.stops.named[0].tangent = tangent;
     return scene_fault(other);
   };
-  CHECK(with_tangent({0, {0, 1, 0}, ""}) == "/scene/stops/0/tangent: stop bar is not at a node; expected slope_radius");
+  CHECK(with_tangent({0, {0, 1, 0}, ""}) ==
+        "/scene/stops/0/tangent: stop bar is not at a node: give slope_radius, or "
+        "leave tangent out");
   SceneSpec frame = assembled_scene(assembled(beam_files(beam_of(scene), 4)), {});
   frame.stops.named = {{"bar", at_node("N4"), {}, {}, 1.0}};
   frame.stops.named[0].tangent = TangentSpec{0.1, {}, ""};
   CHECK(scene_fault(frame, 1) ==
-        "/scene/stops/0/tangent/slope_radius: the slope is that of a beam; expected direction or component, or a stop "
-        "at {\"x\"}");
+        "/scene/stops/0/tangent: stop bar has no beam, whose slope it could be: give direction or component");
   frame.stops.named[0].tangent = TangentSpec{0, {}, "uz"};
   CHECK_THAT(scene_fault(frame, 1),
              Catch::Contains("/scene/stops/0/tangent/component: node N4 has ") && Catch::Contains("no uz"));
@@ -150,4 +153,69 @@ TEST_CASE("points and tangents that cannot be are refused by name and pointer") 
   CHECK(scene_fault(frame, 1) == "no error");
   frame.points = {{"far", at_node("N44")}};
   CHECK_THAT(scene_fault(frame, 1), Catch::Contains("/scene/points/0/at/node: \"N44\": no such node; nearest N4"));
+}
+
+TEST_CASE("what an error about a tangent recommends is accepted, on every structure") {
+  SceneSpec beam = unit_beam();
+  beam.stops = {};
+  SceneSpec planes = beam;
+  beam_of(planes).planes = 2;
+  SceneSpec frame = assembled_scene(assembled(beam_files(beam_of(beam), 4)), {});
+  std::vector<double> ratios;
+  SceneSpec modes = frame;
+  std::get<AssembledSpec>(modes.structure).structure = std::make_shared<const AssembledStructure>(
+      modal_structure({read_csv("mode,frequency,mass,damping\n1,3,2,0\n2,4,2,0\n", "modes.csv"),
+                       read_csv("point,1,2\ntube.uy,1,0\ntube.uz,0,1\n", "shapes.csv"),
+                       {},
+                       {},
+                       {}},
+                      ratios));
+  SceneSpec oscillator = beam, bar = beam;
+  oscillator.structure = OscillatorSpec{.mass = 1, .stiffness = 100, .damping = 0, .force = {}};
+  bar.structure = BarSpec{};
+  Place node = at_node("N4"), tube, dofs;
+  node.component.clear();
+  tube.point = "tube";
+  dofs.dofs = {{5, 1.0}};
+  Place mode = tube;
+  mode.point = "tube.uy";
+  struct Case {
+    SceneSpec scene;
+    Place at;
+    bool round;
+    std::array<std::string, 2> components{"uy", "uz"};
+  };
+  int refused = 0;
+  for (const Case& one :
+       {Case{planes, at_position(0.5), true}, Case{planes, at_position(0.5), false},
+        Case{beam, at_position(0.5), false}, Case{frame, node, true, {"uy", "rz"}}, Case{frame, at_node("N4"), false},
+        Case{frame, dofs, false}, Case{modes, tube, true}, Case{modes, mode, false},
+        Case{oscillator, at_position(0), false}, Case{bar, at_position(0), false}}) {
+    SceneSpec scene = one.scene;
+    NamedStop stop{.name = "bar", .at = one.at, .to = {}, .lower = {}, .upper = {}};
+    for (const TangentSpec& tangent :
+         {TangentSpec{0.01, {}, ""}, TangentSpec{0, {}, "rz"}, TangentSpec{0, {0, 0, 1}, ""}}) {
+      const auto fault = [&](const std::optional<TangentSpec>& said) {
+        NamedStop own = stop;
+        own.tangent = said;
+        scene.stops.named = {own};
+        if (one.round)
+          scene.stops.named = clearance_rows(own, {.radius = 1e-3, .sides = 8, .components = one.components});
+        else
+          scene.stops.named.front().upper = 1;
+        return scene_fault(scene, 1);
+      };
+      REQUIRE(fault({}) == "no error");
+      const std::string said = fault(tangent);
+      if (said == "no error" || said.find("no component") != std::string::npos) continue;
+      INFO(said);
+      ++refused;
+      const auto told = [&](const char* words) { return said.find(words) != std::string::npos; };
+      CHECK((told("leave tangent out") || told("give slope_radius") || told("give direction or component") ||
+             told("has ")));
+      if (told("give slope_radius")) CHECK(fault(TangentSpec{0.01, {}, ""}) == "no error");
+      if (told("give direction or component")) CHECK(fault(TangentSpec{0, {}, "rz"}) == "no error");
+    }
+  }
+  CHECK(refused >= 15);
 }

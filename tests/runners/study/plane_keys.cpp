@@ -99,8 +99,10 @@ TEST_CASE("bad clearances and planes are refused with place, what was found and 
              Contains("/scene/stops/0/upper: a clearance is bounded by its radius; expected no other bound"));
   CHECK_THAT(refusal(plane_changed("/scene/stops/0/at", {{"x", 0.7}, {"component", "uy"}})),
              Contains("/scene/stops/0/at: a clearance has components of its own"));
-  CHECK_THAT(refusal(plane_changed("/scene/stops/0/tangent", {{"component", "uy"}})),
-             Contains("/scene/stops/0/tangent: plate is a clearance, which knows its circle; expected slope_radius"));
+  CHECK_THAT(
+      refusal(plane_changed("/scene/stops/0/tangent", {{"component", "uy"}})),
+      Contains("/scene/stops/0/tangent: stop plate is a clearance, which knows its circle: give slope_radius, or leave "
+               "tangent out"));
   CHECK_THAT(refusal(plane_study(1)),
              Contains("/scene/stops/0/clearance/components/1: a beam of one plane moves along uy"));
   Json held = plane_study();
