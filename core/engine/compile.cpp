@@ -292,6 +292,11 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   program.tangents = options.tangents;
   if (program.tangents > 0 && program.law->reads() && !program.law->offers_slopes())
     return Refusal{"the contact law offers no slopes, hence no tangents: its exponents are those of twins"};
+  const bool turns = program.law->reads_rate() || program.law->reads() == Evaluation::conserving;
+  if (program.tangents > 0 && turns && !problem->circles().empty())
+    return Refusal{
+        "a force in a circle that reads a rate, or the step before, has no tangents here: exponents are those of "
+        "twins. Use a force of the depth alone"};
   if (auto refusal = meet_law(*program.law, *problem, lanes)) return *refusal;
   check_stiffness_of_law(*problem);
   if (auto refusal = refuse_own(*program.law, problem->own, problem->stops)) return *refusal;

@@ -78,7 +78,7 @@ void Marcher::begin_contact() {
   }
   const std::uint32_t beyond = kernels_.outside(points, place.data(), lower_.data(), upper_.data());
   if (beyond == 0) return;
-  StandingPoints standing{points, T, place.data(), lower_.data(), upper_.data()};
+  StandingPoints standing{points, T, place.data(), law_lower().data(), law_upper().data(), program_.problem->circles()};
   const std::vector<double> force = standing_force(*program_.law, standing);
   if (memory_.rows() > 0) {
     standing.rate = rate.data();

@@ -24,14 +24,14 @@ double Marcher::stored_at_start(int lane) const {
   if (!program_.contact || !program_.law->reads()) return 0;
   const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
   const SparseRows& measured = program_.problem->measured();
-  double sum = 0;
+  std::vector<double> places;
   for (int point = 0; point < program_.problem->points(); ++point) {
     double place = 0;
     for (SparseRows::InnerIterator entry(measured, point); entry; ++entry)
       place += entry.value() * spec.position[entry.col()];
-    sum += stored(lane, point, place, spec.amplitude * std::sin(spec.phase) + motions().point(point, 0));
+    places.push_back(place + (spec.amplitude * std::sin(spec.phase) + motions().point(point, 0)));
   }
-  return sum;
+  return stored(lane, places.data());
 }
 
 // The law acts from its layer on.
@@ -41,6 +41,22 @@ void Marcher::place_stops(int lane) {
     const double layer = program_.law->layer(program_.law_set(i, lane));
     lower_.at(i, lane) = spec.lower[i] + layer;
     upper_.at(i, lane) = spec.upper[i] - layer;
+  }
+  if (!circles_.any()) return;
+  for (int i = 0; i < lower_.rows(); ++i) {
+    law_lower_.at(i, lane) = lower_.at(i, lane);
+    law_upper_.at(i, lane) = upper_.at(i, lane);
+  }
+  // Within a square no point passes its circle.
+  for (const int first : circles_.circles()) {
+    const double layer = program_.law->layer(program_.law_set(first, lane));
+    Circle circle = Circle::of(spec.lower, spec.upper, first);
+    circle.radius -= layer;
+    for (const int axis : {0, 1}) {
+      const auto [low, high] = circle.square(axis);
+      lower_.at(first + axis, lane) = low;
+      upper_.at(first + axis, lane) = high;
+    }
   }
 }
 
@@ -54,6 +70,11 @@ void Marcher::prepare_law() {
   ricochet::prepare_law(*program_.law, points, parameters, program_.problem->own);
   const int kept = program_.law->memory_per_point();
   if (kept > 0 && memory_.rows() == 0) memory_ = Block(points * kept, program_.width);
+  circles_.prepare(points, program_.width, program_.problem->circles(), kept);
+  if (circles_.any() && law_lower_.rows() == 0) {
+    law_lower_ = lower_;
+    law_upper_ = upper_;
+  }
   for (int lane = 0; lane < lanes(); ++lane)
     if (status_[static_cast<std::size_t>(lane)].running) place_stops(lane);
 }

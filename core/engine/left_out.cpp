@@ -87,6 +87,8 @@ void say_unused(Program& program) {
     program.left_out.push_back({fmt::format("{} of stops", role_word(role)), reason});
   };
   if (!program.contact) return;
+  if (!problem.circles().empty())
+    program.left_out.push_back({"sides of clearances", "a compliant law meets the circle itself"});
   for (const UnusedParameter& unused : unused_by(*program.law, problem.own))
     say(unused.role, program.law->reads() ? "the contact law has none" : "the contact law is rigid");
   if (first_with(problem.own, ParameterRole::restitution) < 0) return;

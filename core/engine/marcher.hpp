@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
+#include <ricochet/contact_solvers/circle_solver.hpp>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/march_loads.hpp>
 #include <ricochet/engine/step_observer.hpp>
@@ -149,8 +151,29 @@ class Marcher {
   /// `law_saw_end`: where the last stage's law reads the position there, points that its own problem leaves between
   /// their stops need not be measured.
   double penetration(int lane, bool law_saw_end = false) const;
-  /// Energy that a compliant law stores at a contact point, J: of both of its stops, for a given H w and lift().
-  double stored(int lane, int point, double relative, double lift) const;
+  /// Energy that a compliant law stores at all contact points, J, for their absolute displacements (m).
+  double stored(int lane, const double* places) const;
+  /// The circle of a lane whose first point this is.
+  Circle circle(int lane, int point) const {
+    const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+    return Circle::of(spec.lower, spec.upper, point);
+  }
+  /// `see`(point, p) of each push of a lane in a stage: of a circle its first point, and p = −N.
+  template <class See>
+  void each_push(const StageView& view, int lane, See&& see) const {
+    const double* efforts = view.effort[0] + lane;
+    const auto effort = [&](int j) { return efforts[static_cast<std::ptrdiff_t>(j) * width()]; };
+    for (const int j : view.pushed) {
+      const double p = effort(j);
+      if (p == 0) continue;
+      if (!circles_.holds(j))
+        see(j, p);
+      else if (circles_.first(j))
+        see(j, -std::hypot(p, effort(j + 1)));
+      else if (effort(j - 1) == 0)
+        see(j - 1, -std::abs(p));
+    }
+  }
   /// Σ φ_k F(t + c_k h) of the distributed load in model coordinates (n); null when there is none.
   const double* distributed_load(const Levels& levels, double t);
   /// Number of Delassus columns computed so far in the stages.
@@ -185,6 +208,9 @@ class Marcher {
   template <class See>
   bool may_be_beyond(See&& see) const;
 
+  const Block& law_lower() const { return circles_.any() ? law_lower_ : lower_; }
+  const Block& law_upper() const { return circles_.any() ? law_upper_ : upper_; }
+
   // stage_contact.cpp: efforts of a stage, and its unknown corrected by them.
   void contact(StageProgram& program, StageState& state, double* z);
   void remember_efforts(const StageProgram& program, StageState& state, double* z);
@@ -211,6 +237,7 @@ class Marcher {
   // tangent_contact.cpp: the same derivative for tangent columns.
   void remove_load(StageProgram& program, const double* load);
   void tangent_contact(StageProgram& program, StageState& state);
+  void add_round_slopes(DelassusColumns& columns, double base, StageState& state, int lane);
   void tangent_targets(const StageProgram& program, StageState& state, int lane, int tangent);
 
   // lane_state.cpp: lanes that come and go, or diverge.
@@ -235,7 +262,9 @@ class Marcher {
   const double* waiting_ = nullptr;  // z of an update that the next free step makes
   std::vector<std::unique_ptr<StageState>> start_states_, stage_states_;
   ClampMotion clamp_;
-  Block scale_, offset_, lower_, upper_;
+  Block scale_, offset_, lower_, upper_;  // bounds between which no law need be asked
+  CircleSolver circles_;
+  Block law_lower_, law_upper_;                  // bounds that the law sees; none where they are the same
   Block memory_;                                 // of the law, points × T for each number that it keeps
   std::vector<int> touched_, pushed_, pushing_;  // lanes looked at; points with an effort, as shown and as corrected
   std::vector<unsigned char> pushes_;            // of each point, whether some lane has one

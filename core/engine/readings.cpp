@@ -80,13 +80,24 @@ double Marcher::tip(int lane) const {
   return sum;
 }
 
-double Marcher::stored(int lane, int point, double relative, double lift) const {
+double Marcher::stored(int lane, const double* places) const {
   const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
-  const int set = program_.law_set(point, lane);
-  const double place = relative + lift, layer = program_.law->layer(set);
   double sum = 0;
-  for (const double depth : {spec.lower[point] - place, place - spec.upper[point]})
-    if (depth > -layer) sum += program_.law->potential(depth, set);
+  for (int point = 0; point < program_.problem->points(); ++point) {
+    const int set = program_.law_set(point, lane);
+    const double place = places[point], layer = program_.law->layer(set);
+    const auto add = [&](double depth) {
+      if (depth > -layer) sum += program_.law->potential(depth, set);
+    };
+    if (circles_.holds(point)) {
+      const Circle circle = Circle::of(spec.lower, spec.upper, point);
+      ++point;
+      add(circle.distance(place, places[point]) - circle.radius);
+      continue;
+    }
+    add(spec.lower[point] - place);
+    add(place - spec.upper[point]);
+  }
   return sum;
 }
 
@@ -141,13 +152,23 @@ double Marcher::penetration(int lane, bool law_saw_end) const {
   const double *lower = spec.lower.data(), *upper = spec.upper.data(), *q = slots_[0];
   const double phi = support(lane, time());
   double deepest = 0;
+  double along = 0;  // u₁ of a circle
   const auto see = [&](int j, double relative) {
     const double place = relative + phi + motions().point(j, time());
+    if (circles_.holds(j)) {
+      if (circles_.first(j)) {
+        along = place;
+        return;
+      }
+      const Circle circle = Circle::of(spec.lower, spec.upper, j - 1);
+      deepest = std::max(deepest, circle.distance(along, place) - circle.radius);
+      return;
+    }
     deepest = std::max(deepest, std::max(lower[j] - place, place - upper[j]));
   };
   const int n = program_.model->rows();
   const auto dense_row = [&](int j) { return rows.value.data() + static_cast<std::ptrdiff_t>(j) * n; };
-  if (program_.width == 1 && law_saw_end) {
+  if (program_.width == 1 && law_saw_end && !circles_.any()) {
     const bool told = may_be_beyond([&](int j) {
       see(j, program_.flight ? flight_kernels().dot(n, dense_row(j), q) : program_.model->times(rows, j, q));
     });

@@ -271,8 +271,8 @@ void Marcher::solve_law(const StageProgram& program, StageState& state) {
   if (state.impulse) problem.delassus = state.impulse.get();
   problem.reach = program.reach;
   problem.free = state.free.data();
-  problem.lower = program.gate ? state.gate_lower.data() : lower_.data();
-  problem.upper = program.gate ? state.gate_upper.data() : upper_.data();
+  problem.lower = program.gate ? state.gate_lower.data() : law_lower().data();
+  problem.upper = program.gate ? state.gate_upper.data() : law_upper().data();
   problem.rate_reach = program.rate_reach;
   problem.rate_free = state.rate.rows() > 0 ? state.rate.data() : nullptr;
   problem.before = state.before.rows() > 0 ? state.before.data() : nullptr;
@@ -280,7 +280,7 @@ void Marcher::solve_law(const StageProgram& program, StageState& state) {
   problem.effort = state.effort[0].data();
   problem.touched = touched_;
   problem.outcome = outcome_.data();
-  program_.law->solve(problem);
+  circles_.solve(*program_.law, problem);
 }
 
 // Which lanes push now, and at which points; those that the law failed stop.

@@ -10,6 +10,7 @@ void ActiveSystem::reserve(int most) {
   matrix.resize(capacity * capacity);
   right.resize(capacity);
   slopes.resize(capacity);
+  round.resize(2 * capacity);
 }
 
 void ActiveSystem::factorise() {

@@ -14,6 +14,8 @@ namespace ricochet {
 struct ActiveSystem {
   std::vector<int> points;
   std::vector<double> matrix, right, slopes;
+  std::vector<double>
+      round;  ///< of points of circles: of the right side, over the displacement of its own and the other
   std::size_t capacity = 0;
 
   void reserve(int most);

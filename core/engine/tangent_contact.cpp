@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
 
@@ -7,6 +9,18 @@ namespace {
 
 // An answer this small against what moves the point is none: I/κ then leaves only what is known, to round-off.
 constexpr double least_answer = 1e-17;
+
+// How the force of a circle answers: by D along n, by N/ρ along t.
+struct RoundSlopes {
+  std::array<double, 2> n{};
+  double along = 0, across = 0;
+  // a n nᵀ + b t tᵀ
+  double entry(int i, int j, double a, double b) const {
+    const std::array<double, 2> t = {-n[1], n[0]};
+    const auto k = static_cast<std::size_t>(i), l = static_cast<std::size_t>(j);
+    return a * n[k] * n[l] + b * t[k] * t[l];
+  }
+};
 
 }  // namespace
 
@@ -35,6 +49,13 @@ void Marcher::tangent_targets(const StageProgram& program, StageState& state, in
   for (std::size_t a = 0; a < system.points.size(); ++a) {
     const int i = system.points[a];
     double target = 0;
+    if (program.compliance && circles_.holds(i)) {
+      // Where I/κ stands on the left, it divides K too.
+      const std::size_t other = circles_.first(i) ? a + 1 : a - 1;
+      const double u = state.free.at(i, tangent), across = state.free.at(system.points[other], tangent);
+      system.right[a] = -(system.round[2 * a] * u + system.round[2 * a + 1] * across);
+      continue;
+    }
     if (program.compliance) {
       const ContactSlopes slopes = program_.law->slopes(i, lane);
       double push = slopes.stiffness * state.free.at(i, tangent);
@@ -55,11 +76,40 @@ void Marcher::tangent_targets(const StageProgram& program, StageState& state, in
   }
 }
 
+// Circles that push: the answer of their force, 2 × 2, in the place of I/κ, and what the right-hand side takes of K.
+void Marcher::add_round_slopes(DelassusColumns& columns, double base, StageState& state, int lane) {
+  ActiveSystem& system = state.tangents;
+  for (std::size_t a = 0; a + 1 < system.points.size(); ++a) {
+    const int first = system.points[a];
+    if (!circles_.holds(first) || !circles_.first(first)) continue;
+    const double *one = columns.column(first), *other = columns.column(first + 1);
+    double push[2], u[2];
+    for (const int axis : {0, 1}) {
+      push[axis] = state.effort[0].at(first + axis, lane);
+      u[axis] = state.free.at(first + axis, lane);
+      for (const int j : system.points) u[axis] += base * columns.column(j)[first + axis] * state.effort[0].at(j, lane);
+    }
+    const double N = std::hypot(push[0], push[1]), rho = circle(lane, first).distance(u[0], u[1]);
+    RoundSlopes round{{-push[0] / N, -push[1] / N}, program_.law->slopes(first, lane).stiffness, N / rho};
+    const double mobility = base * std::max(one[first], other[first + 1]);
+    const double along = base > 0 ? std::max(round.along, least_answer / mobility) : 1.0,
+                 across = base > 0 ? std::max(round.across, least_answer / mobility) : 1.0;
+    for (const int i : {0, 1})
+      for (const int j : {0, 1}) {
+        system.at(a + static_cast<std::size_t>(i), a + static_cast<std::size_t>(j)) +=
+            round.entry(i, j, 1 / along, 1 / across);
+        const std::size_t at = 2 * (a + static_cast<std::size_t>(i)) + (i == j ? 0 : 1);
+        system.round[at] = round.entry(i, j, round.along / along, round.across / across);
+      }
+  }
+}
+
 // Derivatives of the efforts of every lane that was looked at: with the active set A of the lane,
 //     rigid:      base·W_AA δp = target − δy°
 //     compliant:  (base·W_AA + I/κ) δp = −(D δg° + D_u δu° + D₋ δg⁻)/κ,    κ = (D η + D_u η_u)/base
 //
-// where base is η, or η_u where the effort moves the rate alone; where it moves neither, δp = −(…), and κ is 1.
+// where base is η, or η_u where the effort moves the rate alone; where it moves neither, δp = −(…), and κ is 1. Of a
+// circle D is the matrix D nnᵀ + (N/ρ) ttᵀ between both of its points.
 void Marcher::tangent_contact(StageProgram& program, StageState& state) {
   ActiveSystem& system = state.tangents;
   const double reach = program.reach, rate_reach = state.rate.rows() > 0 ? program.rate_reach : 0.0;
@@ -75,7 +125,9 @@ void Marcher::tangent_contact(StageProgram& program, StageState& state) {
     };
     system.points.clear();
     for (int i = 0; i < state.free.rows(); ++i) {
-      const bool closed = active && state.effort[0].at(i, lane) != 0;
+      bool closed = active && state.effort[0].at(i, lane) != 0;
+      if (active && circles_.holds(i))
+        closed = closed || state.effort[0].at(circles_.first(i) ? i + 1 : i - 1, lane) != 0;
       if (delay_steps_ > 0) age(i) = closed ? age(i) + 1 : 0;
       const bool waits = delay_steps_ > 0 && delayed_points_[static_cast<std::size_t>(i)] && age(i) <= delay_steps_;
       if (closed && !waits) system.points.push_back(i);
@@ -85,7 +137,7 @@ void Marcher::tangent_contact(StageProgram& program, StageState& state) {
     for (std::size_t a = 0; a < system.points.size(); ++a) {
       double compliance = 0;
       const double* column = base != 0 ? columns->column(system.points[a]) : nullptr;
-      if (program.compliance) {
+      if (program.compliance && !circles_.holds(system.points[a])) {
         const double mobility = column ? base * column[system.points[a]] : 0.0;
         const ContactSlopes slopes = program_.law->slopes(system.points[a], lane);
         double& stiffness = system.slopes[a];
@@ -98,6 +150,7 @@ void Marcher::tangent_contact(StageProgram& program, StageState& state) {
       for (std::size_t b = 0; b < system.points.size(); ++b)
         system.at(b, a) = (column ? base * column[system.points[b]] : 0.0) + (a == b ? compliance : 0.0);
     }
+    if (program.compliance && circles_.any()) add_round_slopes(*columns, base, state, lane);
     system.factorise();
     for (int k = 0; k < program_.tangents; ++k) {
       const int tangent = tangent_lane(lane, k);

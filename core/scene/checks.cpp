@@ -290,31 +290,6 @@ std::vector<double> contact_positions(const SceneSpec& scene, int elements) {
   return nodes;
 }
 
-ForceBeyond force_beyond(ContactLaw& law, const Parameters& parameters) {
-  if (law.absent()) return [](double) { return true; };
-  if (!law.reads()) return {};
-  law.prepare(1, {&parameters, 1});
-  return [&law](double depth) { return std::isfinite(law.potential(depth, 0)); };
-}
-
-void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u, const Eigen::VectorXd& lower,
-                         const Eigen::VectorXd& upper, const std::string& pointer, const std::string& what,
-                         const ForceBeyond& beyond, const std::vector<std::string>& names) {
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    const double over = u[row] - upper[row], under = lower[row] - u[row];
-    const bool above = over > 1e-12 * (std::abs(u[row]) + std::abs(upper[row]));
-    const bool below = under > 1e-12 * (std::abs(u[row]) + std::abs(lower[row]));
-    if ((!above && !below) || pushed_back(beyond, std::max(over, under))) continue;
-    const bool upper_one = above && over >= under;
-    throw BeyondStop(pointer,
-                     fmt::format("{} is {:.6g} m at {}, beyond the {} stop at {:.6g} m; expected a state "
-                                 "between the stops, or a compliant law that lets points pass them",
-                                 what, u[row], names.empty() ? fmt::format("x = {:.6g} m", x[i]) : "stop " + names[i],
-                                 upper_one ? "upper" : "lower", upper_one ? upper[row] : lower[row]));
-  }
-}
-
 SupportMotion support_at_start(const SupportSpec& support) {
   const double w = support.pulsation, in_phase = support.amplitude * std::sin(support.phase),
                quadrature = support.amplitude * std::cos(support.phase);

@@ -59,10 +59,12 @@ struct BeyondStop : InputError {
 
 /// Throws BeyondStop at `pointer` when u leaves [lower, upper] at a point (absolute displacements, m) where no law
 /// pushes it back. `what` names u in the sentence, `names` the stops where they have names. A passage smaller than
-/// 1e-12 of the values compared is rounding.
+/// 1e-12 of the values compared is rounding. `circles`: the first rows of clearances met as circles, whose two
+/// displacements have one distance.
 void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u, const Eigen::VectorXd& lower,
                          const Eigen::VectorXd& upper, const std::string& pointer, const std::string& what,
-                         const ForceBeyond& beyond = {}, const std::vector<std::string>& names = {});
+                         const ForceBeyond& beyond = {}, const std::vector<std::string>& names = {},
+                         const std::vector<int>& circles = {});
 
 /// Throws InputError for a structure that is none, whatever acts on it, and by check_magnitudes().
 void check_structure_alone(const SceneSpec& scene, int elements);

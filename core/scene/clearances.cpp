@@ -58,16 +58,49 @@ std::vector<NamedStop> clearance_rows(const NamedStop& stop, const ClearanceSpec
     row.side->number = k;
     row.side->angle = 2 * std::numbers::pi * k / clearance.sides;
     row.side->radius = clearance.radius;
+    row.side->sides = clearance.sides;
+    row.side->offset = clearance.offset;
     row.at = along(stop.at, first);
     row.side->across = along(stop.at, second);
     if (stop.to) {
       row.to = along(*stop.to, first);
       row.side->across_to = along(*stop.to, second);
     }
-    row.upper = clearance.radius;
-    if (opposite) row.lower = -clearance.radius;
+    const auto [cosine, sine] = side_direction(row.side->angle);
+    const double middle = cosine * clearance.offset[0] + sine * clearance.offset[1];
+    row.upper = middle + clearance.radius;
+    if (opposite) row.lower = middle - clearance.radius;
   }
   return rows;
+}
+
+std::array<NamedStop, 2> circle_rows(const NamedStop& first) {
+  std::array<NamedStop, 2> rows{first, first};
+  for (const int axis : {0, 1}) {
+    NamedStop& row = rows[static_cast<std::size_t>(axis)];
+    ClearanceSide& side = *row.side;
+    side.number = axis;
+    side.angle = axis * std::numbers::pi / 2;
+    side.circle = true;
+    row.lower = side.offset[static_cast<std::size_t>(axis)] - side.radius;
+    row.upper = side.offset[static_cast<std::size_t>(axis)] + side.radius;
+  }
+  return rows;
+}
+
+StopsSpec with_circles(StopsSpec stops) {
+  std::vector<NamedStop> rows;
+  for (NamedStop& stop : stops.named)
+    if (!stop.side || stop.side->circle)
+      rows.push_back(std::move(stop));
+    else if (stop.side->number == 0)
+      for (NamedStop& row : circle_rows(stop)) rows.push_back(std::move(row));
+  stops.named = std::move(rows);
+  return stops;
+}
+
+double polygon_error(double radius, int sides) {
+  return radius * (1 / std::cos(std::numbers::pi / sides) - 1);
 }
 
 PlaceRow combined(double a, const PlaceRow& x, double b, const PlaceRow& y) {
@@ -120,10 +153,27 @@ std::vector<Clearance> clearances_of(const StopsSpec& stops) {
   for (std::size_t i = 0; i < stops.named.size(); ++i) {
     const NamedStop& stop = stops.named[i];
     if (!stop.side) continue;
-    if (stop.side->number == 0) out.push_back({stop.name, static_cast<int>(i), {}, stop.side->radius});
+    if (stop.side->number == 0)
+      out.push_back({.name = stop.name,
+                     .first = static_cast<int>(i),
+                     .angles = {},
+                     .radius = stop.side->radius,
+                     .offset = stop.side->offset,
+                     .sides = stop.side->sides,
+                     .circle = stop.side->circle});
     out.back().angles.push_back(stop.side->angle);
   }
   return out;
+}
+
+std::vector<std::string> polygon_notes(const std::vector<Clearance>& clearances) {
+  std::vector<std::string> notes;
+  for (const Clearance& one : clearances)
+    if (!one.circle)
+      notes.push_back(
+          fmt::format("stop {} is a polygon of {} sides: its corners lie {:.2g} m beyond the circle of {:.6g} m",
+                      one.name, one.sides, polygon_error(one.radius, one.sides), one.radius));
+  return notes;
 }
 
 }  // namespace ricochet

@@ -8,13 +8,15 @@
 #include <vector>
 
 /// \file
-/// Clearances: circles within which a place moves, as polygons of rows.
+/// Clearances: circles within which a place moves. Compliant laws meet the circle itself (circle_solver.hpp), rigid
+/// ones a polygon of rows round it.
 namespace ricochet {
 
 /// A circle round a place, as a study says it.
 struct ClearanceSpec {
   double radius = 0;                                  ///< m
   int sides = 16;                                     ///< of the polygon round the circle, 3 at least
+  std::array<double, 2> offset = {0, 0};              ///< u₁, u₂ of the centre, m
   std::array<std::string, 2> components{"uy", "uz"};  ///< the displacements in its plane; of modes, what follows the
                                                       ///< name of their points and a dot
 };
@@ -23,6 +25,15 @@ struct ClearanceSpec {
 /// polygon is circumscribed: its corners are radius/cos(π/sides) away. Throws InputError for bounds of its own, for
 /// places that say a component, a direction or dofs.
 std::vector<NamedStop> clearance_rows(const NamedStop& stop, const ClearanceSpec& clearance);
+
+/// The two rows u₁, u₂ of the circle itself, from the first row of a clearance. Their bounds are those of the circle
+/// along u₁ and u₂.
+std::array<NamedStop, 2> circle_rows(const NamedStop& first);
+/// The stops as a compliant law meets them: clearances are circles.
+StopsSpec with_circles(StopsSpec stops);
+
+/// What a polygon leaves of a circle, m: its corners lie r(1/cos(π/sides) − 1) beyond.
+double polygon_error(double radius, int sides);
 
 /// (cos α, sin α), exactly 0 where round-off alone is left of it.
 inline std::array<double, 2> side_direction(double angle) {
@@ -49,11 +60,16 @@ PlaceRow combined(double a, const PlaceRow& x, double b, const PlaceRow& y);
 struct Clearance {
   std::string name;
   int first = 0;
-  std::vector<double> angles;  ///< α of each row, rad
-  double radius = 0;           ///< m
+  std::vector<double> angles;             ///< α of each row, rad
+  double radius = 0;                      ///< m
+  std::array<double, 2> offset = {0, 0};  ///< of the centre, m
+  int sides = 0;                          ///< of its polygon
+  bool circle = false;                    ///< whether its rows are u₁ and u₂, and the circle itself bounds them
   int last() const { return first + static_cast<int>(angles.size()) - 1; }
 };
 /// Those of a scene, in order.
 std::vector<Clearance> clearances_of(const StopsSpec& stops);
+/// A sentence for each polygon, which says how far it is from its circle.
+std::vector<std::string> polygon_notes(const std::vector<Clearance>& clearances);
 
 }  // namespace ricochet

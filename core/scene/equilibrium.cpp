@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <ricochet/contact_solvers/circle_solver.hpp>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
@@ -48,6 +49,7 @@ class Balance {
       upper_[i] -= law->layer(own ? i : 0);
     }
     effort_ = VectorXd::Zero(points);
+    if (law) circles_.prepare(problem.points(), 1, problem.circles(), law->memory_per_point());
   }
 
   /// q and p of K + D under F + D q⁻.
@@ -90,7 +92,7 @@ class Balance {
       reduced.effort = effort_.data();
       reduced.touched = touched;
       reduced.outcome = &outcome;
-      law_->solve(reduced);
+      circles_.solve(*law_, reduced);
       const VectorXd next = free + problem_.measured() * (moved_ * effort_);
       const double change = (next - place).norm();
       place = next;
@@ -106,6 +108,7 @@ class Balance {
   SparseLdlt ldlt_;
   MatrixXd moved_;  // (K + D)⁻¹Gᵀ
   KnownColumns columns_;
+  CircleSolver circles_;
   VectorXd diagonal_, lower_, upper_, effort_;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <ricochet/contact_solvers/circle_solver.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
 #include <ricochet/scene/massless_part.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
@@ -157,7 +158,9 @@ std::vector<double> standing_force(ContactLaw& law, const StandingPoints& at) {
   problem.effort = force.data();
   problem.touched = touched;
   problem.outcome = outcome.data();
-  law.solve(problem);
+  CircleSolver circles;
+  circles.prepare(at.points, at.lanes, at.circles, law.memory_per_point());
+  circles.solve(law, problem);
   for (std::size_t lane = 0; lane < lanes; ++lane)
     if (!outcome[lane].converged)
       for (std::size_t i = lane; i < size; i += lanes) force[i] = 0;

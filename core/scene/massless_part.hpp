@@ -39,8 +39,9 @@ struct StandingPoints {
   int points = 0, lanes = 0;
   const double* place = nullptr;
   const double *lower = nullptr, *upper = nullptr;
-  const double* rate = nullptr;  ///< null: at rest
-  double* memory = nullptr;      ///< of the law, which it may change; null: one that has seen nothing, and is not kept
+  std::vector<int> circles = {};  ///< first rows of clearances met as circles
+  const double* rate = nullptr;   ///< null: at rest
+  double* memory = nullptr;       ///< of the law, which it may change; null: one that has seen nothing, and is not kept
 };
 
 /// The efforts p (m × lanes, N) of a compliant law that was sized for these points, whatever moves them. They are zero

@@ -165,6 +165,7 @@ ContactPoints contact_points(const SceneSpec& scene, const FiniteElementSpace& s
     const PlaceRow row = stop_row(scene, space, stop, static_cast<std::size_t>(i));
     for (const auto& [dof, value] : row.free) entries.emplace_back(static_cast<int>(i), dof, value);
     for (const auto& [support, weight] : row.held) out.on_supports(i, support) += weight;
+    if (stop.side && stop.side->circle && stop.side->number == 0) out.circles.push_back(static_cast<int>(i));
     out.x.push_back(row.x);
     out.names.push_back(stop.name);
     if (stop.lower) out.lower[i] = *stop.lower;
@@ -268,7 +269,7 @@ void check_named_start(const SceneSpec& scene, const FiniteElementSpace& space, 
     at = first * at + second * (initial_at(scene, across) - (across_to ? initial_at(scene, *across_to) : 0));
   }
   check_between_stops(points.x, start, points.lower, points.upper, "/scene/initial/displacement",
-                      "the initial displacement", beyond, points.names);
+                      "the initial displacement", beyond, points.names, points.circles);
 }
 
 Eigen::VectorXd initial_dofs(const AssembledStructure& structure, const InitialSpec& initial, double DofState::*value) {
@@ -338,7 +339,7 @@ void check_assembled(const SceneSpec& scene, const FiniteElementSpace& space, co
                       by_body                      ? "/scene/initial"
                       : scene.initial.dofs.empty() ? "/scene/stops"
                                                    : "/scene/initial/file",
-                      "the initial displacement", beyond, points.names);
+                      "the initial displacement", beyond, points.names, points.circles);
 }
 
 }  // namespace ricochet

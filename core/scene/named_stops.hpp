@@ -46,6 +46,7 @@ struct ContactPoints {
   SparseRows rows;                  ///< H, m × n
   Eigen::MatrixXd on_supports;      ///< m × r: weights of the displacements of supports, beside H ψ
   std::vector<StopParameters> own;  ///< of each stop; empty where none has parameters of its own
+  std::vector<int> circles;         ///< first rows of clearances met as circles
 };
 ContactPoints contact_points(const SceneSpec& scene, const FiniteElementSpace& space, int elements);
 

@@ -161,12 +161,16 @@ struct StopParameters {
 
 struct MotionSpec;
 
-/// A side of a clearance, the polygon round a circle. The stop bounds cos α u₁ + sin α u₂, with u₁ at its own places
-/// and u₂ at those here. Opposite sides are one row with two bounds.
+/// A row of a clearance: a side of the polygon round its circle, or of the circle itself u₁ (α = 0) or u₂ (α = π/2). It
+/// bounds cos α u₁ + sin α u₂, with u₁ at its own places and u₂ at those here. Opposite sides are one row with two
+/// bounds.
 struct ClearanceSide {
-  int number = 0;     ///< from 0
-  double angle = 0;   ///< α, rad
-  double radius = 0;  ///< m
+  int number = 0;                         ///< from 0
+  double angle = 0;                       ///< α, rad
+  double radius = 0;                      ///< m
+  int sides = 0;                          ///< of the polygon
+  std::array<double, 2> offset = {0, 0};  ///< of the centre, m
+  bool circle = false;                    ///< whether it is one of the two rows of the circle itself
   Place across;
   std::optional<Place> across_to = {};
 };

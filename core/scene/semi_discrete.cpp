@@ -209,7 +209,8 @@ Eigen::VectorXd lift_at_start(const SemiDiscrete& problem) {
 void check_start(const SemiDiscrete& problem, const std::string& pointer, const std::string& what,
                  const ForceBeyond& beyond) {
   const Eigen::VectorXd absolute = problem.contact * problem.position + lift_at_start(problem);
-  check_between_stops(problem.contact_x, absolute, problem.lower, problem.upper, pointer, what, beyond, problem.stops);
+  check_between_stops(problem.contact_x, absolute, problem.lower, problem.upper, pointer, what, beyond, problem.stops,
+                      problem.circles());
 }
 
 /// Gᵀp of a compliant law that pushes in the initial state; empty where none does.
@@ -225,7 +226,8 @@ Eigen::VectorXd pushed_at_start(ContactLaw& law, const Parameters& parameters, c
     lower[i] += layer;
     upper[i] -= layer;
   }
-  const std::vector<double> force = standing_force(law, {points, 1, place.data(), lower.data(), upper.data()});
+  const std::vector<double> force =
+      standing_force(law, {points, 1, place.data(), lower.data(), upper.data(), problem.circles()});
   const Eigen::Map<const Eigen::VectorXd> p(force.data(), points);
   if (p.isZero(0)) return {};
   return problem.measured().transpose() * p;
@@ -282,7 +284,9 @@ void march_in_basis(const SceneSpec& scene, const SparseMatrix& mass, SemiDiscre
 SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const MassStrategy& mass, ContactLaw* law,
                                  const Parameters* parameters) try {
   // Formulas keep their variables inside: evaluate our own copies.
-  const SceneSpec scene = on_mesh(shared, elements);
+  SceneSpec scene = on_mesh(shared, elements);
+  const bool compliant = law && !law->absent() && law->reads();
+  if (compliant) scene.stops = with_circles(std::move(scene.stops));
   const bool law_decides = law && parameters;
   // A law that changes the problem knows its force once it has.
   ForceBeyond beyond;
@@ -296,6 +300,8 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   problem.stops = std::move(points.names);
   problem.own = std::move(points.own);
   problem.clearances = clearances_of(scene.stops);
+  if (law && !law->absent() && !compliant)
+    for (std::string& note : polygon_notes(problem.clearances)) problem.notes.push_back(std::move(note));
   problem.space.contact_dofs = touched_dofs(problem.contact);
   problem.support = scene.support;
   const JoinedBodies* bodies = bodies_of(scene.structure);

@@ -94,14 +94,14 @@ struct SemiDiscrete {
   bool held = false;
   SupportMotions motions;
   std::shared_ptr<const DistributedLoad> load;
-  SparseRows contact;                                ///< H, m × n: displacements of the contact points
-  SparseRows law_rows;                               ///< G, where the law changed the problem; else empty
-  SparseMatrix own_stiffness;                        ///< K of the structure itself there; else empty
-  std::vector<double> contact_x;                     ///< position of each contact point, m
-  std::vector<std::string> stops;                    ///< name of each contact point's stop; empty where they have none
-  std::vector<StopParameters> own;                   ///< parameters of each point's stop; empty where none has its own
-  std::vector<Clearance> clearances;                 ///< whose sides are contact points of one name
-  Eigen::VectorXd lower, upper;                      ///< g1, g2 at the contact points; ±∞ where absent
+  SparseRows contact;                 ///< H, m × n: displacements of the contact points
+  SparseRows law_rows;                ///< G, where the law changed the problem; else empty
+  SparseMatrix own_stiffness;         ///< K of the structure itself there; else empty
+  std::vector<double> contact_x;      ///< position of each contact point, m
+  std::vector<std::string> stops;     ///< name of each contact point's stop; empty where they have none
+  std::vector<StopParameters> own;    ///< parameters of each point's stop; empty where none has its own
+  std::vector<Clearance> clearances;  ///< whose rows are contact points of one name
+  Eigen::VectorXd lower, upper;       ///< g1, g2 at the contact points, of a circle c ∓ r; ±∞ where absent
   Eigen::SparseMatrix<double, Eigen::RowMajor> tip;  ///< 1 × n: the displacement shown to people
   Eigen::RowVectorXd tip_on_supports;                ///< 1 × r: ψ_j there, of matrices that are given
   ObservedRows observed;                             ///< points that are shown
@@ -126,7 +126,20 @@ struct SemiDiscrete {
       if (point >= one.first && point <= one.last()) return one.first;
     return point;
   }
-  /// Whether a contact point is a side of a clearance.
+  /// The first rows of clearances that are met as circles: their contact points are u₁ and u₂.
+  std::vector<int> circles() const {
+    std::vector<int> first;
+    for (const Clearance& one : clearances)
+      if (one.circle) first.push_back(one.first);
+    return first;
+  }
+  /// 0, 1: the contact point is u₁ or u₂ of a circle; −1: it is on none.
+  int circle_axis(int point) const {
+    for (const Clearance& one : clearances)
+      if (one.circle && point >= one.first && point <= one.last()) return point - one.first;
+    return -1;
+  }
+  /// Whether a contact point is a row of a clearance.
   bool round(int point) const {
     return std::any_of(clearances.begin(), clearances.end(),
                        [&](const Clearance& one) { return point >= one.first && point <= one.last(); });

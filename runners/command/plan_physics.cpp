@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <ricochet/measure/stability/structure_physics.hpp>
+#include <ricochet/scene/clearances.hpp>
 
 #include "runners/command/subcommand.hpp"
 #include "runners/march/load_changes.hpp"
@@ -140,9 +141,14 @@ std::string stops_text(const Json& scene, const std::vector<double>& stiffness) 
       const Json& clearance = stop["clearance"];
       const int sides = clearance["sides"].get<int>();
       rows = static_cast<std::size_t>(sides % 2 == 0 ? sides / 2 : sides);
-      text += fmt::format(", within {:.6g} m: a polygon of {} sides in {} rows, its corners {:.2g} % further",
-                          clearance["radius"].get<double>(), sides, rows,
-                          100 * (1 / std::cos(std::numbers::pi / sides) - 1));
+      const double radius = clearance["radius"].get<double>();
+      const auto offset = clearance.value("offset", std::vector<double>{0, 0});
+      text += fmt::format(", within {:.6g} m", radius);
+      if (offset[0] != 0 || offset[1] != 0) text += fmt::format(" of ({:.6g}, {:.6g}) m", offset[0], offset[1]);
+      text += fmt::format(
+          ": the circle for compliant laws; for rigid ones {} sides, whose corners lie {:.2g} m ({:.2g} "
+          "%) further",
+          sides, polygon_error(radius, sides), 100 * polygon_error(1, sides));
     }
     if (row < stiffness.size() && std::isfinite(stiffness[row])) {
       const auto [softest, stiffest] = std::minmax_element(stiffness.begin() + static_cast<std::ptrdiff_t>(row),

@@ -7,6 +7,7 @@
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/measure/stability/linear_response.hpp>
 #include <ricochet/scene/basis/modal_basis.hpp>
+#include <ricochet/scene/clearances.hpp>
 #include <set>
 
 #include "runners/march/prepare_case.hpp"
@@ -48,7 +49,7 @@ struct StopSpring {
 std::vector<StopSpring> springs_of(const StudyCase& one, const Registry& registry) {
   const auto law = make_law(one, registry);
   const std::string key = law->parameter_of(ParameterRole::stiffness);
-  const std::vector<NamedStop>& stops = one.scene.stops.named;
+  const std::vector<NamedStop> stops = law->reads() ? with_circles(one.scene.stops).named : one.scene.stops.named;
   std::vector<StopSpring> out;
   int others = stops.empty() ? 1 : 0, last = -1;
   for (std::size_t i = 0; i < stops.size(); ++i)

@@ -274,11 +274,16 @@ Field clearance_key() {
   Field components = of_form(Field::Form::words, "components", Json(both_components),
                              "The two displacements in its plane, at its place.");
   components.spec.type = ParameterSpec::Type::word;
-  Field sides = integer("sides", {3, 720, false, false}, 16, "Sides of the polygon round the circle.");
+  Field sides = integer("sides", {3, 720, false, false}, 16,
+                        "Sides of the polygon that rigid laws meet; compliant laws meet the circle itself.");
   sides.axis = true;
+  Field offset = of_form(Field::Form::numbers, "offset", Json::array({0.0, 0.0}),
+                         "Where the centre is, from where the place has no displacement: along both components.");
+  offset.spec.unit = "m";
+  offset.repeats = true;
   ObjectForm keys;
   keys.fields = {single(real("radius", "m", positive, std::nullopt, "How far the place may move from the axis.")),
-                 std::move(sides), std::move(components)};
+                 std::move(sides), quiet(std::move(offset)), std::move(components)};
   return quiet(object("clearance", Json(nullptr), "A circle round the place, in the place of bounds.", keys));
 }
 
@@ -307,8 +312,15 @@ void add_stop(NamedStop stop, const Json& one, std::size_t entry, std::vector<Na
   if (components.size() != 2)
     throw InputError(pointer + "/clearance/components",
                      std::to_string(components.size()) + " components; expected two, in the plane of the circle");
-  for (NamedStop& row : clearance_rows(
-           stop, {given.at("radius").get<double>(), given.at("sides").get<int>(), {components[0], components[1]}}))
+  const auto offset = given.value("offset", std::vector<double>{0, 0});
+  if (offset.size() != 2)
+    throw InputError(pointer + "/clearance/offset",
+                     fmt::format("{} number{}; expected two, along the components of the circle", offset.size(),
+                                 offset.size() == 1 ? "" : "s"));
+  for (NamedStop& row : clearance_rows(stop, {.radius = given.at("radius").get<double>(),
+                                             .sides = given.at("sides").get<int>(),
+                                             .offset = {offset[0], offset[1]},
+                                             .components = {components[0], components[1]}}))
     rows.push_back(std::move(row));
 }
 

@@ -1,6 +1,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <ricochet/contact_solvers/circle_solver.hpp>
 #include <ricochet/engine/flight/flight_motion.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
 #include <ricochet/kernels/dense_solvers.hpp>
@@ -136,7 +137,10 @@ void FlightSet::close(const Program& program, const FlightSet* twin) {
 
 FlightSet::FlightSet(const Program& program, double layer, std::vector<ClosedPoint> closed, int powers,
                      const FlightSet* twin)
-    : closed_(std::move(closed)), rows_(program.model->rows()), slots_(static_cast<int>(program.plan.slots.size())) {
+    : closed_(std::move(closed)),
+      circles_(program.problem->circles()),
+      rows_(program.model->rows()),
+      slots_(static_cast<int>(program.plan.slots.size())) {
   const bool touching = !closed_.empty();
   for (const auto& [position, velocity] : program.plan.initial)
     metres_.push_back(position != 0 ? 1.0 : velocity != 0 ? program.h / velocity : program.h * program.h);
@@ -272,6 +276,16 @@ void FlightSet::set_bounds(FlightWatch& watch, const LaneSpec& lane, double laye
   for (std::size_t i = 0; i < points; ++i) {
     watch.lower[i] = lane.lower[static_cast<Index>(i)] + shift;
     watch.upper[i] = lane.upper[static_cast<Index>(i)] - shift;
+  }
+  // A circle is left at its corners first: what stays within its square stays within it.
+  for (const int first : circles_) {
+    Circle circle = Circle::of(lane.lower, lane.upper, first);
+    circle.radius -= shift;
+    for (const int axis : {0, 1}) {
+      const auto [low, high] = circle.square(axis);
+      watch.lower[static_cast<std::size_t>(first + axis)] = low;
+      watch.upper[static_cast<std::size_t>(first + axis)] = high;
+    }
   }
   for (const ClosedPoint& point : closed_) {
     watch.lower[static_cast<std::size_t>(point.point)] = -infinity;

@@ -157,6 +157,7 @@ class FlightSet {
                            const Eigen::MatrixXd& lifted);
 
   std::vector<ClosedPoint> closed_;
+  std::vector<int> circles_;  // first rows of clearances met as circles
   int rows_ = 0, modes_ = 0, slots_ = 0;
   FlightDrive drive_;
   std::string cause_;

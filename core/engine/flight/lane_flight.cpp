@@ -29,6 +29,8 @@ bool LaneFlight::find_closed(const FlownLane& lane) {
     for (int i = 0; i < effort.rows(); ++i) {
       const double p = effort.at(i, 0);
       if (p == 0) continue;
+      // Directions of a circle turn from step to step.
+      if (lane.program.problem->circle_axis(i) >= 0) return false;
       const ClosedPoint point{i, p > 0};
       if (first)
         closed_.push_back(point);

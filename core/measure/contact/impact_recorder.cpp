@@ -47,12 +47,16 @@ void ImpactRecorder::stage_solved(const Marcher& marcher, const StageView& view)
     if (!marcher.status(lane).running) continue;
     Lane& state = lanes_[static_cast<std::size_t>(lane)];
     const double* efforts = view.effort[0] + lane;
-    for (const int j : view.pushed) {
-      const double p = efforts[j * T_];
-      if (p == 0) continue;
+    marcher.each_push(view, lane, [&](int j, double p) {
       state.closed.press(j, p);
-      state.points[static_cast<std::size_t>(j)].given += program.momentum * std::abs(p);
-    }
+      Point& one = state.points[static_cast<std::size_t>(j)];
+      one.given += program.momentum * std::abs(p);
+      if (model_.problem().circle_axis(j) < 0) return;
+      // A projection gives nothing, and has a direction too.
+      const double weight = program.momentum != 0 ? program.momentum : std::numeric_limits<double>::min();
+      for (const int axis : {0, 1})
+        one.vector[static_cast<std::size_t>(axis)] -= weight * efforts[static_cast<std::ptrdiff_t>(j + axis) * T_];
+    });
     busy_ |= 1U << lane;
   }
   if (!program.closes_instant) return;
@@ -138,10 +142,15 @@ void ImpactRecorder::know_left_out(const Marcher& marcher, const StepInterval& s
 }
 
 // A closed point over a sub-step at whose end it moves at `now`.
-void ImpactRecorder::move(Lane& lane, int point, double now) {
+void ImpactRecorder::move(Lane& lane, int point, double now, double across) {
   Point& one = lane.points[static_cast<std::size_t>(point)];
-  stop(lane, point, one.side).normal_work += one.pushed * mean_speed(one.velocity, now);
+  const auto along = [&](double first, double second) {
+    return one.normal[0] == 0 && one.normal[1] == 0 ? first : one.normal[0] * first + one.normal[1] * second;
+  };
+  stop(lane, point, one.side).normal_work +=
+      one.pushed * mean_speed(along(one.velocity, one.across), along(now, across));
   one.velocity = now;
+  one.across = across;
 }
 
 // The same of one that stands at `place` at a time.
@@ -171,16 +180,8 @@ void ImpactRecorder::press(Lane& lane, int point, double lasts, double time, boo
   }
   if (&lane == &lanes_.front())
     for (ContactListener* listener : listeners_)
-      listener->instant({point,
-                         one.side > 0 ? StopSide::lower : StopSide::upper,
-                         time,
-                         lasts,
-                         one.given,
-                         force,
-                         closes,
-                         one.came,
-                         one.row,
-                         {}});
+      listener->instant({point, one.side > 0 ? StopSide::lower : StopSide::upper, time, lasts, one.given, force, closes,
+                         one.came, one.row, one.normal});
   one.pushed = one.given;
   one.given = 0;
 }
@@ -237,6 +238,13 @@ double ImpactRecorder::velocity(const Marcher& marcher, int lane, int point, dou
   return (way + lift) / (latest_time_ - earlier_time_);
 }
 
+double ImpactRecorder::velocity_of(const Marcher& marcher, int lane, int point, double support) const {
+  const double first = velocity(marcher, lane, point, support);
+  if (model_.problem().circle_axis(point) < 0) return first;
+  const std::array<double, 2>& normal = lane_of(lane).points[static_cast<std::size_t>(point)].normal;
+  return normal[0] * first + normal[1] * velocity(marcher, lane, point + 1, support);
+}
+
 // What the clamp moved by over the last sub-step.
 double ImpactRecorder::lift(const Marcher& marcher, int lane) const {
   return known_ < 2 ? 0.0 : marcher.support(lane, latest_time_) - marcher.support(lane, earlier_time_);
@@ -251,7 +259,9 @@ void ImpactRecorder::moved(const Marcher& marcher, int lane) {
       const double place = model_.contact().times(point, latest_.data()) + marcher.lift(lane, point, latest_time_);
       return move_to_place(state, point, place, latest_time_);
     }
-    move(state, point, velocity(marcher, lane, point, lifted));
+    const bool circle = model_.problem().circle_axis(point) == 0;
+    move(state, point, velocity(marcher, lane, point, lifted),
+         circle ? velocity(marcher, lane, point + 1, lifted) : 0.0);
   });
   leave(marcher, lane, lifted);
 }
@@ -263,7 +273,7 @@ void ImpactRecorder::leave(const Marcher& marcher, int lane, double lifted) {
     Point& one = state.points[static_cast<std::size_t>(point)];
     if (one.row < state.impacts.size()) {
       Impact& impact = state.impacts[one.row];
-      const double now = velocity(marcher, lane, point, lifted);
+      const double now = velocity_of(marcher, lane, point, lifted);
       impact.speed_out = impact.side == StopSide::lower ? now : -now;
     }
     return ++one.free == settles_after;
@@ -281,16 +291,17 @@ void ImpactRecorder::let_go(const Marcher& marcher, const StageView& view) {
 bool ImpactRecorder::begin(const Marcher& marcher, const StageView& view, int lane, int point, int side) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   Point& one = state.points[static_cast<std::size_t>(point)];
-  one.velocity = velocity(marcher, lane, point, lift(marcher, lane));
-  one.came = side > 0 ? -one.velocity : one.velocity;
+  const double lifted = lift(marcher, lane), towards = velocity_of(marcher, lane, point, lifted);
+  one.velocity = velocity(marcher, lane, point, lifted);
+  if (model_.problem().circle_axis(point) == 0) one.across = velocity(marcher, lane, point + 1, lifted);
+  one.came = side > 0 ? -towards : towards;
   std::erase(state.leaving, point);
   if (state.start.any() && state.start.take(point, side)) {
     one.row = nowhere;
     return false;
   }
-  const double towards = one.came;
   StopTotals& totals = stop(state, point, side);
-  totals.fastest = totals.impacts == 0 ? towards : std::max(totals.fastest, towards);
+  totals.fastest = totals.impacts == 0 ? one.came : std::max(totals.fastest, one.came);
   ++totals.impacts;
   ++state.count;
   one.row = state.impacts.size();
@@ -302,7 +313,7 @@ bool ImpactRecorder::begin(const Marcher& marcher, const StageView& view, int la
   impact.time = view.time + view.program->facts.instant * h_;
   impact.point = point;
   impact.side = side > 0 ? StopSide::lower : StopSide::upper;
-  impact.speed_in = towards;
+  impact.speed_in = one.came;
   state.impacts.push_back(impact);
   return true;
 }
@@ -319,6 +330,11 @@ void ImpactRecorder::close_instant(const Marcher& marcher, const StageView& view
     }
     one.side = now;
     if (now == 0) return;
+    if (const double size = std::hypot(one.vector[0], one.vector[1]); size > 0) {
+      if (one.given > 0) one.given = size;
+      one.normal = {one.vector[0] / size, one.vector[1] / size};
+      one.vector = {0, 0};
+    }
     const bool closes = now != before && begin(marcher, view, lane, point, now);
     press(state, point, lasts_, view.time + view.program->facts.instant * h_, closes);
   });

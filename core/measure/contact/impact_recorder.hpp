@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -19,6 +20,7 @@
 /// is no force. The velocity of a point between two instants is the difference of its positions over the time between.
 /// The positions are absolute, H q + φ, and stand before any stage of either instant. With one stage per step this is
 /// (x_{n+1} − x_n)/h; with several sub-steps it is that of one of them. Stops do not move: it is relative to them.
+/// The two points of a circle are one, the first, with an upper stop along the radius at each instant.
 namespace ricochet {
 
 /// A point closes at a stop, is pushed for one or more instants, and opens.
@@ -95,11 +97,16 @@ class ImpactRecorder final : public StepObserver {
   struct Point {
     double given = 0;     // I of the instant under way
     double velocity = 0;  // over the sub-step before the last instant; of closed points
-    double place = 0;     // absolute, before the last instant of steps that were left out
-    double pushed = 0;    // I of the last instant
-    double came = 0;      // speed towards the stop when it last closed
-    int side = 0;         // at the last instant: −1 upper, 0 open, 1 lower
-    int free = 0;         // sub-steps without an effort since it opened, while its speed out is open
+    // Of a circle, whose first point has all: I as a vector, outwards; the velocity of u₂ beside that of u₁; the
+    // direction outwards at the last instant.
+    std::array<double, 2> vector = {0, 0};
+    double across = 0;
+    std::array<double, 2> normal = {0, 0};
+    double place = 0;   // absolute, before the last instant of steps that were left out
+    double pushed = 0;  // I of the last instant
+    double came = 0;    // speed towards the stop when it last closed
+    int side = 0;       // at the last instant: −1 upper, 0 open, 1 lower
+    int free = 0;       // sub-steps without an effort since it opened, while its speed out is open
     // Of its last impact; beyond the list where that is full, or where contact is that of the start.
     std::size_t row = nowhere;
   };
@@ -128,11 +135,13 @@ class ImpactRecorder final : public StepObserver {
   void moved(const Marcher& marcher, int lane);
   void leave(const Marcher& marcher, int lane, double lifted);
   double velocity(const Marcher& marcher, int lane, int point, double support) const;
+  /// Of the place that a point stands for: along its row, of a circle outwards.
+  double velocity_of(const Marcher& marcher, int lane, int point, double support) const;
   double lift(const Marcher& marcher, int lane) const;
   void close_instant(const Marcher& marcher, const StageView& view, int lane);
   bool begin(const Marcher& marcher, const StageView& view, int lane, int point, int side);
   void let_go(const Marcher& marcher, const StageView& view);
-  static void move(Lane& lane, int point, double now);
+  static void move(Lane& lane, int point, double now, double across = 0);
   void move_to_place(Lane& lane, int point, double place, double time);
   void press(Lane& lane, int point, double lasts, double time, bool closes);
 

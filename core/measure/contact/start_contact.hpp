@@ -27,6 +27,7 @@ class StartContact {
  private:
   struct Held {
     int point = 0, side = 0;
+    bool circle = false;
     double place = 0;      // when last read, m
     double away = 0;       // farthest from its stop, m
     double moved = 0;      // most between two readings, m
@@ -38,6 +39,12 @@ class StartContact {
     double value = 0, round_off = 0;
   };
   Gap gap(const LaneSpec& spec, const Held& held, double place) const;
+  /// What the stop of a point bounds where its row reads `row`(point): the distance from the centre of a circle.
+  template <class Row>
+  static double place_of(const SemiDiscrete& problem, const LaneSpec& spec, int point, Row&& row) {
+    if (problem.circle_axis(point) != 0) return row(point);
+    return Circle::of(spec.lower, spec.upper, point).distance(row(point), row(point + 1));
+  }
 
   int lane_ = 0;
   std::vector<double> layers_;  // of each point

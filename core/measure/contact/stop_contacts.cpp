@@ -9,10 +9,13 @@ StopContacts::StopContacts(const Marcher& marcher, ImpactRecorder& recorder)
     : recorder_(recorder), list_(stop_list(*marcher.program().problem)) {
   const SemiDiscrete& problem = *marcher.program().problem;
   own_.assign(static_cast<std::size_t>(list_.count()), nowhere);
+  round_of_.assign(own_.size(), -1);
   for (int stop = 0; stop < list_.count(); ++stop) {
     if (!list_.round(stop)) continue;
     const Clearance& clearance =
         problem.clearances[static_cast<std::size_t>(list_.clearance[static_cast<std::size_t>(stop)])];
+    if (clearance.circle) continue;
+    round_of_[static_cast<std::size_t>(stop)] = static_cast<int>(rounds_.size());
     Round& round = rounds_.emplace_back();
     round.stop = stop;
     round.first = clearance.first;
@@ -32,8 +35,8 @@ void StopContacts::tell(ContactListener* listener) {
 
 void StopContacts::instant(const ContactInstant& one) {
   const int stop = list_.stop_of[static_cast<std::size_t>(one.point)];
-  const int clearance = list_.clearance[static_cast<std::size_t>(stop)];
-  if (clearance < 0) {
+  const int polygon = round_of_[static_cast<std::size_t>(stop)];
+  if (polygon < 0) {
     std::size_t& row = own_[static_cast<std::size_t>(stop)];
     if (one.closes) {
       ++count_;
@@ -48,10 +51,10 @@ void StopContacts::instant(const ContactInstant& one) {
     ContactInstant told = one;
     told.point = stop;
     told.impact = row;
-    add(told, told.side == StopSide::lower ? 1 : -1);
+    add(told, list_.round(stop) ? -told.normal[0] : told.side == StopSide::lower ? 1 : -1);
     return;
   }
-  Round& round = rounds_[static_cast<std::size_t>(clearance)];
+  Round& round = rounds_[static_cast<std::size_t>(polygon)];
   const std::array<double, 2>& normal = round.normals[static_cast<std::size_t>(one.point - round.first)];
   const double outwards = one.side == StopSide::upper ? 1 : -1;
   for (const std::size_t axis : {0, 1}) {
@@ -152,7 +155,7 @@ void StopContacts::finish() {
   for (std::size_t i = 0; i < impacts_.size(); ++i) {
     const std::vector<Share>& shares = leaves_[i];
     Impact& impact = impacts_[i];
-    if (!list_.round(impact.point)) {
+    if (round_of_[static_cast<std::size_t>(impact.point)] < 0) {
       const int stop = impact.point;
       impact = seen[shares.front().impact];
       impact.point = stop;
@@ -168,9 +171,10 @@ void StopContacts::finish() {
 
 StopTotals StopContacts::totals(int stop, StopSide side) const {
   const int row = list_.row[static_cast<std::size_t>(stop)];
-  if (!list_.round(stop)) return recorder_.totals(0, row, side);
+  const int polygon = round_of_[static_cast<std::size_t>(stop)];
+  if (polygon < 0) return recorder_.totals(0, row, side);
   if (side == StopSide::lower) return {};
-  const Round& round = rounds_[static_cast<std::size_t>(list_.clearance[static_cast<std::size_t>(stop)])];
+  const Round& round = rounds_[static_cast<std::size_t>(polygon)];
   StopTotals out = round.totals;
   for (std::size_t k = 0; k < round.normals.size(); ++k)
     for (const StopSide each : {StopSide::lower, StopSide::upper})

@@ -6,7 +6,7 @@
 namespace ricochet {
 
 /// Contact stop by stop, from what an ImpactRecorder tells of contact points in lane 0. Without clearances it is that
-/// recorder. The sides of a clearance are one stop, pushed at an instant by the resultant of its sides,
+/// recorder. A circle is one point of it. The sides of a polygon are one stop, pushed at an instant by their resultant,
 ///
 ///     I = |Σ I_k d_k|   (N s),     F = I/Ω   (N),     d_k the direction in which side k is met,
 ///
@@ -34,7 +34,7 @@ class StopContacts final : public ContactListener {
   long long count() const { return merges() ? count_ : recorder_.count(0); }
   StopTotals totals(int stop, StopSide side) const;
   /// Whether there is any clearance.
-  bool merges() const { return !rounds_.empty(); }
+  bool merges() const { return list_.count() < static_cast<int>(list_.stop_of.size()); }
   /// Σ I over all stops, N s; of merged ones.
   double impulse() const { return impulse_; }
   /// Σ of the forces of the last instant, positive upwards; of a clearance along its first component, N. Of merged
@@ -70,7 +70,8 @@ class StopContacts final : public ContactListener {
 
   ImpactRecorder& recorder_;
   StopList list_;
-  std::vector<Round> rounds_;
+  std::vector<Round> rounds_;  // of polygons
+  std::vector<int> round_of_;  // of each stop; −1: its one point tells all
   std::vector<ContactListener*> listeners_;
   std::vector<Impact> impacts_;
   std::vector<std::vector<Share>> leaves_;  // of each impact; one of weight 1 where the recorder's is it

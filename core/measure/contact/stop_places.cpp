@@ -51,6 +51,7 @@ StopPlaces::StopPlaces(const Marcher& marcher) : rows_(RowReadings::of_stops(mar
         problem.clearances[static_cast<std::size_t>(list.clearance[static_cast<std::size_t>(i)])];
     const std::vector<double>& angles = clearance.angles;
     stop.radius = clearance.radius;
+    stop.centre = clearance.offset;
     // The row that is nearest to the second axis tells u₂ best.
     std::size_t best = 1;
     for (std::size_t k = 1; k < angles.size(); ++k)
@@ -66,7 +67,8 @@ std::array<double, 2> StopPlaces::components(const Marcher& marcher, int stop, c
   const Stop& one = stops_[static_cast<std::size_t>(stop)];
   const auto read = [&](int row) { return rows_.relative(row, position) + rows_.lift(marcher, row, t); };
   const double first = read(one.first);
-  return {first, one.other < 0 ? 0.0 : (read(one.other) - one.cosine * first) / one.sine};
+  if (one.other < 0) return {first, 0.0};
+  return {first - one.centre[0], (read(one.other) - one.cosine * first) / one.sine - one.centre[1]};
 }
 
 double StopPlaces::displacement(const Marcher& marcher, int stop, const double* position, double t) const {

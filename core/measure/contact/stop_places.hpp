@@ -52,7 +52,7 @@ struct StopList {
 StopList stop_list(const SemiDiscrete& problem);
 
 /// What the bounds of each stop are put on, m: the displacement of its contact point. Of a clearance it is the distance
-/// from its axis, √(u₁² + u₂²). Allocates when constructed.
+/// from its centre. Allocates when constructed.
 class StopPlaces {
  public:
   explicit StopPlaces(const Marcher& marcher);
@@ -64,7 +64,8 @@ class StopPlaces {
   }
   /// Of a position in the coordinates of the march.
   double displacement(const Marcher& marcher, int stop, const double* position, double t) const;
-  /// u₁ and u₂ of a clearance at the end of the last step, m; of another stop its displacement and 0.
+  /// u₁ and u₂ of a clearance at the end of the last step, less those of its centre, m; of another stop its
+  /// displacement and 0.
   std::array<double, 2> components(const Marcher& marcher, int stop) const {
     return components(marcher, stop, marcher.slot(0), marcher.time());
   }
@@ -72,10 +73,11 @@ class StopPlaces {
   double radius(int stop) const { return stops_[static_cast<std::size_t>(stop)].radius; }
 
  private:
-  // u₁ is row `first`, u₂ = (row `other` − cosine u₁)/sine.
+  // u₁ is row `first`, u₂ = (row `other` − cosine u₁)/sine, both less the centre.
   struct Stop {
     int first = 0, other = -1;
     double cosine = 0, sine = 1, radius = 0;
+    std::array<double, 2> centre = {0, 0};
   };
   std::array<double, 2> components(const Marcher& marcher, int stop, const double* position, double t) const;
 

@@ -42,6 +42,7 @@ EnergyAudit::EnergyAudit(const Marcher& marcher, SamplingMode sampling)
       sampling_(sampling),
       h_(marcher.program().h),
       T_(marcher.width()),
+      places_(static_cast<std::size_t>(model_.problem().points())),
       compliant_(marcher.law().reads().has_value()),
       mean_velocity_(marcher.program().velocity_offset != 0),
       flies_(marcher.program().flight != nullptr) {
@@ -101,15 +102,14 @@ EnergySample EnergyAudit::initial_energy(const Marcher& marcher, int lane) {
 }
 
 // Where supports stand in the mean of two times, which may be one.
-double EnergyAudit::potential(const Marcher& marcher, const double* place, double now, double before, int lane) const {
+double EnergyAudit::potential(const Marcher& marcher, const double* place, double now, double before, int lane) {
   const auto mean = [&](auto&& lift) { return now == before ? lift(now) : 0.5 * (lift(now) + lift(before)); };
   const double support = mean([&](double t) { return marcher.support(lane, t); });
-  double sum = 0;
   for (int j = 0; j < model_.problem().points(); ++j) {
     const double lift = support + mean([&](double t) { return marcher.motions().point(j, t); });
-    sum += marcher.stored(lane, j, model_.measured().times(j, place), lift);
+    places_[static_cast<std::size_t>(j)] = model_.measured().times(j, place) + lift;
   }
-  return sum;
+  return marcher.stored(lane, places_.data());
 }
 
 bool EnergyAudit::asks(const Lane& state, long long step) const {
@@ -159,13 +159,14 @@ void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
     if (state.sampled && !ways_.empty()) follow_position(view, lane, moves);
     const bool pushed = ((view.contact_lanes >> lane) & 1u) != 0;
     state.idle = pushed ? 0 : state.idle + 1;
-    if (view.effort && (pushed || !state.still || ((view.touched_lanes >> lane) & 1u) != 0)) count_contact(view, lane);
+    if (view.effort && (pushed || !state.still || ((view.touched_lanes >> lane) & 1u) != 0))
+      count_contact(marcher, view, lane);
     works_.add(marcher, view, lane, balanced, state.idle < memory_, state.step);
   }
   if (view.starting) asks_.next_shown = next_shown(marcher);
 }
 
-void EnergyAudit::count_contact(const StageView& view, int lane) {
+void EnergyAudit::count_contact(const Marcher& marcher, const StageView& view, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   ContactTotals& contact = state.contact;
   state.still = false;
@@ -179,16 +180,14 @@ void EnergyAudit::count_contact(const StageView& view, int lane) {
   }
   if ((view.contact_lanes >> lane) & 1u) {
     const double momentum = view.program->momentum;
-    for (const int j : view.pushed) {
-      const double p = view.effort[0][j * T_ + lane];
-      if (p == 0) continue;
+    marcher.each_push(view, lane, [&](int j, double p) {
       // The sides of a clearance are one stop.
       const SemiDiscrete& problem = model_.problem();
       state.closed.press(problem.stop_row(j), problem.round(j) ? -std::abs(p) : p);
       // An effort that gives no momentum only puts a position right: it is no force.
-      if (momentum != 0) state.force += p;
+      if (momentum != 0) state.force += problem.circle_axis(j) < 0 ? p : view.effort[0][j * T_ + lane];
       contact.impulse += momentum * std::abs(p);
-    }
+    });
     contact.residual = std::max(contact.residual, outcome.residual);
   }
   if (view.program->closes_instant) close_instant(view, state);

@@ -141,7 +141,7 @@ class EnergyAudit final : public StepObserver {
     bool still = false;        // no effort acts, none did at the instant before, and that has been counted
   };
   EnergySample initial_energy(const Marcher& marcher, int lane);
-  double potential(const Marcher& marcher, const double* place, double now, double before, int lane) const;
+  double potential(const Marcher& marcher, const double* place, double now, double before, int lane);
   EnergySample sample(const Marcher& marcher, int lane);
   bool asks(const Lane& state, long long step) const;
   void begin_step(const Marcher& marcher, const StageView& view, Lane& state);
@@ -153,7 +153,7 @@ class EnergyAudit final : public StepObserver {
   void add_flown(const Marcher& marcher, const StepInterval& steps);
   long long next_shown(const Marcher& marcher) const;
   void confirm(Lane& state, double scheme, bool flown);
-  void count_contact(const StageView& view, int lane);
+  void count_contact(const Marcher& marcher, const StageView& view, int lane);
   bool held_at_start(StartContact& start, int point, int side) const;
   void close_instant(const StageView& view, Lane& state);
 
@@ -165,6 +165,7 @@ class EnergyAudit final : public StepObserver {
   long long asked_ = -1;
   double h_;
   int T_;
+  std::vector<double> places_;  // of contact points
   bool compliant_, mean_velocity_, flies_, balances_ = false, ends_measured_ = false;
   int memory_ = 1;  // stages back to which an effort may still act
   std::vector<Lane> lanes_;

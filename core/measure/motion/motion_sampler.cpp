@@ -140,9 +140,15 @@ double ContactLog::onset(const Marcher& marcher, const StageView& view, int poin
     state_known_ = true;
   }
   const LaneSpec& lane = marcher.program().lanes.front();
+  const auto place = [&](int j) { return model_.contact().times(j, position_.data()) + marcher.lift(0, j, t); };
+  const auto rate = [&](int j) { return model_.contact().times(j, velocity_.data()) + marcher.lift_rate(0, j, t); };
   const double stop = side == 0 ? lane.lower[point] : lane.upper[point];
-  const double gap = model_.contact().times(point, position_.data()) + marcher.lift(0, point, t) - stop;
-  const double speed = model_.contact().times(point, velocity_.data()) + marcher.lift_rate(0, point, t);
+  double gap = place(point) - stop, speed = rate(point);
+  if (model_.problem().circle_axis(point) == 0) {
+    const Circle circle = marcher.circle(0, point);
+    gap = circle.distance(place(point), place(point + 1)) - circle.radius;
+    speed = circle.outwards(place(point), place(point + 1), speed, rate(point + 1));
+  }
   double time = t;
   if (gap * speed < 0) time += std::min(-gap / speed, 2 * dt);
   if ((side == 0) == (gap < 0)) time = t;  // beyond the stop already: a constraint on other levels let it pass
@@ -176,18 +182,16 @@ void ContactLog::read(const Marcher& marcher, const StageView& view) {
   const SemiDiscrete& problem = model_.problem();
   state_known_ = false;
   double force = 0;
-  for (const int j : view.pushed) {
-    const double p = efforts[j * T_];
-    if (p == 0) continue;
-    force += p;
+  marcher.each_push(view, 0, [&](int j, double p) {
+    force += problem.circle_axis(j) < 0 ? p : efforts[j * T_];
     const int way = p > 0 ? 0 : 1, side = problem.round(j) ? 1 : way;  // a clearance has one side
     asked_[static_cast<std::size_t>(problem.stop_row(j))] = side == 0 ? 1 : -1;
     now_[side] = true;
-    if (closed_[side] || start_.holds(j, p > 0 ? 1 : -1)) continue;
+    if (closed_[side] || start_.holds(j, p > 0 ? 1 : -1)) return;
     const double time = onset(marcher, view, j, way);
     onset_[side] = hit_[side] ? std::min(onset_[side], time) : time;
     hit_[side] = true;
-  }
+  });
   momentum_.stage(view.starting, static_cast<std::size_t>(view.stage), force);
   // What only puts a position right is no force.
   if (view.program->momentum != 0) force_ += force;
@@ -312,9 +316,9 @@ bool MotionSampler::next() {
   const double support = marcher_.support(0, t), rate = marcher_.support_rate(0, t);
   double energy = 0.5 * mass_(v.data()) + 0.5 * stiffness_(w.data());
   if (marcher_.program().contact && marcher_.law().reads()) {
-    const Eigen::VectorXd touched = problem.measured() * w;
-    for (int j = 0; j < problem.points(); ++j)
-      energy += marcher_.stored(0, j, touched[j], support + problem.motions.point(j, t));
+    Eigen::VectorXd touched = problem.measured() * w;
+    for (int j = 0; j < problem.points(); ++j) touched[j] += support + problem.motions.point(j, t);
+    energy += marcher_.stored(0, touched.data());
   }
   motion_.tip.push_back((problem.tip * w)[0] + support + problem.motions.tip(t));
   motion_.tip_velocity.push_back((problem.tip * v)[0] + rate + problem.motions.tip_rate(t));

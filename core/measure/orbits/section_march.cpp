@@ -128,7 +128,7 @@ class SectionMarch::Watch final : public StepObserver {
       const double p = efforts[static_cast<std::ptrdiff_t>(i) * width];
       if (p == 0) continue;
       const std::size_t side = side_of(i, p > 0);
-      first[side] = i;
+      first[side] = i - std::max(0, model_.problem().circle_axis(i));
       push(orbit, model_.problem().stop_row(i), side, step);
     }
     std::array<bool, 2>& asked = asked_[static_cast<std::size_t>(lane)];
@@ -172,8 +172,7 @@ class SectionMarch::Watch final : public StepObserver {
     if (closed && ++contact.steps <= briefest_contact) return;
     orbit.lasting += contact.steps > briefest_contact && thrown_[static_cast<std::size_t>(contact.point)];
     if (!closed) {
-      const double after = velocity(marcher, view, lane, model_.contact(), static_cast<int>(contact.point)) +
-                           marcher.lift_rate(lane, static_cast<int>(contact.point), view.from);
+      const double after = outwards(marcher, view, lane, static_cast<int>(contact.point));
       if (after * contact.before < 0 && std::abs(after) >= least_rebound * std::abs(contact.before))
         orbit.rebounds_so_far += std::abs(after - contact.before);
     }
@@ -190,8 +189,7 @@ class SectionMarch::Watch final : public StepObserver {
     orbit.impacts.push_back(
         {2 * std::numbers::pi * turns, side, std::abs(speed), point, h_ * (steps + periods * plan_.steps_per_period)});
     ++counts_[static_cast<std::size_t>(lane)][static_cast<std::size_t>(side)];
-    orbit.brief[side] = {point, 0,
-                         velocity(marcher, view, lane, model_.contact(), point) + marcher.lift_rate(lane, point, t)};
+    orbit.brief[side] = {point, 0, outwards(marcher, view, lane, point)};
     if (plan_.section != SectionKind::impact) return;
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const SupportMotions& motions = marcher.motions();
@@ -205,12 +203,13 @@ class SectionMarch::Watch final : public StepObserver {
   // the scheme and that of the free step to come. A point without mass changes its velocity within few steps.
   double closing_speed(const Marcher& marcher, const StageView& view, int lane, int point) const {
     const double t = view.from, dt = view.to - view.from;
-    const double before = velocity(marcher, view, lane, model_.contact(), point) + marcher.lift_rate(lane, point, t);
+    const double before = outwards(marcher, view, lane, point);
     const Program& program = marcher.program();
     const StageProgram& stage = program.stages[static_cast<std::size_t>(view.stage)];
     const Combination& update = view.plan->update[0];
     // What a law of its own rows measures does not say where the point is.
-    if (dt == 0 || stage.gate || stage.measure_z == 0 || update.z == 0 || program.problem->changed_by_law())
+    if (program.problem->circle_axis(point) == 0 || dt == 0 || stage.gate || stage.measure_z == 0 || update.z == 0 ||
+        program.problem->changed_by_law())
       return before;
     // H q₊ of the free step from what the law measured, which is affine in the same z°.
     const auto at = [&](const std::vector<double>& weights) {
@@ -231,6 +230,19 @@ class SectionMarch::Watch final : public StepObserver {
     // The velocity stands where it does after any sub-step.
     const double offset = offset_ * h_ / dt, share = (ahead - offset) / (0.5 - offset);
     return before + share * (after - before);
+  }
+
+  // The velocity of a contact point before the stage along its row, in a circle along its radius.
+  double outwards(const Marcher& marcher, const StageView& view, int lane, int point) const {
+    const auto speed = [&](int row) {
+      return velocity(marcher, view, lane, model_.contact(), row) + marcher.lift_rate(lane, row, view.from);
+    };
+    if (model_.problem().circle_axis(point) != 0) return speed(point);
+    const Circle circle = marcher.circle(lane, point);
+    const auto at = [&](int row) {
+      return slot_at(view, marcher.width(), lane, 0, row) + marcher.lift(lane, row, view.from);
+    };
+    return circle.outwards(at(point), at(point + 1), speed(point), speed(point + 1));
   }
 
   double slot_at(const StageView& view, int width, int lane, int slot, int point) const {
@@ -405,18 +417,6 @@ std::vector<Orbit> SectionMarch::running() const {
     copies.back().now = marcher_.lane_state(static_cast<int>(lane));
   }
   return copies;
-}
-
-StartedOrbits start_orbits(Program program, const SectionPlan& plan) {
-  Marcher marcher(std::move(program));
-  marcher.start();
-  marcher.march(plan.strobe + 1 + plan.steps_per_period - marcher.step());
-  StartedOrbits started;
-  for (int lane = 0; lane < marcher.lanes(); ++lane) {
-    started.states.push_back(marcher.lane_state(lane));
-    started.ends.push_back(marcher.status(lane).end);
-  }
-  return started;
 }
 
 }  // namespace ricochet

@@ -43,6 +43,7 @@ std::optional<std::string> SetSteps::refusal(const Program& program) {
       return "its impact measure does not see the effort of its own step";
   }
   if (!program.contact) return std::nullopt;
+  if (!program.problem->circles().empty()) return "the force of a circle turns with its point";
   if (std::count_if(program.stages.begin(), program.stages.end(), [](const auto& one) { return one.reads_contact; }) >
       1)
     return "several of its stages read contact";

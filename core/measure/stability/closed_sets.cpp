@@ -58,6 +58,13 @@ void StabilityPredictor::choose_around(const std::vector<int>& points, const std
   }
   for (const Clearance& one : problem_->clearances) {
     const auto sides = static_cast<int>(one.angles.size());
+    if (one.circle) {  // it pushes along one radius at a time
+      for (const int axis : {0, 1})
+        sets_.push_back({fmt::format("{}, along {}", where(one.first), axis == 0 ? "u₁" : "u₂"), {one.first + axis}});
+      together.push_back(one.first);
+      ++stops;
+      continue;
+    }
     for (int k = 0; k < sides; ++k)
       if (few || k == 0 || k == sides / 2)
         sets_.push_back({fmt::format("{}, side {}", where(one.first), k + 1), {one.first + k}});

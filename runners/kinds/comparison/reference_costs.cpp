@@ -223,6 +223,12 @@ std::variant<ReferenceProblem, Refusal> seen_by_reference(const StudyCase& study
   if (moves_by_histories(study_case.scene) || support_bends(study_case.scene))
     return Refusal{
         "supports or stops move by motions, and references know the harmonic support: use the reference self"};
+  if (std::any_of(study_case.scene.stops.named.begin(), study_case.scene.stops.named.end(),
+                  [](const NamedStop& stop) { return stop.side.has_value(); }) &&
+      make_law(study_case, registry)->reads())
+    return Refusal{
+        "a compliant law meets the circle of a clearance, and references know stops along rows: use the reference "
+        "self"};
   ReferenceProblem problem = reference_problem(study_case, registry);
   if (of_the_mesh) return problem;
   problem.contact_stiffness = 0;

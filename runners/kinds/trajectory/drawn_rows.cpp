@@ -306,7 +306,10 @@ class FilmShape {
 }  // namespace
 
 DrawnRows drawn_rows(const SceneSpec& scene, const SemiDiscrete& problem) {
-  return FilmShape(scene, problem).rows();
+  if (problem.circles().empty()) return FilmShape(scene, problem).rows();
+  SceneSpec met = scene;
+  met.stops = with_circles(std::move(met.stops));
+  return FilmShape(met, problem).rows();
 }
 
 }  // namespace ricochet

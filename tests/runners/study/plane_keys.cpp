@@ -95,6 +95,8 @@ TEST_CASE("bad clearances and planes are refused with place, what was found and 
       Contains("/scene/stops/0/clearance/components/1: no component \"uzz\"") && Contains("did you mean \"uz\"?"));
   CHECK_THAT(refusal(plane_changed("/scene/stops/0/clearance/components", {"uy"})),
              Contains("/scene/stops/0/clearance/components: 1 components; expected two"));
+  CHECK_THAT(refusal(plane_changed("/scene/stops/0/clearance/offset", {1e-4})),
+             Contains("/scene/stops/0/clearance/offset: 1 number; expected two, along the components of the circle"));
   CHECK_THAT(refusal(plane_changed("/scene/stops/0/upper", 1e-3)),
              Contains("/scene/stops/0/upper: a clearance is bounded by its radius; expected no other bound"));
   CHECK_THAT(refusal(plane_changed("/scene/stops/0/at", {{"x", 0.7}, {"component", "uy"}})),

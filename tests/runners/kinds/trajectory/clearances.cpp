@@ -111,3 +111,27 @@ TEST_CASE("points of modes and nodes of matrices move within clearances as the b
   study["scene"]["stops"][0]["at"] = {{"point", "plate"}};
   CHECK_THROWS_WITH(runs.study(study), Catch::Contains("a beam has no nodes that are called"));
 }
+
+TEST_CASE("sides of a clearance move nothing under a compliant law, and rigid laws say what they leave of the circle") {
+  CaseRuns runs;
+  Json study = whirling(R"({"name": "penalty", "stiffness": 1e5})");
+  study["duration"] = 0.4;
+  study["window"]["to"] = 0.4;
+  study.erase("outputs");
+  const auto with_sides = [&](int sides, const std::vector<double>& offset) {
+    study["scene"]["stops"][0]["clearance"]["sides"] = sides;
+    study["scene"]["stops"][0]["clearance"]["offset"] = offset;
+    return runs.first_of(study);
+  };
+  const CaseRecord few = with_sides(5, {0, 0}), many = with_sides(64, {0, 0}), away = with_sides(64, {3e-4, 0});
+  for (const char* name : {"impulse[plate]", "peak_force[plate]", "contact_time[plate]", "wear_power[plate]",
+                           "window_displacement_mean[plate]", "energy_end"})
+    CHECK(reading(few, name) == reading(many, name));
+  CHECK(reading(many, "impulse[plate]") > 0);
+  CHECK(reading(away, "impulse[plate]") != reading(many, "impulse[plate]"));
+  study["methods"]["contact"] = "signorini";
+  const CaseRecord rigid = with_sides(16, {0, 0});
+  CHECK(std::any_of(rigid.notes.begin(), rigid.notes.end(), [](const std::string& note) {
+    return note == "stop plate is a polygon of 16 sides: its corners lie 3.9e-05 m beyond the circle of 0.002 m";
+  }));
+}
