@@ -21,16 +21,16 @@ double dot(const std::array<double, 2>& a, const std::array<double, 2>& b) {
 
 }  // namespace
 
-double Circle::distance(double u1, double u2) const {
+double StopCircle::distance(double u1, double u2) const {
   return std::hypot(u1 - centre[0], u2 - centre[1]);
 }
 
-double Circle::outwards(double u1, double u2, double v1, double v2) const {
+double StopCircle::outwards(double u1, double u2, double v1, double v2) const {
   const double rho = distance(u1, u2);
   return rho > 0 ? ((u1 - centre[0]) * v1 + (u2 - centre[1]) * v2) / rho : 0.0;
 }
 
-std::array<double, 2> Circle::square(int axis) const {
+std::array<double, 2> StopCircle::square(int axis) const {
   const double half = radius * (0.5 * std::numbers::sqrt2), middle = centre[static_cast<std::size_t>(axis)];
   return {middle - half, middle + half};
 }
@@ -295,7 +295,7 @@ void CircleSolver::solve_lane(ContactLaw& law, ReducedProblem& problem) {
   move();
   for (std::size_t c = 0; c < circles_.size(); ++c) {
     Frame& frame = frames_[c];
-    frame.circle = Circle::of(lane_.lower, lane_.upper, circles_[c]);
+    frame.circle = StopCircle::of(lane_.lower, lane_.upper, circles_[c]);
     place_[c] = next_[c];
     turn(c, place_[c]);
     const auto first = static_cast<std::size_t>(circles_[c]);

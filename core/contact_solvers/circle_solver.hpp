@@ -8,12 +8,12 @@
 namespace ricochet {
 
 /// A circle as two contact points bear it: bounds c ∓ r of the rows of u₁ and u₂.
-struct Circle {
+struct StopCircle {
   std::array<double, 2> centre = {0, 0};  ///< c, m
   double radius = 0;                      ///< r, m
   /// Of the bounds of its rows, `first` and the next.
   template <class Bounds>
-  static Circle of(const Bounds& lower, const Bounds& upper, int first) {
+  static StopCircle of(const Bounds& lower, const Bounds& upper, int first) {
     return {{0.5 * (lower[first] + upper[first]), 0.5 * (lower[first + 1] + upper[first + 1])},
             0.5 * (upper[first] - lower[first])};
   }
@@ -57,7 +57,7 @@ class CircleSolver {
 
  private:
   struct Frame {
-    Circle circle;
+    StopCircle circle;
     std::array<double, 2> n{}, t{};
     double shift = 0;     // ρ − n·(u − c)
     double across = 0;    // λ

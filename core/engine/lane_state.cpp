@@ -50,7 +50,7 @@ void Marcher::place_stops(int lane) {
   // Within a square no point passes its circle.
   for (const int first : circles_.circles()) {
     const double layer = program_.law->layer(program_.law_set(first, lane));
-    Circle circle = Circle::of(spec.lower, spec.upper, first);
+    StopCircle circle = StopCircle::of(spec.lower, spec.upper, first);
     circle.radius -= layer;
     for (const int axis : {0, 1}) {
       const auto [low, high] = circle.square(axis);

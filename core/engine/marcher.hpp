@@ -154,9 +154,9 @@ class Marcher {
   /// Energy that a compliant law stores at all contact points, J, for their absolute displacements (m).
   double stored(int lane, const double* places) const;
   /// The circle of a lane whose first point this is.
-  Circle circle(int lane, int point) const {
+  StopCircle circle(int lane, int point) const {
     const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
-    return Circle::of(spec.lower, spec.upper, point);
+    return StopCircle::of(spec.lower, spec.upper, point);
   }
   /// `see`(point, p) of each push of a lane in a stage: of a circle its first point, and p = −N.
   template <class See>

@@ -90,7 +90,7 @@ double Marcher::stored(int lane, const double* places) const {
       if (depth > -layer) sum += program_.law->potential(depth, set);
     };
     if (circles_.holds(point)) {
-      const Circle circle = Circle::of(spec.lower, spec.upper, point);
+      const StopCircle circle = StopCircle::of(spec.lower, spec.upper, point);
       ++point;
       add(circle.distance(place, places[point]) - circle.radius);
       continue;
@@ -160,7 +160,7 @@ double Marcher::penetration(int lane, bool law_saw_end) const {
         along = place;
         return;
       }
-      const Circle circle = Circle::of(spec.lower, spec.upper, j - 1);
+      const StopCircle circle = StopCircle::of(spec.lower, spec.upper, j - 1);
       deepest = std::max(deepest, circle.distance(along, place) - circle.radius);
       return;
     }

@@ -23,7 +23,7 @@ void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u,
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     if (any_circle(static_cast<int>(i))) {
-      const Circle circle = Circle::of(lower, upper, static_cast<int>(i++));
+      const StopCircle circle = StopCircle::of(lower, upper, static_cast<int>(i++));
       const double distance = circle.distance(u[row], u[row + 1]), over = distance - circle.radius;
       if (over <= 1e-12 * (std::abs(u[row]) + std::abs(u[row + 1]) + circle.radius) || (beyond && beyond(over)))
         continue;

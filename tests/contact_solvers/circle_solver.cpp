@@ -40,7 +40,7 @@ struct Scene {
   VectorXd free, before, lower, upper;
   std::vector<int> circles;
   int points() const { return static_cast<int>(free.size()); }
-  Circle circle(int first) const { return Circle::of(lower, upper, first); }
+  StopCircle circle(int first) const { return StopCircle::of(lower, upper, first); }
 };
 
 Scene random_scene(std::mt19937& random, int circles, int others, double mobility, double start) {
@@ -119,7 +119,7 @@ TEST_CASE("a point within a circle is pushed along its radius, by what the law s
         // u° + ηWp loses this much of the efforts.
         const double lost = 1e-12 * (1 + scene.free.cwiseAbs().maxCoeff());
         for (const int first : scene.circles) {
-          const Circle circle = scene.circle(first);
+          const StopCircle circle = scene.circle(first);
           const Eigen::Vector2d from = found.u.segment<2>(first) - Eigen::Vector2d(circle.centre[0], circle.centre[1]);
           const double N = law.force(from.norm() - circle.radius), depth = from.norm() - circle.radius;
           // The same as a depth: forces of stiff springs are known as well as their depths.
@@ -144,7 +144,7 @@ TEST_CASE("a discrete gradient in a circle gives the work of its energy, whateve
       const Found found = solved(scene, law, 1);
       REQUIRE(found.outcome.converged);
       for (const int first : scene.circles) {
-        const Circle circle = scene.circle(first);
+        const StopCircle circle = scene.circle(first);
         const auto stored = [&](const VectorXd& u) {
           return law.stored(circle.distance(u[first], u[first + 1]) - circle.radius, 0);
         };
@@ -182,7 +182,7 @@ TEST_CASE("a measure that no effort moves is looked at once") {
   const Scene scene = random_scene(random, 1, 1, 1, 3);
   PowerContact law(2, 1.5, StepForce::at_measure);
   const Found found = solved(scene, law, 0);
-  const Circle circle = scene.circle(0);
+  const StopCircle circle = scene.circle(0);
   const double rho = circle.distance(scene.free[0], scene.free[1]);
   REQUIRE(rho > circle.radius);
   for (const int axis : {0, 1})

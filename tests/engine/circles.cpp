@@ -132,7 +132,7 @@ TEST_CASE("a shock in a round hole has v√(κm) and lasts π√(m/κ), in any d
       CHECK(std::abs(made.impacts[0].duration - pi * std::sqrt(m / kappa)) <= 2 * 2e-6);
       CHECK(made.impacts[0].impulse == Approx(2 * m * v).epsilon(1e-6));
       CHECK(made.impacts[0].speed_in == Approx(v).epsilon(1e-9));
-      CHECK(made.impacts[0].speed_out == Approx(v).epsilon(1e-6));
+      CHECK(made.impacts[0].speed_out == Approx(v).epsilon(3e-6));  // (hω)²/8 and its shares
       CHECK(made.totals.normal_work == Approx(m * v * v).epsilon(1e-4));
     }
 }
@@ -142,7 +142,9 @@ TEST_CASE("along a radius, a sphere in a hole goes (5mv²/4k)^(2/5) deep") {
   for (const double angle : {0.0, 1.0, 3.5}) {
     SceneSpec scene = mass_in({.radius = 1e-3, .offset = {2e-4, 0}}, m, 0);
     begin(scene, {2e-4, 0}, turned(angle, v, 0));
-    const Marched made = marched(scene, {{"consistent"}, {"hertz", {{"stiffness", k}}}, quarter}, 1e-7, 4e-3);
+    const Marched made = marched(
+        scene, {{"consistent"}, {"hertz", {{"stiffness", k}, {"evaluation", std::string("averaged")}}}, quarter}, 1e-7,
+        4e-3);
     REQUIRE(made.impacts.size() == 1);
     // Depths are seen once a step: the last 1e-4 of the shock.
     CHECK(made.deepest == Approx(std::pow(5 * m * v * v / (4 * k), 0.4)).epsilon(1e-4));
@@ -167,14 +169,18 @@ TEST_CASE("a frictionless round hole keeps angular momentum about its centre, an
           const double *q = made.slot(0), *rate = made.slot(1);
           return 2 * ((q[0] - centre[0]) * rate[1] - (q[1] - centre[1]) * rate[0]);
         };
-        const double first = momentum(), energy = audit.totals(0).first.common();
+        const auto energy = [&] {
+          const double *q = made.slot(0), *rate = made.slot(1);
+          return rate[0] * rate[0] + rate[1] * rate[1] + made.stored(0, q);
+        };
+        const double first = momentum(), begun = energy();
         CHECK(first == Approx(2 * (place[0] * speed[1] - place[1] * speed[0])).epsilon(1e-12));
         for (int k = 0; k < 2000; ++k) {
           made.march(1, &audit);
           REQUIRE(std::abs(momentum() - first) <= 1e-12 * std::abs(first));
+          REQUIRE(std::abs(energy() - begun) <= 1e-11 * begun);  // round-off of 2000 steps
         }
         CHECK(audit.contact(0).impacts >= 5);
-        CHECK(audit.totals(0).last.scheme == Approx(energy).epsilon(1e-11));
       }
 }
 
@@ -185,7 +191,7 @@ TEST_CASE("a scene that is turned moves as it did, and one whose hole and start 
     begin(scene, {away[0] + place[0], away[1] + place[1]}, speed);
     return marched(scene, {{"consistent"}, law, scheme}, 1e-5, 0.05);
   };
-  const Choice damped{"hunt-crossley", {{"stiffness", 1e8}}};
+  const Choice damped{"hunt-crossley", {{"stiffness", 1e8}, {"damping", 0.1}}};
   for (const auto& [law, scheme] : {std::pair(averaged, quarter),
                                     {damped, quarter},
                                     {Choice{"penalty", {{"stiffness", 1e6}}}, Choice{"moreau-jean"}},
@@ -201,7 +207,8 @@ TEST_CASE("a scene that is turned moves as it did, and one whose hole and start 
         // Round-off of places (1e-16 of 1e-3 m) beside depths of 1e-4 m, grown by each reflection.
         CHECK(other.impacts[k].impulse == Approx(still.impacts[k].impulse).epsilon(1e-8));
         CHECK(other.impacts[k].speed_in == Approx(still.impacts[k].speed_in).epsilon(1e-7));
-        CHECK(other.impacts[k].speed_out == Approx(still.impacts[k].speed_out).epsilon(1e-7));
+        if (!still.impacts[k].open_end)
+          CHECK(other.impacts[k].speed_out == Approx(still.impacts[k].speed_out).epsilon(1e-7));
       }
       CHECK(other.totals.normal_work == Approx(still.totals.normal_work).epsilon(1e-7));
     }
@@ -212,7 +219,7 @@ TEST_CASE("along its first axis a hole is a stop with two bounds, for every comp
   for (const std::string& name : registry().names(Role::contact)) {
     std::map<std::string, ParameterValue> values;
     for (const ParameterSpec& spec : registry().contact(name)->manual.parameters)
-      if (!spec.fallback) values[spec.key] = spec.key == "stiffness" ? 1e6 : 1.0;
+      if (!spec.fallback) values[spec.key] = spec.key == "stiffness" ? 1e6 : spec.unit == "m" ? 1e-4 : 0.1;
     const Choice law{name, values};
     const auto made = make(registry().contact(name), law);
     if (made->absent() || !made->reads() || made->changes_problem()) continue;
@@ -262,7 +269,7 @@ TEST_CASE("a whirl is pressed against its hole by F + (mω² − k)R, and slides
 TEST_CASE("lanes of a block have the bits that they have alone") {
   SceneSpec scene = mass_in({.radius = 1e-3}, 2, 500);
   begin(scene, {1e-4, 2e-4}, {0.4, 0.1});
-  for (const Choice& law : {averaged, Choice{"hunt-crossley", {{"stiffness", 1e8}}}}) {
+  for (const Choice& law : {averaged, Choice{"hunt-crossley", {{"stiffness", 1e8}, {"damping", 0.1}}}}) {
     const Methods methods{{"consistent"}, law, quarter};
     const auto lanes = [](const LaneSpec& lane) {
       std::vector<LaneSpec> all(5, lane);

@@ -279,7 +279,7 @@ void FlightSet::set_bounds(FlightWatch& watch, const LaneSpec& lane, double laye
   }
   // A circle is left at its corners first: what stays within its square stays within it.
   for (const int first : circles_) {
-    Circle circle = Circle::of(lane.lower, lane.upper, first);
+    StopCircle circle = StopCircle::of(lane.lower, lane.upper, first);
     circle.radius -= shift;
     for (const int axis : {0, 1}) {
       const auto [low, high] = circle.square(axis);

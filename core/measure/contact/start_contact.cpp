@@ -64,7 +64,7 @@ bool StartContact::Held::left() const {
 StartContact::Gap StartContact::gap(const LaneSpec& spec, const Held& held, double place) const {
   const double layer = layers_[static_cast<std::size_t>(held.point)];
   double stop = held.side > 0 ? spec.lower[held.point] + layer : spec.upper[held.point] - layer;
-  if (held.circle) stop = Circle::of(spec.lower, spec.upper, held.point).radius - layer;
+  if (held.circle) stop = StopCircle::of(spec.lower, spec.upper, held.point).radius - layer;
   return {held.side * (place - stop), round_off_of_sums * (std::abs(place) + std::abs(stop))};
 }
 

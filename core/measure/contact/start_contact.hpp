@@ -43,7 +43,7 @@ class StartContact {
   template <class Row>
   static double place_of(const SemiDiscrete& problem, const LaneSpec& spec, int point, Row&& row) {
     if (problem.circle_axis(point) != 0) return row(point);
-    return Circle::of(spec.lower, spec.upper, point).distance(row(point), row(point + 1));
+    return StopCircle::of(spec.lower, spec.upper, point).distance(row(point), row(point + 1));
   }
 
   int lane_ = 0;

@@ -145,7 +145,7 @@ double ContactLog::onset(const Marcher& marcher, const StageView& view, int poin
   const double stop = side == 0 ? lane.lower[point] : lane.upper[point];
   double gap = place(point) - stop, speed = rate(point);
   if (model_.problem().circle_axis(point) == 0) {
-    const Circle circle = marcher.circle(0, point);
+    const StopCircle circle = marcher.circle(0, point);
     gap = circle.distance(place(point), place(point + 1)) - circle.radius;
     speed = circle.outwards(place(point), place(point + 1), speed, rate(point + 1));
   }

@@ -238,7 +238,7 @@ class SectionMarch::Watch final : public StepObserver {
       return velocity(marcher, view, lane, model_.contact(), row) + marcher.lift_rate(lane, row, view.from);
     };
     if (model_.problem().circle_axis(point) != 0) return speed(point);
-    const Circle circle = marcher.circle(lane, point);
+    const StopCircle circle = marcher.circle(lane, point);
     const auto at = [&](int row) {
       return slot_at(view, marcher.width(), lane, 0, row) + marcher.lift(lane, row, view.from);
     };
