@@ -13,7 +13,9 @@ CornerRoots roots_at(const std::vector<std::complex<double>>& multipliers) {
   constexpr double least_angle = 0.01;
   CornerRoots roots;
   roots.outside = outside(multipliers);
+  std::complex<double> product = 1;
   for (const std::complex<double>& one : multipliers) {
+    product *= 1.0 + one;
     if (one.imag() == 0) {
       if (one.real() < 0 && (roots.real == 0 || std::abs(one.real() + 1) < std::abs(roots.real + 1)))
         roots.real = one.real();
@@ -25,16 +27,18 @@ CornerRoots roots_at(const std::vector<std::complex<double>>& multipliers) {
     roots.modulus = modulus;
     roots.angle = angle;
   }
+  roots.product = product.real();
   return roots;
 }
 
 ContactRuns contact_runs(const SetSteps& sets, const SetSequence& sequence, bool half) {
   ContactRuns runs;
+  const auto all = static_cast<long long>(sequence.size()) * (half ? 2 : 1);
   for (std::size_t row = 0; row < static_cast<std::size_t>(sets.measure_rows()); ++row)
     each_run(
         static_cast<long long>(sequence.size()), half,
         [&](long long k) { return sets[sequence[static_cast<std::size_t>(k)]].side[row]; },
-        [&](long long, long long length) { runs.add(length); });
+        [&](long long, long long length) { runs.add(length, all); });
   return runs;
 }
 
@@ -79,6 +83,7 @@ void BranchRun::read() {
   corner.way = state.parameter_along < 0 ? -1 : 1;
   const ContactRuns runs = contact_runs(map_->sets(), state.sets, clock_.half);
   corner.runs = runs.count;
+  corner.held = runs.held;
   corner.shortest = runs.shortest;
   corner.change = state.change;
   std::vector<std::complex<double>> raw = multipliers_of(*map_, clock_, follower_.derivative());
@@ -97,8 +102,9 @@ namespace {
 
 // Whether a special point may lie between two corners.
 bool changes(const BranchCorner& was, const BranchCorner& now) {
-  return now.way != was.way || now.runs != was.runs || !(now.raw.outside == was.raw.outside) ||
-         !(now.smooth.outside == was.smooth.outside);
+  return now.way != was.way || now.runs != was.runs || now.held != was.held || !(now.raw.outside == was.raw.outside) ||
+         !(now.smooth.outside == was.smooth.outside) || (now.raw.product < 0) != (was.raw.product < 0) ||
+         (now.smooth.product < 0) != (was.smooth.product < 0);
 }
 
 }  // namespace

@@ -14,8 +14,11 @@ namespace ricochet {
 /// Runs of steps in which a point is closed by one stop, over the steps of a map, round its end.
 struct ContactRuns {
   int count = 0, shortest = 0;
-  void add(long long length) {
+  int held = 0;  ///< of the count: those of points that are closed all the time
+  /// `all`: steps after which a motion repeats.
+  void add(long long length, long long all) {
     ++count;
+    held += length >= all;
     shortest = shortest == 0 ? static_cast<int>(length) : std::min(shortest, static_cast<int>(length));
   }
 };
@@ -126,6 +129,7 @@ struct CornerRoots {
   double real = 0;     ///< the real one nearest −1; 0: there is none
   double modulus = 0;  ///< of the pair nearest the circle, angle in (0.01, π − 0.01); 0: none
   double angle = 0;    ///< of that pair
+  double product = 1;  ///< ∏ (1 + μ): 0 where a real one is −1
 };
 CornerRoots roots_at(const std::vector<std::complex<double>>& multipliers);
 
@@ -134,12 +138,14 @@ struct BranchCorner {
   double parameter = 0, arc = 0, tip = 0;
   int way = 0;                                ///< sign of dλ/ds on the piece
   int runs = 0;                               ///< runs of contact over the steps of the map
+  int held = 0;                               ///< of them, those that never end
   int shortest = 0;                           ///< steps of the shortest of them; 0: there is none
   CornerRoots raw;                            ///< of the frozen step, all along the piece
   CornerRoots smooth;                         ///< by the half-step rule, at the corner
   std::vector<std::complex<double>> leading;  ///< raw, largest modulus first
   SetChange change;                           ///< that made it; none of the first corner
   double residual = 0;                        ///< m
+  double rebounds = 0;                        ///< u where stops give back speed (stepped_map.hpp), m
 };
 
 /// Over all points, those of each stage on their own.

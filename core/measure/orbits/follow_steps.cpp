@@ -193,11 +193,13 @@ void StepFollower::keep(Step step) {
   corner.tip = step.image.tip;
   corner.way = along_.parameter < 0 ? -1 : 1;
   corner.runs = step.image.runs;
+  corner.held = step.image.held;
   corner.shortest = step.image.shortest;
   corner.raw = corner.smooth = roots_at(step.multipliers);
   step.multipliers.resize(std::min(step.multipliers.size(), static_cast<std::size_t>(limits_.branch.multipliers)));
   corner.leading = std::move(step.multipliers);
   corner.residual = map_->metric().size(step.image.image - step.to.x);
+  corner.rebounds = step.image.rebounds;
   trace_.rebounds = std::max(trace_.rebounds, step.image.rebounds);
   trace_.corners.push_back(std::move(corner));
   trace_.states.emplace(static_cast<long long>(trace_.corners.size()) - 1, std::move(step.to.x));

@@ -2,44 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <list>
+#include <limits>
 #include <ricochet/measure/orbits/special_points.hpp>
+#include <utility>
 
 namespace ricochet {
-
-std::vector<Turn> turns_of(const BranchTrace& trace) {
-  const auto& corners = trace.corners;
-  if (corners.empty()) return {};
-  std::vector<Turn> turns;
-  std::vector<double> path = {corners.front().parameter};
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
-    if (corners[i].way != corners[i - 1].way) {
-      turns.push_back({static_cast<long long>(i), corners[i].parameter, 0});
-      path.push_back(corners[i].parameter);
-    }
-  path.push_back(corners.back().parameter);
-  // Indices of path that are left: the ends, and turns.
-  std::list<std::size_t> left;
-  for (std::size_t i = 0; i < path.size(); ++i) left.push_back(i);
-  while (left.size() > 2) {
-    auto smallest = left.begin();
-    double least = std::numeric_limits<double>::infinity();
-    for (auto at = left.begin(); std::next(at) != left.end(); ++at)
-      if (const double way = std::abs(path[*std::next(at)] - path[*at]); way < least) {
-        least = way;
-        smallest = at;
-      }
-    const auto next = std::next(smallest);
-    const auto take = [&](std::list<std::size_t>::iterator at) {
-      if (*at == 0 || *at + 1 == path.size()) return;
-      turns[*at - 1].prominence = least;
-      left.erase(at);
-    };
-    take(next);
-    take(smallest);
-  }
-  return turns;
-}
 
 namespace {
 
@@ -55,7 +22,22 @@ SpecialPoint at_corner(const Corners& corners, std::size_t i, const char* kind, 
   point.tip = corners[i].tip;
   point.runs_before = corners[i > 0 ? i - 1 : 0].runs;
   point.runs_after = corners[i].runs;
+  point.held_before = corners[i > 0 ? i - 1 : 0].held;
+  point.held_after = corners[i].held;
   return point;
+}
+
+bool contact_changes(const BranchCorner& was, const BranchCorner& now) {
+  return was.runs != now.runs || was.held != now.held;
+}
+
+void add_note(SpecialPoint& point, const std::string& text) {
+  point.note += (point.note.empty() ? "" : "; ") + text;
+}
+
+// m: arclength to which the orbits of a corner and of the one before are known, where stops give back speed.
+double rebounds_at(const Corners& corners, std::size_t i) {
+  return std::max(corners[i].rebounds, corners[i > 0 ? i - 1 : 0].rebounds);
 }
 
 void widen(SpecialPoint& point, double value) {
@@ -70,6 +52,7 @@ struct Crossing {
   int sign = 0;                        // outwards or inwards
   double value = 0, arc = 0, tip = 0;  // of a smooth one: where it is by linear interpolation
   std::optional<std::complex<double>> multiplier;
+  bool jumps = false;  // with a contact that comes or goes
 };
 
 // What of the multipliers is counted, and the function whose zero is the crossing.
@@ -80,38 +63,73 @@ struct Circle {
 };
 
 double distance(const CornerRoots& roots, bool pair) {
-  if (pair) return roots.modulus == 0 ? NAN : roots.modulus - 1;
-  return roots.real == 0 ? NAN : -1 - roots.real;
+  if (!pair) return roots.product;
+  return roots.modulus == 0 ? NAN : roots.modulus - 1;
+}
+
+// Which way multipliers cross between two corners: 1 outwards, −1 inwards, 0 none does. Pairs that meet on the axis
+// outside the circle cross nothing; a real one that was one of a pair before does.
+int way_of(const CornerRoots& was, const CornerRoots& now, const Circle& circle) {
+  const int counted = now.outside.*circle.count - was.outside.*circle.count,
+            total = now.outside.total - was.outside.total;
+  const auto sign = [](int number) { return number > 0 ? 1 : -1; };
+  if (!circle.pair && (was.product < 0) != (now.product < 0)) return sign(total != 0 ? total : counted);
+  return counted * total > 0 ? sign(counted) : 0;
 }
 
 std::vector<Crossing> crossings_of(const Corners& corners, const Circle& circle, bool by_steps) {
   std::vector<Crossing> all;
   for (std::size_t i = 1; i < corners.size(); ++i) {
     const BranchCorner &was = corners[i - 1], &now = corners[i];
-    if (was.runs != now.runs) continue;  // multipliers jump with a contact that comes or goes
-    // Pairs that meet on the axis outside the circle cross nothing.
-    const int counted = now.raw.outside.*circle.count - was.raw.outside.*circle.count;
-    if (!by_steps && counted * (now.raw.outside.total - was.raw.outside.total) > 0)
-      all.push_back({i, true, counted > 0 ? 1 : -1, now.parameter, now.arc, now.tip, {}});
-    const int smooth = now.smooth.outside.*circle.count - was.smooth.outside.*circle.count;
-    if (smooth * (now.smooth.outside.total - was.smooth.outside.total) <= 0) continue;
+    const bool jumps = contact_changes(was, now);
+    const int raw = way_of(was.raw, now.raw, circle), smooth = way_of(was.smooth, now.smooth, circle);
+    const Crossing here{i, true, raw, now.parameter, now.arc, now.tip, {}, jumps};
+    if (raw != 0 && (jumps || !by_steps)) all.push_back(here);
+    if (smooth == 0) continue;
+    Crossing root = here;
+    root.raw = false;
+    root.sign = smooth;
     const double before = distance(was.smooth, circle.pair), after = distance(now.smooth, circle.pair);
     // Between two orbits by steps a multiplier may jump over the circle.
     const bool passes = before * after <= 0 && before != after;
-    if (!passes && !by_steps) continue;
-    const double share = passes ? before / (before - after) : 0.5;
-    const auto between = [&](double a, double b) { return a + share * (b - a); };
-    std::optional<std::complex<double>> multiplier;
-    if (passes)
-      multiplier =
-          circle.pair ? std::polar(1.0, between(was.smooth.angle, now.smooth.angle)) : std::complex<double>(-1);
-    all.push_back({i, false, smooth > 0 ? 1 : -1, between(was.parameter, now.parameter), between(was.arc, now.arc),
-                   between(was.tip, now.tip), multiplier});
+    if (!jumps) {
+      if (!passes && !by_steps) continue;
+      const double share = passes ? before / (before - after) : 0.5;
+      const auto between = [&](double a, double b) { return a + share * (b - a); };
+      root.value = between(was.parameter, now.parameter);
+      root.arc = between(was.arc, now.arc);
+      root.tip = between(was.tip, now.tip);
+      if (passes)
+        root.multiplier =
+            circle.pair ? std::polar(1.0, between(was.smooth.angle, now.smooth.angle)) : std::complex<double>(-1);
+    }
+    all.push_back(root);
   }
   return all;
 }
 
-void add_group(const Corners& corners, const Circle& circle, const std::vector<Crossing>& group, bool rebounds,
+// The crossing of a group that stands for it: as much of the arc as may be lies on the side where it belongs, of what
+// is counted before and after it.
+const Crossing* stands_for(const std::vector<const Crossing*>& group, int net) {
+  const Crossing* best = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t j = 0; j < group.size(); ++j) {
+    if (group[j]->sign * net <= 0) continue;
+    double amiss = 0;
+    int count = 0;
+    for (std::size_t k = 0; k + 1 < group.size(); ++k) {
+      count += group[k]->sign;
+      amiss += std::abs(count - (k < j ? 0 : net)) * (group[k + 1]->arc - group[k]->arc);
+    }
+    if (amiss < least) {
+      least = amiss;
+      best = group[j];
+    }
+  }
+  return best;
+}
+
+void add_group(const Corners& corners, const Circle& circle, const std::vector<Crossing>& group,
                std::vector<SpecialPoint>& points) {
   const std::size_t first = group.front().corner, last = group.back().corner;
   std::vector<const Crossing*> smooth, raw;
@@ -120,48 +138,34 @@ void add_group(const Corners& corners, const Circle& circle, const std::vector<C
     (one.raw ? raw : smooth).push_back(&one);
     (one.raw ? raw_net : smooth_net) += one.sign;
   }
-  if (raw_net == 0 && smooth_net == 0) return;
-  SpecialPoint point = at_corner(corners, last, circle.kind, circle.label);
-  if (raw.empty()) {
-    point.low = point.high = corners[smooth.front()->corner - 1].parameter;
-    for (const Crossing* one : smooth) {
-      widen(point, corners[one->corner - 1].parameter);
-      widen(point, corners[one->corner].parameter);
-    }
-  } else {
-    point.low = point.high = raw.front()->value;
-    for (const Crossing* one : raw) widen(point, one->value);
-    if (raw.size() == 1)  // known to the pieces on both sides
-      for (const std::size_t i : {first - 1, std::min(first + 1, corners.size() - 1)})
-        widen(point, corners[i].parameter);
-    point.crossings = static_cast<int>(raw.size());
-  }
-  if (!smooth.empty()) {
-    const Crossing& root = *smooth[smooth.size() / 2];
-    point.corner = static_cast<long long>(root.corner);
-    point.parameter = root.value;
-    point.arc = root.arc;
-    point.tip = root.tip;
-    point.multiplier = root.multiplier;
-    if (!root.multiplier) point.note = "a multiplier jumps over the circle";
-    if (smooth.size() > 1)
-      point.note = fmt::format("the half-step rule crosses {} times; the middle one stands for them", smooth.size());
-  } else {
-    const Crossing& middle = *raw[raw.size() / 2];
-    point.corner = static_cast<long long>(middle.corner);
-    point.parameter = middle.value;
-    point.arc = middle.arc;
-    point.tip = middle.tip;
-    point.note = "by the frozen multipliers alone";
-  }
+  const Crossing* root = stands_for(smooth, smooth_net);
+  const bool frozen = root == nullptr;
+  if (frozen) root = stands_for(raw, raw_net);
+  if (!root) return;
+  SpecialPoint point = at_corner(corners, root->corner, circle.kind, circle.label);
+  point.parameter = root->value;
+  point.arc = root->arc;
+  point.tip = root->tip;
+  point.multiplier = root->multiplier;
+  point.low = point.high = root->value;
+  point.crossings = static_cast<int>(raw.size());
+  for (const Crossing& one : group) widen(point, one.value);
+  if (raw.size() <= 1)  // known to the pieces on both sides
+    for (const std::size_t i : {first - 1, last, std::min(last + !raw.empty(), corners.size() - 1)})
+      widen(point, corners[i].parameter);
+  if (root->jumps)
+    add_note(point, "at a change of contact, where multipliers jump");
+  else if (frozen)
+    add_note(point, "by the frozen multipliers alone");
+  else if (!root->multiplier)
+    add_note(point, "a multiplier jumps over the circle");
+  if (smooth.size() > 1)
+    add_note(point, fmt::format("the half-step rule crosses {} times; one stands for them", smooth.size()));
   int shortest = corners[first].shortest;
   for (std::size_t i = first - 1; i <= last; ++i)
     if (corners[i].shortest > 0) shortest = std::min(shortest, corners[i].shortest);
-  const auto say = [&](const std::string& text) { point.note += (point.note.empty() ? "" : "; ") + text; };
-  if (shortest > 0 && shortest < shortest_told && !rebounds)
-    say(fmt::format("unresolved: a run of contact has {} step{}", shortest, shortest == 1 ? "" : "s"));
-  if (point.parameter < point.low || point.parameter > point.high)
-    say("its root lies outside the crossings of the frozen multipliers");
+  if (shortest > 0 && shortest < shortest_told && rebounds_at(corners, last) == 0 && !root->jumps)
+    add_note(point, fmt::format("unresolved: a run of contact has {} step{}", shortest, shortest == 1 ? "" : "s"));
   points.push_back(std::move(point));
 }
 
@@ -169,35 +173,20 @@ void add_crossings(const Corners& corners, const Circle& circle, const PointSear
                    std::vector<SpecialPoint>& points) {
   std::vector<Crossing> group;
   const auto flush = [&] {
-    if (!group.empty()) add_group(corners, circle, group, search.placed > 0, points);
+    if (!group.empty()) add_group(corners, circle, group, points);
     group.clear();
   };
   for (const Crossing& one : crossings_of(corners, circle, search.by_steps)) {
     if (!group.empty()) {
       const std::size_t last = group.back().corner;
-      const bool near = static_cast<long long>(one.corner - last) < group_pieces ||
-                        corners[one.corner].arc - corners[last].arc < group_arc * search.gap;
-      if (!near || search.by_steps) flush();
+      const bool near = search.by_steps ? one.corner == last
+                                        : static_cast<long long>(one.corner - last) < group_pieces ||
+                                              corners[one.corner].arc - corners[last].arc < group_arc * search.gap;
+      if (!near) flush();
     }
     group.push_back(one);
   }
   flush();
-}
-
-// A count outside that changes with a contact that comes or goes: where multipliers jump over −1.
-void add_jumps(const Corners& corners, const Circle& circle, std::vector<SpecialPoint>& points) {
-  for (std::size_t i = 1; i < corners.size(); ++i) {
-    const BranchCorner &was = corners[i - 1], &now = corners[i];
-    const int counted = now.raw.outside.*circle.count - was.raw.outside.*circle.count;
-    if (was.runs == now.runs || counted * (now.raw.outside.total - was.raw.outside.total) <= 0) continue;
-    SpecialPoint point = at_corner(corners, i, circle.kind, circle.label);
-    point.low = point.high = was.parameter;
-    widen(point, now.parameter);
-    widen(point, corners[std::min(i + 1, corners.size() - 1)].parameter);
-    point.crossings = 1;
-    point.note = "at a change of contact, where multipliers jump";
-    points.push_back(std::move(point));
-  }
 }
 
 // λ at the vertex of the parabola through a corner at which it turns and its neighbours.
@@ -210,22 +199,29 @@ double vertex(const Corners& corners, std::size_t i) {
   return curve == 0 ? b.parameter : b.parameter - slope * slope / (4 * curve);
 }
 
-// Widens an interval by what is not known of the orbits along the branch.
-void place(const Corners& corners, double placed, SpecialPoint& point) {
+// Widens an interval by what is not known of the orbits along the branch. At a fold λ stands still along it: an orbit
+// that is known to so much is one of a value that far.
+void place(const Corners& corners, double metres, SpecialPoint& point) {
   const auto i = static_cast<std::size_t>(std::max(1LL, point.corner));
   if (i >= corners.size()) return;
-  const double far = corners[i].arc - corners[i - 1].arc;
-  if (!(far > 0)) return;
-  const double by = placed * std::abs(corners[i].parameter - corners[i - 1].parameter) / far;
+  const double far = corners[i].arc - corners[i - 1].arc, known = rebounds_at(corners, i);
+  double by = known / metres;
+  if (point.kind != "fold") {
+    if (!(far > 0)) return;
+    by = known * std::abs(corners[i].parameter - corners[i - 1].parameter) / far;
+  }
   point.low -= by;
   point.high += by;
-  point.note += (point.note.empty() ? "" : "; ") + std::string("stops give back speed: the interval is not exact");
+  add_note(point, "stops give back speed: the interval is not exact");
 }
 
 void add_folds(const BranchTrace& trace, const PointSearch& search, std::vector<SpecialPoint>& points) {
   const Corners& corners = trace.corners;
-  for (const Turn& turn : turns_of(trace)) {
-    if (turn.prominence < search.prominence) continue;
+  for (const Turn& turn : turns_of(trace, search.before)) {
+    // What turns within the uncertainty of its orbits turns nowhere.
+    const double unknown = 2 * rebounds_at(corners, static_cast<std::size_t>(turn.corner)) / search.metres;
+    const double least = std::max(search.prominence, unknown);
+    if (turn.prominence < least || turn.shortest < cut_share * least) continue;
     const auto i = static_cast<std::size_t>(turn.corner);
     SpecialPoint point = at_corner(corners, i, "fold", "LP");
     // A motion without contact is one piece, however long: where it touches its stop the other piece tells.
@@ -248,50 +244,80 @@ void add_folds(const BranchTrace& trace, const PointSearch& search, std::vector<
   }
 }
 
-// A run that appears with its first step, or vanishes with its last one.
-void add_contacts(const Corners& corners, const PointSearch& search, std::vector<SpecialPoint>& points) {
+// What a change of contact is called.
+void name_contact(SpecialPoint& point) {
+  if (std::min(point.runs_before, point.runs_after) == 0)
+    add_note(point, "first contact");
+  else if (point.held_before != point.held_after)
+    add_note(point, "a permanent contact opens");
+}
+
+void add_contacts_between(const Corners& corners, const PointSearch& search, std::vector<SpecialPoint>& points) {
   for (std::size_t i = 1; i < corners.size(); ++i) {
     const BranchCorner &was = corners[i - 1], &now = corners[i];
-    if (was.runs == now.runs || (now.change.step < 0 && !search.by_steps)) continue;
-    if (search.by_steps) {
-      SpecialPoint point = at_corner(corners, i, "contact", "GR");
-      point.low = point.high = was.parameter;
-      widen(point, now.parameter);
-      if (search.contacts > 0) {
-        // On the side with fewer contacts.
-        if (was.runs < now.runs) --point.corner;
-        const BranchCorner& placed = corners[static_cast<std::size_t>(point.corner)];
-        point.parameter = placed.parameter;
-        point.arc = placed.arc;
-        point.tip = placed.tip;
-        point.low = placed.parameter - search.contacts;
-        point.high = placed.parameter + search.contacts;
-      }
-      if (std::min(was.runs, now.runs) == 0) point.note = "first contact";
-      points.push_back(std::move(point));
-      continue;
-    }
-    const bool appears = now.change.closes && now.runs > was.runs, vanishes = !now.change.closes && now.runs < was.runs;
-    if (!appears && !vanishes) continue;  // a run is cut in two, or two become one
+    if (!contact_changes(was, now)) continue;
     SpecialPoint point = at_corner(corners, i, "contact", "GR");
-    // The shorter one of the two: a motion without contact is one piece, however long. Between bounds that are met at
-    // once there is no length.
-    const auto away = [&](std::ptrdiff_t way) {
-      auto at = static_cast<std::ptrdiff_t>(i);
-      double far = 0;
-      while (far <= met_at_once * std::abs(now.parameter) && (at += way) >= 0 && at < std::ssize(corners))
-        far = std::abs(corners[static_cast<std::size_t>(at)].parameter - now.parameter);
-      return far;
-    };
-    double piece = away(-1);
-    if (const double after = away(1); after > 0) piece = std::min(piece, after);
-    point.low = point.parameter - piece;
-    point.high = point.parameter + piece;
-    point.side = now.change.upper ? "upper" : "lower";
-    point.change = now.change;
-    if (std::min(was.runs, now.runs) == 0) point.note = "first contact";
+    point.low = point.high = was.parameter;
+    widen(point, now.parameter);
+    if (search.contacts > 0) {
+      // On the side with fewer contacts.
+      if (was.runs < now.runs) --point.corner;
+      const BranchCorner& placed = corners[static_cast<std::size_t>(point.corner)];
+      point.parameter = placed.parameter;
+      point.arc = placed.arc;
+      point.tip = placed.tip;
+      point.low = placed.parameter - search.contacts;
+      point.high = placed.parameter + search.contacts;
+    }
+    name_contact(point);
     points.push_back(std::move(point));
   }
+}
+
+// A run that appears with its first step, or vanishes with its last one; a permanent contact that opens or stays. A
+// margin is 0 at the corner: λ is known as the orbit is. A run that is cut in two, and two that become one, are none.
+void add_contacts(const Corners& corners, const PointSearch& search, std::vector<SpecialPoint>& points) {
+  std::vector<std::pair<SpecialPoint, int>> found;  // with the number of contacts that change at once
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    const BranchCorner &was = corners[i - 1], &now = corners[i];
+    if (now.change.step < 0) continue;
+    const bool begins =
+        now.change.closes ? now.runs > was.runs || now.held > was.held : now.runs < was.runs || now.held < was.held;
+    if (!begins) continue;
+    const double at_once = met_at_once * std::abs(now.parameter);
+    if (!found.empty() && std::abs(found.back().first.parameter - now.parameter) <= at_once) {
+      found.back().first.runs_after = now.runs;
+      found.back().first.held_after = now.held;
+      ++found.back().second;
+      continue;
+    }
+    SpecialPoint point = at_corner(corners, i, "contact", "GR");
+    const double known = at_once + round_offs * now.residual / search.metres;
+    point.low = point.parameter - known;
+    point.high = point.parameter + known;
+    point.side = now.change.upper ? "upper" : "lower";
+    point.change = now.change;
+    found.emplace_back(std::move(point), 1);
+  }
+  for (auto& [point, together] : found) {
+    if (point.runs_before == point.runs_after && point.held_before == point.held_after) continue;
+    name_contact(point);
+    if (together > 1) add_note(point, fmt::format("{} contacts change at once", together));
+    points.push_back(std::move(point));
+  }
+}
+
+// A branch that comes by a place again has what is there once.
+void tell_once(std::vector<SpecialPoint>& points, double same_tip) {
+  std::vector<SpecialPoint> once;
+  for (SpecialPoint& point : points) {
+    const auto known = [&](const SpecialPoint& one) {
+      return one.kind != "mark" && one.kind == point.kind && one.side == point.side && one.low <= point.high &&
+             point.low <= one.high && std::abs(one.tip - point.tip) <= same_tip;
+    };
+    if (std::none_of(once.begin(), once.end(), known)) once.push_back(std::move(point));
+  }
+  points = std::move(once);
 }
 
 }  // namespace
@@ -304,11 +330,13 @@ std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSe
   const Circle minus =
       search.half ? Circle{"symmetry", "BP", &Outside::below, false} : Circle{"flip", "PD", &Outside::below, false};
   add_crossings(corners, minus, search, points);
-  add_jumps(corners, minus, points);
   add_crossings(corners, {"torus", "TR", &Outside::pairs, true}, search, points);
-  add_contacts(corners, search, points);
-  if (search.placed > 0)
-    for (SpecialPoint& point : points) place(corners, search.placed, point);
+  if (search.by_steps)
+    add_contacts_between(corners, search, points);
+  else
+    add_contacts(corners, search, points);
+  if (trace.rebounds > 0)
+    for (SpecialPoint& point : points) place(corners, search.metres, point);
   for (const MarkedOrbit& mark : trace.marks) {
     SpecialPoint point = at_corner(corners, static_cast<std::size_t>(mark.corner), "mark", "UZ");
     point.parameter = point.low = point.high = mark.parameter;
@@ -318,6 +346,7 @@ std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSe
   }
   std::stable_sort(points.begin(), points.end(),
                    [](const SpecialPoint& a, const SpecialPoint& b) { return a.arc < b.arc; });
+  tell_once(points, std::max(1e-6 * search.gap, trace.rebounds));
   if (trace.ended()) {
     SpecialPoint end = at_corner(corners, corners.size() - 1, "end", "EP");
     end.low = end.high = end.parameter;

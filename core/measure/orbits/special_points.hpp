@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <limits>
 #include <optional>
 #include <ricochet/measure/orbits/branch.hpp>
 #include <ricochet/measure/orbits/periodic_map.hpp>
@@ -21,6 +22,7 @@ struct SpecialPoint {
   std::string side;
   std::optional<SetChange> change;  ///< of a contact
   int runs_before = 0, runs_after = 0;
+  int held_before = 0, held_after = 0;  ///< of these runs, those that never end
   std::string note;
 };
 
@@ -30,8 +32,9 @@ struct PointSearch {
   double prominence = 0;  ///< least one of a fold, in units of λ
   bool by_steps = false;  ///< corners are orbits along a curve: what is between two of them is interpolated
   double gap = 0.1;       ///< m
-  double placed = 0;      ///< m: arclength to which orbits are known, where stops give back speed
   double contacts = 0;    ///< to which contacts are placed on corners, in units of λ; 0: they lie between corners
+  double metres = 1;      ///< of one unit of λ (StateMetric)
+  const BranchTrace* before = nullptr;  ///< from the first orbit the other way, where it was followed
 };
 
 /// Raw crossings this near along a branch are one group, by pieces or by arc (of the gap).
@@ -40,26 +43,33 @@ inline constexpr double group_arc = 0.03;
 /// Steps of the shortest run of contact below which no multiplier is told.
 inline constexpr int shortest_told = 4;
 
-/// A turn of λ along a branch: the corner, and the smaller way that λ goes back by, before and after. Ways are those of
-/// the polyline of turns from which smaller ones were taken out, pair by pair, the smallest first.
+/// A turn of λ along a branch. On either side λ goes back by some way before it goes beyond the turn. The ends of a
+/// branch and its first contacts cut ways off. The prominence is the smaller way that nothing cuts off; the larger one
+/// where both are cut off.
 struct Turn {
   long long corner = 0;
   double parameter = 0;
   double prominence = 0;
+  double shortest = 0;  ///< the smaller way, cut off or not
 };
-std::vector<Turn> turns_of(const BranchTrace& trace);
+/// Those of a trace. `before`: the branch from its first orbit the other way; ways go on along it.
+std::vector<Turn> turns_of(const BranchTrace& trace, const BranchTrace* before = nullptr);
+/// Share of the least prominence that a way which is cut off must have.
+inline constexpr double cut_share = 0.1;
 
 /// Special points of a branch, in its order, the end last:
 ///
 ///     fold      turns of λ; the interval is half a piece in λ
 ///     symmetry  (half map), flip (period map): a real multiplier through −1
 ///     torus     a pair through the circle
-///     contact   a run of contact that appears or vanishes
+///     contact   a run of contact that appears or vanishes, or a permanent one that opens: known to round-off
 ///
-/// Crossings near to each other are one group; on a branch by steps each is its own. A group is a point where the count
-/// of multipliers outside differs before and after it. Its value is where the multiplier by the half-step rule crosses,
-/// or the middle frozen crossing where none does. Its interval is all of the group. Where the count changes with a
-/// contact that comes or goes, the corner is the point, and no multiplier is told.
+/// A real multiplier passes −1 where ∏ (1 + μ) changes its sign. Crossings near to each other are one group; on a
+/// branch by steps each is its own. A group is a point where the count of multipliers outside differs before and after
+/// it. Its value is where the multiplier by the half-step rule crosses, or the middle frozen crossing where none does.
+/// Its interval is all of the group. Where the count changes with a contact that comes or goes, the corner is the
+/// point, and no multiplier is told. Contacts that change at once are one point; a branch that comes by a place again
+/// has it once.
 std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSearch& search);
 
 /// An orbit of another branch, near to the point at which it begins.

@@ -47,7 +47,7 @@ class ContactWatch final : public StepObserver {
     ContactRuns runs;
     for (std::size_t point = 0; point < closed_.size(); ++point) {
       const auto run = [&](long long begin, long long length) {
-        runs.add(length);
+        runs.add(length, half ? 2 * n : n);
         const long long end = begin + length;
         if (begin < 2 || end + 1 >= n || length > briefest_contact) return;
         const auto place = [&](long long at) {
@@ -63,6 +63,7 @@ class ContactWatch final : public StepObserver {
           n, half, [&](long long k) { return sides_[static_cast<std::size_t>(k)][point]; }, run);
     }
     out.runs = runs.count;
+    out.held = runs.held;
     out.shortest = runs.shortest;
     out.penetration = deepest;
   }

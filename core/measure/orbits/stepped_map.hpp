@@ -21,7 +21,7 @@ class FollowedMap {
     Eigen::VectorXd image;
     Eigen::MatrixXd derivative;
     LaneEnd end;
-    int runs = 0, shortest = 0;
+    int runs = 0, held = 0, shortest = 0;
     double rebounds = 0;  ///< u = h Σ|v⁺ − v⁻| over contacts that rebound, m
     double slowest = 0;   ///< least approach among these, m/s; 0: none rebounds
     double tip = 0, tip_velocity = 0, penetration = 0;

@@ -43,13 +43,13 @@ void serialize(Archive& archive, SetChange& change) {
 template <class Archive>
 void serialize(Archive& archive, CornerRoots& roots) {
   archive(roots.outside.total, roots.outside.above, roots.outside.below, roots.outside.pairs, roots.real, roots.modulus,
-          roots.angle);
+          roots.angle, roots.product);
 }
 
 template <class Archive>
 void serialize(Archive& archive, BranchCorner& corner) {
-  archive(corner.parameter, corner.arc, corner.tip, corner.way, corner.runs, corner.shortest, corner.raw, corner.smooth,
-          corner.leading, corner.change, corner.residual);
+  archive(corner.parameter, corner.arc, corner.tip, corner.way, corner.runs, corner.held, corner.shortest, corner.raw,
+          corner.smooth, corner.leading, corner.change, corner.residual, corner.rebounds);
 }
 
 template <class Archive>
@@ -75,7 +75,7 @@ void serialize(Archive& archive, KeptBranch& kept) {
 
 namespace {
 
-constexpr int branches_version = 4;
+constexpr int branches_version = 5;
 constexpr double keep_interval = 2;  // s
 
 struct KeptWithSets {

@@ -31,11 +31,19 @@ void cut_at(BranchTrace& trace, const SpecialPoint& point) {
 
 namespace {
 
-int runs_of(const PeriodicMap& map, const MapMarch& made, bool half) {
-  return contact_runs(map.sets(), made.sets, half).count;
+// Runs of contact, and those of them that never end.
+std::pair<int, int> runs_of(const PeriodicMap& map, const MapMarch& made, bool half) {
+  const ContactRuns runs = contact_runs(map.sets(), made.sets, half);
+  return {runs.count, runs.held};
 }
-int runs_of(const SteppedMap&, const SteppedMap::Image& made, bool) {
-  return made.runs;
+std::pair<int, int> runs_of(const SteppedMap&, const SteppedMap::Image& made, bool) {
+  return {made.runs, made.held};
+}
+
+void put_runs(int runs, int held, const MapClock& clock, BranchRow& row) {
+  const int times = clock.half ? 2 : 1;
+  row.contact_runs = times * runs;
+  row.impacts_per_period = static_cast<double>(times * (runs - held)) / clock.period;
 }
 
 template <class Map, class March>
@@ -49,8 +57,8 @@ BranchRow row_of(const Map& map, const March& made, const MapClock& clock, const
   row.tip_velocity = made.tip_velocity;
   row.penetration = made.penetration;
   row.residual = map.metric().size(made.image - x);
-  row.contact_runs = runs_of(map, made, clock.half) * (clock.half ? 2 : 1);
-  row.impacts_per_period = static_cast<double>(*row.contact_runs) / clock.period;
+  const auto [runs, held] = runs_of(map, made, clock.half);
+  put_runs(runs, held, clock, row);
   return row;
 }
 
@@ -89,8 +97,7 @@ std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipli
     row.period = branch.clock.period;
     row.symmetric = branch.clock.half;
     put_multipliers(corner.leading, corner.raw.outside, multipliers, row);
-    row.contact_runs = corner.runs * (branch.clock.half ? 2 : 1);
-    row.impacts_per_period = static_cast<double>(*row.contact_runs) / branch.clock.period;
+    put_runs(corner.runs, corner.held, branch.clock, row);
     row.iterations = number == 0 ? branch.iterations : 0;
     row.residual = corner.residual;
     row.pieces = number - last;
@@ -199,6 +206,8 @@ std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std:
     if (point.kind != "end" && point.kind != "mark") {
       row.runs_before = times * point.runs_before;
       row.runs_after = times * point.runs_after;
+      row.held_before = times * point.held_before;
+      row.held_after = times * point.held_after;
     }
     for (const auto& [corner, name] : branch.leaves)
       if (corner == point.corner && (point.kind == "symmetry" || point.kind == "flip"))
@@ -212,7 +221,7 @@ std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std:
 // Three prominences a decade, 1e-6 … 1e-2 of the scale.
 std::vector<TurnRow> turn_rows_of(const FollowedBranch& branch, double scale) {
   std::vector<TurnRow> rows;
-  const std::vector<Turn> turns = turns_of(branch.trace);
+  const std::vector<Turn> turns = turns_of(branch.trace, branch.before());
   for (int k = -18; k <= -6; ++k) {
     TurnRow row;
     row.branch = branch.name;

@@ -19,6 +19,8 @@ struct FollowedBranch {
   std::vector<SpecialPoint> points;
   int iterations = 0;                                     ///< of its first orbit
   std::vector<std::pair<long long, std::string>> leaves;  ///< corner and name of branches that begin there
+  const FollowedBranch* other = nullptr;                  ///< the way back from its first orbit, where it was followed
+  const BranchTrace* before() const { return other ? &other->trace : nullptr; }
 };
 
 /// Ends a branch at one of its special points.

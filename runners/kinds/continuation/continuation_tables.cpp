@@ -135,6 +135,8 @@ TableType<SpecialRow> special_points_type(const SweptColumns& swept) {
       .add({"contact_x", "m", "Where the point stands that touches."}, &SpecialRow::contact_x)
       .add({"runs_before", "1", "Runs of contact before the point."}, &SpecialRow::runs_before)
       .add({"runs_after", "1", "Runs of contact after it."}, &SpecialRow::runs_after)
+      .add({"held_before", "1", "Of the runs before the point, contacts that never open."}, &SpecialRow::held_before)
+      .add({"held_after", "1", "Of the runs after it, contacts that never open."}, &SpecialRow::held_after)
       .add({"to_branch", "", "The branch that begins here."}, &SpecialRow::to_branch)
       .add({"note", "", "What is not certain, or why the branch ends."}, &SpecialRow::note);
   return {"special_points", "One special point of a branch.", rows};

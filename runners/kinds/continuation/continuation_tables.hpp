@@ -48,7 +48,7 @@ struct SpecialRow {
   std::optional<double> prominence;
   std::string side;
   std::optional<double> contact_phase, contact_x;
-  std::optional<int> runs_before, runs_after;
+  std::optional<int> runs_before, runs_after, held_before, held_after;
   std::string to_branch, note;
 };
 TableType<SpecialRow> special_points_type(const SweptColumns& swept = {});

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <ricochet/measure/orbits/special_points.hpp>
@@ -104,18 +105,32 @@ class ReferenceRun {
     };
     const auto [shot, clock, why] = first_orbit(map, {0, gap_, no_image_, state, tolerance}, orbit);
     if (!why.empty()) return results_.add_missing(orbit.name, orbit.at, why);
+    std::array<FollowedBranch, 2> ways;
+    std::size_t followed = 0;
     for (const int way : {1, -1}) {
       if (way < 0 && (!plan_.both_ways || plan_.follow == Follow::none)) break;
-      FollowedBranch branch{orbit.name, clock, {}, {}, shot.iterations, {}};
+      FollowedBranch& branch = ways[followed];
+      branch = {orbit.name, clock, {}, {}, shot.iterations, {}};
       if (plan_.follow != Follow::none) branch.name += way > 0 ? "+" : "-";
+      if (way < 0) branch.other = ways.data();
       follow_branch(map, branch, shot, way);
+      ++followed;
     }
+    if (followed > 1) ways[0].other = &ways[1];
+    for (std::size_t i = 0; i < followed; ++i) tell(map, ways[i]);
   }
 
   PointSearch search(const FollowedBranch& branch) const {
     constexpr double contacts = 1e-9;  // of the range
-    return {branch.clock.half,       plan_.prominence.value_or(least_fold * gap_ / metres_), true, gap_, 0,
-            contacts * plan_.range()};
+    PointSearch search;
+    search.half = branch.clock.half;
+    search.prominence = plan_.prominence.value_or(least_fold * gap_ / metres_);
+    search.by_steps = true;
+    search.gap = gap_;
+    search.contacts = contacts * plan_.range();
+    search.metres = metres_;
+    search.before = branch.before();
+    return search;
   }
 
   // The first point of a kind at which branches stop.
@@ -147,8 +162,11 @@ class ReferenceRun {
     if (!failure.empty()) branch.trace.end = failure;
     if (over_budget_) branch.trace.end = fmt::format("the budget of {:g} s was spent", budget_of(case_));
     if (const auto point = stopping(branch, branch.trace)) cut_at(branch.trace, *point);
-    branch.points = special_points(branch.trace, search(branch));
     steps_ += static_cast<long long>(branch.trace.corners.size());
+  }
+
+  void tell(ReferenceOrbits& map, FollowedBranch& branch) {
+    branch.points = special_points(branch.trace, search(branch));
     std::vector<BranchRow> rows = corner_rows_of(branch, plan_.multipliers);
     for (BranchRow& row : rows) {
       row.tip_velocity = map.tip(branch.trace.states.at(row.row), *row.parameter).second;

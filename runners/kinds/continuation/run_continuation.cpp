@@ -132,15 +132,32 @@ class ContinuationRun {
       add_orbit(first, shot);
       return;
     }
+    follow_ways(first, shot, 0);
+  }
+
+  // Follows a branch from an orbit, both ways where the study says so, then what begins at its points.
+  void follow_ways(const FollowedBranch& begun, const ShotOrbit& shot, int depth) {
+    const std::size_t first = followed_.size();
     for (const int way : {1, -1}) {
-      if (way < 0 && !plan_.both_ways) break;
-      FollowedBranch branch = first;
+      if (way < 0 && depth == 0 && !plan_.both_ways) break;
+      FollowedBranch branch = begun;
       branch.name += way > 0 ? "+" : "-";
-      run_branch(branch, shot, way, 0);
+      if (way < 0) branch.other = &followed_[first];
+      run_branch(branch, shot, way, depth);
       // A branch that closes has been followed both ways.
       if (followed_.back().trace.end.starts_with("closed")) break;
+      if (over_budget_ && depth > 0) break;
     }
+    const std::size_t behind = followed_.size();
+    if (behind - first > 1) {
+      followed_[first].other = &followed_[first + 1];
+      tell(followed_[first]);
+    }
+    for (std::size_t number = first; number < behind && depth < plan_.depth && !over_budget_; ++number)
+      switch_at(number, depth);
   }
+
+  void tell(FollowedBranch& branch) const { branch.points = special_points(branch.trace, search(branch)); }
 
   void add_orbit(FollowedBranch& branch, const ShotOrbit& shot) {
     BranchRow row = orbit_row(map_, branch.clock, shot.x, shot.parameter);
@@ -169,15 +186,21 @@ class ContinuationRun {
                         checkpoints_.find(branch.name, sets_of(map_)));
   }
 
-  PointSearch search(const FollowedBranch& branch, const BranchTrace& trace) const {
-    return {branch.clock.half, plan_.prominence.value_or(least_fold * continued_.parameter_scale()), by_steps,
-            continued_.gap(), trace.rebounds};
+  PointSearch search(const FollowedBranch& branch) const {
+    PointSearch search;
+    search.half = branch.clock.half;
+    search.prominence = plan_.prominence.value_or(least_fold * continued_.parameter_scale());
+    search.by_steps = by_steps;
+    search.gap = continued_.gap();
+    search.metres = map_.metric().parameter_metres();
+    search.before = branch.before();
+    return search;
   }
 
   // The first point of a kind at which branches stop, once nothing that follows can change it.
   std::optional<SpecialPoint> stopping_point(const FollowedBranch& branch, const BranchTrace& trace) const {
     if (plan_.stop_at.empty()) return std::nullopt;
-    auto point = first_of(special_points(trace, search(branch, trace)), plan_.stop_at);
+    auto point = first_of(special_points(trace, search(branch)), plan_.stop_at);
     if (!point || trace.ended()) return point;
     const auto last = static_cast<long long>(trace.corners.size()) - 1;
     const bool settled = by_steps ? last > point->corner + 1
@@ -212,10 +235,8 @@ class ContinuationRun {
     pieces_ += run.pieces();
     ties_ += branch.trace.ties;
     rebounds_ = std::max(rebounds_, branch.trace.rebounds);
-    branch.points = special_points(branch.trace, search(branch, branch.trace));
-    const std::size_t number = followed_.size();
+    tell(branch);
     followed_.push_back(branch);
-    if (depth < plan_.depth && !over_budget_) switch_at(number, depth);
   }
 
   // Follows what begins at the points of a branch.
@@ -238,13 +259,11 @@ class ContinuationRun {
         followed_[number].leaves.emplace_back(point.corner, known);
         continue;
       }
-      for (const int way : {1, -1}) {
-        FollowedBranch branch{name + (way > 0 ? "+" : "-"), switched->clock, {}, {}, switched->orbit.iterations, {}};
-        followed_[number].leaves.emplace_back(point.corner, branch.name);
-        run_branch(branch, switched->orbit, way, depth + 1);
-        // A branch that closes has been followed both ways.
-        if (followed_.back().trace.end.starts_with("closed") || over_budget_) break;
-      }
+      const std::size_t first = followed_.size();
+      follow_ways({name, switched->clock, {}, {}, switched->orbit.iterations, {}}, switched->orbit, depth + 1);
+      for (std::size_t leaf = first; leaf < followed_.size(); ++leaf)
+        if (followed_[leaf].name.size() == name.size() + 1)
+          followed_[number].leaves.emplace_back(point.corner, followed_[leaf].name);
       if (over_budget_) return;
     }
   }
