@@ -329,37 +329,6 @@ class ContinuationRun {
 
 }  // namespace
 
-CasePlan plan_continuation(const StudyCase& study_case, const Registry& registry) {
-  if (study_case.of_reference) return plan_reference(study_case, registry);
-  CasePlan out;
-  const ContinuationPlan plan = continuation_plan(study_case.settings);
-  ContinuedMap continued(study_case, registry, plan);
-  out.refusal = continued.refusal();
-  if (!out.refusal.empty()) return out;
-  if (!continued.no_pieces().empty()) out.notes.push_back("followed by steps: " + continued.no_pieces());
-  const auto notes = out.notes;
-  describe_march(out, continued.scenes(), study_case);
-  out.notes.insert(out.notes.end(), notes.begin(), notes.end());
-  const double steps = study_case.steps_per_period, branches = static_cast<double>(plan.orbits.size());
-  double transient = 0;
-  for (const WantedOrbit& orbit : plan.orbits) transient += orbit.periods * steps;
-  out.steps = static_cast<long long>(transient);
-  out.predicted_seconds = transient * continued.scenes().predicted_step_seconds(0, 1);
-  widen_steps(out, study_case);
-  if (plan.follow == Follow::none) return out;
-  // Measured on the shaken tube: as many pieces as steps per period both ways. A piece marches two columns over half a
-  // period and takes two spectra.
-  const auto unknowns =
-      static_cast<double>(continued.scenes().plan(0).slots.size()) * continued.scenes().problem(0).dofs();
-  // Branches at points of branches took five times as much.
-  const double leaves = plan.branch_at.empty() || plan.depth == 0 ? 1 : 6;
-  const double pieces = branches * leaves * steps * (plan.both_ways ? 2 : 1);
-  out.predicted_seconds += pieces * (1.5e-10 * steps * unknowns * unknowns + 1.2e-8 * unknowns * unknowns * unknowns);
-  out.steps += static_cast<long long>(pieces * steps);
-  out.bytes = branches * 2 * 2000 * 200;
-  return out;
-}
-
 CaseRecord run_continuation(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                             const std::atomic<bool>& stop) {
   if (study_case.of_reference) return run_reference(study_case, registry, stop);

@@ -1,0 +1,55 @@
+// What would run for a case, and how long it takes.
+#include <algorithm>
+#include <cmath>
+
+#include "runners/kinds/continuation/continuation.hpp"
+#include "runners/kinds/continuation/continuation_study.hpp"
+#include "runners/kinds/continuation/continued_map.hpp"
+
+namespace ricochet {
+
+CasePlan plan_continuation(const StudyCase& study_case, const Registry& registry) {
+  if (study_case.of_reference) return plan_reference(study_case, registry);
+  CasePlan out;
+  const ContinuationPlan plan = continuation_plan(study_case.settings);
+  ContinuedMap continued(study_case, registry, plan);
+  out.refusal = continued.refusal();
+  if (!out.refusal.empty()) return out;
+  if (!continued.no_pieces().empty()) out.notes.push_back("followed by steps: " + continued.no_pieces());
+  const auto notes = out.notes;
+  describe_march(out, continued.scenes(), study_case);
+  out.notes.insert(out.notes.end(), notes.begin(), notes.end());
+  const double steps = study_case.steps_per_period, branches = static_cast<double>(plan.orbits.size());
+  double transient = 0;
+  for (const WantedOrbit& orbit : plan.orbits) transient += orbit.periods * steps;
+  out.steps = static_cast<long long>(transient);
+  out.predicted_seconds = transient * continued.scenes().predicted_step_seconds(0, 1);
+  widen_steps(out, study_case);
+  if (plan.follow == Follow::none) return out;
+  const auto unknowns =
+      static_cast<double>(continued.scenes().plan(0).slots.size()) * continued.scenes().problem(0).dofs();
+  // Branches at points of branches: none, or five times as much.
+  const double leaves = plan.branch_at.empty() || plan.depth == 0 ? 1 : 2.5;
+  const auto followed = [&](double each) {
+    return branches * leaves * std::min(each * (plan.both_ways ? 1.4 : 1), static_cast<double>(plan.most_pieces));
+  };
+  double pieces = 0;
+  if (continued.by_pieces()) {
+    // Measured on the shaken tube and on bilinear oscillators: about as many pieces as steps per period. A piece
+    // marches two columns over a map, composes its derivative and takes two spectra.
+    pieces = followed(0.8 * steps);
+    const double of_map = continued.no_image().empty() ? steps / 2 : steps;
+    out.predicted_seconds += pieces * (of_map * (5e-7 + 5e-10 * unknowns * unknowns) + 4e-9 * std::pow(unknowns, 3));
+  } else {
+    // Measured on oscillators that rebound: some hundred orbits, each of a score of marches with tangent columns.
+    constexpr double orbits = 100, marches = 18;
+    pieces = followed(orbits);
+    out.predicted_seconds +=
+        pieces * marches * steps * continued.scenes().predicted_step_seconds(0, 1) * (1 + unknowns);
+  }
+  out.steps += static_cast<long long>(pieces * steps);
+  out.bytes = branches * 2 * 2000 * 200;
+  return out;
+}
+
+}  // namespace ricochet
