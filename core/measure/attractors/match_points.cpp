@@ -10,7 +10,7 @@ namespace ricochet {
 namespace {
 
 constexpr double farthest_pair = 0.05, always_near = 1e-3, slack = 4, told_apart = 3, arc_weight = 0.1;
-constexpr double prominence_factor = 3;
+constexpr double prominence_factor = 3, of_the_motion = 0.01;
 
 /// A place of a case: points that several of its branches share are one.
 struct PlacedPoint {
@@ -82,11 +82,11 @@ class Matching {
            arc_weight * std::abs(a.arc - b.arc) / scales_.arc;
   }
 
-  /// Whether two points may be one.
-  static bool alike(const CasePoint& a, const CasePoint& b) {
+  /// Whether two points may be one. How prominent a fold of the motion is depends on how far its branch goes.
+  bool alike(const CasePoint& a, const CasePoint& b) const {
     if (a.kind != b.kind) return false;
     const double least = std::min(a.prominence, b.prominence), most = std::max(a.prominence, b.prominence);
-    return least <= 0 || most <= prominence_factor * least;
+    return least <= 0 || least >= of_the_motion * scales_.parameter || most <= prominence_factor * least;
   }
 
   /// Whether two branches of a case show one point.

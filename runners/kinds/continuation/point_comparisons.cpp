@@ -155,35 +155,33 @@ void PointSpeaker::say_absent(say::Answer& answer) const {
 }
 
 void PointSpeaker::say_turns(say::Answer& answer) const {
-  // Folds of all branches of a case by prominence.
-  std::map<std::string, std::map<double, int>> folds;
-  for (const CaseRecord* one : points_.cases())
-    for (const TurnRow& row : turns_type().read(one->tables)) folds[one->id][row.prominence] += row.folds;
   const CaseRecord& reference = *points_.reference();
-  const auto finest = folds.find(reference.id);
-  if (finest == folds.end()) return;
   // The case of the reference's method and mesh that differs most from it.
   const CaseRecord* coarse = nullptr;
   std::string refined;
   double at = 0;
-  int most = 0;
+  int most = 0, left = 0;
   for (std::size_t c = 0; c < points_.cases().size(); ++c) {
     const std::vector<std::string> differs = points_.differences(c, points_.root());
     if (differs.size() != 1 || !say::is_refinement(differs.front()) || is_reference(*points_.cases()[c])) continue;
-    for (const auto& [prominence, count] : folds[points_.cases()[c]->id]) {
-      const auto same = finest->second.find(prominence);
-      if (same == finest->second.end() || count <= same->second) continue;
+    const StudyPoints::FoldCounts own = points_.folds(c, points_.root()), finest = points_.folds(points_.root(), c);
+    for (const auto& [prominence, count] : own.all) {
+      const auto same = finest.all.find(prominence);
+      // Folds of the motion have names, or are there in both.
+      if (same == finest.all.end() || count <= same->second ||
+          own.nameless.at(prominence) <= finest.nameless.at(prominence))
+        continue;
       // The largest turns that the finest case has not.
       if (coarse && (prominence < at || (prominence == at && count <= most))) continue;
       coarse = points_.cases()[c];
       refined = differs.front();
       at = prominence;
       most = count;
+      left = same->second;
     }
   }
   if (!coarse) return;
   Sentence said;
-  const int left = finest->second.at(at);
   for (const auto& [one, count] : {std::pair(coarse, most), std::pair(&reference, left)}) {
     Clause part{.form = "value", .measure = "folds", .who = case_words(*one), .methods = one->id};
     part.value = count;

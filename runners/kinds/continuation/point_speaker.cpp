@@ -156,6 +156,24 @@ void PointSpeaker::say_points(say::Answer& answer) const {
             : fmt::format("{} {}{}.", say::capitalised(subject(head)), and_list(parts), after);
     answer.say(std::move(said));
   }
+  const std::size_t told = std::min(most_points, told_.size()), all = distinct_of(points_.root()).size();
+  if (all <= told) return;
+  Clause more{.form = "value", .measure = "special points", .methods = points_.reference()->id};
+  more.value = static_cast<double>(all - told);
+  more.unit = "1";
+  answer.say(
+      fmt::format("special_points.csv has {} more point{} of that case.", all - told, all - told == 1 ? "" : "s"),
+      more);
+}
+
+std::vector<const StudyPoint*> PointSpeaker::distinct_of(std::size_t owner) const {
+  std::vector<const StudyPoint*> out;
+  for (const StudyPoint& one : points_.points()) {
+    if (one.owner != owner || !tellable(one)) continue;
+    if (std::none_of(out.begin(), out.end(), [&](const StudyPoint* other) { return at_one_place(one, *other); }))
+      out.push_back(&one);
+  }
+  return out;
 }
 
 void PointSpeaker::say_unconfirmed(say::Answer& answer) const {
@@ -171,15 +189,10 @@ void PointSpeaker::say_unconfirmed(say::Answer& answer) const {
   const std::size_t owner = finest ? points_.root() : first_with_points->owner;
   Sentence said;
   std::vector<std::string> parts;
-  std::size_t count = 0;
-  const StudyPoint* before = nullptr;
-  for (const StudyPoint& one : points_.points()) {
-    if (one.owner != owner || !tellable(one)) continue;
-    // Several contacts of one place are told once.
-    if (before && before->kind == one.kind && std::abs(before->value - one.value) <= 1e-9 * std::abs(one.value))
-      continue;
-    before = &one;
-    if (++count > most_unconfirmed) continue;
+  const std::vector<const StudyPoint*> all = distinct_of(owner);
+  for (const StudyPoint* point : all) {
+    if (parts.size() == most_unconfirmed) break;
+    const StudyPoint& one = *point;
     parts.push_back(fmt::format("{} at {}", point_words(one.kind).thing, short_number(one.value, 6)));
     Clause part{.form = "value", .measure = point_words(one.kind).thing, .methods = points_.cases()[owner]->id};
     part.value = one.value;
@@ -190,7 +203,7 @@ void PointSpeaker::say_unconfirmed(say::Answer& answer) const {
     said.clauses.push_back(part);
   }
   parts.back() += unit();
-  if (count > most_unconfirmed) parts.push_back(fmt::format("{} more", count - most_unconfirmed));
+  if (all.size() > most_unconfirmed) parts.push_back(fmt::format("{} more", all.size() - most_unconfirmed));
   const std::string whose = points_.cases().size() == 1 ? "One case, so that no second one confirms its points"
                             : finest ? "No special point is confirmed by a second case; the finest has"
                                      : fmt::format(

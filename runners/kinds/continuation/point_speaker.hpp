@@ -14,6 +14,8 @@ struct PointWords {
 };
 const PointWords& point_words(const std::string& kind);
 bool is_point_kind(const std::string& kind);
+/// Whether two points are of one kind and their intervals overlap.
+bool at_one_place(const StudyPoint& a, const StudyPoint& b);
 
 /// A point that an answer tells.
 struct ToldPoint {
@@ -24,7 +26,8 @@ struct ToldPoint {
 };
 
 /// The named points of the reference's method at which stable orbits end, and its first contacts; all where none ends
-/// them. One of each kind stands before a second of any. A fold at a first contact is told as the contact.
+/// them. One of each kind stands before a second of any. A fold at a first contact is told as the contact, and what
+/// several branches have at one place once.
 std::vector<ToldPoint> told_points(const StudyPoints& study, const std::vector<PointLimitRow>& limits,
                                    const std::vector<PointOrderRow>& orders);
 
@@ -48,6 +51,8 @@ class PointSpeaker {
   void say_nothing(answers::Answer& answer) const;
 
  private:
+  /// Those of a case that can be told, what lies at one place once.
+  std::vector<const StudyPoint*> distinct_of(std::size_t owner) const;
   /// What the first orbits of the finest case are, where no branch has a special point.
   void say_orbits(answers::Answer& answer) const;
   std::string subject(const ToldPoint& told) const;

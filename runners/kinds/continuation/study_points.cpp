@@ -21,9 +21,11 @@ bool is_named_kind(const std::string& kind) {
   return kind != "end" && kind != "mark";
 }
 
-/// "first contact" of a contact with no run on one side.
+/// "first contact" of a contact with no run on one side, "lift-off" where one opens that never did.
 std::string kind_of(const SpecialRow& row) {
-  return row.kind == "contact" && (row.runs_before == 0 || row.runs_after == 0) ? "first contact" : row.kind;
+  if (row.kind != "contact") return row.kind;
+  if (row.runs_before == 0 || row.runs_after == 0) return "first contact";
+  return row.held_before != row.held_after ? "lift-off" : row.kind;
 }
 
 /// Branches that go down from an orbit have arcs below zero.
@@ -290,27 +292,6 @@ PointConvergence StudyPoints::convergence(std::size_t head, int name) const {
     if (one.limit.open) out.half = out.half.value_or(out.point->half) + *one.limit.open;
   }
   return out;
-}
-
-std::optional<double> StudyPoints::least_fold() const {
-  constexpr double times = 25;
-  const auto step =
-      std::find_if(axes_.begin(), axes_.end(), [](const RefinedAxis& one) { return one.words == std::string("step"); });
-  const auto given = study_.results().study.find("prominence");
-  if (step == axes_.end() || (given != study_.results().study.end() && !given->is_null())) return std::nullopt;
-  const auto axis = static_cast<std::size_t>(step - axes_.begin());
-  std::vector<std::size_t> steps = along(root_, axis);
-  std::sort(steps.begin(), steps.end(), [&](std::size_t a, std::size_t b) { return size(a, axis) < size(b, axis); });
-  if (steps.size() < 2) return std::nullopt;
-  std::map<double, int> counts[2];
-  for (const std::size_t k : {0, 1})
-    for (const TurnRow& row : turns_type().read(cases_[steps[k]]->tables)) counts[k][row.prominence] += row.folds;
-  std::optional<double> largest;
-  for (const auto& [prominence, folds] : counts[0])
-    if (const auto same = counts[1].find(prominence); same != counts[1].end() && same->second != folds)
-      largest = prominence;
-  if (largest) *largest *= times;
-  return largest;
 }
 
 std::vector<std::string> StudyPoints::differences(std::size_t a, std::size_t b) const {

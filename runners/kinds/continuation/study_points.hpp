@@ -18,7 +18,7 @@ namespace ricochet {
 struct StudyPoint {
   std::size_t owner = 0;  ///< of StudyPoints::cases()
   SpecialRow row;
-  std::string kind;            ///< that of the row; "first contact" where no contact was before, or none is after
+  std::string kind;            ///< that of the row; "first contact" where no contact was before or is after, "lift-off"
   double value = 0, half = 0;  ///< the parameter, and half of its interval
   int name = -1;               ///< of StudyPoints::names()
   int sharing = 0;             ///< points of its kind at its place
@@ -83,9 +83,14 @@ class StudyPoints {
   /// The cases of the head's method that differ from it along this axis alone, itself among them.
   std::vector<std::size_t> along(std::size_t head, std::size_t axis) const;
   PointConvergence convergence(std::size_t head, int name) const;
+  /// Folds of a case by prominence, on branches that end where those of another case do: others are not comparable.
+  struct FoldCounts {
+    std::map<double, int> all, nameless;
+  };
+  FoldCounts folds(std::size_t owner, std::size_t other) const;
   /// The least fold where the study names no prominence, in the unit of the parameter. It is 25 times the largest turn
-  /// that the two finest steps of the reference's method disagree about. There is none with one step, or where they
-  /// agree.
+  /// without a name that the two finest steps of the reference's method disagree about. There is none with one step, or
+  /// where they agree.
   std::optional<double> least_fold() const;
   /// The limit of the cases that an order was told of.
   PointLimit limit(const PointConvergence::Along& along, int name) const {
@@ -114,6 +119,7 @@ class StudyPoints {
   /// Whether a is finer than b: in the mesh, then the stiffness, then the step.
   bool finer(std::size_t a, std::size_t b) const;
   const Branch* branch(std::size_t owner, const std::string& name) const;
+  std::optional<double> end_of(std::size_t owner, const std::string& branch) const;
 
   const answers::Compared& study_;
   std::vector<RefinedAxis> axes_;

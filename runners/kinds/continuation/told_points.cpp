@@ -40,7 +40,13 @@ constexpr PointWords point_kinds[] = {{"fold", "folds", "fold"},
                                       {"symmetry", "loses its symmetry", "loss of symmetry"},
                                       {"flip", "doubles its period", "flip"},
                                       {"first contact", "first touches a stop", "first contact"},
+                                      {"lift-off", "leaves a stop that held it", "lift-off"},
                                       {"contact", "gains or loses a contact", "change of contact"}};
+
+/// Contacts beyond which another motion begins, stable or not.
+bool changes_motion(const std::string& kind) {
+  return kind == "first contact" || kind == "lift-off";
+}
 
 std::size_t kind_rank(const std::string& kind) {
   const auto* found = std::find_if(std::begin(point_kinds), std::end(point_kinds),
@@ -49,6 +55,11 @@ std::size_t kind_rank(const std::string& kind) {
 }
 
 }  // namespace
+
+bool at_one_place(const StudyPoint& a, const StudyPoint& b) {
+  constexpr double round_off = 1e-9;
+  return a.kind == b.kind && std::abs(a.value - b.value) <= a.half + b.half + round_off * std::abs(b.value);
+}
 
 const PointWords& point_words(const std::string& kind) {
   static constexpr PointWords other = {"", "changes", "point"};
@@ -102,8 +113,17 @@ std::vector<ToldPoint> told_points(const StudyPoints& study, const std::vector<P
   if (std::any_of(ranked.begin(), ranked.end(), [](const auto& one) { return one.second.ends_stability; }))
     std::erase_if(ranked, [](const auto& one) {
       return one.second.name->kind == "contact" ||
-             (!one.second.ends_stability && one.second.name->kind != "first contact");
+             (!one.second.ends_stability && !changes_motion(one.second.name->kind));
     });
+  // Points of several branches at one place are one.
+  std::vector<const StudyPoint*> kept;
+  std::erase_if(ranked, [&](const auto& one) {
+    const StudyPoint& own = *one.second.point;
+    if (std::any_of(kept.begin(), kept.end(), [&](const StudyPoint* other) { return at_one_place(own, *other); }))
+      return true;
+    kept.push_back(&own);
+    return false;
+  });
   std::map<std::string, int> met;
   std::vector<std::pair<int, ToldPoint>> turns;
   for (const auto& [rank, told] : ranked) turns.emplace_back(met[told.name->kind]++, told);

@@ -8,6 +8,7 @@
     flip: ["flip", "rect", 9],
     torus: ["torus", "roundRect", 10],
     "first contact": ["first contact", "circle", 10],
+    "lift-off": ["lift-off", "circle", 10],
     contact: ["change of contact", "circle", 6],
     mark: ["mark", "arrow", 9],
     end: ["end", "rect", 5],
@@ -47,7 +48,9 @@
     methodLabel(one) { return this.view.label(one, this.methodColumns) || "the one method"; }
     refinedLabel(one) { return this.view.label(one, this.refined) || "the one case"; }
     kind(row) {
-      return row.kind === "contact" && (row.runs_before === 0 || row.runs_after === 0) ? "first contact" : row.kind;
+      if (row.kind !== "contact") return row.kind;
+      if (row.runs_before === 0 || row.runs_after === 0) return "first contact";
+      return row.held_before === row.held_after ? row.kind : "lift-off";
     }
     kindWords(kind) { return kinds[kind] || [kind, "circle", 7]; }
     points(one) {
