@@ -29,6 +29,10 @@ struct ReasonRow {
 };
 TableType<ReasonRow> reasons_type();
 
+/// Why a measure is left out of a case that no step approaches; the item is its name.
+inline constexpr const char* no_limit =
+    "no limit as the step shrinks: a rigid law throws a point with mass back within a step, by impulse over step";
+
 namespace answers {
 
 /// One thing that a sentence says of some methods: a row of `answers`.

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ricochet/measure/orbits/impact_jump.hpp>
 #include <utility>
 
 #include "runners/kinds/trajectory/stop_measures.hpp"
 #include "runners/kinds/trajectory/stop_tables.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/store/study_tables.hpp"
 
 namespace ricochet {
 namespace {
@@ -101,6 +103,27 @@ void add_impacts(CaseRecord& record, const StopContacts& contacts, const SemiDis
   record.numbers.push_back(std::move(table));
 }
 
+// Blanks measures that have no limit as the step shrinks: forces of points with mass that a rigid law has thrown back.
+void blank_without_limit(CaseRecord& record, const StopContacts& contacts, const Marcher& marcher) {
+  if (marcher.law().reads()) return;
+  const StopList& list = contacts.list();
+  const std::vector<bool> massive = points_with_mass(*marcher.program().problem);
+  std::vector<std::string> names;
+  for (int stop = 0; stop < list.count(); ++stop) {
+    bool thrown = false;
+    for (std::size_t point = 0; point < massive.size(); ++point)
+      thrown = thrown || (massive[point] && list.stop_of[point] == stop);
+    if (!thrown || contacts.totals(stop, StopSide::lower).impacts + contacts.totals(stop, StopSide::upper).impacts == 0)
+      continue;
+    if (names.empty()) names.emplace_back("peak_contact_force");
+    if (const std::string& name = list.names[static_cast<std::size_t>(stop)]; !name.empty())
+      for (std::string& one : forces_while_they_act(name)) names.push_back(std::move(one));
+  }
+  for (const std::string& name : names)
+    if (std::erase_if(record.measures, [&](const auto& measure) { return measure.first == name; }) > 0)
+      record.left_out.emplace_back(name, no_limit);
+}
+
 }  // namespace
 
 void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher& marcher, const StopWatches& watches) {
@@ -146,6 +169,7 @@ void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher
   add_impacts(record, contacts, problem, watches);
   record.tables.push_back(std::move(stops));
   add_stop_tables(record, problem, watches);
+  blank_without_limit(record, contacts, marcher);
 }
 
 void describe_contact(std::vector<CaseRecord>& records) {

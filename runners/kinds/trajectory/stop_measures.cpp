@@ -26,6 +26,9 @@ struct StopMeasure {
   Known (*value)(const StopReading& of);
   Needs needs = Needs::nothing;
   bool column = false;  ///< of stops.csv too
+  /// Whether it is the size of a force while it acts. A rigid law throws a point with mass back within a step: then the
+  /// force is the impulse over the step, and has no limit.
+  bool size_of_force = false;
 };
 
 template <double (*of)(const RunningMoments&)>
@@ -55,14 +58,16 @@ const StopMeasure stop_measures[] = {
      [](const StopReading& of) -> Known { return of.run.impulse; }},
     {"impacts", "1", "Number of times that the stop {} closed; contact from the start is none.", "impacts at {}",
      [](const StopReading& of) -> Known { return static_cast<double>(of.run.impacts); }},
-    {"peak_force", "N", "Largest force at the stop {}. That of an impact on a rigid stop grows as the step shrinks.",
-     "peak force at {}", [](const StopReading& of) -> Known { return of.run.peak_force; }},
-    {"rms_force", "N", "Root mean square of the force at the stop {} over the time in contact.", "rms force at {}",
-     [](const StopReading& of) -> Known { return of.run.rms_force(); }},
+    {"peak_force", "N",
+     "Largest force at the stop {}; blank where a rigid law has thrown back a point with mass (no limit).",
+     "peak force at {}", [](const StopReading& of) -> Known { return of.run.peak_force; }, Needs::nothing, false, true},
+    {"rms_force", "N", "Root mean square of the force at the stop {} over the time in contact; blank as peak_force.",
+     "rms force at {}", [](const StopReading& of) -> Known { return of.run.rms_force(); }, Needs::nothing, false, true},
     {"contact_time", "s", "Time in contact with the stop {}.", "time in contact at {}",
      [](const StopReading& of) -> Known { return of.run.contact_time; }},
     {"mean_force", "N", "Mean of the force at the stop {} over the time in contact.", "mean force at {}",
-     [](const StopReading& of) { return of.run.contact_time > 0 ? Known(of.run.mean_force()) : std::nullopt; }},
+     [](const StopReading& of) { return of.run.contact_time > 0 ? Known(of.run.mean_force()) : std::nullopt; },
+     Needs::nothing, false, true},
     {"window_displacement_mean", "m", "Mean over the window of the displacement that the stop {} bounds.",
      "mean displacement at {}", displaced<[](Moments m) { return m.mean; }>, Needs::window, true},
     {"window_displacement_deviation", "m",
@@ -77,12 +82,14 @@ const StopMeasure stop_measures[] = {
     {"window_force", "N", "Mean over the window of the force at the stop {}: times the window it is the impulse.",
      "mean force at {} over the window", pushed<[](Push p, double time) { return p.mean(time); }>, Needs::window, true},
     {"window_rms_force", "N", "Root mean square over the window of the force at the stop {}.",
-     "rms force at {} over the window", pushed<[](Push p, double time) { return p.rms(time); }>, Needs::window, true},
+     "rms force at {} over the window", pushed<[](Push p, double time) { return p.rms(time); }>, Needs::window, true,
+     true},
     {"window_contact_force", "N", "Mean of the force at the stop {} over the time in contact in the window.",
-     "force in contact at {}", while_pushed<[](Push p, double) { return p.mean_pushed(); }>, Needs::window, true},
+     "force in contact at {}", while_pushed<[](Push p, double) { return p.mean_pushed(); }>, Needs::window, true, true},
     {"window_contact_rms_force", "N",
      "Root mean square of the force at the stop {} over the time in contact in the window.",
-     "rms force in contact at {}", while_pushed<[](Push p, double) { return p.rms_pushed(); }>, Needs::window, true},
+     "rms force in contact at {}", while_pushed<[](Push p, double) { return p.rms_pushed(); }>, Needs::window, true,
+     true},
     {"window_contact_share", "1", "Share of the window in contact with the stop {}.", "share in contact at {}",
      pushed<[](Push p, double time) { return p.contact_time / time; }>, Needs::window, true},
     {"window_impact_rate", "1/s", "How often the stop {} closes in a second of the window.", "impacts per second at {}",
@@ -98,11 +105,11 @@ const StopMeasure stop_measures[] = {
      "duration of a rebound at {}", shocked<[](Shocks s) { return s.pushed / static_cast<double>(s.rebounds); }>,
      Needs::shocks, true},
     {"shock_force_mean", "N", "Mean of the peak forces of the shocks at the stop {}.", "mean peak at {}",
-     shocked<[](Shocks s) { return s.peaks.mean; }>, Needs::shocks, true},
+     shocked<[](Shocks s) { return s.peaks.mean; }>, Needs::shocks, true, true},
     {"shock_force_deviation", "N", "Standard deviation of the peak forces of the shocks at the stop {}.",
-     "deviation of the peaks at {}", shocked<[](Shocks s) { return s.peaks.deviation(); }>, Needs::shocks, true},
+     "deviation of the peaks at {}", shocked<[](Shocks s) { return s.peaks.deviation(); }>, Needs::shocks, true, true},
     {"shock_force_max", "N", "Largest peak force of the shocks at the stop {}.", "largest peak at {}",
-     shocked<[](Shocks s) { return s.peaks.largest; }>, Needs::shocks, true},
+     shocked<[](Shocks s) { return s.peaks.largest; }>, Needs::shocks, true, true},
     {"wear_power", "W",
      "Wear power of the stop {}, (1/T) Σ I ½(|V⁻| + |V⁺|): I impulse of an instant, V speeds along the surface.",
      "wear power at {}", [](const StopReading& of) { return of.wear_power; }, Needs::tangent, true}};
@@ -261,6 +268,14 @@ const MeasureInfo* stop_measure_info(const std::string& name) {
   made->info.aside = one->column;
   if (half) made->info.of = MeasureInfo::Of::computation;
   return &(known[name] = std::move(made))->info;
+}
+
+std::vector<std::string> forces_while_they_act(const std::string& stop) {
+  std::vector<std::string> names;
+  for (const StopMeasure& one : stop_measures)
+    if (one.size_of_force)
+      for (const std::string& half : {std::string(), confidence}) names.push_back(half + name_of(one.name, stop));
+  return names;
 }
 
 void put_stop_measures(CaseRecord& record, const std::string& stop, const StopReading& reading) {

@@ -27,6 +27,10 @@ struct StopReading {
   std::optional<double> wear_power;  ///< W
 };
 
+/// Measures of a stop, and their confidences, that are sizes of a force while it acts. Of a point with mass that a
+/// rigid law throws back they have no limit: the force is the impulse over the step.
+std::vector<std::string> forces_while_they_act(const std::string& stop);
+
 /// Adds the measures of a stop, those that are known.
 void put_stop_measures(CaseRecord& record, const std::string& stop, const StopReading& reading);
 

@@ -87,8 +87,8 @@ std::vector<MeasureInfo> trajectory_measures() {
        "Momentum that the contact efforts give, summed by magnitude over the contact points. What an effort of each "
        "stage is worth follows from the scheme's plan."},
       {"peak_contact_force", "N",
-       "Largest force at one contact point over the run, from every step. That of an impact on a rigid stop is its "
-       "impulse over a step or two: it grows as the step shrinks."},
+       "Largest force at one contact point over the run, from every step. Blank where a rigid law has thrown back a "
+       "point with mass: that force is the impulse over a step or two, and has no limit."},
       {"contact_time", "s", "Time in contact, summed over the contact points.", Of::motion, true},
       {"contact_force_mean", "N",
        "Mean of the contact force over the study's window, summed over the points, of a clearance along its first "
