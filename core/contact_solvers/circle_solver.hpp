@@ -108,4 +108,20 @@ class CircleSolver {
   bool means_ = false;      // whether the law reads what was before
 };
 
+/// `see`(point, side, depth) of each side of each place, m beyond its stop; of a circle its first point, side −1 and the
+/// radial depth.
+template <class Bounds, class See>
+void each_side(const CircleSolver& circles, const Bounds& lower, const Bounds& upper, const double* places, See&& see) {
+  const auto points = static_cast<int>(lower.size());
+  for (int point = 0; point < points; ++point) {
+    if (!circles.holds(point)) {
+      see(point, 1, lower[point] - places[point]);
+      see(point, -1, places[point] - upper[point]);
+    } else if (circles.first(point)) {
+      const StopCircle circle = StopCircle::of(lower, upper, point);
+      see(point, -1, circle.distance(places[point], places[point + 1]) - circle.radius);
+    }
+  }
+}
+
 }  // namespace ricochet

@@ -144,7 +144,7 @@ struct ForceEvaluation {
 ///
 /// From here come the means over a step, the solve, the outcome, the slopes, and the shift of potentials by the layer.
 /// A derived class gives at(), gradient() and stored(), and what it declares of itself: reads_rate(), layer(),
-/// memory_per_point().
+/// memory_per_point(). One whose energy depends on what it keeps gives potential() itself.
 class PointwiseContact : public ContactLaw, protected PointwiseLaw {
  public:
   explicit PointwiseContact(const ForceEvaluation& evaluation) : evaluation_(evaluation) {}
@@ -164,9 +164,9 @@ class PointwiseContact : public ContactLaw, protected PointwiseLaw {
   void solve(ReducedProblem& problem) override {
     for (const int lane : problem.touched) problem.outcome[lane] = solver_.solve(*this, problem, lane);
   }
-  double potential(double depth, int set) const final {
-    const double beyond = depth + layer(set);
-    return beyond > 0 ? stored(beyond, set) : 0.0;
+  double potential(const StopState& state) const override {
+    const double beyond = state.depth + layer(state.set);
+    return beyond > 0 ? stored(beyond, state.set) : 0.0;
   }
   bool offers_slopes() const override { return true; }
   ContactSlopes slopes(int point, int lane) const override { return solver_.slopes(point, lane); }

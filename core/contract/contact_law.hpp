@@ -113,6 +113,17 @@ struct ContactSlopes {
 
 /// Of ContactLaw::memory_per_point().
 inline constexpr int most_memory = 16;
+/// What a law keeps of a point that no solve has seen.
+inline constexpr double nothing_kept[most_memory] = {};
+
+/// One side of one contact point between two solves.
+struct StopState {
+  double depth = 0;  ///< beyond the stop, m, at least −layer
+  int set = 0;       ///< number of the parameter set
+  int side = 1;      ///< the sign of its efforts: 1 of the lower stop, −1 of the upper one
+  /// By number, what the law keeps of the point (memory_per_point()), as its last solve left it.
+  Strided<const double> memory = {nothing_kept, 1};
+};
 
 /// A contact law: it never knows the scheme, nor the scheme the law.
 ///
@@ -162,8 +173,9 @@ class ContactLaw {
   virtual double layer(int /*set*/) const { return 0; }
   /// Finds p for each touched lane. No allocation here.
   virtual void solve(ReducedProblem& problem) = 0;
-  /// Energy stored by the law at penetration `depth` (m, at least −layer), joules; rigid laws store none.
-  virtual double potential(double /*depth*/, int /*set*/) const { return 0; }
+  /// Energy (J ≥ 0) that one side stores: what its force can still give back. It is 0 at a depth of −layer, and where a
+  /// law that remembers has let its point go; what no force gives back is dissipated. Rigid laws store none.
+  virtual double potential(const StopState& /*at*/) const { return 0; }
 
   // What analyses ask: flights, exponents, spectra, references, `plan` and `describe`.
 

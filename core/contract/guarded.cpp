@@ -128,7 +128,7 @@ class GuardedLaw final : public Guard<ContactLaw> {
     RICOCHET_FORWARD(prepare_points, points, lanes, sets);
   }
   void solve(ReducedProblem& problem) override { RICOCHET_FORWARD(solve, problem); }
-  double potential(double depth, int lane) const override { RICOCHET_FORWARD(potential, depth, lane); }
+  double potential(const StopState& at) const override { RICOCHET_FORWARD(potential, at); }
   std::optional<ContactSlopes> linear_slopes(int lane) const override { RICOCHET_FORWARD(linear_slopes, lane); }
   bool offers_slopes() const override { RICOCHET_FORWARD(offers_slopes); }
   ContactSlopes slopes(int point, int lane) const override { RICOCHET_FORWARD(slopes, point, lane); }

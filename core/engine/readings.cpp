@@ -83,21 +83,14 @@ double Marcher::tip(int lane) const {
 double Marcher::stored(int lane, const double* places) const {
   const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
   double sum = 0;
-  for (int point = 0; point < program_.problem->points(); ++point) {
+  each_side(circles_, spec.lower, spec.upper, places, [&](int point, int side, double depth) {
     const int set = program_.law_set(point, lane);
-    const double place = places[point], layer = program_.law->layer(set);
-    const auto add = [&](double depth) {
-      if (depth > -layer) sum += program_.law->potential(depth, set);
-    };
-    if (circles_.holds(point)) {
-      const StopCircle circle = StopCircle::of(spec.lower, spec.upper, point);
-      ++point;
-      add(circle.distance(place, places[point]) - circle.radius);
-      continue;
-    }
-    add(spec.lower[point] - place);
-    add(place - spec.upper[point]);
-  }
+    if (depth <= -program_.law->layer(set)) return;
+    StopState state{.depth = depth, .set = set, .side = side};
+    if (memory_.rows() > 0)
+      state.memory = {memory_.data() + point * program_.width + lane, lower_.rows() * program_.width};
+    sum += program_.law->potential(state);
+  });
   return sum;
 }
 

@@ -12,7 +12,7 @@ ForceBeyond force_beyond(ContactLaw& law, const Parameters& parameters) {
   if (law.absent()) return [](double) { return true; };
   if (!law.reads()) return {};
   law.prepare(1, {&parameters, 1});
-  return [&law](double depth) { return std::isfinite(law.potential(depth, 0)); };
+  return [&law](double depth) { return std::isfinite(law.potential({.depth = depth})); };
 }
 
 void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u, const Eigen::VectorXd& lower,

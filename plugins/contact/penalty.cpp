@@ -36,7 +36,7 @@ class Penalty final : public ContactLaw, private PointwiseLaw {
     }
   }
 
-  double potential(double depth, int set) const override { return 0.5 * stiffness(set) * depth * depth; }
+  double potential(const StopState& at) const override { return 0.5 * stiffness(at.set) * at.depth * at.depth; }
   std::optional<ContactSlopes> linear_slopes(int set) const override {
     return ContactSlopes{.stiffness = stiffness(set)};
   }

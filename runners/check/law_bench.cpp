@@ -47,7 +47,7 @@ void LawBench::solve(DenseDelassus& W, double reach, double rate_reach, const st
     put(before_, l, lane.before.size() > 0 ? lane.before : lane.free);
     put(effort_, l, lane.effort);
   }
-  std::fill(memory_.begin(), memory_.end(), 0.0);
+  if (!remembers_) std::fill(memory_.begin(), memory_.end(), 0.0);
   std::fill(outcomes_.begin(), outcomes_.end(), LaneOutcome{});
   ReducedProblem problem;
   problem.points = points_;
@@ -67,6 +67,17 @@ void LawBench::solve(DenseDelassus& W, double reach, double rate_reach, const st
   const long before = allocations_of_this_thread();
   law_->solve(problem);
   allocations_ = allocations_of_this_thread() - before;
+}
+
+void LawBench::remember(bool on) {
+  remembers_ = on;
+  std::fill(memory_.begin(), memory_.end(), 0.0);
+}
+
+StopState LawBench::state(int side, double depth) const {
+  StopState state{.depth = depth, .side = -side};
+  if (!memory_.empty()) state.memory = {memory_.data(), points_ * lanes_};
+  return state;
 }
 
 Eigen::VectorXd LawBench::effort(int lane) const {
@@ -152,7 +163,9 @@ class Stops final : public ContactLaw {
                                             problem.free + lane, problem.lower + lane, problem.upper + lane,
                                             problem.effort + lane, problem.points, problem.lanes);
   }
-  double potential(double depth, int) const override { return evaluation_ ? 0.5 * stiffness_ * depth * depth : 0; }
+  double potential(const StopState& at) const override {
+    return evaluation_ ? 0.5 * stiffness_ * at.depth * at.depth : 0;
+  }
 
  private:
   std::optional<Evaluation> evaluation_;

@@ -41,7 +41,11 @@ class LawBench {
   /// How far before a stop the law acts.
   double layer() const { return law_->layer(0); }
 
-  /// Asks the law: `touched` lanes of `problems` (one per lane). The law's memory is forgotten before.
+  /// Whether what the law keeps lasts from one solve to the next (not at first); it begins with none.
+  void remember(bool on);
+  /// How the law left that side of the first point of the first lane, and its depth; `side` as in at_point().
+  StopState state(int side, double depth) const;
+  /// Asks the law: `touched` lanes of `problems` (one per lane). The law's memory is forgotten before, unless it lasts.
   void solve(DenseDelassus& W, double reach, double rate_reach, const std::vector<LaneProblem>& problems,
              const std::vector<int>& touched);
   Eigen::VectorXd effort(int lane) const;
@@ -54,6 +58,7 @@ class LawBench {
   std::vector<double> free_, lower_, upper_, rate_, before_, effort_, memory_;
   std::vector<LaneOutcome> outcomes_;
   long allocations_ = 0;
+  bool remembers_ = false;
 };
 
 /// The answer of the law at one point whose measure no effort moves. It is p at depth δ beyond the lower (side −1) or

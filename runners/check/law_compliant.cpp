@@ -225,18 +225,59 @@ Verdict slopes_are_derivatives(const Law& law) {
   return fine("agree with differences of the force");
 }
 
+namespace {
+
+// A law that remembers, pressed slowly, let go and pressed again, deeper: it stores no more than was put in, and
+// nothing that no force gives back.
+Verdict stores_what_it_gives_back(LawBench& bench) {
+  constexpr int steps = 400;
+  constexpr double tolerance = 2.0 / steps, nothing = 1e-9;  // of the trapezium's work, and of a difference of energies
+  const double layer = bench.layer(), far = depths_of(bench).back() + layer;
+  double most = 0;
+  for (const int side : sides) {
+    bench.remember(true);
+    double depth = -layer, effort = 0, stored = 0, unanswered = 0, at = 0;
+    for (const double turn : {0.5 * far, -0.1 * far, far, -0.1 * far}) {
+      const double from = depth + layer;
+      for (int k = 1; k <= steps; ++k) {
+        const double next = from + (turn - from) * k / steps - layer;
+        const PointAnswer here = at_point(bench, side, next, 0, depth);
+        const double p = std::abs(here.effort), U = bench.law().potential(bench.state(side, next));
+        if (!here.answered || !(U >= 0)) return fails(fmt::format("stores {:g} J at a depth of {:g} m", U, next));
+        const double mean = reads_before(bench) ? p : 0.5 * (p + effort);
+        most = std::max(most, U);
+        if (U - stored > mean * (next - depth) + tolerance * most)
+          return fails(fmt::format("stores {:g} J more from a depth of {:g} to {:g} m; its force took {:g} J",
+                                   U - stored, depth, next, mean * (next - depth)));
+        // Since when it has not pushed, and what it held then.
+        if (p != 0)
+          unanswered = 0;
+        else if (U > unanswered)
+          unanswered = U, at = next;
+        depth = next, effort = p, stored = U;
+      }
+      if (turn < 0 && unanswered > nothing * most)
+        return fails(fmt::format("stores {:g} J at a depth of {:g} m, where it has let go: no force gives that back",
+                                 unanswered, at));
+    }
+    bench.remember(false);
+  }
+  return fine("over load, unload and reload it stores no more than it was given, and gives it back");
+}
+
+}  // namespace
+
 Verdict potential_stores_the_force(const Law& law) {
   LawBench bench(law, 1, 1);
   if (bench.law().absent()) return not_applicable("the law is the absence of contact");
   if (!bench.law().reads()) {
     for (const double depth : {1e-4, 1e-2})
-      if (bench.law().potential(depth, 0) != 0)
-        return fails(fmt::format("a rigid law stores nothing; its potential at {:g} m is {:g} J", depth,
-                                 bench.law().potential(depth, 0)));
+      if (const double stored = bench.law().potential({.depth = depth}); stored != 0)
+        return fails(fmt::format("a rigid law stores nothing; its potential at {:g} m is {:g} J", depth, stored));
     return not_applicable("a rigid law stores nothing");
   }
-  if (bench.law().memory_per_point() > 0) return not_applicable("its force depends on what it remembers");
-  const auto U = [&](double depth) { return bench.law().potential(depth, 0); };
+  if (bench.law().memory_per_point() > 0) return stores_what_it_gives_back(bench);
+  const auto U = [&](double depth) { return bench.law().potential({.depth = depth}); };
   const bool conserving = bench.law().conserves_energy();
   const double rest = U(-bench.layer());
   for (const double depth : depths_of(bench)) {
@@ -267,7 +308,7 @@ Verdict energy_over_a_step(const Law& law) {
   }
   if (bench.law().memory_per_point() > 0) return not_applicable("its force depends on what it remembers");
   const double layer = bench.layer();
-  const auto U = [&](double depth) { return depth > -layer ? bench.law().potential(depth, 0) : 0.0; };
+  const auto U = [&](double depth) { return depth > -layer ? bench.law().potential({.depth = depth}) : 0.0; };
   double given = 0, kept = 0;
   for (const int side : sides)
     for (const auto& [depth, before] : steps_of(bench)) {

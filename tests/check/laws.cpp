@@ -8,6 +8,7 @@
 #include "runners/check/allocation_count.hpp"
 #include "runners/check/law_checks.hpp"
 #include "tests/check/sound_schemes.hpp"
+#include "tests/dented_stop.hpp"
 
 using namespace ricochet;
 using namespace ricochet::testing;
@@ -70,7 +71,8 @@ class FlawedLaw final : public ContactLaw {
     }
     if (wrong_ == Wrong::neighbour) problem.effort[0] = 0;
   }
-  double potential(double depth, int) const override {
+  double potential(const StopState& at) const override {
+    const double depth = at.depth;
     if (rigid_) return wrong_ == Wrong::potential ? depth : 0;
     return (wrong_ == Wrong::potential ? 1.0 : 0.5) * kappa * depth * depth;
   }
@@ -225,4 +227,18 @@ TEST_CASE("check: a changed problem that is not symmetric, not positive or not t
     CHECK(wrong.finding == Finding::fails);
     CHECK_THAT(text_of({wrong}), Contains(words));
   }
+}
+
+TEST_CASE("check: a law that remembers stores what it gives back, and one that forgets its dent does not") {
+  const auto of = [](bool forgets) {
+    Entry<ContactLaw> entry{full_manual("made-here"), {}, ""};
+    entry.make = [=](const Parameters&) { return std::make_unique<DentedStop>(forgets); };
+    return one_check(checking::law_checks(), entry, "potential");
+  };
+  const CheckResult kept = of(false), forgotten = of(true);
+  INFO(text_of({kept, forgotten}));
+  CHECK(kept.finding == Finding::ok);
+  CHECK(forgotten.finding == Finding::fails);
+  REQUIRE_FALSE(forgotten.sentences.empty());
+  CHECK_THAT(forgotten.sentences.front(), Contains("where it has let go"));
 }

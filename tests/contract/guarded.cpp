@@ -61,7 +61,7 @@ struct Law : ContactLaw {
   bool per_point() const override { return (act(), true); }
   void prepare_points(int, int, std::span<const Parameters>) override { act(); }
   void solve(ReducedProblem& problem) override { (act(), problem.points = 7); }
-  double potential(double depth, int lane) const override { return (act(), depth + lane); }
+  double potential(const StopState& at) const override { return (act(), at.depth + at.set); }
   std::optional<ContactSlopes> linear_slopes(int lane) const override {
     return (act(), ContactSlopes{.viscosity = static_cast<double>(lane)});
   }
@@ -173,7 +173,7 @@ TEST_CASE("every function of a law is guarded and forwarded") {
       {"per_point", [&] { return law->per_point(); }},
       {"prepare_points", [&] { return (law->prepare_points(1, 1, {}), true); }},
       {"solve", [&] { return (law->solve(problem), problem.points == 7); }},
-      {"potential", [&] { return law->potential(0.5, 2) == 2.5; }},
+      {"potential", [&] { return law->potential({.depth = 0.5, .set = 2}) == 2.5; }},
       {"linear_slopes", [&] { return law->linear_slopes(3)->viscosity == 3; }}};
   for (const auto& [function, call] : calls) {
     INFO(function);
@@ -228,7 +228,7 @@ TEST_CASE("asking a guarded law allocates nothing") {
   const long before = allocations();
   for (int k = 0; k < 100; ++k) {
     law->solve(problem);
-    law->potential(0.5, 0);
+    law->potential({.depth = 0.5});
     law->linear_slopes(0);
   }
   CHECK(allocations() == before);

@@ -51,8 +51,9 @@ class Law final : public ContactLaw {
     for (const int lane : problem.touched) problem.outcome[lane] = solve_lane(problem.lane(lane), lane);
   }
 
-  // Energy stored at a depth beyond the stop, J.
-  double potential(double depth, int lane) const override { return spring(lane).energy(std::max(depth, 0.0)); }
+  // Energy that a side of a point gives back from this depth beyond its stop, J. A law that keeps numbers of its points
+  // finds them in at.memory.
+  double potential(const StopState& at) const override { return spring(at.set).energy(std::max(at.depth, 0.0)); }
   // f' at the last solve, for tangents and exponents; of a law that cannot say it, offers_slopes() is false.
   bool offers_slopes() const override { return true; }
   ContactSlopes slopes(int point, int lane) const override {

@@ -1,6 +1,7 @@
 // The balance closes; the energies are those of the formulas; impacts are counted once.
 #include <ricochet/measure/energy/energy_audit.hpp>
 
+#include "tests/dented_stop.hpp"
 #include "tests/eigen.hpp"
 #include "tests/marching.hpp"
 #include "tests/refusals.hpp"
@@ -299,4 +300,31 @@ TEST_CASE("a lane that a spring blows up is stopped at the step at which its ene
   }
   CHECK(stopped[1] >= stopped[0]);
   CHECK(stopped[1] <= stopped[0] + 1);
+}
+
+TEST_CASE("a stop that has let go inside its dent stores nothing: k/K of the energy is left, on either side") {
+  const double side = GENERATE(1.0, -1.0);  // 1: the lower stop
+  SceneSpec scene;
+  scene.structure = OscillatorSpec{1, 0, 0, {}};
+  (side > 0 ? scene.stops.lower : scene.stops.upper) = Formula(0.0);
+  scene.stops.place = StopsSpec::Place::tip;
+  scene.initial.displacement = Formula(side * 0.001);
+  scene.initial.velocity = Formula(-side);
+  auto law = std::make_unique<DentedStop>();
+  const auto problem = problem_of(scene, 1, {"consistent"});
+  constexpr double h = 1e-6;
+  const PlanOrRefusal plan = plan_of({"newmark"}, h, problem_facts(*problem, *law));
+  auto program = compile(problem, std::get<StepPlan>(plan), h, std::move(law), {scene_lane(*problem, Parameters({}))});
+  Marcher mass(std::move(std::get<Program>(program)));
+  EnergyAudit audit(mass);
+  mass.start(&audit);
+  while (audit.contact(0).first_release < 0 && mass.step() < 50000) mass.march(1, &audit);
+  // v √(m/k) deep, gone at (1 − k/K) of that.
+  constexpr double share = DentedStop::loading / DentedStop::unloading, deepest = 0.01;
+  REQUIRE(mass.status(0).running);
+  CHECK(audit.contact(0).deepest_penetration == Approx(deepest).epsilon(1e-3));
+  CHECK(-side * mass.tip(0) == Approx((1 - share) * deepest).epsilon(1e-3));
+  CHECK(audit.energy(0).contact == 0);
+  // The slope of the force jumps once, in a step of 1e-4 of the contact.
+  CHECK(audit.energy(0).common() == Approx(0.5 * share).epsilon(1e-3));
 }

@@ -113,7 +113,8 @@ class Foam final : public ContactLaw {
   std::optional<Evaluation> reads() const override { return Evaluation::explicit_start; }
   void prepare(int, std::span<const Parameters> lanes) override { hardness_ = lanes.front().real("hardness"); }
   void solve(ReducedProblem&) override {}
-  double potential(double depth, int) const override {
+  double potential(const StopState& at) const override {
+    const double depth = at.depth;
     if (tells_ == Tells::nothing) return 0;
     return depth > 0 ? hardness_ * std::pow(depth, exponent_ + 1) / (exponent_ + 1) : 0;
   }

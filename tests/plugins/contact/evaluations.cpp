@@ -136,8 +136,8 @@ TEST_CASE("a point that begins a step beyond its stop gets its energy back, push
   scene.initial.displacement = Formula(-0.095);
   scene.initial.velocity = Formula(6.0);
   Marcher mass = marcher(scene, 1, {{"consistent"}, law_of("layer", "conserving"), midpoint}, 2e-3);
-  const double before = 0.5 * 36 + 20 * 0.095 * 0.095 + mass.law().potential(-0.005, 0);
-  REQUIRE(mass.law().potential(-0.005, 0) > 0.1);
+  const double before = 0.5 * 36 + 20 * 0.095 * 0.095 + mass.law().potential({.depth = -0.005});
+  REQUIRE(mass.law().potential({.depth = -0.005}) > 0.1);
   EnergyDrift kept(mass);
   mass.start(&kept);
   mass.march(1, &kept);

@@ -242,8 +242,8 @@ TEST_CASE("a layer acts before the stop, and penetration is measured at the stop
         Approx(std::numbers::pi * compression).margin(3 * h));
   CHECK(audit.energy(0).common() == Approx(0.5).epsilon(1e-5));
   // At the stop itself the layer holds ½ k D².
-  CHECK(mass.law().potential(0, 0) == Approx(0.5 * k * D * D));
-  CHECK(mass.law().potential(-D, 0) == 0);
+  CHECK(mass.law().potential({}) == Approx(0.5 * k * D * D));
+  CHECK(mass.law().potential({.depth = -D}) == 0);
 }
 
 TEST_CASE("tangents of nonlinear laws are the derivative of the step, by all three slopes") {
