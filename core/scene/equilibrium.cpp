@@ -139,4 +139,26 @@ Equilibrium equilibrium(const SemiDiscrete& problem, const VectorXd& load, const
                    "the load");
 }
 
+std::optional<double> lowest_potential(const SemiDiscrete& problem, const VectorXd& load, ContactLaw* law) {
+  const VectorXd lift = lift_at_start(problem);
+  VectorXd q;
+  try {
+    q = equilibrium(problem, load, lift, law).position;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+  double energy = 0.5 * q.dot(problem.stiffness * q) - load.dot(q);
+  if (!law || law->absent() || !law->reads()) return energy;
+  const VectorXd place = problem.measured() * q + lift;
+  const bool own = sets_per_point(*law, problem.own);
+  for (int i = 0; i < problem.points(); ++i)
+    for (const int side : {1, -1}) {
+      const StopState state{.depth = side > 0 ? problem.lower[i] - place[i] : place[i] - problem.upper[i],
+                            .set = own ? i : 0,
+                            .side = side};
+      if (state.depth > -law->layer(state.set)) energy += law->potential(state);
+    }
+  return energy;
+}
+
 }  // namespace ricochet

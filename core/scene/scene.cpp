@@ -227,6 +227,22 @@ void DistributedLoad::assemble_formula(double t, double* out) const {
   result.noalias() = basis_->transpose() * nodal_;
 }
 
+bool DistributedLoad::assemble_steady(double* out) const {
+  Eigen::Map<Eigen::VectorXd> result(out, unknowns());
+  const bool formula = has_formula() && !formula_.uses_t();
+  if (formula)
+    assemble_formula(0, out);
+  else
+    result.setZero();
+  bool any = formula;
+  for (const Term& term : terms_) {
+    if (term.history.uses_t()) continue;
+    result += term.history.value(0, 0) * term.shape;
+    any = true;
+  }
+  return any && !result.isZero(0);
+}
+
 void DistributedLoad::assemble(double t, double* out) const {
   assemble_formula(t, out);
   for (int k = 0; k < terms(); ++k) Eigen::Map<Eigen::VectorXd>(out, unknowns()) += scale(k, t) * shape(k);

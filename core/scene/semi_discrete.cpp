@@ -166,6 +166,12 @@ void project_on_mass_constraint(SemiDiscrete& problem) {
                   before, before + problem.projection_energy));
 }
 
+Eigen::VectorXd lift_at_start(const SemiDiscrete& problem) {
+  Eigen::VectorXd lift = Eigen::VectorXd::Constant(problem.points(), support_at_start(problem.support).position);
+  for (int i = 0; i < problem.points(); ++i) lift[i] += problem.motions.point(i, 0);
+  return lift;
+}
+
 namespace {
 
 // The structure itself, before any law.
@@ -197,13 +203,6 @@ std::vector<int> touched_dofs(const SparseRows& contact) {
   std::sort(dofs.begin(), dofs.end());
   dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
   return dofs;
-}
-
-// What supports lift each contact point by at t = 0, less what its stop moves by.
-Eigen::VectorXd lift_at_start(const SemiDiscrete& problem) {
-  Eigen::VectorXd lift = Eigen::VectorXd::Constant(problem.points(), support_at_start(problem.support).position);
-  for (int i = 0; i < problem.points(); ++i) lift[i] += problem.motions.point(i, 0);
-  return lift;
 }
 
 void check_start(const SemiDiscrete& problem, const std::string& pointer, const std::string& what,

@@ -3,6 +3,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/checks.hpp>
@@ -33,6 +34,9 @@ class DistributedLoad {
   bool constant_in_time() const { return !formula_.uses_t() && !terms_vary_; }
   /// F(t) into `out` (n); no allocation. Values that are not finite are passed on, and stop the lane as diverged.
   void assemble(double t, double* out) const;
+
+  /// F₀ (n), the formula and the terms that do not depend on t: what has a potential, −F₀ᵀq. False where there is none.
+  bool assemble_steady(double* out) const;
 
   /// Whether there is more than terms.
   bool has_formula() const { return !formula_.is_zero(); }
@@ -215,5 +219,16 @@ struct Equilibrium {
 /// the law finds no force.
 Equilibrium equilibrium(const SemiDiscrete& problem, const Eigen::VectorXd& load, const Eigen::VectorXd& lift,
                         ContactLaw* law);
+
+/// The lowest potential energy of the structure between its stops, J,
+///
+///     min over q of ½qᵀKq − Fᵀq + U(Gq + lift),     U of a compliant law; of a rigid one lower ≤ Gq + lift ≤ upper
+///
+/// `load` F (n) steady, lift that of supports and stops at t = 0. It is that of equilibrium(). Nothing where no stop
+/// and no stiffness holds the structure against the load: then it has none.
+std::optional<double> lowest_potential(const SemiDiscrete& problem, const Eigen::VectorXd& load, ContactLaw* law);
+
+/// What supports lift each contact point by at t = 0, less what its stop moves by, m.
+Eigen::VectorXd lift_at_start(const SemiDiscrete& problem);
 
 }  // namespace ricochet

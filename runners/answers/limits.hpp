@@ -27,13 +27,14 @@ struct Method {
   const CaseRecord* finest = nullptr;                ///< finest mesh, then finest step, with a value
   std::optional<Limit> step, mesh, limit;            ///< along each refinement at the finest of the other; over both
   double half = 0;                                   ///< half the interval of the finest value itself
+  bool gains = false;                                ///< of a measure of energy: whether it makes energy
   std::map<std::pair<double, double>, double> grid;  ///< by step and elements (1 where there is none)
 
   const CaseRecord& first() const { return *cases.front(); }
   std::optional<double> at(double h, double elements) const;
 };
 
-/// What ends above this many times the most that a method without a gain may have gains.
+/// What ends above this many times the energy that the motion could have gains.
 inline constexpr double gains_above = 1.02;
 
 /// The limits of all methods in one measure.
@@ -41,11 +42,15 @@ struct MeasureLimits {
   MeasureWords words;
   std::vector<Method> methods;  ///< in the study's order
   std::vector<const Method*> with_limit() const;
-  /// Whether it makes energy: its value is above the most that there can be.
-  bool gains(const Method& method) const { return words.most && method.limit->value > gains_above * *words.most; }
+  /// Those that ran and have no value of this measure.
+  std::vector<const Method*> without_value() const;
   /// Those of with_limit() that do not gain: a difference of one that does says how far it grew.
   std::vector<const Method*> without_gain() const;
 };
+
+/// Energy at the end over the most that there can be: the measure itself, or what is left in the case of a measure that
+/// is a share of the energy brought in. Nothing of other measures.
+std::optional<double> energy_kept(const MeasureWords& words, const CaseRecord& record);
 
 /// A measure over its scale where that belongs to the case: a share of 1 or of the energy that was brought in.
 std::optional<double> scaled_value(const MeasureWords& words, const CaseRecord& record);
@@ -53,7 +58,10 @@ std::optional<double> scaled_value(const MeasureWords& words, const CaseRecord& 
 /// Of the cases given, all of one study. `conservative`: the truth of the measure and its direction hold.
 MeasureLimits limits_of(const Compared& study, const std::string& measure, bool conservative, const Cases& cases);
 
-/// Whether nothing but contact and the method changes energies: no case has loads or damping.
+/// Whether loads in time, supports or stops in motion worked in a case: steady loads have a potential.
+bool is_driven(const CaseRecord& record);
+
+/// Whether nothing but contact and the method changes energies: no case is driven or damped.
 bool keeps_energy(const StudyResults& results);
 /// The same of some of its cases.
 bool keeps_energy(const StudyResults& results, const Cases& cases);

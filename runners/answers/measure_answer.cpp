@@ -18,7 +18,7 @@
 namespace ricochet::answers {
 namespace {
 
-constexpr std::size_t a_dozen = 12, sentences_at_most = 5;
+constexpr std::size_t a_dozen = 12, sentences_at_most = 6;
 
 struct MeasureSaid {
   std::string kind;  ///< differ, none, open, value, choices, interval
@@ -89,7 +89,7 @@ MeasureSaid say_measure(const Compared& study, const std::string& name, bool kep
   out.kind = "choices";
   const std::optional<Sentence> gains = TierSpeaker(study, out.limits, study.columns()).gaining();
   const auto with_gains = [&](std::vector<Sentence> sentences) {
-    if (gains) sentences.insert(sentences.begin() + (sentences.empty() ? 0 : 1), *gains);
+    if (gains) sentences.insert(sentences.begin(), *gains);
     return sentences;
   };
   if (asks) out.sentences = say_levels(study, out.limits);
@@ -115,6 +115,21 @@ void only_one(const Compared& study, MeasureSaid& said) {
                      said.limits.words.words, text.substr(begins.size()));
 }
 
+/// Whether a sentence names methods that gain energy.
+bool tells_gains(const Sentence& sentence) {
+  return !sentence.clauses.empty() && sentence.clauses.front().form == "gains";
+}
+
+/// Several as one, so that no method that they name is cut off.
+Sentence joined_sentences(const std::vector<Sentence>& sentences) {
+  Sentence out;
+  for (const Sentence& one : sentences) {
+    out.text += (out.text.empty() ? "" : " ") + one.text;
+    out.clauses.insert(out.clauses.end(), one.clauses.begin(), one.clauses.end());
+  }
+  return out;
+}
+
 bool of_stop(const std::string& name) {
   return name.ends_with("]");
 }
@@ -124,13 +139,13 @@ void say_others(const std::vector<MeasureSaid>& others, const MeasureSaid& first
   const std::string& first_kind = first.kind;
   const auto spread = [](const MeasureSaid& one) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Method* method : one.limits.with_limit())
+    for (const Method* method : one.limits.without_gain())
       low = std::min(low, method->limit->value), high = std::max(high, method->limit->value);
     return (high - low) / one.scale;
   };
   const auto moved = [](const MeasureSaid& one) {
     double u = 0;
-    for (const Method* method : one.limits.with_limit())
+    for (const Method* method : one.limits.without_gain())
       if (const double own = method->limit->uncertainty.value_or(0); std::isfinite(own)) u = std::max(u, own);
     return u / one.scale;
   };
@@ -138,7 +153,7 @@ void say_others(const std::vector<MeasureSaid>& others, const MeasureSaid& first
   for (const MeasureSaid& one : others) kinds[one.kind].push_back(&one);
   const auto value_of = [&](const MeasureSaid& one, Sentence& said) {
     std::vector<double> values;
-    for (const Method* method : one.limits.with_limit()) values.push_back(method->limit->value);
+    for (const Method* method : one.limits.without_gain()) values.push_back(method->limit->value);
     const double middle = median(values);
     Clause value{.form = "value", .measure = one.limits.words.measure};
     value.value = middle * one.limits.words.factor;
@@ -203,6 +218,10 @@ void say_others(const std::vector<MeasureSaid>& others, const MeasureSaid& first
       }
     } else {
       for (const MeasureSaid* one : all) {
+        if (kind == "differ" && !one->by_scene) {
+          out.push_back(joined_sentences(one->sentences));
+          continue;
+        }
         const std::size_t told =
             one->by_scene ? one->sentences.size() : std::min<std::size_t>(1, one->sentences.size());
         out.insert(out.end(), one->sentences.begin(), one->sentences.begin() + static_cast<std::ptrdiff_t>(told));
@@ -250,12 +269,20 @@ Answer measure_answer(const Compared& study, const std::vector<std::string>& mea
   constexpr std::size_t measures_at_most = 4, too_many_cases = 20000;
   const bool kept = keeps_energy(results);
   std::vector<Sentence> body;
+  std::vector<MeasureLimits> blank;  // of measures that some method has no value of
   std::vector<MeasureSaid> others;
   MeasureSaid first;
+  Sentence gain;
   if (any_done && results.cases.size() <= too_many_cases)
     for (std::size_t k = 0; k < std::min(measures.size(), measures_at_most); ++k) {
       const std::string name = told_for(results, measures[k]);
       MeasureSaid said = say_measure(study, name, kept);
+      if (!said.limits.without_value().empty()) blank.push_back(said.limits);
+      // Gains of energy are said once, before all else.
+      const auto gains = std::stable_partition(said.sentences.begin(), said.sentences.end(), tells_gains);
+      if (gain.text.empty() && gains != said.sentences.begin())
+        gain = joined_sentences({said.sentences.begin(), gains});
+      said.sentences.erase(said.sentences.begin(), gains);
       if (said.sentences.empty()) continue;
       // What methods and refinement leave of a stop's measure; a choice that is asked for speaks by itself.
       if (study.asked().empty() && (said.kind == "differ" || said.kind == "choices" || said.kind == "open"))
@@ -293,7 +320,15 @@ Answer measure_answer(const Compared& study, const std::vector<std::string>& mea
     }
   say_others(others, first, body);
   const std::size_t room = status_first ? 2 : sentences_at_most;
+  if (any_done && gain.text.empty()) {
+    const MeasureLimits energy = limits_of(study, "energy_left", kept, all_cases(results));
+    if (auto found = TierSpeaker(study, energy, study.columns()).gaining()) gain = std::move(*found);
+  }
+  if (auto untouched = say_untouched(study)) answer.say(std::move(*untouched));
+  if (!gain.text.empty()) answer.say(std::move(gain));
   for (std::size_t k = 0; k < std::min(room, body.size()); ++k) answer.say(std::move(body[k]));
+  if (!status_first)
+    for (Sentence& one : say_without_value(study, blank)) answer.say(std::move(one));
   if (!status_first)
     for (Sentence& one : ended(study)) answer.say(std::move(one));
   return answer;

@@ -32,6 +32,12 @@ std::optional<Sentence> say_level_values(const Compared& study, const MeasureLim
 /// values at an end are so near.
 std::optional<Sentence> say_steady_end(const Compared& study, const MeasureLimits& limits);
 
+/// Methods that ran and have no value of a measure, with the reason: a sentence for each set of them.
+std::vector<Sentence> say_without_value(const Compared& study, const std::vector<MeasureLimits>& measures);
+
+/// That no case touched a stop, with the largest displacement against the gap. Nothing where one did, or has no stops.
+std::optional<Sentence> say_untouched(const Compared& study);
+
 /// A gain below this share of the energy is round-off.
 inline constexpr double nothing_gained = 1e-11;
 /// What keeps the energy is within this share of it.
@@ -58,10 +64,11 @@ class TierSpeaker {
   std::optional<Sentence> gaining() const;
 
  private:
-  /// The tiers, those of all of them, those that grow, and the two of all tiers that are farthest apart.
+  /// The tiers, those of all of them, those that grow, those that gain energy, and the two of all tiers that are
+  /// farthest apart.
   struct Sorted {
     Tiers found = {};
-    Members firm = {}, blown = {};
+    Members firm = {}, blown = {}, gaining = {};
     Difference far = {};
   };
   Sorted sorted() const;
@@ -122,7 +129,7 @@ class TierSpeaker {
   std::optional<Sentence> kept_apart(const Members& firm) const;
   Sentence cannot_tell(const Members& firm, std::optional<double> u, double spread) const;
   void say_tiers(const std::vector<Members>& tiers, std::vector<Sentence>& out) const;
-  Sentence nowhere(const Members& members) const;
+  Sentence nowhere(const Members& members, const Members& firm) const;
   Sentence gains(const Members& members) const;
 
   const Compared& study_;

@@ -134,7 +134,7 @@ void TierSpeaker::say_tiers(const std::vector<Members>& tiers, std::vector<Sente
   out.push_back(std::move(said));
 }
 
-Sentence TierSpeaker::nowhere(const Members& members) const {
+Sentence TierSpeaker::nowhere(const Members& members, const Members& firm) const {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   std::optional<double> finest;
   for (const std::size_t k : members) {
@@ -151,33 +151,68 @@ Sentence TierSpeaker::nowhere(const Members& members) const {
   said.low = low * words_.factor;
   said.high = high * words_.factor;
   said.status = "settles nowhere";
-  return {fmt::format("{} settle{} nowhere: {}{}.", capitalised(name.text), plural_s(name.several),
-                      range_text(words_, low, high), finest ? " down to " + study_.step_words(*finest) : ""),
+  // How far it is from the others at the finest step.
+  std::string apart;
+  if (!firm.empty() && !words_.decades) {
+    const double middle = median(of(firm, [](const Limit& l) { return l.value; }));
+    const double lowest = least(members) - middle, highest = most(members) - middle;
+    const double size = words_.factor == 100 ? 1 : std::abs(middle);
+    const bool beside = std::min(std::abs(lowest), std::abs(highest)) > tolerance * size && lowest * highest > 0;
+    if (size > 0 && beside)
+      apart = fmt::format(", there {}{} {} than with the others",
+                          percent(std::abs(lowest / size)) == percent(std::abs(highest / size))
+                              ? ""
+                              : percent(std::abs(lowest / size)) + " to ",
+                          percent(std::abs(highest / size)), highest > 0 ? "more" : "less");
+  }
+  return {fmt::format("{} settle{} nowhere: {}{}{}.", capitalised(name.text), plural_s(name.several),
+                      range_text(words_, low, high), finest ? " down to " + study_.step_words(*finest) : "", apart),
           {said}};
 }
 
 Sentence TierSpeaker::gains(const Members& members) const {
   const SetNames::Name name = names_.found(members);
-  const double low = least(members), high = most(members);
-  bool cured = true, several = false;
+  const bool of_energy = methods_[members.front()]->gains;
+  // From fine to coarse, over all that gain: how often it grows or falls as the step is refined, and its ends.
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  double low = infinite, high = 0, lowest = infinite, highest = 0;
+  bool falls = true, grows = true, several = false, driven = false;
   for (const std::size_t k : members) {
     std::vector<std::pair<double, double>> values;
-    for (const Valued& one : methods_[k]->done) values.emplace_back(study_.step(*one.record).value_or(0), one.value);
+    for (const Valued& one : methods_[k]->done) {
+      const double kept = of_energy ? energy_kept(words_, *one.record).value_or(0) : one.value;
+      values.emplace_back(study_.step(*one.record).value_or(0), kept);
+      driven = driven || (of_energy && is_driven(*one.record));
+    }
     std::sort(values.begin(), values.end());
+    const double finest = of_energy ? values.front().second : limit(k).value;
+    low = std::min(low, finest);
+    high = std::max(high, finest);
     several = several || values.size() > 1;
-    if (values.size() > 1 && values[0].second >= values[1].second) cured = false;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      lowest = std::min(lowest, values[i].second);
+      highest = std::max(highest, values[i].second);
+      if (i > 0) falls = falls && values[i - 1].second < values[i].second;
+      if (i > 0) grows = grows && values[i - 1].second >= values[i].second;
+    }
   }
-  const std::string times = low == high || short_number(low, 2) == short_number(high, 2)
-                                ? short_number(high, 2)
-                                : short_number(low, 2) + " to " + short_number(high, 2);
-  const std::string rest = !several ? "" : cured ? ", less with finer steps" : ", and finer steps do not cure it";
-  const std::string energy = words_.most ? " energy" : " in " + words_.words;
-  return {fmt::format("{} gain{}{}: {}{} at {}{}.", capitalised(name.text), plural_s(name.several), energy, times,
-                      words_.most ? " times " + std::string(keeps_energy() ? "the start" : "what was brought in")
-                      : words_.unit.empty() ? ""
-                                            : " " + words_.unit,
-                      finest_words(members), rest),
-          {clause("gains", members)}};
+  const auto span = [](double from, double to) {
+    return short_number(from, 2) == short_number(to, 2) ? short_number(to, 2)
+                                                        : short_number(from, 2) + " to " + short_number(to, 2);
+  };
+  std::string rest;
+  if (several) rest = falls ? ", less with finer steps" : grows ? ", and finer steps do not cure it" : "";
+  if (several && of_energy && !falls)
+    rest += fmt::format("; {} times {}", span(lowest, highest),
+                        lowest > gains_above ? "at every step" : "over the steps, in no order");
+  const std::string energy = of_energy ? " energy" : " in " + words_.words;
+  return {
+      fmt::format("{} gain{}{}: {}{} at {}{}.", capitalised(name.text), plural_s(name.several), energy, span(low, high),
+                  of_energy             ? " times " + std::string(driven ? "what was brought in" : "the start")
+                  : words_.unit.empty() ? ""
+                                        : " " + words_.unit,
+                  finest_words(members), rest),
+      {clause("gains", members)}};
 }
 
 /// Equal steps tell apart what limits alone do not: the tier parts where its values are farthest from each other.
@@ -208,10 +243,9 @@ TierSpeaker::Sorted TierSpeaker::sorted() const {
   Members rest;
   for (std::size_t k = 0; k < methods_.size(); ++k) {
     // What grows from nothing to next to nothing does not blow up.
-    const bool grows = (limit(k).status == LimitStatus::blows_up && !words_.decades &&
-                        std::abs(limit(k).value) > tolerance * scale_) ||
-                       (words_.most && limit(k).value > gains_above * *words_.most);
-    (grows ? out.blown : rest).push_back(k);
+    const bool grows =
+        (limit(k).status == LimitStatus::blows_up && !words_.decades && std::abs(limit(k).value) > tolerance * scale_);
+    (methods_[k]->gains ? out.gaining : grows ? out.blown : rest).push_back(k);
   }
   if (rest.empty()) return out;
   std::vector<Limit> limits;
@@ -238,7 +272,7 @@ TierSpeaker::Sorted TierSpeaker::sorted() const {
 std::optional<Sentence> TierSpeaker::gaining() const {
   Members members;
   for (std::size_t k = 0; k < methods_.size(); ++k)
-    if (words_.most && limit(k).value > gains_above * *words_.most) members.push_back(k);
+    if (methods_[k]->gains) members.push_back(k);
   return members.empty() ? std::nullopt : std::optional(gains(members));
 }
 
@@ -254,13 +288,13 @@ std::pair<std::string, std::vector<Sentence>> TierSpeaker::tiers() {
   std::vector<Sentence> out;
   if (methods_.size() == 1) return {"value", {one_method()}};
   const Sorted sets = sorted();
-  const auto& [found, firm, blown, far] = sets;
+  const auto& [found, firm, blown, gaining, far] = sets;
   std::string kind = "none";
   const double width = tolerance * scale_;
   if (!firm.empty() || !found.nowhere.empty()) {
     const auto u = largest_uncertainty(firm);
     const double spread = firm.empty() ? 0 : most(firm) - least(firm);
-    const std::size_t others = methods_.size() - blown.size();
+    const std::size_t others = methods_.size() - blown.size() - gaining.size();
     const bool move_together = firm.size() > 1 && far.uncertainty && far.value + *far.uncertainty <= width &&
                                u.value_or(0) > 2 * width && firm.size() == others;
     if (move_together) {
@@ -284,13 +318,17 @@ std::pair<std::string, std::vector<Sentence>> TierSpeaker::tiers() {
                                    finest_words(firm)),
                        {clause("status", {})}});
     }
-    if (!found.nowhere.empty() && kind != "open") out.push_back(nowhere(found.nowhere));
+    if (!found.nowhere.empty() && kind != "open") {
+      kind = "differ";
+      out.push_back(nowhere(found.nowhere, firm));
+    }
   }
   if (!blown.empty()) {
     const auto place = out.begin() + (!out.empty() && kind == "differ" ? 1 : 0);
     out.insert(place, gains(blown));
     kind = "differ";
   }
+  if (!gaining.empty()) out.insert(out.begin(), gains(gaining));
   return {kind, out};
 }
 

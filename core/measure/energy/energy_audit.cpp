@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
 
 namespace ricochet {
@@ -51,6 +52,8 @@ EnergyAudit::EnergyAudit(const Marcher& marcher, SamplingMode sampling)
     if (marcher.program().increment_slot < 0) state.increment = Block(model_.rows(), 1);
     state.duration = h_;
     state.energy.first = state.energy.last = state.now = initial_energy(marcher, lane);
+    state.energy.driven = marcher.program().support || !marcher.motions().empty() ||
+                          (marcher.program().load && !marcher.program().load_constant);
     // A scheme with an energy of its own has it once its start rule is through.
     state.energy.own_energy = !marcher.program().plan.energy.empty();
     state.has_scheme = !state.energy.own_energy;
@@ -74,7 +77,6 @@ EnergyAudit::EnergyAudit(const Marcher& marcher, SamplingMode sampling)
     asks_.squares.push_back(works_.squares(k));
 }
 
-// After a step.
 EnergySample EnergyAudit::sample(const Marcher& marcher, int lane) {
   const Lane& state = lanes_[static_cast<std::size_t>(lane)];
   const StateEnergies::Values values = energies_.read(marcher.slots(), state.increment.data(), state.duration, lane);
@@ -86,7 +88,21 @@ EnergySample EnergyAudit::sample(const Marcher& marcher, int lane) {
     sample.contact = potential(marcher, energies_.place(), t, mean_velocity_ ? t - state.duration : t, lane);
   }
   sample.scheme = state.energy.own_energy ? values.scheme : sample.common();
+  if (load_.size() > 0)
+    sample.load = -flight_kernels().dot(model_.rows(), load_.data(), energies_.place()) - load_level_;
   return sample;
+}
+
+void EnergyAudit::count_load(const Marcher& marcher, const Eigen::VectorXd& load, double level) {
+  load_.resize(model_.rows());
+  model_.load_to_model(load.data(), load_.data());
+  load_level_ = level;
+  energies_.keep_place();
+  for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
+    Lane& state = lanes_[lane];
+    state.now.load = -load.dot(marcher.program().lanes[lane].position) - level;
+    state.energy.first.load = state.energy.last.load = state.now.load;
+  }
 }
 
 // Of the state that the lane is given, before any rule of the scheme.
@@ -246,8 +262,8 @@ double EnergyAudit::last_way(const Marcher& marcher, const RowMatrix& rows, int 
 
 double EnergyAudit::lost_at_stops(int lane) const {
   const Lane& state = lanes_[static_cast<std::size_t>(lane)];
-  const EnergyTotals& totals = state.energy;
-  return -(totals.work_of_contact + state.since.contact) - (totals.last.contact - totals.first.contact);
+  return -(state.energy.work_of_contact + state.since.contact) -
+         (state.energy.last.contact - state.energy.first.contact);
 }
 
 void EnergyAudit::step_done(Marcher& marcher) {
@@ -309,9 +325,8 @@ void EnergyAudit::add_marched(const Marcher& marcher, std::span<const FreeStep> 
     state.gain = std::max(state.gain, works.gain());
     most = std::max(most, std::abs(works.loads) + std::abs(works.damping));
   }
-  const int count = static_cast<int>(steps.size());
-  state.steps += count;
-  state.idle += count;
+  state.steps += static_cast<int>(steps.size());
+  state.idle += static_cast<int>(steps.size());
   state.penetration = 0;
   state.sample_next = alarms(state, most);
 }
@@ -374,9 +389,8 @@ void EnergyAudit::add_flown(const Marcher& marcher, const StepInterval& steps) {
   ContactTotals& contact = state.contact;
   contact.contact_steps += steps.instants * steps.steps;
   contact.deepest_penetration = std::max(contact.deepest_penetration, steps.penetration);
-  const std::vector<StageProgram>& stages = marcher.program().stages;
   steps.each_stage([&](int stage, std::span<const double> efforts, std::span<const double>) {
-    const double momentum = stages[static_cast<std::size_t>(stage)].momentum;
+    const double momentum = marcher.program().stages[static_cast<std::size_t>(stage)].momentum;
     for (const double p : efforts) contact.impulse += momentum * std::abs(p);
   });
 }

@@ -15,8 +15,10 @@ struct EnergySample {
   double kinetic = 0;  ///< ½ vᵀM v
   double elastic = 0;  ///< ½ qᵀK q
   double contact = 0;  ///< potential of a compliant law at that q
-  double scheme = 0;   ///< the scheme's own invariant; the common energy where it declares none
-  double common() const { return kinetic + elastic + contact; }
+  double load =
+      0;  ///< potential of the steady load at that q, −F₀ᵀq less the zero level, where count_load() was called
+  double scheme = 0;  ///< the scheme's own invariant; kinetic, elastic and contact where it declares none
+  double common() const { return kinetic + elastic + contact + load; }
 };
 
 /// What the audit of a lane adds up.
@@ -24,7 +26,8 @@ struct EnergyTotals {
   EnergySample first;  ///< of the initial state itself, at t = 0, whatever the scheme makes of it
   EnergySample last;
   double scheme_start = 0;       ///< scheme energy from which the balance starts
-  bool own_energy = false;       ///< the scheme declares one; else `scheme` is the common energy, potential included
+  bool own_energy = false;       ///< the scheme declares one; else `scheme` has the potential at the stops in it
+  bool driven = false;           ///< something but a steady load brings energy in: a load in t, a support, a stop
   double largest_step_gain = 0;  ///< max over steps of ΔE_scheme − W_loads (J), never below 0
   double work_of_damping = 0;    ///< Σ sᵀC r ≥ 0 where the scheme pairs them (J)
   double work_of_loads = 0;      ///< Σ sᵀF̄, and the support's work through the stops (J)
@@ -38,8 +41,11 @@ struct EnergyTotals {
     const double stored = own_energy ? 0.0 : last.contact - first.contact;
     return last.scheme - stored - scheme_start - work_of_loads + work_of_damping + work_of_scheme - work_of_contact;
   }
-  /// What the motion had to lose (J): the energy of its start, and what the loads brought in beyond what they took.
-  double brought_in() const { return first.common() + std::max(0.0, work_of_loads); }
+  /// The work of all that depends on time until the last sample, J: of the loads' that which no potential tells.
+  double work_of_driving() const { return driven ? work_of_loads - (first.load - last.load) : 0.0; }
+  double most_driven = 0;  ///< the largest of these, at the samples that mark_brought_in() looked at (J ≥ 0)
+  /// What the motion had to lose (J): the energy of its start, and the most that driving had brought in.
+  double brought_in() const { return first.common() + std::max(most_driven, work_of_driving()); }
 };
 
 /// Contact seen over a run, per lane. It is looked at once per instant: each sub-step, with the stages that ask
@@ -92,6 +98,15 @@ class EnergyAudit final : public StepObserver {
   void sample_every_step() {
     sampling_ = SamplingMode::every_step;
     if (!flies_) asks_.next_shown = 0;
+  }
+
+  /// From now on the common energy has the potential of a steady load F₀ (n, of the problem's coordinates), `level` (J)
+  /// being its zero. Before the march; of every lane.
+  void count_load(const Marcher& marcher, const Eigen::VectorXd& load, double level);
+  /// Takes the last sample into what was brought in at most.
+  void mark_brought_in(int lane) {
+    EnergyTotals& totals = lanes_[static_cast<std::size_t>(lane)].energy;
+    totals.most_driven = std::max(totals.most_driven, totals.work_of_driving());
   }
 
   void stage_solved(const Marcher& marcher, const StageView& view) override;
@@ -171,6 +186,8 @@ class EnergyAudit final : public StepObserver {
   std::vector<Lane> lanes_;
   std::vector<WeighedTerms> start_ways_, ways_;  // of the position, by stage; none where a slot holds it
   Block scratch_;
+  Eigen::VectorXd load_;  // F₀ in the model's coordinates; empty where it is not counted
+  double load_level_ = 0;
 };
 
 }  // namespace ricochet

@@ -11,7 +11,7 @@ StateEnergies::StateEnergies(const Marcher& marcher, const QuadraticForm& mass, 
       T_(marcher.width()),
       slot_count_(marcher.slot_count()),
       mean_velocity_(marcher.program().velocity_offset != 0),
-      compliant_(marcher.program().contact && marcher.law().reads().has_value()),
+      kept_(marcher.program().contact && marcher.law().reads().has_value()),
       place_(marcher.program().model->rows(), 1),
       scratch_(marcher.program().model->rows(), 1) {
   const Program& program = marcher.program();
@@ -79,7 +79,7 @@ double StateEnergies::evaluate(const Form& form, const double* const* slots, con
 StateEnergies::Values StateEnergies::read(const double* const* slots, const double* increment, double duration,
                                           int lane) {
   for (std::size_t k = 0; k < forms_.size(); ++k)
-    forms_[k].value = evaluate(forms_[k], slots, increment, lane, compliant_ && k == elastic_);
+    forms_[k].value = evaluate(forms_[k], slots, increment, lane, kept_ && k == elastic_);
   Values values;
   values.kinetic = 0.5 * forms_[kinetic_].value;
   if (mean_velocity_) values.kinetic /= duration * duration;

@@ -100,8 +100,10 @@ class StateEnergies {
   Values read(const double* const* slots, const double* increment, double duration, int lane);
   /// The scheme's own alone.
   double scheme(const double* const* slots, int lane);
-  /// Where the elastic energy that was last read stands, contiguous; kept for laws that store energy.
+  /// Where the elastic energy that was last read stands, contiguous; kept for laws that store energy, or when asked
+  /// for.
   const double* place() const { return place_.data(); }
+  void keep_place() { kept_ = true; }
 
  private:
   struct Form {
@@ -120,7 +122,7 @@ class StateEnergies {
 
   CombinedForm mass_, stiffness_;
   int T_, slot_count_;
-  bool mean_velocity_, compliant_;
+  bool mean_velocity_, kept_;  // kept_: whether place() is
   std::vector<Form> forms_;
   std::size_t kinetic_ = 0, elastic_ = 0;
   std::vector<Share> scheme_;

@@ -31,9 +31,7 @@ TableType<EnergyEnd> energy_ends_type() {
   RowType<EnergyEnd> rows;
   rows.of_case(&EnergyEnd::id)
       .add({"energy", "J", "The common mechanical energy at the end."}, &EnergyEnd::energy)
-      .add({"ratio", "1",
-            "The same over the energy brought in: that of the start, and what loads brought in beyond what they took."},
-           &EnergyEnd::ratio)
+      .add({"ratio", "1", "The same over the energy brought in."}, &EnergyEnd::ratio)
       .add({"change", "1", "Distance of that ratio from 1."}, &EnergyEnd::change)
       .add({"noise_floor", "1",
             "Share of the change that is not told from round-off: 2⁻⁵² times the number of steps. Where the balance is "
@@ -79,7 +77,8 @@ Table energy_ledger_table(const StudyResults& results) {
       "One finished case: where its energy came from and where it went. end = start + loads − damping − stops − scheme "
       "− form + residual.",
       {{"start", "J", "The common energy of the initial state."},
-       {"loads", "J", "What the load and the moving support brought in."},
+       {"loads", "J",
+        "What loads in time and moving supports brought in; steady loads have a potential in the energy."},
        {"damping", "J", "What the viscous forces took."},
        {"stops", "J", "What contact took, less what springs at the stops still hold."},
        {"scheme", "J", "What the scheme itself took in flight: the losses that it declares, else 0."},
@@ -103,12 +102,12 @@ Table energy_ledger_table(const StudyResults& results) {
       continue;
     }
     const auto own_start = of("scheme_energy_start"), own_end = of("scheme_energy_end");
-    const double stored = of("stored_at_stops").value_or(0);
-    const double form = own_start && own_end ? (*own_end - *own_start) - (*end - stored - *start) : 0.0;
+    const double stored = of("stored_at_stops").value_or(0), steady = of("work_of_steady_loads").value_or(0);
+    const double loads = of("work_of_loads").value_or(0) - steady;
+    const double form = own_start && own_end ? (*own_end - *own_start) - (*end - stored - *start) - steady : 0.0;
     add_row(table, place_of(results, *record),
-            {*start, of("work_of_loads"), of("work_of_damping"), of("dissipated_at_contact"),
-             of("dissipated_by_scheme").value_or(0), form, *residual, *end,
-             std::abs(*residual) <= exact_balance * *brought_in ? "exact" : "not exact"});
+            {*start, loads, of("work_of_damping"), of("dissipated_at_contact"), of("dissipated_by_scheme").value_or(0),
+             form, *residual, *end, std::abs(*residual) <= exact_balance * *brought_in ? "exact" : "not exact"});
   }
   return table;
 }

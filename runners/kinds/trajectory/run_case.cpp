@@ -70,6 +70,7 @@ class Sampler final : public StepObserver {
                           energy.kinetic,
                           energy.elastic,
                           energy.contact,
+                          energy.load,
                           energy.common(),
                           energy.scheme,
                           contacts_.merges() ? contacts_.upwards() : contact.force,
@@ -159,6 +160,30 @@ struct Watched {
   }
 };
 
+// Steady loads have a potential; its zero is where it is lowest, or where the motion begins.
+void count_steady_load(Marcher& marcher, EnergyAudit& audit, std::vector<std::string>& notes) {
+  const SemiDiscrete& problem = *marcher.program().problem;
+  Eigen::VectorXd load(problem.dofs());
+  if (!marcher.program().load || !problem.load->assemble_steady(load.data()) || !load.allFinite()) return;
+  const std::optional<double> lowest =
+      lowest_potential(problem, load, marcher.program().contact ? &marcher.law() : nullptr);
+  if (!lowest)
+    notes.push_back(
+        "nothing holds the structure against its steady load: the potential of that load has no lowest value, and is "
+        "counted from the initial state");
+  audit.count_load(marcher, load, lowest.value_or(-load.dot(marcher.program().lanes.front().position)));
+}
+
+// From a contact point of the undeformed structure to its nearest stop, m; infinite without.
+double smallest_gap(const Marcher& marcher) {
+  double gap = std::numeric_limits<double>::infinity();
+  if (!marcher.program().contact) return gap;
+  const LaneSpec& lane = marcher.program().lanes.front();
+  for (const Eigen::VectorXd* bounds : {&lane.lower, &lane.upper})
+    for (const double bound : *bounds) gap = std::min(gap, std::abs(bound));
+  return gap;
+}
+
 void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit& audit, const SemiDiscrete& problem,
                    const StopContacts& contacts) {
   const EnergyTotals& energy = audit.totals(0);
@@ -166,7 +191,7 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
   const auto put = [&](const char* name, double value) { put_measure(record, name, value); };
   const double start = energy.first.common(), end = energy.last.common();
   const StepPlan& plan = marcher.program().plan;
-  const bool balances = audit.balances(), loads = marcher.program().support || marcher.program().load;
+  const bool balances = audit.balances();
   if (!plan.energy.empty()) {
     put("scheme_energy_start", energy.scheme_start);
     put("scheme_energy_end", energy.last.scheme);
@@ -178,9 +203,11 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
   const double brought_in = energy.brought_in(), round_off = 0x1p-52 * static_cast<double>(record.steps);
   // A start that round-off of the run may be larger than is none.
   if (start > round_off * brought_in) put("energy_ratio", end / start);
-  if (balances || !loads) {
+  if (balances || !energy.driven) {
     put("energy_brought_in", brought_in);
-    if (brought_in > 0) put("energy_left", end / brought_in);
+    // Less than round-off of the energies that it is made of is nothing.
+    if (brought_in > 0x1p-40 * (std::abs(start) + std::abs(energy.first.load) + std::abs(energy.first.elastic)))
+      put("energy_left", end / brought_in);
     put("largest_step_gain", energy.largest_step_gain);
   }
   if (!balances)
@@ -193,12 +220,14 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
   if (balances) {
     put("work_of_damping", energy.work_of_damping);
     put("work_of_loads", energy.work_of_loads);
+    put("work_of_steady_loads", energy.work_of_loads - energy.work_of_driving());
     // What the stops give back (a spring's potential) is not dissipated.
     const double stored = energy.last.contact - energy.first.contact;
     put("dissipated_at_contact", -energy.work_of_contact - stored);
     put("stored_at_stops", stored);
     put("balance_residual", energy.balance_residual());
   }
+  if (const double gap = smallest_gap(marcher); std::isfinite(gap)) put("smallest_gap", gap);
   put("projection_energy", problem.projection_energy);
   put("kernel_energy", problem.kernel_energy);
   put("deepest_penetration", contact.deepest_penetration);
@@ -264,8 +293,13 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   // Steps between two readings of the clock; those that are left out cost it nothing.
   long long chunk = 16;
   const long long longest_chunk = marcher.program().flight ? 1000000 : 20000;
+  count_steady_load(marcher, audit, record.notes);
   marcher.start(observers);
-  if (marcher.step() > 0) sampler.take(marcher);
+  const auto sample = [&] {
+    sampler.take(marcher);
+    audit.mark_brought_in(0);
+  };
+  if (marcher.step() > 0) sample();
   const long long samples = std::min<long long>(std::max(study_case.samples, 1), prepared.steps);
   for (long long k = 1; k <= samples && marcher.any_running() && !spent; ++k) {
     // Samples at equal fractions of the run, on whole steps.
@@ -282,7 +316,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
                                   : (now - before > 0.1 ? std::max(chunk / 2, 1LL) : chunk);
       before = now;
     }
-    if (marcher.any_running() && marcher.step() == target) sampler.take(marcher);
+    if (marcher.any_running() && marcher.step() == target) sample();
   }
   record.run_seconds = thread_seconds() - run;
   record.steps = marcher.step();

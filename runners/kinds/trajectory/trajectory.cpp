@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "runners/answers/limits.hpp"
 #include "runners/answers/uncertainty.hpp"
 #include "runners/json/json_text.hpp"
 #include "runners/kinds/all_kinds.hpp"
@@ -32,7 +33,8 @@ std::vector<MeasureInfo> trajectory_measures() {
       {"scheme_energy_end", "J", "The scheme's own discrete energy after the last step.", Of::motion, true,
        "energy_brought_in"},
       {"energy_start", "J",
-       "The common mechanical energy ½vᵀMv + ½qᵀKq plus the contact potential of the initial state, at t = 0.",
+       "The common mechanical energy of the initial state, at t = 0: ½vᵀMv + ½qᵀKq, the contact potential, and the "
+       "potential of steady loads. These last three together are 0 where they are lowest: at rest under the loads.",
        Of::motion, true, "energy_brought_in"},
       {"energy_end", "J",
        "The common mechanical energy at the end of the last step, or in the middle of its last sub-step.", Of::motion,
@@ -41,8 +43,10 @@ std::vector<MeasureInfo> trajectory_measures() {
        "Common energy at the end divided by that at the start; none where that is 0 or of the size of round-off.",
        Of::motion, true},
       {"energy_brought_in", "J",
-       "The common energy at the start, and what the loads brought in over the run beyond what they took.", Of::motion,
-       true},
+       "The largest mechanical energy that the motion could have: the common energy at the start, and the most that "
+       "loads and supports in motion had brought in, beyond what they took, at any sample of the run. Steady loads "
+       "bring nothing in: their potential is in the energy.",
+       Of::motion, true},
       {"energy_left", "1", "Common energy at the end divided by the energy that was brought in.", Of::motion, false,
        "1"},
       {"largest_step_gain", "J",
@@ -56,6 +60,8 @@ std::vector<MeasureInfo> trajectory_measures() {
        "energy_brought_in"},
       {"work_of_loads", "J",
        "Energy brought in by the distributed load and by the moving support over the run, in the frame of the clamp.",
+       Of::motion, true},
+      {"work_of_steady_loads", "J", "Of that what loads that do not depend on time gave: what their potential fell by.",
        Of::motion, true},
       {"dissipated_at_contact", "J",
        "Energy taken out by the contact efforts over the run, less what springs at the stops still store.", Of::motion,
@@ -125,6 +131,8 @@ std::vector<MeasureInfo> trajectory_measures() {
        "Displacement of the tip at the end of the run: absolute, unless scene.frame is supports.", Of::motion, false,
        "largest_tip_displacement"},
       {"largest_tip_displacement", "m", "Largest displacement of the tip, in size, over the steps of the run.",
+       Of::motion, true},
+      {"smallest_gap", "m", "Smallest distance from a contact point of the undeformed structure to a stop of its own.",
        Of::motion, true},
       {"steps_visited", "1",
        "Steps that were marched; the others were left out, since contact changed in none of them.", Of::computation},
@@ -223,11 +231,10 @@ std::vector<std::string> measure_names(const std::vector<MeasureInfo>& measures)
   return names;
 }
 
-/// Where loads bring energy in, what is left of it at the end says little: what went at the stops is asked for.
+/// Where loads in time bring energy in, what is left of it at the end says little: what went at the stops is asked for.
 std::vector<std::string> observed_energies(const StudyResults& results) {
-  const bool driven = std::any_of(results.cases.begin(), results.cases.end(), [](const CaseRecord& record) {
-    return measure(record, "work_of_loads").value_or(0) != 0;
-  });
+  const bool driven = std::any_of(results.cases.begin(), results.cases.end(),
+                                  [](const CaseRecord& record) { return answers::is_driven(record); });
   // Paths of a chaotic motion part; its means do not.
   if (std::any_of(results.cases.begin(), results.cases.end(),
                   [](const CaseRecord& record) { return measure(record, "window_tip_rms").has_value(); }))
