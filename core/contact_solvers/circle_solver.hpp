@@ -108,8 +108,8 @@ class CircleSolver {
   bool means_ = false;      // whether the law reads what was before
 };
 
-/// `see`(point, side, depth) of each side of each place, m beyond its stop; of a circle its first point, side −1 and the
-/// radial depth.
+/// `see`(point, side, depth) of each side of each place, m beyond its stop; of a circle its first point, side −1 and
+/// the radial depth.
 template <class Bounds, class See>
 void each_side(const CircleSolver& circles, const Bounds& lower, const Bounds& upper, const double* places, See&& see) {
   const auto points = static_cast<int>(lower.size());

@@ -151,13 +151,12 @@ std::optional<double> lowest_potential(const SemiDiscrete& problem, const Vector
   if (!law || law->absent() || !law->reads()) return energy;
   const VectorXd place = problem.measured() * q + lift;
   const bool own = sets_per_point(*law, problem.own);
-  for (int i = 0; i < problem.points(); ++i)
-    for (const int side : {1, -1}) {
-      const StopState state{.depth = side > 0 ? problem.lower[i] - place[i] : place[i] - problem.upper[i],
-                            .set = own ? i : 0,
-                            .side = side};
-      if (state.depth > -law->layer(state.set)) energy += law->potential(state);
-    }
+  CircleSolver circles;
+  circles.prepare(problem.points(), 1, problem.circles(), 0);
+  each_side(circles, problem.lower, problem.upper, place.data(), [&](int i, int side, double depth) {
+    const StopState state{.depth = depth, .set = own ? i : 0, .side = side};
+    if (depth > -law->layer(state.set)) energy += law->potential(state);
+  });
   return energy;
 }
 
