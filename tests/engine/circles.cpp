@@ -54,15 +54,15 @@ std::array<double, 2> turned(double angle, double first, double second) {
   return {std::cos(angle) * first - std::sin(angle) * second, std::sin(angle) * first + std::cos(angle) * second};
 }
 
-struct Marched {
+struct InHole {
   std::vector<Impact> impacts;
   StopTotals totals;
   Eigen::VectorXd position;
   double deepest = 0, wear = 0;
 };
 
-Marched marched(const SceneSpec& scene, const Methods& methods, double h, double duration,
-                const CompileOptions& options = {}) {
+InHole in_hole(const SceneSpec& scene, const Methods& methods, double h, double duration,
+               const CompileOptions& options = {}) {
   Marcher made = marcher(scene, 1, methods, h, options);
   ImpactRecorder recorder(made);
   StopContacts contacts(made, recorder);
@@ -81,8 +81,8 @@ Marched marched(const SceneSpec& scene, const Methods& methods, double h, double
 }
 
 const Choice averaged{"penalty", {{"stiffness", 1e6}, {"evaluation", std::string("averaged")}}};
-const Choice quarter{"newmark-dumont-paoli", {{"beta", 0.25}}};
-constexpr double pi = std::numbers::pi;
+const Choice quarter_beta{"newmark-dumont-paoli", {{"beta", 0.25}}};
+constexpr double half_turn = std::numbers::pi;
 
 }  // namespace
 
@@ -125,11 +125,11 @@ TEST_CASE("a shock in a round hole has v√(κm) and lasts π√(m/κ), in any d
     for (const double angle : {0.0, 0.4, 2.9}) {
       SceneSpec scene = mass_in({.radius = 2e-4, .sides = sides}, m, 1e-6);
       begin(scene, {0, 0}, turned(angle, v, 0));
-      const Marched made = marched(scene, {{"consistent"}, averaged, quarter}, 2e-6, 0.008);
+      const InHole made = in_hole(scene, {{"consistent"}, averaged, quarter_beta}, 2e-6, 0.008);
       REQUIRE(made.impacts.size() == 1);
       // Of second order in hω = 3.7e-3; the duration counts whole steps.
       CHECK(made.impacts[0].peak_force == Approx(v * std::sqrt(kappa * m)).epsilon(1e-5));
-      CHECK(std::abs(made.impacts[0].duration - pi * std::sqrt(m / kappa)) <= 2 * 2e-6);
+      CHECK(std::abs(made.impacts[0].duration - half_turn * std::sqrt(m / kappa)) <= 2 * 2e-6);
       CHECK(made.impacts[0].impulse == Approx(2 * m * v).epsilon(1e-6));
       CHECK(made.impacts[0].speed_in == Approx(v).epsilon(1e-9));
       CHECK(made.impacts[0].speed_out == Approx(v).epsilon(3e-6));  // (hω)²/8 and its shares
@@ -142,9 +142,9 @@ TEST_CASE("along a radius, a sphere in a hole goes (5mv²/4k)^(2/5) deep") {
   for (const double angle : {0.0, 1.0, 3.5}) {
     SceneSpec scene = mass_in({.radius = 1e-3, .offset = {2e-4, 0}}, m, 0);
     begin(scene, {2e-4, 0}, turned(angle, v, 0));
-    const Marched made = marched(
-        scene, {{"consistent"}, {"hertz", {{"stiffness", k}, {"evaluation", std::string("averaged")}}}, quarter}, 1e-7,
-        4e-3);
+    const InHole made = in_hole(
+        scene, {{"consistent"}, {"hertz", {{"stiffness", k}, {"evaluation", std::string("averaged")}}}, quarter_beta},
+        1e-7, 4e-3);
     REQUIRE(made.impacts.size() == 1);
     // Depths are seen once a step: the last 1e-4 of the shock.
     CHECK(made.deepest == Approx(std::pow(5 * m * v * v / (4 * k), 0.4)).epsilon(1e-4));
@@ -189,19 +189,19 @@ TEST_CASE("a scene that is turned moves as it did, and one whose hole and start 
     SceneSpec scene = mass_in({.radius = 1e-3, .offset = away}, 2, 0);
     const auto place = turned(angle, 1e-4, 5e-4), speed = turned(angle, 0.5, 0.2);
     begin(scene, {away[0] + place[0], away[1] + place[1]}, speed);
-    return marched(scene, {{"consistent"}, law, scheme}, 1e-5, 0.05);
+    return in_hole(scene, {{"consistent"}, law, scheme}, 1e-5, 0.05);
   };
   const Choice damped{"hunt-crossley", {{"stiffness", 1e8}, {"damping", 0.1}}};
-  for (const auto& [law, scheme] : {std::pair(averaged, quarter),
-                                    {damped, quarter},
+  for (const auto& [law, scheme] : {std::pair(averaged, quarter_beta),
+                                    {damped, quarter_beta},
                                     {Choice{"penalty", {{"stiffness", 1e6}}}, Choice{"moreau-jean"}},
                                     {Choice{"penalty", {{"stiffness", 1e5}, {"evaluation", std::string("explicit")}}},
                                      Choice{"central-difference"}}}) {
     INFO(law.name << " " << scheme.name);
-    const Marched still = run(0, {0, 0}, law, scheme);
+    const InHole still = run(0, {0, 0}, law, scheme);
     CHECK(still.impacts.size() > 4);
     for (const double angle : {0.6, 2.2, 5.1}) {
-      const Marched other = run(angle, turned(angle, 2e-4, 7e-4), law, scheme);
+      const InHole other = run(angle, turned(angle, 2e-4, 7e-4), law, scheme);
       REQUIRE(other.impacts.size() == still.impacts.size());
       for (std::size_t k = 0; k < still.impacts.size(); ++k) {
         // Round-off of places (1e-16 of 1e-3 m) beside depths of 1e-4 m, grown by each reflection.
@@ -234,8 +234,8 @@ TEST_CASE("along its first axis a hole is a stop with two bounds, for every comp
     begin(flat, {0, 0}, {0.3, 0});
     // Nothing pulls it off the axis.
     for (SceneSpec* scene : {&round, &flat}) push(*scene, 0, scene == &round ? 500 * 3e-4 : 0);
-    const Methods methods{{"consistent"}, law, quarter};
-    const Marched a = marched(round, methods, 1e-5, 0.05), b = marched(flat, methods, 1e-5, 0.05);
+    const Methods methods{{"consistent"}, law, quarter_beta};
+    const InHole a = in_hole(round, methods, 1e-5, 0.05), b = in_hole(flat, methods, 1e-5, 0.05);
     CHECK(b.impacts.size() > 2);
     REQUIRE(a.impacts.size() == b.impacts.size());
     for (std::size_t k = 0; k < a.impacts.size(); ++k) {
@@ -257,8 +257,8 @@ TEST_CASE("a whirl is pressed against its hole by F + (mω² − k)R, and slides
     scene.load.terms.push_back(term);
   }
   begin(scene, {R, 0}, {0, omega * R});
-  const double duration = 2 * pi / omega;
-  const Marched made = marched(scene, {{"consistent"}, averaged, quarter}, duration / 20000, duration);
+  const double duration = 2 * half_turn / omega;
+  const InHole made = in_hole(scene, {{"consistent"}, averaged, quarter_beta}, duration / 20000, duration);
   // (hω)² = 1e-7, and what half a step at each end is of the turn.
   CHECK(made.totals.impulse / duration == Approx(N).epsilon(1e-4));
   CHECK(made.wear / duration == Approx(N * omega * R).epsilon(1e-4));
@@ -270,7 +270,7 @@ TEST_CASE("lanes of a block have the bits that they have alone") {
   SceneSpec scene = mass_in({.radius = 1e-3}, 2, 500);
   begin(scene, {1e-4, 2e-4}, {0.4, 0.1});
   for (const Choice& law : {averaged, Choice{"hunt-crossley", {{"stiffness", 1e8}, {"damping", 0.1}}}}) {
-    const Methods methods{{"consistent"}, law, quarter};
+    const Methods methods{{"consistent"}, law, quarter_beta};
     const auto lanes = [](const LaneSpec& lane) {
       std::vector<LaneSpec> all(5, lane);
       for (std::size_t i = 0; i < all.size(); ++i) {
@@ -300,7 +300,7 @@ TEST_CASE("steps are left out within the square of a hole, and marched beyond it
   flown.march = MarchWay::flights;
   const auto program = compiled(problem_of(scene, 1, methods.mass, methods.contact), methods, 1e-6, flown);
   if (std::holds_alternative<Refusal>(program)) WARN(std::get<Refusal>(program).sentence);
-  const Marched every = marched(scene, methods, 1e-6, 0.05), left = marched(scene, methods, 1e-6, 0.05, flown);
+  const InHole every = in_hole(scene, methods, 1e-6, 0.05), left = in_hole(scene, methods, 1e-6, 0.05, flown);
   CHECK(every.impacts.size() > 5);
   REQUIRE(left.impacts.size() == every.impacts.size());
   for (std::size_t k = 0; k < every.impacts.size(); ++k)
@@ -311,7 +311,7 @@ TEST_CASE("a mass begins beyond its hole, pressed by what the law says there") {
   SceneSpec scene = mass_in({.radius = 1e-3, .offset = {1e-4, 0}}, 2, 0);
   const auto away = turned(0.8, 1.2e-3, 0);
   begin(scene, {1e-4 + away[0], away[1]}, {0, 0});
-  Marcher made = marcher(scene, 1, {{"consistent"}, averaged, quarter}, 1e-6);
+  Marcher made = marcher(scene, 1, {{"consistent"}, averaged, quarter_beta}, 1e-6);
   EnergyAudit audit(made);
   CHECK(audit.totals(0).first.contact == Approx(0.5 * 1e6 * 4e-8).epsilon(1e-9));
   made.start(&audit);
@@ -335,7 +335,7 @@ TEST_CASE("tangents of a place that slides along its circle are the difference o
     begin(scene, {1.4e-3, -1e-4}, {0, 0.3});
     CompileOptions options;
     options.tangents = 1;
-    Marcher block = marcher(scene, 1, {{"consistent"}, law, quarter}, 1e-5, options,
+    Marcher block = marcher(scene, 1, {{"consistent"}, law, quarter_beta}, 1e-5, options,
                             [](const LaneSpec& lane) { return std::vector<LaneSpec>(3, lane); });
     block.start();
     block.march(50);

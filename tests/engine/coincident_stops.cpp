@@ -25,7 +25,7 @@ NamedStop stop(const std::string& name, const Place& at, std::optional<double> l
 }
 
 constexpr double stiffness = 4e4;
-const Choice spring{"penalty", {{"stiffness", stiffness}, {"evaluation", std::string("averaged")}}};
+const Choice averaged_spring{"penalty", {{"stiffness", stiffness}, {"evaluation", std::string("averaged")}}};
 
 /// A structure that swings against stops at one place.
 struct Swinging {
@@ -36,14 +36,14 @@ struct Swinging {
   double gap, step, duration;
 };
 
-SceneSpec oscillator() {
+SceneSpec mass_at_stops() {
   SceneSpec scene;
   scene.structure = OscillatorSpec{1, 1e4, 2, {}};
   scene.initial.velocity = Formula(3.0);
   return scene;
 }
 
-BeamSpec cantilever() {
+BeamSpec short_cantilever() {
   SceneSpec scene = unit_beam();
   beam_of(scene).section.EI = 400;
   beam_of(scene).damping = {1e-4, 0};
@@ -53,13 +53,13 @@ BeamSpec cantilever() {
 std::vector<Swinging> structures() {
   constexpr int elements = 6;
   SceneSpec beam;
-  beam.structure = cantilever();
+  beam.structure = short_cantilever();
   LoadTerm push;
   push.force = true;
   push.at = 1;
   push.history = Formula("60*sin(70*t)", "", "t");
   beam.load.terms = {push};
-  SceneSpec matrices = assembled_scene(assembled(beam_files(cantilever(), elements)), {1e-4, 0});
+  SceneSpec matrices = assembled_scene(assembled(beam_files(short_cantilever(), elements)), {1e-4, 0});
   push.at.reset();
   push.place = at_node("N6");
   matrices.load.terms = {push};
@@ -72,7 +72,7 @@ std::vector<Swinging> structures() {
   bodies.initial.of_bodies.emplace_back();
   bodies.initial.of_bodies.back().body = "ball";
   bodies.initial.of_bodies.back().velocity = Formula(1.0);
-  return {{"oscillator", oscillator(), 1, at_place(0), 0.01, 1e-4, 0.3},
+  return {{"oscillator", mass_at_stops(), 1, at_place(0), 0.01, 1e-4, 0.3},
           {"beam", beam, elements, at_place(0.8), 0.01, 2e-4, 0.6},
           {"matrices", matrices, 1, at_node("N5"), 0.01, 2e-4, 0.6},
           {"modes", modes, elements, at_place(0.8), 0.01, 2e-4, 0.6},
@@ -101,9 +101,10 @@ TEST_CASE("a stop in two halves of half its stiffness is that stop, on every str
     for (const Choice& time : {Choice{"newmark-dumont-paoli", {{"beta", 0.25}}}, Choice{"moreau-jean"}}) {
       INFO(one.name << ", " << time.name);
       const StopParameters half{.stiffness = stiffness / 2};
-      const auto whole = tips(one, {stop("whole", one.at, -one.gap, one.gap)}, spring, time);
-      const auto halves = tips(
-          one, {stop("a", one.at, -one.gap, one.gap, half), stop("b", one.at, -one.gap, one.gap, half)}, spring, time);
+      const auto whole = tips(one, {stop("whole", one.at, -one.gap, one.gap)}, averaged_spring, time);
+      const auto halves =
+          tips(one, {stop("a", one.at, -one.gap, one.gap, half), stop("b", one.at, -one.gap, one.gap, half)},
+               averaged_spring, time);
       REQUIRE(largest(whole) > one.gap / 2);
       // Round-off that some ten contacts enlarge.
       CHECK(largest_gap(whole, halves) < 1e-9 * largest(whole));
@@ -116,20 +117,21 @@ TEST_CASE("the order of stops at one place does not matter, on every structure")
     const NamedStop soft = stop("soft", one.at, -one.gap, one.gap, {.stiffness = stiffness / 8}),
                     hard = stop("hard", one.at, {}, 1.2 * one.gap), low = stop("low", one.at, -1.1 * one.gap, {});
     const Choice time{"newmark-dumont-paoli", {{"beta", 0.25}}};
-    const auto ahead = tips(one, {soft, hard, low}, spring, time), back = tips(one, {low, hard, soft}, spring, time);
+    const auto ahead = tips(one, {soft, hard, low}, averaged_spring, time),
+               back = tips(one, {low, hard, soft}, spring, time);
     CHECK(largest_gap(ahead, back) < 1e-9 * largest(ahead));
     // They are no single one.
-    CHECK(largest_gap(ahead, tips(one, {soft}, spring, time)) > 1e-3 * largest(ahead));
+    CHECK(largest_gap(ahead, tips(one, {soft}, averaged_spring, time)) > 1e-3 * largest(ahead));
   }
 }
 
 TEST_CASE("flights over stops at one place are the steps that they leave out") {
   SceneSpec scene;
-  scene.structure = cantilever();
+  scene.structure = short_cantilever();
   scene.initial.velocity = Formula("3*x", "", "x");
   scene.stops.named = {stop("soft", at_place(1), -0.01, 0.01, {.stiffness = stiffness / 8}),
                        stop("hard", at_place(1), {}, 0.012)};
-  const Methods methods{{"consistent"}, spring, {"newmark-dumont-paoli", {{"beta", 0.25}}}};
+  const Methods methods{{"consistent"}, averaged_spring, {"newmark-dumont-paoli", {{"beta", 0.25}}}};
   CompileOptions flights;
   flights.march = MarchWay::flights;
   constexpr double step = 1e-5;

@@ -13,7 +13,7 @@ using namespace ricochet::testing;
 
 namespace {
 
-Place at_point(const char* name) {
+Place place_of(const char* name) {
   Place place;
   place.point = name;
   return place;
@@ -42,7 +42,7 @@ AssembledStructure described(const std::string& residual, bool supported = false
 
 SceneSpec scene_of(AssembledStructure structure) {
   SceneSpec scene = assembled_scene(std::move(structure));
-  scene.stops.named = {{"wall", at_point("a"), {}, {}, 0.1}};
+  scene.stops.named = {{"wall", place_of("a"), {}, {}, 0.1}};
   return scene;
 }
 
@@ -57,9 +57,9 @@ const char* const of_a = "point,a\na,1e-7\n";
 TEST_CASE("a load at a point without residual is told, with the share of the fastest mode at the stop") {
   SceneSpec scene = scene_of(described(of_a));
   CHECK(said(scene).empty());
-  scene.load.terms = {force_at(at_point("a"))};
+  scene.load.terms = {force_at(place_of("a"))};
   CHECK(said(scene).empty());
-  scene.load.terms.push_back(force_at(at_point("b")));
+  scene.load.terms.push_back(force_at(place_of("b")));
   // Modes of 3 Hz and 5 Hz give Φ_a Φ_b/(m ω²) of 1 and −1/2 over their squares: 9/50 over 1 − 9/50.
   const double share = 100 * (0.5 / 25) / (1.0 / 9 - 0.5 / 25);
   CHECK(share == Approx(21.95).epsilon(1e-3));
@@ -73,7 +73,7 @@ TEST_CASE("a load at a point without residual is told, with the share of the fas
 
 TEST_CASE("stops and points without residual, and supports that move, are told") {
   SceneSpec scene = scene_of(described("", true));
-  scene.points = {{"seen", at_point("b")}};
+  scene.points = {{"seen", place_of("b")}};
   CHECK(said(scene) == std::vector<std::string>{"no residual at stop wall: its force moves no stop beyond the modes",
                                                 "no residual at point seen: what is shown there follows the modes "
                                                 "alone"});
@@ -92,7 +92,7 @@ TEST_CASE("a body in modes is looked at as a structure in modes is, and a beam i
   SceneSpec scene;
   scene.structure = AssembledSpec{.structure = nullptr, .bodies = all};
   scene = on_mesh(std::move(scene), 1);
-  Place ball, a = at_point("a"), b = at_point("b");
+  Place ball, a = place_of("a"), b = place_of("b");
   ball.body = "ball";
   a.body = b.body = "frame";
   scene.stops.named = {{"gap", ball, a, {}, 0.1}};
