@@ -118,7 +118,7 @@ TEST_CASE("the order of stops at one place does not matter, on every structure")
                     hard = stop("hard", one.at, {}, 1.2 * one.gap), low = stop("low", one.at, -1.1 * one.gap, {});
     const Choice time{"newmark-dumont-paoli", {{"beta", 0.25}}};
     const auto ahead = tips(one, {soft, hard, low}, averaged_spring, time),
-               back = tips(one, {low, hard, soft}, spring, time);
+               back = tips(one, {low, hard, soft}, averaged_spring, time);
     CHECK(largest_gap(ahead, back) < 1e-9 * largest(ahead));
     // They are no single one.
     CHECK(largest_gap(ahead, tips(one, {soft}, averaged_spring, time)) > 1e-3 * largest(ahead));

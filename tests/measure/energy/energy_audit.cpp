@@ -314,7 +314,7 @@ TEST_CASE("a stop that has let go inside its dent stores nothing: k/K of the ene
   const auto problem = problem_of(scene, 1, {"consistent"});
   constexpr double h = 1e-6;
   const PlanOrRefusal plan = plan_of({"newmark"}, h, problem_facts(*problem, *law));
-  auto program = compile(problem, std::get<StepPlan>(plan), h, std::move(law), {scene_lane(*problem, Parameters({}))});
+  auto program = compile(problem, std::get<StepPlan>(plan), h, std::move(law), {scene_lane(*problem, Parameters())});
   Marcher mass(std::move(std::get<Program>(program)));
   EnergyAudit audit(mass);
   mass.start(&audit);

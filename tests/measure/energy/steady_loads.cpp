@@ -95,7 +95,7 @@ TEST_CASE("terms that depend on time have no part in the steady load") {
   double load = 0;
   REQUIRE(problem->load->assemble_steady(&load));
   CHECK(load == -gravity);
-  scene.load = Formula("-9.81 + sin(t)");
+  scene.load = Formula("-9.81 + sin(t)", "");
   CHECK_FALSE(problem_of(scene, 1, {"consistent"})->load->assemble_steady(&load));
 }
 

@@ -11,7 +11,7 @@ using synthetic::full_factorial, synthetic::sentences;
 
 namespace {
 
-const std::vector<double> steps = {1e-3, 1e-4, 1e-5};
+const std::vector<double> refined = {1e-3, 1e-4, 1e-5};
 
 std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
@@ -30,7 +30,7 @@ bool is_of(const CaseRecord& record, const char* level) {
 TEST_CASE("who gains energy is named first, whatever is observed") {
   for (const char* observed : {"energy_left", "impulse", "dissipated_at_contact", "tip_displacement_end"}) {
     StudyResults results = full_factorial(
-        {{"time", {"kept", "lost", "made"}}}, steps,
+        {{"time", {"kept", "lost", "made"}}}, refined,
         [&](const auto& at, double step) {
           if (std::string(observed) != "energy_left") return 1.0 + static_cast<double>(at[0]);
           return at[0] == 2 ? 12 - 1e3 * step : at[0] == 1 ? 0.5 : 1.0;
@@ -53,7 +53,7 @@ TEST_CASE("who gains energy is named first, whatever is observed") {
 TEST_CASE("a gain that comes and goes with the step is not called less with finer steps") {
   const double share[] = {0.8, 1.95, 1.51};
   const std::string text =
-      sentences(full_factorial({{"time", {"kept", "made"}}}, steps, [&](const auto& at, double step) {
+      sentences(full_factorial({{"time", {"kept", "made"}}}, refined, [&](const auto& at, double step) {
         return at[0] == 0 ? 1.0 : share[step > 5e-4 ? 0 : step > 5e-5 ? 1 : 2];
       }));
   INFO(text);
@@ -66,7 +66,7 @@ TEST_CASE("a method that settles nowhere is told with its distance, as a first m
   // The impulse of a moving wall: five methods give 0.1732 N s, the sixth wanders and ends 51 % above.
   const double wanders[] = {0.1390, 0.3379, 0.26158};
   StudyResults results = full_factorial(
-      {{"contact", {"hard", "soft"}}, {"time", {"one", "other", "wild"}}}, steps,
+      {{"contact", {"hard", "soft"}}, {"time", {"one", "other", "wild"}}}, refined,
       [&](const auto& at, double step) {
         return at[0] == 0 && at[1] == 2 ? wanders[step > 5e-4 ? 0 : step > 5e-5 ? 1 : 2] : 0.1732 + 1e-3 * step;
       },
@@ -83,7 +83,7 @@ TEST_CASE("a method that settles nowhere is told with its distance, as a first m
 
 TEST_CASE("a method that has no value of a measure is named with the reason") {
   StudyResults results =
-      full_factorial({{"time", {"audited", "other", "silent"}}}, steps, [](const auto&, double) { return 0.81; });
+      full_factorial({{"time", {"audited", "other", "silent"}}}, refined, [](const auto&, double) { return 0.81; });
   for (CaseRecord& record : results.cases) {
     put(record, "impulse", 2);
     if (is_of(record, "silent")) record.measures = {{"impulse", 2}};
@@ -100,7 +100,7 @@ TEST_CASE("a method that has no value of a measure is named with the reason") {
 
 TEST_CASE("where no stop was touched the first sentence says so, with the gap") {
   StudyResults results = full_factorial(
-      {{"contact", {"hard", "soft"}}}, steps, [](const auto&, double) { return 0; }, "dissipated_at_contact");
+      {{"contact", {"hard", "soft"}}}, refined, [](const auto&, double) { return 0; }, "dissipated_at_contact");
   for (CaseRecord& record : results.cases) {
     put(record, "energy_brought_in", 1);
     put(record, "smallest_gap", 100);
