@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
@@ -74,11 +76,17 @@ class Observers {
   }
   /// Null adds nobody.
   void add(StepObserver* one) {
-    if (one) all_.push_back(one);
+    if (!one) return;
+    if (count_ < few_.size())
+      few_[count_] = one;
+    else if (many_.empty())
+      many_.assign(few_.begin(), few_.end());
+    if (count_ >= few_.size()) many_.push_back(one);
+    ++count_;
   }
-  bool empty() const { return all_.empty(); }
-  StepObserver* const* begin() const { return all_.data(); }
-  StepObserver* const* end() const { return all_.data() + all_.size(); }
+  bool empty() const { return count_ == 0; }
+  StepObserver* const* begin() const { return many_.empty() ? few_.data() : many_.data(); }
+  StepObserver* const* end() const { return begin() + count_; }
   /// The next step that one of them has to be shown.
   long long next_shown() const {
     long long next = StepObserver::never;
@@ -87,7 +95,9 @@ class Observers {
   }
 
  private:
-  std::vector<StepObserver*> all_;
+  std::size_t count_ = 0;
+  std::array<StepObserver*, 8> few_{};  // these take no memory from the heap
+  std::vector<StepObserver*> many_;     // all of them, where they are more
 };
 
 /// A step of one lane that was marched and not shown: no stage of it looked at a stop.

@@ -151,6 +151,7 @@ Sentence TierSpeaker::nowhere(const Members& members, const Members& firm) const
   said.low = low * words_.factor;
   said.high = high * words_.factor;
   said.status = "settles nowhere";
+  std::vector<Clause> clauses = {said};
   // How far it is from the others at the finest step.
   std::string apart;
   if (!firm.empty() && !words_.decades) {
@@ -158,16 +159,23 @@ Sentence TierSpeaker::nowhere(const Members& members, const Members& firm) const
     const double lowest = least(members) - middle, highest = most(members) - middle;
     const double size = words_.factor == 100 ? 1 : std::abs(middle);
     const bool beside = std::min(std::abs(lowest), std::abs(highest)) > tolerance * size && lowest * highest > 0;
-    if (size > 0 && beside)
+    if (size > 0 && beside) {
+      Clause distance = clause("differ", members);
+      distance.low = 100 * std::min(std::abs(lowest), std::abs(highest)) / size;
+      distance.high = 100 * std::max(std::abs(lowest), std::abs(highest)) / size;
+      distance.unit = "%";
+      distance.status = "of the others";
+      clauses.push_back(std::move(distance));
       apart = fmt::format(", there {}{} {} than with the others",
                           percent(std::abs(lowest / size)) == percent(std::abs(highest / size))
                               ? ""
                               : percent(std::abs(lowest / size)) + " to ",
                           percent(std::abs(highest / size)), highest > 0 ? "more" : "less");
+    }
   }
   return {fmt::format("{} settle{} nowhere: {}{}{}.", capitalised(name.text), plural_s(name.several),
                       range_text(words_, low, high), finest ? " down to " + study_.step_words(*finest) : "", apart),
-          {said}};
+          std::move(clauses)};
 }
 
 Sentence TierSpeaker::gains(const Members& members) const {

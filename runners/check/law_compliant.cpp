@@ -233,8 +233,9 @@ Verdict stores_what_it_gives_back(LawBench& bench) {
   constexpr int steps = 400;
   constexpr double tolerance = 2.0 / steps, nothing = 1e-9;  // of the trapezium's work, and of a difference of energies
   const double layer = bench.layer(), far = depths_of(bench).back() + layer;
-  double most = 0;
   for (const int side : sides) {
+    // What the deepest push could do; the first touch alone is no scale of it.
+    const double most = std::abs(at_point(bench, side, far - layer, 0, far - layer).effort) * far;
     bench.remember(true);
     double depth = -layer, effort = 0, stored = 0, unanswered = 0, at = 0;
     for (const double turn : {0.5 * far, -0.1 * far, far, -0.1 * far}) {
@@ -245,7 +246,6 @@ Verdict stores_what_it_gives_back(LawBench& bench) {
         const double p = std::abs(here.effort), U = bench.law().potential(bench.state(side, next));
         if (!here.answered || !(U >= 0)) return fails(fmt::format("stores {:g} J at a depth of {:g} m", U, next));
         const double mean = reads_before(bench) ? p : 0.5 * (p + effort);
-        most = std::max(most, U);
         if (U - stored > mean * (next - depth) + tolerance * most)
           return fails(fmt::format("stores {:g} J more from a depth of {:g} to {:g} m; its force took {:g} J",
                                    U - stored, depth, next, mean * (next - depth)));

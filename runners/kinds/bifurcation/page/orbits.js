@@ -68,7 +68,8 @@
       if (status && status !== "done") return status;
       const name = this.cell(id, "class", o) || "undecided", period = this.cell(id, "period", o);
       if (!period) return name;
-      return name === "periodic" ? "period " + period : name === "chattering" ? "period " + period + " with chatter" : name;
+      const chatter = name === "chattering" ? " with chatter" : "";
+      return name === "periodic" || chatter ? "period " + period + chatter : name;
     }
     // "0.1234 (0.12 to 0.13) 1/s"; "" where there is none.
     interval(id, name, o) {

@@ -66,7 +66,9 @@ TEST_CASE("a clearance has one row, one name, and the resultant of its sides as 
           Approx(reading(record, "impulse[plate]")).epsilon(1e-12));
     // It whirls along the circle, in contact for most of the time: few impacts, a mean distance of about the radius.
     CHECK(reading(record, "window_contact_share[plate]") > 0.5);
-    CHECK(reading(record, "window_displacement_mean[plate]") == Approx(2e-3).epsilon(0.05));
+    const double depth =
+        std::string(contact).find("penalty") != std::string::npos ? reading(record, "window_force[plate]") / 1e5 : 0;
+    CHECK(reading(record, "window_displacement_mean[plate]") == Approx(2e-3 + depth).epsilon(0.05));
     // Along the circle it moves by R·ω.
     CHECK(reading(record, "wear_power[plate]") ==
           Approx(reading(record, "window_force[plate]") * 2e-3 * 25).epsilon(0.3));

@@ -170,6 +170,7 @@ TEST_CASE("a beam in two planes is filmed in both, and every side of a clearance
   text["scene"]["stops"] =
       Json::parse(R"([{"name": "plate", "at": {"x": 0.5}, "clearance": {"radius": 1, "sides": 8}}])");
   text["scene"]["load"] = Json::parse(R"([{"at": {"x": 0.5, "component": "uz"}, "force": "1"}])");
+  text["methods"]["contact"] = "signorini";
   const Snapshots film = film_of(run_in(text, folder));
   CHECK(film.axes == std::array<std::size_t, 2>{2, 1});
   CHECK(film.values() == 2 * film.x.size());
