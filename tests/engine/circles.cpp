@@ -219,7 +219,9 @@ TEST_CASE("along its first axis a hole is a stop with two bounds, for every comp
   for (const std::string& name : registry().names(Role::contact)) {
     std::map<std::string, ParameterValue> values;
     for (const ParameterSpec& spec : registry().contact(name)->manual.parameters)
-      if (!spec.fallback) values[spec.key] = spec.key == "stiffness" ? 1e6 : spec.unit == "m" ? 1e-4 : 0.1;
+      // A layer as deep as the hole is felt everywhere.
+      if (!spec.fallback || spec.key == "thickness")
+        values[spec.key] = spec.key == "stiffness" ? 1e6 : spec.unit == "m" ? 1e-4 : 0.1;
     const Choice law{name, values};
     const auto made = make(registry().contact(name), law);
     if (made->absent() || !made->reads() || made->changes_problem()) continue;

@@ -98,9 +98,9 @@ TEST_CASE("the table of cases takes words and conditions, and gives what it show
                {"page", report_of("studies", "trajectory")},
                {"evaluate",
                 {heads, filtered(""), filtered("status = done"), filtered("status != done"), filtered("step > 0.015"),
-                 filtered("step <= 0.015 signorini"), filtered("energy left > 0"), filtered("enrgy_left > 0"),
+                 filtered("step <= 0.015 signorini"), filtered("first release > 0"), filtered("enrgy_left > 0"),
                  filtered("step >"), filtered("contact=signorini"), "ricochet.casesShown()",
-                 filtered("energy left <= 0")}}}})
+                 filtered("first release <= 0")}}}})
           .at("cases")
           .at("values");
   CHECK(values.at(0) == browser::Json({"case", "status", "contact"}));
