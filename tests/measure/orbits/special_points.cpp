@@ -85,7 +85,7 @@ TEST_CASE("turns between two others are as prominent as the smaller way, in any 
   }
 }
 
-TEST_CASE("a fold next to a graze, where its branch ends, is listed; what turns by less is not") {
+TEST_CASE("a fold next to a graze, where its branch ends, is listed, and what turns by less is not") {
   // COCO's impact oscillator: from 1 N down to the fold at 0.0999708 N and back to the graze at 0.1 N.
   const auto found = points_of(special_points(branch_through({1, 0.5, 0.0999708, 0.1}), folds_from(1e-4)), "fold");
   REQUIRE(found.size() == 1);
