@@ -17,19 +17,19 @@ class PowerContact final : public PointwiseContact {
         k_(k),
         n_(n) {}
 
-  double force(double depth) const { return depth > 0 ? k_ * std::pow(depth, n_) : 0; }
-  double stored(double depth, int) const override { return depth > 0 ? force(depth) * depth / (n_ + 1) : 0; }
+  double push(double depth) const { return depth > 0 ? k_ * std::pow(depth, n_) : 0; }
+  double stored(double depth, int) const override { return depth > 0 ? push(depth) * depth / (n_ + 1) : 0; }
 
  private:
   void set_lanes(std::span<const Parameters>) override {}
   PointForce at(const ContactState& s) const override {
-    return {force(s.depth), s.depth > 0 ? n_ * force(s.depth) / s.depth : 0, 0, 0, 0};
+    return {push(s.depth), s.depth > 0 ? n_ * push(s.depth) / s.depth : 0, 0, 0, 0};
   }
   PointForce gradient(const ContactState& s) const override {
     const double change = s.depth - s.before;
     if (std::abs(change) < 1e-9 * std::abs(s.depth)) return at({.depth = 0.5 * (s.depth + s.before)});
     const double mean = (stored(s.depth, 0) - stored(s.before, 0)) / change;
-    return {mean, (force(s.depth) - mean) / change, 0, (mean - force(s.before)) / change, 0};
+    return {mean, (push(s.depth) - mean) / change, 0, (mean - push(s.before)) / change, 0};
   }
   double k_, n_;
 };
@@ -121,13 +121,13 @@ TEST_CASE("a point within a circle is pushed along its radius, by what the law s
         for (const int first : scene.circles) {
           const StopCircle circle = scene.circle(first);
           const Eigen::Vector2d from = found.u.segment<2>(first) - Eigen::Vector2d(circle.centre[0], circle.centre[1]);
-          const double N = law.force(from.norm() - circle.radius), depth = from.norm() - circle.radius;
+          const double N = law.push(from.norm() - circle.radius), depth = from.norm() - circle.radius;
           // The same as a depth: forces of stiff springs are known as well as their depths.
           const double slope = depth > 0 ? exponent * N / depth : 0;
           CHECK((found.p.segment<2>(first) + N * from.normalized()).norm() <= lost * (slope + 1));
         }
         for (int i = 2 * static_cast<int>(scene.circles.size()); i < scene.points(); ++i) {
-          const double over = law.force(found.u[i] - 1), under = law.force(-1 - found.u[i]);
+          const double over = law.push(found.u[i] - 1), under = law.push(-1 - found.u[i]);
           CHECK(std::abs(found.p[i] - (under - over)) <=
                 lost * (1 + exponent * std::pow(3.0 + std::abs(found.u[i]), exponent)));
         }
@@ -186,7 +186,7 @@ TEST_CASE("a measure that no effort moves is looked at once") {
   const double rho = circle.distance(scene.free[0], scene.free[1]);
   REQUIRE(rho > circle.radius);
   for (const int axis : {0, 1})
-    CHECK(found.p[axis] == Approx(-law.force(rho - circle.radius) *
+    CHECK(found.p[axis] == Approx(-law.push(rho - circle.radius) *
                                   (scene.free[axis] - circle.centre[static_cast<std::size_t>(axis)]) / rho)
                                .epsilon(1e-14));
 }

@@ -295,9 +295,9 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   const long long longest_chunk = marcher.program().flight ? 1000000 : 20000;
   count_steady_load(marcher, audit, record.notes);
   marcher.start(observers);
-  const auto sample = [&] {
-    sampler.take(marcher);
-    audit.mark_brought_in(0);
+  const auto sample = [&watched, &marcher] {
+    watched.sampler.take(marcher);
+    watched.audit.mark_brought_in(0);
   };
   if (marcher.step() > 0) sample();
   const long long samples = std::min<long long>(std::max(study_case.samples, 1), prepared.steps);
