@@ -33,7 +33,7 @@ StudyResults study(const std::function<double(int mass, int law, double step)>& 
                                    : law == 1 ? "soft"
                                               : "softer" + std::to_string(law)},
                        {"step", step}};
-        record.measures = {{"energy_left", left(mass, law, step)}, {"work_of_damping", 0}, {"work_of_loads", 0}};
+        record.measures = {{"energy_left", left(mass, law, step)}, {"work_of_loads", 0}, {"work_of_damping", 0}};
       }
   return results;
 }
