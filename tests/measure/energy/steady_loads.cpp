@@ -148,7 +148,7 @@ TEST_CASE("a ball on a compliant stop keeps its energy through many bounces by a
 
 TEST_CASE("what driving brought in never falls, and steady loads bring nothing in") {
   SceneSpec scene = ball(0.05);
-  scene.load.terms = {{.force = true, .history = Formula("2*sin(30*t)", "", "t")}};
+  scene.load.terms = {{.force = true, .at = {}, .shape = Formula(), .history = Formula("2*sin(30*t)", "", "t")}};
   Marcher made = marcher(scene, 1, {{"consistent"}, {"signorini"}, {"moreau-jean", {{"restitution", 0.8}}}}, 1e-4);
   EnergyAudit audit(made);
   double load = 0;
