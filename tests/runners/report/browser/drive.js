@@ -183,10 +183,13 @@ async function take({
   const answers = {};
   for (const step of JSON.parse(fs.readFileSync(process.argv[2], "utf8"))) answers[step.name] = await take(step);
   fs.writeFileSync(process.argv[3], JSON.stringify(answers));
-  const ended = new Promise((resolve) => child.on("exit", resolve));
-  await Promise.race(
-      [send("Browser.close").catch(() => {}).then(() => ended), pause(5000).then(() => child.kill("SIGKILL"))]);
-  fs.rmSync(profile, {recursive: true, force: true});
+  const gone = child.exitCode !== null || child.signalCode !== null;
+  const ended = new Promise((resolve) => gone ? resolve() : child.on("exit", resolve));
+  await Promise.race([send("Browser.close").catch(() => {}).then(() => ended), pause(5000)]);
+  child.kill("SIGKILL");  // one that has ended takes no harm
+  await ended;
+  // Processes of the browser may write for a moment after it.
+  fs.rmSync(profile, {recursive: true, force: true, maxRetries: 100, retryDelay: 100});
   process.exit(0);
 })().catch((error) => {
   console.error(error.stack || error);
