@@ -24,6 +24,18 @@ struct StopCircle {
   std::array<double, 2> square(int axis) const;
 };
 
+/// `put`(point, low, high) of the two bounds of a square within a circle that a layer (m) makes smaller: a point
+/// between them is not within the layer.
+template <class Bounds, class Put>
+void put_square(const Bounds& lower, const Bounds& upper, int first, double layer, Put&& put) {
+  StopCircle circle = StopCircle::of(lower, upper, first);
+  circle.radius -= layer;
+  for (const int axis : {0, 1}) {
+    const std::array<double, 2> bounds = circle.square(axis);
+    put(first + axis, bounds[0], bounds[1]);
+  }
+}
+
 /// Contact laws of one scalar depth at points that move within circles. Such a point has two rows, u₁ and u₂, and two
 /// efforts. It is pushed along its radius by what the law finds for the radial depth and rate:
 ///

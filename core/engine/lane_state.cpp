@@ -50,13 +50,10 @@ void Marcher::place_stops(int lane) {
   // Within a square no point passes its circle.
   for (const int first : circles_.circles()) {
     const double layer = program_.law->layer(program_.law_set(first, lane));
-    StopCircle circle = StopCircle::of(spec.lower, spec.upper, first);
-    circle.radius -= layer;
-    for (const int axis : {0, 1}) {
-      const auto [low, high] = circle.square(axis);
-      lower_.at(first + axis, lane) = low;
-      upper_.at(first + axis, lane) = high;
-    }
+    put_square(spec.lower, spec.upper, first, layer, [&](int point, double low, double high) {
+      lower_.at(point, lane) = low;
+      upper_.at(point, lane) = high;
+    });
   }
 }
 

@@ -278,15 +278,11 @@ void FlightSet::set_bounds(FlightWatch& watch, const LaneSpec& lane, double laye
     watch.upper[i] = lane.upper[static_cast<Index>(i)] - shift;
   }
   // A circle is left at its corners first: what stays within its square stays within it.
-  for (const int first : circles_) {
-    StopCircle circle = StopCircle::of(lane.lower, lane.upper, first);
-    circle.radius -= shift;
-    for (const int axis : {0, 1}) {
-      const auto [low, high] = circle.square(axis);
-      watch.lower[static_cast<std::size_t>(first + axis)] = low;
-      watch.upper[static_cast<std::size_t>(first + axis)] = high;
-    }
-  }
+  for (const int first : circles_)
+    put_square(lane.lower, lane.upper, first, shift, [&](int point, double low, double high) {
+      watch.lower[static_cast<std::size_t>(point)] = low;
+      watch.upper[static_cast<std::size_t>(point)] = high;
+    });
   for (const ClosedPoint& point : closed_) {
     watch.lower[static_cast<std::size_t>(point.point)] = -infinity;
     watch.upper[static_cast<std::size_t>(point.point)] = infinity;
