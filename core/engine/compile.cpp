@@ -58,16 +58,6 @@ std::optional<Refusal> read_contact(StageProgram& program, const Stage& stage, c
   return std::nullopt;
 }
 
-// The operator of S or R of a stage, with its weights in the plan.
-OperatorOrRefusal definite_operator(const Program& whole, const FoldedStage& folded, int lanes, const char* name,
-                                    const OperatorWeights& weights) {
-  try {
-    return make_operator(whole.kind, *whole.model, folded, lanes);
-  } catch (const IndefiniteMatrix& found) {
-    blame_indefinite(found, name, weights, *whole.problem);
-  }
-}
-
 // What a law reads moves with z and w by one set of columns. They are those of the measure, or of the rate where no
 // effort moves the measure.
 std::optional<Refusal> read_impulse(StageProgram& program, const Stage& stage, const Program& whole) {

@@ -7,8 +7,10 @@
 
 namespace ricochet {
 
-void blame_indefinite(const IndefiniteMatrix& found, const std::string& matrix, const OperatorWeights& weights,
-                      const SemiDiscrete& problem) {
+namespace {
+
+[[noreturn]] void blame_indefinite(const IndefiniteMatrix& found, const std::string& matrix,
+                                   const OperatorWeights& weights, const SemiDiscrete& problem) {
   using Of = IndefiniteStep::Of;
   const std::string what = fmt::format("{} is indefinite, as {} shows: ", matrix, found.where);
   std::string negative;
@@ -19,6 +21,17 @@ void blame_indefinite(const IndefiniteMatrix& found, const std::string& matrix, 
   throw IndefiniteStep(Of::structure, what + (problem.damping.matrix ? "C" : "a matrix") +
                                           " of the structure is negative along some motion. Correct it, or use a "
                                           "smaller step");
+}
+
+}  // namespace
+
+OperatorOrRefusal definite_operator(const Program& whole, const FoldedStage& folded, int lanes, const char* name,
+                                    const OperatorWeights& weights) {
+  try {
+    return make_operator(whole.kind, *whole.model, folded, lanes);
+  } catch (const IndefiniteMatrix& found) {
+    blame_indefinite(found, name, weights, *whole.problem);
+  }
 }
 
 void check_stiffness_of_law(const SemiDiscrete& problem) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <ricochet/contract/step_plan.hpp>
+#include <ricochet/engine/compile.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <stdexcept>
 #include <string>
@@ -27,9 +28,9 @@ class IndefiniteStep : public std::runtime_error {
 /// Throws an IndefiniteStep where a contact law has left the structure a stiffness that is negative along some motion.
 void check_stiffness_of_law(const SemiDiscrete& problem);
 
-/// Throws an IndefiniteStep that says whose numbers make S or R of a stage indefinite. `weights`: those of that matrix
-/// in the plan.
-[[noreturn]] void blame_indefinite(const IndefiniteMatrix& found, const std::string& matrix,
-                                   const OperatorWeights& weights, const SemiDiscrete& problem);
+/// make_operator() of S or R of a stage, called `name`. Throws an IndefiniteStep that says whose numbers make it
+/// indefinite. `weights`: those of that matrix in the plan.
+OperatorOrRefusal definite_operator(const Program& whole, const FoldedStage& folded, int lanes, const char* name,
+                                    const OperatorWeights& weights);
 
 }  // namespace ricochet
