@@ -41,6 +41,19 @@ std::vector<bool> points_with_mass(const SemiDiscrete& problem) {
   return massive;
 }
 
+std::vector<bool> thrown_points(const Program& program, double least) {
+  const SemiDiscrete& problem = *program.problem;
+  std::vector<bool> thrown(static_cast<std::size_t>(problem.points()), false);
+  if (!program.contact || program.law->reads()) return thrown;
+  const double of_all = std::abs(plan_restitution(program.plan, program.h).value_or(0));
+  for (std::size_t i = 0; i < thrown.size(); ++i)
+    thrown[i] = (i < problem.own.size() ? problem.own[i].restitution.value_or(of_all) : of_all) >= least;
+  if (std::find(thrown.begin(), thrown.end(), true) == thrown.end()) return thrown;
+  const std::vector<bool> massive = points_with_mass(problem);
+  for (std::size_t i = 0; i < thrown.size(); ++i) thrown[i] = thrown[i] && massive[i];
+  return thrown;
+}
+
 std::vector<bool> resolved_points(const SemiDiscrete& problem, double h) {
   const auto given_way = [&](double time) {
     QuasiDefinite matrix;

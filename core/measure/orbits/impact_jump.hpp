@@ -77,6 +77,9 @@ class ImpactJump final : public StepObserver {
 /// For each contact point of the problem, whether it has inertia: no displacement in Ker M moves it.
 std::vector<bool> points_with_mass(const SemiDiscrete& problem);
 
+/// For each contact point, whether it has inertia and a rigid law throws it back with a share `least` of its speed.
+std::vector<bool> thrown_points(const Program& program, double least);
+
 /// For each contact point, whether a step of h follows the motion that an impulse on it leaves. It does where
 /// H (M + h²K)⁻¹ Hᵀ is within a hundredth of its limit H M⁻¹ Hᵀ for h → 0 (taken at h/1000). For an oscillator: hω ≤
 /// 0.1.

@@ -6,7 +6,6 @@
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 #include <ricochet/measure/orbits/section_march.hpp>
-#include <ricochet/measure/stability/plan_restitution.hpp>
 
 namespace ricochet {
 
@@ -18,24 +17,6 @@ namespace {
 
 constexpr int impact_periods = 64;     // whose impacts are kept
 constexpr double least_rebound = 0.1;  // of the speed of an impact
-
-/// Points with mass that a rigid law throws back with a tenth of their speed or more.
-std::vector<bool> thrown_points(const Marcher& marcher) {
-  const Program& program = marcher.program();
-  const SemiDiscrete& problem = *program.problem;
-  std::vector<bool> thrown(static_cast<std::size_t>(problem.points()), false);
-  if (!program.contact || marcher.law().reads()) return thrown;
-  const double of_all = std::abs(plan_restitution(program.plan, program.h).value_or(0));
-  bool any = false;
-  for (std::size_t i = 0; i < thrown.size(); ++i) {
-    thrown[i] = (i < problem.own.size() ? problem.own[i].restitution.value_or(of_all) : of_all) >= least_rebound;
-    any = any || thrown[i];
-  }
-  if (!any) return thrown;
-  const std::vector<bool> massive = points_with_mass(problem);
-  for (std::size_t i = 0; i < thrown.size(); ++i) thrown[i] = thrown[i] && massive[i];
-  return thrown;
-}
 
 double central(const std::vector<double>& before, const std::vector<double>& after, std::size_t lane, double h) {
   return (after[lane] - before[lane]) / (2 * h);
@@ -53,7 +34,7 @@ class SectionMarch::Watch final : public StepObserver {
         h_(marcher.program().h),
         offset_(marcher.program().velocity_offset) {
     tips_.resize(orbits.size());
-    thrown_ = thrown_points(marcher);
+    thrown_ = thrown_points(marcher.program(), least_rebound);
     // Contact alone is read of most steps, and flights keep it; where extrema are wanted, the tip is told of each.
     if (marcher.program().flight) asks_.next_shown = never;
   }
@@ -215,7 +196,8 @@ class SectionMarch::Watch final : public StepObserver {
     const auto at = [&](const std::vector<double>& weights) {
       double sum = 0;
       for (std::size_t j = 0; j < weights.size(); ++j)
-        if (weights[j] != 0) sum += weights[j] * slot_at(view, marcher.width(), lane, static_cast<int>(j), point);
+        if (weights[j] != 0)
+          sum += weights[j] * slot_at(view, marcher.width(), lane, static_cast<int>(j), model_.contact(), point);
       return sum;
     };
     const std::ptrdiff_t place = static_cast<std::ptrdiff_t>(point) * marcher.width() + lane;
@@ -240,26 +222,21 @@ class SectionMarch::Watch final : public StepObserver {
     if (model_.problem().circle_axis(point) != 0) return speed(point);
     const StopCircle circle = marcher.circle(lane, point);
     const auto at = [&](int row) {
-      return slot_at(view, marcher.width(), lane, 0, row) + marcher.lift(lane, row, view.from);
+      return slot_at(view, marcher.width(), lane, 0, model_.contact(), row) + marcher.lift(lane, row, view.from);
     };
     return circle.outwards(at(point), at(point + 1), speed(point), speed(point + 1));
   }
 
-  double slot_at(const StageView& view, int width, int lane, int slot, int point) const {
-    const RowMatrix& rows = model_.contact();
+  double slot_at(const StageView& view, int width, int lane, int slot, const RowMatrix& rows, int row) const {
     double sum = 0;
-    for (int e = rows.start[static_cast<std::size_t>(point)]; e < rows.start[static_cast<std::size_t>(point) + 1]; ++e)
+    for (int e = rows.start[static_cast<std::size_t>(row)]; e < rows.start[static_cast<std::size_t>(row) + 1]; ++e)
       sum += rows.value[static_cast<std::size_t>(e)] *
              view.slots[slot][static_cast<std::ptrdiff_t>(rows.index[static_cast<std::size_t>(e)]) * width + lane];
     return sum;
   }
 
   double displacement(const Marcher& marcher, const StageView& view, int lane) const {
-    double sum = 0;
-    const RowMatrix& row = model_.tip();
-    for (std::size_t e = 0; e < row.index.size(); ++e)
-      sum += row.value[e] * view.slots[0][static_cast<std::ptrdiff_t>(row.index[e]) * marcher.width() + lane];
-    return sum;
+    return slot_at(view, marcher.width(), lane, 0, model_.tip(), 0);
   }
 
   // Of a row of H or of the tip, relative to the clamp, before the stage.
