@@ -103,9 +103,9 @@ class FreeStepMap {
     for (const Stage& stage : plan.stages) step_ = SlotMap(stage).after(step_);
     balanced_ = step_.cleaned();
     units_ = balance(balanced_);
-    const std::vector<double> moving = Uniform(plan).moving().slots;
-    moving_ = Eigen::Map<const VectorXd>(moving.data(), slots_).cwiseQuotient(units_);
-    h_ = Uniform(plan).h();
+    const Uniform uniform(plan);
+    moving_ = Eigen::Map<const VectorXd>(uniform.moving().slots.data(), slots_).cwiseQuotient(units_);
+    h_ = uniform.h();
     velocity_ = VectorXd::Zero(slots_);
     std::copy(plan.velocity.slots.begin(), plan.velocity.slots.end(), velocity_.begin());
     velocity_ = velocity_.cwiseProduct(units_);
