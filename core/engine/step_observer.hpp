@@ -77,11 +77,11 @@ class Observers {
   /// Null adds nobody.
   void add(StepObserver* one) {
     if (!one) return;
+    if (count_ == few_.size()) many_.assign(few_.begin(), few_.end());
     if (count_ < few_.size())
       few_[count_] = one;
-    else if (many_.empty())
-      many_.assign(few_.begin(), few_.end());
-    if (count_ >= few_.size()) many_.push_back(one);
+    else
+      many_.push_back(one);
     ++count_;
   }
   bool empty() const { return count_ == 0; }
