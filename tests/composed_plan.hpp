@@ -13,6 +13,29 @@ inline Levels within(Levels levels, int k, int n) {
   return levels;
 }
 
+/// Does something to every combination of a stage but its updates.
+template <class Change>
+void each_measure(Stage& stage, Change&& change) {
+  if (stage.impact) {
+    change(stage.impact->value);
+    if (stage.impact->gate) {
+      change(stage.impact->gate->predictor);
+      change(stage.impact->gate->approach);
+    }
+  }
+  for (auto& one : stage.compliance) {
+    if (!one) continue;
+    change(one->displacement);
+    change(one->rate);
+    if (one->before) change(*one->before);
+  }
+  if (stage.work) {
+    change(stage.work->displacement);
+    change(stage.work->rate);
+  }
+  for (LossTerm& term : stage.loss) change(term.value);
+}
+
 inline Stage sub_step(Stage stage, int k, int n) {
   const auto shift = [&](Levels& levels) { levels = within(levels, k, n); };
   shift(stage.load);

@@ -29,29 +29,6 @@ void substitute(Combination& c, double by, const std::vector<double>& add) {
   c.z *= by;
 }
 
-/// Does something to every combination of a stage but its updates.
-template <class Change>
-void change_measures(Stage& stage, Change&& change) {
-  if (stage.impact) {
-    change(stage.impact->value);
-    if (stage.impact->gate) {
-      change(stage.impact->gate->predictor);
-      change(stage.impact->gate->approach);
-    }
-  }
-  for (auto& one : stage.compliance) {
-    if (!one) continue;
-    change(one->displacement);
-    change(one->rate);
-    if (one->before) change(*one->before);
-  }
-  if (stage.work) {
-    change(stage.work->displacement);
-    change(stage.work->rate);
-  }
-  for (LossTerm& term : stage.loss) change(term.value);
-}
-
 /// The stage with the unknown by·z + Σ add_j x_j, and its equation times `times`.
 void change_unknown(Stage& stage, double by, const std::vector<double>& add, double times) {
   stage.history.resize(add.size());
@@ -59,7 +36,7 @@ void change_unknown(Stage& stage, double by, const std::vector<double>& add, dou
   stage.matrix = times * by * stage.matrix;
   if (stage.impulse) stage.impulse->feed = times * stage.impulse->feed;
   for (Combination& row : stage.update) substitute(row, by, add);
-  change_measures(stage, [&](Combination& c) { substitute(c, by, add); });
+  each_measure(stage, [&](Combination& c) { substitute(c, by, add); });
   const auto efforts = [&](std::vector<double>& weights) {
     for (double& w : weights) w *= times;
   };
@@ -83,7 +60,7 @@ void change_units(StepPlan& plan, const std::vector<double>& units) {
         combination(stage.update[j]);
         stage.update[j] = stage.update[j] / units[j];
       }
-      change_measures(stage, combination);
+      each_measure(stage, combination);
     }
 }
 

@@ -2,11 +2,10 @@
 #include <fmt/format.h>
 
 #include <numbers>
-#include <ricochet/measure/contact/stop_contacts.hpp>
-#include <ricochet/measure/contact/tangent_watch.hpp>
 #include <ricochet/scene/clearances.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 
+#include "tests/engine/contact_march.hpp"
 #include "tests/marching.hpp"
 #include "tests/scene/structure/beam_files.hpp"
 
@@ -63,21 +62,9 @@ struct InHole {
 
 InHole in_hole(const SceneSpec& scene, const Methods& methods, double h, double duration,
                const CompileOptions& options = {}) {
-  Marcher made = marcher(scene, 1, methods, h, options);
-  ImpactRecorder recorder(made);
-  StopContacts contacts(made, recorder);
-  TangentWatch tangents(made, {0, duration});
-  EnergyAudit audit(made);
-  contacts.tell(&tangents);
-  const Observers all{&tangents, &recorder, &audit};
-  made.start(all);
-  made.march(std::llround(duration / h) - made.step(), all);
-  REQUIRE(made.status(0).running);
-  tangents.finish(made);
-  recorder.finish(made);
-  contacts.finish();
-  return {contacts.impacts(), contacts.totals(0, StopSide::upper), made.position(0),
-          audit.contact(0).deepest_penetration, tangents.any() ? duration * tangents.power(0) : 0};
+  const ContactMarch done(scene, 1, methods, h, duration, options);
+  return {done.contacts.impacts(), done.contacts.totals(0, StopSide::upper), done.made.position(0),
+          done.audit.contact(0).deepest_penetration, done.wear};
 }
 
 const Choice averaged{"penalty", {{"stiffness", 1e6}, {"evaluation", std::string("averaged")}}};

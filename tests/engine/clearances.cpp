@@ -1,12 +1,12 @@
 // Places that move within a clearance, a polygon of rows.
 #include <numbers>
-#include <ricochet/measure/contact/stop_contacts.hpp>
-#include <ricochet/measure/contact/tangent_watch.hpp>
+#include <ricochet/measure/contact/stop_places.hpp>
 #include <ricochet/scene/clearances.hpp>
 #include <ricochet/scene/named_stops.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/supports.hpp>
 
+#include "tests/engine/contact_march.hpp"
 #include "tests/engine/steady_motion.hpp"
 #include "tests/marching.hpp"
 #include "tests/scene/structure/beam_files.hpp"
@@ -44,23 +44,10 @@ struct Marched {
 };
 
 Marched marched(const SceneSpec& scene, const Methods& methods, double h, double duration, int elements = 1) {
-  Marcher made = marcher(scene, elements, methods, h);
-  ImpactRecorder recorder(made);
-  StopContacts contacts(made, recorder);
-  const StopPlaces places(made);
-  TangentWatch tangents(made, {0, duration});
-  contacts.tell(&tangents);
-  const Observers both{&tangents, &recorder};
-  made.start(both);
-  made.march(std::llround(duration / h) - made.step(), both);
-  REQUIRE(made.status(0).running);
-  tangents.finish(made);
-  recorder.finish(made);
-  contacts.finish();
-  StopTotals totals = contacts.totals(0, StopSide::upper);
-  if (!contacts.list().round(0)) totals.impulse += contacts.totals(0, StopSide::lower).impulse;
-  const double wear = tangents.any() ? duration * tangents.power(0) : 0;
-  return {contacts.impacts(), totals, places.displacement(made, 0), wear};
+  const ContactMarch done(scene, elements, methods, h, duration);
+  StopTotals totals = done.contacts.totals(0, StopSide::upper);
+  if (!done.contacts.list().round(0)) totals.impulse += done.contacts.totals(0, StopSide::lower).impulse;
+  return {done.contacts.impacts(), totals, StopPlaces(done.made).displacement(done.made, 0), done.wear};
 }
 
 /// A tube that is driven round within two clearances of 2 mm.

@@ -30,30 +30,13 @@ StepPlan split(const StepPlan& plan) {
   for (auto* stages : {&out.start, &out.stages})
     for (Stage& stage : *stages) {
       if (stage.history.size() > last) stage.history.resize(last + parts, stage.history[last]);
-      if (stage.impact) {
-        combination(stage.impact->value);
-        if (stage.impact->gate) {
-          combination(stage.impact->gate->predictor);
-          combination(stage.impact->gate->approach);
-        }
-      }
-      for (auto& one : stage.compliance) {
-        if (!one) continue;
-        combination(one->displacement);
-        combination(one->rate);
-        if (one->before) combination(*one->before);
-      }
+      each_measure(stage, combination);
       for (Combination& row : stage.update) combination(row);
       Combination& sum = stage.update[last];
       for (double& w : sum.slots) w *= share;
       sum.z *= share;
       sum.w *= share;
       stage.update.resize(last + parts, sum);
-      if (stage.work) {
-        combination(stage.work->displacement);
-        combination(stage.work->rate);
-      }
-      for (LossTerm& term : stage.loss) combination(term.value);
     }
   return out;
 }
