@@ -105,7 +105,7 @@ void add_impacts(CaseRecord& record, const StopContacts& contacts, const SemiDis
 
 // Blanks measures that have no limit as the step shrinks: forces of points with mass that a rigid law has thrown back.
 void blank_without_limit(CaseRecord& record, const StopContacts& contacts, const Marcher& marcher) {
-  if (marcher.law().reads()) return;
+  if (marcher.law().reads() || contacts.count() == 0) return;
   const StopList& list = contacts.list();
   const std::vector<bool> massive = points_with_mass(*marcher.program().problem);
   std::vector<std::string> names;

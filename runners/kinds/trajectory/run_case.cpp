@@ -285,6 +285,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   Watched watched(study_case, marcher, prepared.steps);
   auto& [audit, tangents, recorder, contacts, struck, outputs, means, forces, orbits, snapshots, sampler, observers] =
       watched;
+  count_steady_load(marcher, audit, record.notes);
   record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 
   const double run = thread_seconds(), budget = budget_of(study_case);
@@ -293,7 +294,6 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   // Steps between two readings of the clock; those that are left out cost it nothing.
   long long chunk = 16;
   const long long longest_chunk = marcher.program().flight ? 1000000 : 20000;
-  count_steady_load(marcher, audit, record.notes);
   marcher.start(observers);
   const auto sample = [&watched, &marcher] {
     watched.sampler.take(marcher);
