@@ -20,10 +20,6 @@ bool states_plan(const Json& entry) {
   return (name != entry.end() && *name == stated_plan) || (plan != entry.end() && plan->is_object());
 }
 
-bool is_plan_file(const fs::path& file) {
-  return file.extension() == ".json";
-}
-
 PlanSource source_of(const Json& entry, const std::string& pointer, const fs::path& folder) {
   const auto file = entry.find(file_key), plan = entry.find(plan_key);
   if (file != entry.end() && plan != entry.end())
@@ -130,6 +126,10 @@ bool holds_plan(const fs::path& file) {
 }
 
 }  // namespace
+
+bool is_plan_file(const fs::path& file) {
+  return file.extension() == ".json";
+}
 
 std::optional<PlanSource> take_stated_plan(Json& entry, const std::string& pointer, const fs::path& folder,
                                            const Json& before, Catalogue& catalogue, Registry& registry) {

@@ -23,6 +23,9 @@ struct PlanSource {
   std::string explain(const InputError& error) const;
 };
 
+/// Whether a file beside plugins, or among those of a command, is a plan and no library.
+bool is_plan_file(const std::filesystem::path& file);
+
 /// Reads a file. Throws InputError, pointer "", whose text names the file: it cannot be read, or is no JSON.
 PlanSource read_plan_file(const std::filesystem::path& file);
 

@@ -10,6 +10,7 @@
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/march/study_identity.hpp"
+#include "runners/plan_files/plan_file.hpp"
 #include "runners/workers/lost_worker.hpp"
 #include "runners/workers/worker_messages.hpp"
 #include "runners/workers/worker_process.hpp"
@@ -41,7 +42,7 @@ class IsolatedCases::Coordinator {
     opening_.study = context.study.resolved.dump();
     // Plans travel with the study.
     for (const auto& plugin : options.plugins)
-      if (plugin.extension() != ".json") opening_.plugins.push_back(std::filesystem::absolute(plugin).string());
+      if (!is_plan_file(plugin)) opening_.plugins.push_back(std::filesystem::absolute(plugin).string());
     opening_.width = places_.width();
     opening_.arithmetic = arithmetic_digest();
   }
