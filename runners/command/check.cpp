@@ -10,6 +10,7 @@
 #include "runners/check/checks.hpp"
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
+#include "runners/plan_files/plan_file.hpp"
 
 namespace ricochet::checking {
 
@@ -19,8 +20,11 @@ struct FoundMethods {
   std::vector<std::pair<Role, std::string>> methods;  ///< of registry, in the order in which they are checked
 };
 
-/// A method's name (every role that has it), or a library file (everything that it provides). `plugins`: further files
-/// to search. Throws UsageError where nothing has the name, PluginError where what provides it cannot serve.
+/// Everything that a library or a plan provides. Throws UsageError where there is no such file, PluginError where it
+/// cannot serve, StudyError where a plan is none.
+FoundMethods methods_of_file(const std::filesystem::path& file);
+/// A method's name (every role that has it), or a file. `plugins`: further files to search. Throws UsageError where
+/// nothing has the name, and what methods_of_file() throws.
 FoundMethods find_methods(const std::string& operand, const std::vector<std::filesystem::path>& plugins);
 
 namespace {
@@ -28,27 +32,35 @@ namespace {
 namespace fs = std::filesystem;
 
 bool looks_like_a_file(const std::string& operand) {
-  return operand.find('/') != std::string::npos || operand.ends_with(".so");
+  return operand.find('/') != std::string::npos || operand.ends_with(".so") || is_plan_file(operand);
 }
 
-// The file alone, so that no other library of the same name stands before it.
-FoundMethods in_library(const fs::path& file) {
-  if (!fs::exists(file)) throw UsageError("there is no file " + file.string());
-  FoundMethods found;
-  Catalogue catalogue({}, {}, {file});
-  for (const Provided& provided : catalogue.provided()) {
-    catalogue.require(provided.role, provided.name, found.registry);
-    found.methods.emplace_back(provided.role, provided.name);
-  }
-  return found;
+void add_all(const Registry& registry, FoundMethods& found) {
+  for (const Role role : all_roles)
+    for (const std::string& name : registry.names(role)) found.methods.emplace_back(role, name);
 }
 
 }  // namespace
 
-FoundMethods find_methods(const std::string& operand, const std::vector<fs::path>& plugins) {
-  if (looks_like_a_file(operand)) return in_library(operand);
+// The file alone, so that no other of the same name stands before it.
+FoundMethods methods_of_file(const fs::path& file) {
+  if (!fs::exists(file)) throw UsageError("there is no file " + file.string());
   FoundMethods found;
-  Catalogue catalogue = Catalogue::standard(plugins);
+  if (is_plan_file(file)) {
+    found.registry = registry_of_plan(file);
+    add_all(found.registry, found);
+    return found;
+  }
+  Catalogue catalogue({}, {}, {file});
+  for (const Provided& provided : catalogue.provided()) catalogue.require(provided.role, provided.name, found.registry);
+  add_all(found.registry, found);
+  return found;
+}
+
+FoundMethods find_methods(const std::string& operand, const std::vector<fs::path>& plugins) {
+  if (looks_like_a_file(operand)) return methods_of_file(operand);
+  FoundMethods found;
+  Catalogue catalogue = standard_catalogue(plugins);
   std::vector<std::string> names;
   for (const Role role : all_roles) {
     const std::vector<std::string> here = catalogue.names(role);
@@ -59,8 +71,8 @@ FoundMethods find_methods(const std::string& operand, const std::vector<fs::path
   for (const Role role : all_roles)
     if (const Unusable* file = catalogue.unusable_provider(role, operand))
       throw PluginError(file->file.string() + ": " + file->reason);
-  throw UsageError("no method is called \"" + operand + "\"" + did_you_mean(operand, names) +
-                   " (found: " + quoted_list(names) + "); a library is given by its file, with a '/' or ending in .so");
+  throw UsageError("no method is called \"" + operand + "\"" + did_you_mean(operand, names) + " (found: " +
+                   quoted_list(names) + "); a file is given with a '/', or ends in .so (a library) or .json (a plan)");
 }
 
 }  // namespace ricochet::checking
@@ -100,19 +112,25 @@ void print(const CheckResult& result, std::ostream& out) {
 }  // namespace
 
 int command_check(const Arguments& arguments, std::ostream& out) {
-  const checking::FoundMethods found = checking::find_methods(arguments.operands.front(), arguments.plugins);
-  int failed = 0, all = 0;
-  for (const auto& [role, name] : found.methods) {
-    const std::string file = found.registry.file(role, name);
-    out << role_name(role) << " " << name << (file.empty() ? "" : " (" + file + ")") << "\n" << std::flush;
-    for (const CheckResult& result : checked(found.registry, role, name)) {
-      print(result, out);
-      ++all;
-      if (result.finding == Finding::fails) ++failed;
+  std::vector<checking::FoundMethods> all;
+  if (!arguments.operands.empty())
+    all.push_back(checking::find_methods(arguments.operands.front(), arguments.plugins));
+  else
+    for (const auto& file : arguments.plugins) all.push_back(checking::methods_of_file(file));
+  if (all.empty()) throw UsageError("expected the name of a method, a file, or --plugin FILE");
+  int failed = 0, count = 0;
+  for (const checking::FoundMethods& found : all)
+    for (const auto& [role, name] : found.methods) {
+      const std::string file = found.registry.file(role, name);
+      out << role_name(role) << " " << name << (file.empty() ? "" : " (" + file + ")") << "\n" << std::flush;
+      for (const CheckResult& result : checked(found.registry, role, name)) {
+        print(result, out);
+        ++count;
+        if (result.finding == Finding::fails) ++failed;
+      }
     }
-  }
-  out << (failed == 0 ? fmt::format("{} checks, none fails\n", all)
-                      : fmt::format("{} of {} checks fail\n", failed, all));
+  out << (failed == 0 ? fmt::format("{} checks, none fails\n", count)
+                      : fmt::format("{} of {} checks fail\n", failed, count));
   return failed == 0 ? exit_done : exit_some_failed;
 }
 

@@ -20,7 +20,7 @@ std::vector<Subcommand> all_commands() {
   using Args = Arguments;
   constexpr int most_jobs = 4096, most_samples = 1000000000, most_snapshots = 2000;
   constexpr int most_workers = 1000000, most_nodes = 100000;
-  const Option plugin{"plugin", "FILE", "also use this plugin library (repeatable)", &Args::plugins};
+  const Option plugin{"plugin", "FILE", "also use this library, or plan in JSON (repeatable)", &Args::plugins};
   const Option out{"out", "DIR", "results folder (default: results/NAME)", &Args::out};
   const Option jobs{"jobs", "N", "worker processes (default: one for each processor that it may use)",
                     Option::Count{&Args::jobs, most_jobs}};
@@ -129,9 +129,9 @@ std::vector<Subcommand> all_commands() {
        {plugin},
        command_new},
       {"check",
-       "NAME|FILE",
+       "NAME|PLUGIN.so|PLAN.json|--plugin FILE",
        "Measure what a method declares: one line per check, a sentence for each that fails.",
-       1,
+       0,
        1,
        {plugin},
        command_check},

@@ -214,13 +214,7 @@ bool print_manual(Role role, const PluginManual& manual, const Catalogue& catalo
 
 // A plan that stands in a file, wherever it is.
 int describe_plan(const std::filesystem::path& file, std::ostream& out) {
-  const PlanSource source = read_plan_file(file);
-  Registry registry;
-  try {
-    register_plan(source, registry);
-  } catch (const InputError& error) {
-    throw StudyError(source.explain(error));
-  }
+  const Registry registry = registry_of_plan(file);
   const std::string name = registry.names(Role::time).front();
   const Catalogue catalogue({}, {}, {});
   return print_manual(Role::time, *registry.manual(Role::time, name), catalogue, registry, out) ? exit_done
@@ -228,6 +222,17 @@ int describe_plan(const std::filesystem::path& file, std::ostream& out) {
 }
 
 }  // namespace
+
+Registry registry_of_plan(const std::filesystem::path& file) {
+  const PlanSource source = read_plan_file(file);
+  Registry registry;
+  try {
+    register_plan(source, registry);
+  } catch (const InputError& error) {
+    throw StudyError(source.explain(error));
+  }
+  return registry;
+}
 
 int command_describe(const Arguments& arguments, std::ostream& out) {
   if (arguments.operands.front().ends_with(".json")) return describe_plan(arguments.operands.front(), out);

@@ -11,6 +11,7 @@
 
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
+#include "runners/plan_files/plan_file.hpp"
 
 namespace ricochet {
 namespace {
@@ -42,7 +43,7 @@ void check_name(const Wish& wish, const Arguments& arguments) {
     throw UsageError("\"" + name +
                      "\" cannot be the name of a method: expected small letters, digits and '-', and no "
                      "'-' at its beginning");
-  const Catalogue catalogue = Catalogue::standard(arguments.plugins);
+  const Catalogue catalogue = standard_catalogue(arguments.plugins);
   for (const Provided& method : catalogue.provided())
     if (method.role == wish.role && method.name == name)
       throw UsageError(

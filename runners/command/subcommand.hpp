@@ -143,6 +143,9 @@ std::string plain(const nlohmann::ordered_json& value);
 
 // The manual of what a study or its results call by a name and no plugin provides.
 
+/// What a plan file registers. Throws InputError where it cannot be read, StudyError with its line where it is no plan.
+Registry registry_of_plan(const std::filesystem::path& file);
+
 /// "number", "whole number", "true or false", "word".
 const char* type_word(const ParameterSpec& spec);
 /// The range of a number, the words of a word.

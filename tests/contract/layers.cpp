@@ -230,7 +230,7 @@ TEST_CASE("folders include what lies below them, and every folder has its rule")
         "runners/report"}},
       {"runners/check",
        {"core/contract", "core/loader", "core/kernels", "core/contact_solvers", "core/scene", "core/engine",
-        "core/measure", "runners/study"}},
+        "core/measure", "runners/plan_files", "runners/study"}},
       {"runners/command",
        {"core/contract", "core/loader", "core/scene", "core/measure", "runners/table", "runners/plan_files",
         "runners/study", "runners/store", "runners/march", "runners/kinds", "runners/workers", "runners/run",
