@@ -286,6 +286,7 @@ struct SceneSpec {
   bool from_supports = false;
   std::vector<PointSpec> points = {};   ///< displacements that are shown; the first is where the tip is
   std::optional<BasisSpec> basis = {};  ///< none: all dofs of the mesh
+  std::vector<std::string> notes = {};  ///< what was recognised in its files that a reader should know
 };
 
 /// Whether supports or stops move by histories, beside the harmonic support.

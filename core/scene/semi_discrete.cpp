@@ -293,6 +293,7 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   check_scene(scene, elements, beyond);
 
   SemiDiscrete problem = structure_alone(scene.structure, elements);
+  problem.notes.insert(problem.notes.begin(), scene.notes.begin(), scene.notes.end());
   ContactPoints points = contact_points(scene, problem.space, elements);
   problem.contact_x = std::move(points.x);
   problem.contact = std::move(points.rows);

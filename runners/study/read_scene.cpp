@@ -249,6 +249,7 @@ SceneSpec read_scene(const Json& given, StudyFiles* files) {
   if (const Json basis = scene.value("basis", Json(nullptr)); !basis.is_null())
     spec.basis = BasisSpec{basis.at("modes").get<int>(), basis.at("residual") == "stops",
                            basis.value("of_bodies", std::vector<int>())};
+  if (files) spec.notes = files->notes(given);
   return spec;
 }
 

@@ -31,22 +31,35 @@ std::vector<std::string> file_keys(const Json& structure) {
   return keys;
 }
 
-std::string structure_pointer(const std::string& key) {
-  return "/scene/structure/" + key;
-}
-
 /// The name of a file of the structure, its folder before it.
 std::string file_of(const Json& structure, const std::string& key) {
   const Json& name = structure.at(Json::json_pointer("/" + key));
   return (std::filesystem::path(structure.value("folder", "")) / name.get<std::string>()).string();
 }
 
+/// Calls `visit(object, key, name)` for each file that a scene names: of a structure by its key, else with "".
+template <class Visit>
+void for_each_file(Json& scene, Visit visit) {
+  for (Json* history : histories_with_files(scene))
+    visit(*history, std::string(), history->at("file").get<std::string>());
+  const auto of_structure = [&](Json& structure) {
+    for (const std::string& key : file_keys(structure)) visit(structure, key, file_of(structure, key));
+  };
+  if (scene.contains("bodies"))
+    for (Json& structure : scene["bodies"]) of_structure(structure);
+  if (scene.contains("structure")) of_structure(scene["structure"]);
+  for (Json* initial : initial_objects(scene))
+    if (initial->contains("file")) visit(*initial, std::string(), initial->at("file").get<std::string>());
+}
+
+std::string structure_pointer(const std::string& key) {
+  return "/scene/structure/" + key;
+}
+
 /// How the dofs of a table follow a support: columns dof and value, those left out 0.
-AssembledFiles::Influence read_influence(const std::string& content, const std::string& support,
-                                         const std::string& name, std::size_t dofs) {
-  const CsvFile table = read_csv(content, name);
+AssembledFiles::Influence read_influence(const CsvFile& table, const std::string& support, std::size_t dofs) {
   const std::size_t dof = table.column("dof"), value = table.column("value");
-  AssembledFiles::Influence out{support, name, {}};
+  AssembledFiles::Influence out{support, table.name, {}};
   std::set<long long> met;
   for (const CsvFile::Row& row : table.rows) {
     const long long number = whole_number(row.cells[dof]).value_or(0);
@@ -56,6 +69,32 @@ AssembledFiles::Influence read_influence(const std::string& content, const std::
     out.values.emplace_back(static_cast<int>(number), table.number(row, value));
   }
   return out;
+}
+
+/// Refuses a value in a unit of its own, unless a factor stands beside it.
+void expect_unit(const std::string& unit, bool scaled, const std::string& what) {
+  static const std::set<std::string> known = {"",    "1",    "-",     "m",    "rad",    "N",     "Nm",  "N.m",  "N m",
+                                              "m/s", "m/s2", "m/s^2", "m/s²", "m/s**2", "m s-2", "N/m", "rad/s"};
+  if (scaled || known.contains(unit)) return;
+  throw FileError(fmt::format("{} is in {}; expected \"factor\", which makes SI units of it", what, shortened(unit)));
+}
+
+/// Instants and values of a table.
+void read_columns(const CsvFile& csv, const std::string& time, const std::string& value, bool scaled,
+                  TimeTable& table) {
+  const std::size_t t = csv.column(time), v = csv.column(value);
+  const std::string unit = csv.unit(t);
+  if (!unit.empty() && unit != "s" && unit != "sec" && unit != "seconds")
+    throw FileError(fmt::format("{}: the column {} is in {}; expected s", csv.name, csv.columns[t], shortened(unit)));
+  expect_unit(csv.unit(v), scaled, fmt::format("{}: the column {}", csv.name, csv.columns[v]));
+  for (const CsvFile::Row& row : csv.rows) {
+    table.times.push_back(csv.number(row, t));
+    table.values.push_back(csv.number(row, v));
+    const std::size_t n = table.times.size();
+    if (n > 1 && !(table.times[n - 1] > table.times[n - 2]))
+      csv.fail(row,
+               fmt::format("t = {:.9g} after {:.9g}; times must increase", table.times[n - 1], table.times[n - 2]));
+  }
 }
 
 }  // namespace
@@ -103,6 +142,11 @@ std::shared_ptr<const AssembledStructure> StudyFiles::assembled(const Json& stru
   const auto content = [&](const std::string& key) -> const std::string& {
     return file(file_of(structure, reading = key), structure_pointer(key)).content;
   };
+  const auto matrix = [&](const std::string& key, const std::string& name, const DofTable& table) {
+    FileMatrix read = read_matrix_market(content(key), name, static_cast<int>(table.dofs.size()), table.name);
+    note(file_of(structure, key), read.notes);
+    return read;
+  };
   try {
     AssembledFiles files;
     files.stiffness_name = structure.at("stiffness").get<std::string>();
@@ -110,16 +154,18 @@ std::shared_ptr<const AssembledStructure> StudyFiles::assembled(const Json& stru
     files.length_unit = unit;
     const std::string table = structure.at("dofs").get<std::string>();
     files.table = read_dof_table(content("dofs"), table);
-    const auto dofs = static_cast<int>(files.table.dofs.size());
-    files.stiffness = read_matrix_market(content("stiffness"), files.stiffness_name, dofs, table);
-    files.mass = read_matrix_market(content("mass"), files.mass_name, dofs, table);
+    note(file_of(structure, "dofs"), files.table.notes);
+    files.stiffness = matrix("stiffness", files.stiffness_name, files.table);
+    files.mass = matrix("mass", files.mass_name, files.table);
     const Json influence = structure.value("influence", Json::object());
-    for (const auto& [support, name] : influence.items())
-      files.influences.push_back(read_influence(content(pointer_to("influence", support)), support,
-                                                name.get<std::string>(), files.table.dofs.size()));
+    for (const auto& [support, name] : influence.items()) {
+      const CsvFile csv = read_csv(content(pointer_to("influence", support)), name.get<std::string>());
+      note(file_of(structure, reading), csv.notes);
+      files.influences.push_back(read_influence(csv, support, files.table.dofs.size()));
+    }
     if (keys.back() == damping_key) {
       files.damping_name = structure.at("damping").at("file").get<std::string>();
-      files.damping = read_matrix_market(content(damping_key), files.damping_name, dofs, table);
+      files.damping = matrix(damping_key, files.damping_name, files.table);
     }
     reading = "";
     const auto made = std::make_shared<const AssembledStructure>(assemble_structure(files));
@@ -145,8 +191,9 @@ std::shared_ptr<const AssembledStructure> StudyFiles::modal(const Json& structur
     std::map<std::string, CsvFile> tables;
     for (const std::string& key : keys) {
       reading = key;
-      tables[key] =
-          read_csv(file(file_of(structure, key), structure_pointer(key)).content, structure.at(key).get<std::string>());
+      const std::string name = file_of(structure, key);
+      tables[key] = read_csv(file(name, structure_pointer(key)).content, structure.at(key).get<std::string>());
+      note(name, tables[key].notes);
     }
     reading.clear();
     const auto optional = [&](const char* key) {
@@ -170,17 +217,19 @@ TimeTable StudyFiles::table(const Json& history, const std::string& pointer) {
   const std::string id = name + "\n" + time + "\n" + value;
   if (const auto known = tables_.find(id); known != tables_.end()) return known->second;
   try {
-    const CsvFile csv = read_csv(file(name, pointer + "/file").content, name);
-    const std::size_t t = csv.column(time), v = csv.column(value);
+    const std::string& content = file(name, pointer + "/file").content;
+    const bool scaled = history.value("factor", 1.0) != 1.0;
     TimeTable table;
     table.name = name;
-    for (const CsvFile::Row& row : csv.rows) {
-      table.times.push_back(csv.number(row, t));
-      table.values.push_back(csv.number(row, v));
-      const std::size_t n = table.times.size();
-      if (n > 1 && !(table.times[n - 1] > table.times[n - 2]))
-        csv.fail(row,
-                 fmt::format("t = {:.9g} after {:.9g}; times must increase", table.times[n - 1], table.times[n - 2]));
+    if (auto at2 = read_at2(content, name)) {
+      expect_unit(at2->unit, scaled, name);
+      note(name, at2->notes);
+      for (std::size_t k = 0; k < at2->values.size(); ++k) table.times.push_back(static_cast<double>(k) * at2->step);
+      table.values = std::move(at2->values);
+    } else {
+      const CsvFile csv = read_csv(content, name);
+      note(name, csv.notes);
+      read_columns(csv, time, value, scaled, table);
     }
     std::string().swap(files_[name].content);
     return tables_[id] = std::move(table);
@@ -199,6 +248,7 @@ std::vector<DofState> StudyFiles::initial(const Json& initial, const Json& struc
   const std::lock_guard lock(mutex_);
   try {
     const CsvFile table = read_csv(file(name, pointer).content, name);
+    note(name, table.notes);
     const bool numbered = std::find(table.columns.begin(), table.columns.end(), "dof") != table.columns.end();
     const std::size_t displacement = table.column("displacement"), velocity = table.column("velocity"),
                       node = table.column(numbered ? "dof" : "node"),
@@ -226,19 +276,28 @@ std::vector<DofState> StudyFiles::initial(const Json& initial, const Json& struc
 
 void StudyFiles::add_digests(Json& scene) const {
   const std::lock_guard lock(mutex_);
-  const auto digest = [&](const std::string& name) { return files_.at(name).digest; };
-  for (Json* history : histories_with_files(scene))
-    (*history)["digest"] = digest(history->at("file").get<std::string>());
-  const auto add = [&](Json& structure) {
-    const std::vector<std::string> keys = file_keys(structure);
-    for (const std::string& key : keys) structure["digests"][key] = digest(file_of(structure, key));
-    return !keys.empty();
-  };
-  if (scene.contains("bodies"))
-    for (Json& structure : scene["bodies"]) add(structure);
-  if (scene.contains("structure")) add(scene["structure"]);
-  for (Json* initial : initial_objects(scene))
-    if (initial->contains("file")) (*initial)["digest"] = digest(initial->at("file").get<std::string>());
+  for_each_file(scene, [&](Json& object, const std::string& key, const std::string& name) {
+    (key.empty() ? object["digest"] : object["digests"][key]) = files_.at(name).digest;
+  });
+}
+
+std::vector<std::string> StudyFiles::notes(const Json& scene) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> out;
+  Json searched = scene;
+  for_each_file(searched, [&](const Json&, const std::string&, const std::string& name) {
+    const auto found = files_.find(name);
+    if (found == files_.end()) return;
+    for (const std::string& note : found->second.notes)
+      if (std::find(out.begin(), out.end(), note) == out.end()) out.push_back(note);
+  });
+  return out;
+}
+
+void StudyFiles::note(const std::string& name, const std::vector<std::string>& notes) {
+  std::vector<std::string>& known = files_[name].notes;
+  for (const std::string& one : notes)
+    if (std::find(known.begin(), known.end(), one) == known.end()) known.push_back(one);
 }
 
 Json StudyFiles::said() const {

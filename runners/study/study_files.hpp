@@ -32,15 +32,20 @@ class StudyFiles {
   std::vector<DofState> initial(const Json& initial, const Json& structure, const std::string& pointer);
   /// Adds to a scene the digests of the files that it names: they determine its results.
   void add_digests(Json& scene) const;
+  /// What was recognised in the files that a scene names, each once.
+  std::vector<std::string> notes(const Json& scene) const;
   /// What a stored study keeps: the folder, and the digest of each file by its name; null where no file was read.
   Json said() const;
 
  private:
   struct File {
     std::string content, digest;
+    std::vector<std::string> notes;
   };
   /// The file of this name, read; `pointer` names it in the study.
   const File& file(const std::string& name, const std::string& pointer);
+  /// Keeps what was recognised in it.
+  void note(const std::string& name, const std::vector<std::string>& notes);
 
   std::filesystem::path folder_;
   Json known_;

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/files/text_file.hpp>
+#include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace ricochet {
@@ -13,6 +17,7 @@ struct MatrixEntry {
   int row = 0, column = 0;
   long line = 0;
   double value = 0;
+  bool above = false;  // where the file is symmetric: given above the diagonal
 };
 
 std::string lower_case(std::string_view text) {
@@ -34,16 +39,18 @@ class MatrixReader {
       read_entries();
     else
       read_array();
-    while (const auto line = lines_.next())
-      if (!trimmed(*line).empty())
-        lines_.fail(fmt::format("\"{}\" after the last of {} entries", shortened(*line), count_));
-    return assemble();
+    if (const auto line = content_line())
+      lines_.fail(fmt::format("\"{}\" after the last of {} entries", shortened(*line), count_));
+    FileMatrix out = assemble();
+    say_what_was_met(out);
+    return out;
   }
 
  private:
   void read_header() {
-    const auto line = lines_.next();
-    const std::string expected = "; expected %%MatrixMarket matrix, coordinate or array, real, symmetric or general";
+    const auto line = content_line("%%");
+    const std::string expected =
+        "; expected %%MatrixMarket matrix, coordinate or array, real or integer, symmetric or general";
     if (!line) throw FileError(lines_.name() + " is empty" + expected);
     const std::vector<std::string_view> words = words_of(*line);
     std::vector<std::string> lower;
@@ -52,23 +59,30 @@ class MatrixReader {
                        (lower[2] == "coordinate" || lower[2] == "array") &&
                        (lower[3] == "real" || lower[3] == "integer") &&
                        (lower[4] == "symmetric" || lower[4] == "general");
-    if (!right) lines_.fail("\"" + shortened(*line) + "\"" + expected);
+    if (!right) {
+      const bool skew = !lower.empty() && lower.back() == "skew-symmetric";
+      lines_.fail("\"" + shortened(*line) + "\"" + expected + (skew ? std::string(": ") + not_treated : ""));
+    }
+    comments_ = 0;  // after it they are usual up to the sizes
     coordinate_ = lower[2] == "coordinate";
     symmetric_ = lower[4] == "symmetric";
   }
 
-  /// The next line that says something, comments before the sizes left out.
-  std::optional<std::string_view> content_line(bool comments) {
+  /// The next line that says something and is no comment, unless that begins with `but`.
+  std::optional<std::string_view> content_line(std::string_view but = "") {
     while (const auto line = lines_.next()) {
       const std::string_view text = trimmed(*line);
-      if (!text.empty() && !(comments && text.starts_with('%'))) return text;
+      if (text.empty()) continue;
+      if (!is_comment(text) || (!but.empty() && text.starts_with(but))) return text;
+      ++comments_;
     }
     return std::nullopt;
   }
 
   void read_sizes() {
-    const auto line = content_line(true);
+    const auto line = content_line();
     if (!line) throw FileError(lines_.name() + " ends before its sizes");
+    comments_ = 0;
     const std::vector<std::string_view> words = words_of(*line);
     std::vector<long long> sizes;
     for (const std::string_view word : words)
@@ -93,9 +107,12 @@ class MatrixReader {
     lines_.fail(fmt::format("end of file after {} of {} entries", found, count_));
   }
 
-  double value_of(std::string_view word) const {
-    if (const auto value = finite_number(word)) return *value;
-    lines_.fail(fmt::format("\"{}\"; expected a finite number", shortened(word)));
+  double value_of(std::string_view word) {
+    if (const auto value = plain_number(word)) return *value;
+    const auto value = fortran_number(word);
+    if (!value) lines_.fail(no_number(word));
+    if (fortran_++ == 0) first_fortran_ = word;
+    return *value;
   }
 
   int index_of(std::string_view word, const char* what) const {
@@ -106,15 +123,15 @@ class MatrixReader {
   }
 
   void add(int row, int column, double value) {
-    if (symmetric_ && column > row)
-      lines_.fail(fmt::format("entry {}, {} is above the diagonal; a symmetric file has the lower triangle", row + 1,
-                              column + 1));
-    entries_.push_back({row, column, lines_.line(), value});
+    const bool above = symmetric_ && column > row;
+    if (above) std::swap(row, column);
+    above_ += above ? 1 : 0;
+    entries_.push_back({row, column, lines_.line(), value, above});
   }
 
   void read_entries() {
     for (long long k = 0; k < count_; ++k) {
-      const auto line = content_line(false);
+      const auto line = content_line();
       if (!line) fail_short(k);
       const std::vector<std::string_view> words = words_of(*line);
       if (words.size() != 3) lines_.fail(fmt::format("\"{}\"; expected row, column and value", shortened(*line)));
@@ -128,7 +145,7 @@ class MatrixReader {
     long long found = 0;
     for (int column = 0; column < dofs_; ++column)
       for (int row = symmetric_ ? column : 0; row < dofs_; ++row, ++found) {
-        const auto line = content_line(false);
+        const auto line = content_line();
         if (!line) fail_short(found);
         add(row, column, value_of(*line));
       }
@@ -140,13 +157,25 @@ class MatrixReader {
     });
     std::vector<Eigen::Triplet<double>> triplets;
     triplets.reserve(entries_.size() * (symmetric_ ? 2 : 1));
-    for (std::size_t k = 0; k < entries_.size(); ++k) {
-      const auto& [row, column, line, value] = entries_[k];
-      if (k > 0 && entries_[k - 1].row == row && entries_[k - 1].column == column)
-        lines_.fail_at(line, fmt::format("entry {}, {} stands a second time", row + 1, column + 1));
+    for (std::size_t k = 0; k < entries_.size();) {
+      const MatrixEntry& first = entries_[k];
+      double value = 0;
+      std::size_t same = 0;
+      for (; k < entries_.size() && entries_[k].row == first.row && entries_[k].column == first.column; ++k, ++same) {
+        value += entries_[k].value;
+        if (entries_[k].above != first.above)
+          lines_.fail_at(entries_[k].line,
+                         fmt::format("entries {0}, {1} and {1}, {0} both stand in a symmetric file; expected one of "
+                                     "the triangles, or general in its first line",
+                                     first.row + 1, first.column + 1));
+      }
+      if (same > 1 && summed_++ == 0) first_summed_ = fmt::format("{}, {}", first.row + 1, first.column + 1);
+      if (!std::isfinite(value))
+        lines_.fail_at(first.line,
+                       fmt::format("the sum of entries {}, {} is not finite", first.row + 1, first.column + 1));
       if (value == 0) continue;
-      triplets.emplace_back(row, column, value);
-      if (symmetric_ && row != column) triplets.emplace_back(column, row, value);
+      triplets.emplace_back(first.row, first.column, value);
+      if (symmetric_ && first.row != first.column) triplets.emplace_back(first.column, first.row, value);
     }
     FileMatrix out;
     SparseMatrix read(dofs_, dofs_);
@@ -176,11 +205,26 @@ class MatrixReader {
     return out;
   }
 
+  void say_what_was_met(FileMatrix& out) const {
+    out.notes = lines_.notes();
+    const auto say = [&](const std::string& what) { out.notes.push_back(lines_.name() + ": " + what); };
+    if (comments_ > 0) say(fmt::format("comments among its entries are left out (lines: {})", comments_));
+    if (fortran_ > 0)
+      say(fmt::format("exponents of Fortran are read, as {} (entries: {})", shortened(first_fortran_), fortran_));
+    if (above_ > 0)
+      say(fmt::format("entries of a symmetric file above its diagonal stand for both triangles (entries: {})", above_));
+    if (summed_ > 0)
+      say(fmt::format("values of an entry that stands more than once are summed, as of {} (entries: {})", first_summed_,
+                      summed_));
+  }
+
   TextLines lines_;
   int dofs_;
   const std::string& table_;
   bool coordinate_ = true, symmetric_ = true;
   long long count_ = 0;
+  long comments_ = 0, fortran_ = 0, above_ = 0, summed_ = 0;
+  std::string first_fortran_, first_summed_;
   std::vector<MatrixEntry> entries_;
 };
 

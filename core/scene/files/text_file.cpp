@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <map>
@@ -14,16 +15,50 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t longest_line = 64 * 1024;
-constexpr double gibibyte = 1024.0 * 1024 * 1024;
+constexpr double mebibyte = 1024.0 * 1024;
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t';
 }
 
+/// UTF-8 of UTF-16 that begins with its byte order mark; what is no character is U+FFFD.
+std::string utf8_of(std::string_view bytes) {
+  constexpr std::uint32_t replacement = 0xFFFD, high = 0xD800, low = 0xDC00, past = 0xE000;
+  const bool little = bytes[0] == '\xFF';
+  const auto unit = [&](std::size_t at) {
+    const auto first = static_cast<unsigned char>(bytes[at]), second = static_cast<unsigned char>(bytes[at + 1]);
+    return static_cast<std::uint32_t>(little ? second << 8U | first : first << 8U | second);
+  };
+  std::string out;
+  for (std::size_t at = 2; at < bytes.size(); at += 2) {
+    std::uint32_t code = at + 1 < bytes.size() ? unit(at) : replacement;
+    if (code >= high && code < past) {
+      const std::uint32_t next = at + 3 < bytes.size() ? unit(at + 2) : 0;
+      const bool pair = code < low && next >= low && next < past;
+      code = pair ? 0x10000 + ((code - high) << 10U) + (next - low) : replacement;
+      if (pair) at += 2;
+    }
+    const auto tail = [&](unsigned shift) { out += static_cast<char>(0x80U | ((code >> shift) & 0x3FU)); };
+    if (code < 0x80) {
+      out += static_cast<char>(code);
+    } else if (code < 0x800) {
+      out += static_cast<char>(0xC0U | code >> 6U);
+      tail(0);
+    } else if (code < 0x10000) {
+      out += static_cast<char>(0xE0U | code >> 12U);
+      tail(6), tail(0);
+    } else {
+      out += static_cast<char>(0xF0U | code >> 18U);
+      tail(12), tail(6), tail(0);
+    }
+  }
+  return out;
+}
+
 std::uintmax_t file_limit() {
   const char* given = std::getenv("RICOCHET_FILE_LIMIT");
   const auto asked = given ? whole_number(given) : std::nullopt;
-  return asked ? static_cast<std::uintmax_t>(*asked) : std::uintmax_t{2} << 30U;
+  return asked ? static_cast<std::uintmax_t>(*asked) : std::uintmax_t{256} << 20U;
 }
 
 std::string missing_text(const std::filesystem::path& folder, const std::string& name) {
@@ -48,16 +83,22 @@ std::string missing_text(const std::filesystem::path& folder, const std::string&
 TextLines::TextLines(std::string_view content, std::string name) : content_(content), name_(std::move(name)) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (content_.starts_with(byte_order_mark)) content_.remove_prefix(byte_order_mark.size());
+  if (content_.starts_with("\xFF\xFE") || content_.starts_with("\xFE\xFF")) {
+    content_ = decoded_ = utf8_of(content_);
+    notes_.push_back(name_ + " is read as UTF-16");
+  }
+  if (content_.find('\0') != std::string_view::npos)
+    throw FileError(name_ + " has zero bytes: it is UTF-16 without a byte order mark, or no text; expected UTF-8");
 }
 
 std::optional<std::string_view> TextLines::next() {
   if (content_.empty()) return std::nullopt;
   ++line_;
-  const std::size_t end = std::min(content_.find('\n'), content_.size());
+  const std::size_t end = std::min(content_.find_first_of("\r\n"), content_.size());
   if (end > longest_line) fail(fmt::format("{} bytes long; expected at most {}", end, longest_line));
-  std::string_view line = content_.substr(0, end);
-  content_.remove_prefix(std::min(end + 1, content_.size()));
-  if (line.ends_with('\r')) line.remove_suffix(1);
+  const std::string_view line = content_.substr(0, end);
+  const bool two = content_.substr(end).starts_with("\r\n");
+  content_.remove_prefix(std::min(end + (two ? 2 : 1), content_.size()));
   return line;
 }
 
@@ -86,12 +127,54 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-std::optional<double> finite_number(std::string_view text) {
+bool is_comment(std::string_view line) {
+  line = trimmed(line);
+  return line.starts_with('#') || line.starts_with('%');
+}
+
+std::optional<double> plain_number(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+std::optional<double> fortran_number(std::string_view text) {
+  constexpr std::size_t longest = 64;
+  if (text.empty() || text.size() > longest) return std::nullopt;
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const std::size_t begin = text[0] == '+' || text[0] == '-' ? 1 : 0;
+  std::size_t end = begin;
+  while (end < text.size() && (is_digit(text[end]) || text[end] == '.')) ++end;
+  if (end == begin || end == text.size()) return std::nullopt;
+  const std::string_view mantissa = text.substr(0, end);
+  std::string_view exponent = text.substr(end);
+  if (exponent[0] == 'D' || exponent[0] == 'd')
+    exponent.remove_prefix(1);
+  else if ((exponent[0] != '+' && exponent[0] != '-') || mantissa.find('.') == std::string_view::npos)
+    return std::nullopt;  // without a letter, 1+6 may be anything
+  if (exponent.starts_with('+')) exponent.remove_prefix(1);
+  if (exponent.empty() || !(exponent[0] == '-' || is_digit(exponent[0]))) return std::nullopt;
+  return plain_number(std::string(mantissa) + "e" + std::string(exponent));
+}
+
+std::optional<double> finite_number(std::string_view text) {
+  const auto plain = plain_number(text);
+  return plain ? plain : fortran_number(text);
+}
+
+std::string no_number(std::string_view text, const std::string& of) {
+  const std::string said = "\"" + shortened(text) + "\"" + (of.empty() ? "" : " for " + shortened(of));
+  std::string pointed(text);
+  const std::size_t comma = pointed.find(',');
+  if (comma != std::string::npos) {
+    pointed[comma] = '.';
+    if (finite_number(pointed)) return said + " has a decimal comma; expected a point";
+  }
+  if (!text.empty() && text.find_first_not_of('*') == std::string_view::npos)
+    return said + " is a number too long for its field in Fortran; expected a finite number";
+  return said + "; expected a finite number";
 }
 
 std::optional<long long> whole_number(std::string_view text) {
@@ -110,72 +193,14 @@ std::string read_file(const std::filesystem::path& folder, const std::string& na
   const std::uintmax_t size = std::filesystem::file_size(file, error), limit = file_limit();
   if (error) throw FileError(fmt::format("\"{}\" cannot be read: {}", shortened(name), error.message()));
   if (size > limit)
-    throw FileError(fmt::format("\"{}\" has {:.2g} GB; the limit is {:.2g} GiB (RICOCHET_FILE_LIMIT, bytes)",
-                                shortened(name), static_cast<double>(size) / 1e9,
-                                static_cast<double>(limit) / gibibyte));
+    throw FileError(fmt::format("\"{}\" has {:.3g} MB; the limit is {:.3g} MiB (RICOCHET_FILE_LIMIT, bytes)",
+                                shortened(name), static_cast<double>(size) / 1e6,
+                                static_cast<double>(limit) / mebibyte));
   std::string content(size, '\0');
   std::ifstream stream(file, std::ios::binary);
   if (!stream.read(content.data(), static_cast<std::streamsize>(size)))
     throw FileError(fmt::format("\"{}\" cannot be read", shortened(name)));
   return content;
-}
-
-namespace {
-
-std::vector<std::string> cells_of(std::string_view line, const TextLines& lines) {
-  if (line.find('"') != std::string_view::npos) lines.fail("a quote; expected cells without quotes");
-  std::vector<std::string> cells;
-  while (true) {
-    const std::size_t end = std::min(line.find(','), line.size());
-    cells.emplace_back(trimmed(line.substr(0, end)));
-    if (end == line.size()) return cells;
-    line.remove_prefix(end + 1);
-  }
-}
-
-}  // namespace
-
-std::size_t CsvFile::column(const std::string& key) const {
-  const auto found = std::find(columns.begin(), columns.end(), key);
-  if (found != columns.end()) return static_cast<std::size_t>(found - columns.begin());
-  std::string nearest = nearest_name(key, columns);
-  constexpr std::size_t shortest = 3;
-  for (const std::string& one : columns)  // an abbreviation is nearer than any other word
-    if (one.size() >= shortest && key.starts_with(one)) nearest = one;
-  throw FileError(fmt::format("{} has no column \"{}\"; there are {}{}", name, key, fmt::join(columns, ","),
-                              nearest.empty() ? "" : fmt::format(": did you mean {}?", nearest)));
-}
-
-void CsvFile::fail(const Row& row, const std::string& what) const {
-  throw FileError(fmt::format("{}, line {}: {}", name, row.line, what));
-}
-
-double CsvFile::number(const Row& row, std::size_t column) const {
-  if (const auto value = finite_number(row.cells[column])) return *value;
-  fail(row, fmt::format("\"{}\" for {}; expected a finite number", shortened(row.cells[column]), columns[column]));
-}
-
-CsvFile read_csv(std::string_view content, const std::string& name) {
-  TextLines lines(content, name);
-  CsvFile table;
-  table.name = name;
-  while (const auto line = lines.next()) {
-    if (trimmed(*line).empty()) continue;
-    std::vector<std::string> cells = cells_of(*line, lines);
-    if (table.columns.empty()) {
-      for (std::size_t i = 0; i < cells.size(); ++i)
-        if (std::find(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(i), cells[i]) !=
-            cells.begin() + static_cast<std::ptrdiff_t>(i))
-          lines.fail(fmt::format("column \"{}\" stands a second time", shortened(cells[i])));
-      table.columns = std::move(cells);
-      continue;
-    }
-    if (cells.size() != table.columns.size())
-      lines.fail(fmt::format("{} cells; expected {}, as in the header", cells.size(), table.columns.size()));
-    table.rows.push_back({lines.line(), std::move(cells)});
-  }
-  if (table.columns.empty()) throw FileError(name + " is empty; expected a header of columns");
-  return table;
 }
 
 namespace {
@@ -208,6 +233,7 @@ DofTable read_dof_table(std::string_view content, const std::string& name) {
   const std::size_t count = file.rows.size();
   DofTable table;
   table.name = name;
+  table.notes = file.notes;
   table.dofs.resize(count);
   std::map<std::pair<std::string, std::string>, int> known;
   std::map<std::string, const DofName*> nodes;

@@ -18,11 +18,14 @@ void check_symmetry(const FileMatrix& read, const std::string& name, const DofTa
   if (read.asymmetry == 0) return;
   const auto dof = [&](int number) { return table.dofs[static_cast<std::size_t>(number) - 1].text(); };
   if (read.asymmetry > most_asymmetry)
-    throw FileError(fmt::format("{} is not symmetric: entry {}, {} is {:.6g}, entry {}, {} is {:.6g} ({}, {})", name,
-                                read.row, read.column, read.there, read.column, read.row, read.across, dof(read.row),
-                                dof(read.column)));
-  notes.push_back(fmt::format("{} is symmetric to {:.1e} of its largest entry: the mean of both triangles is used",
-                              name, read.asymmetry));
+    throw FileError(fmt::format(
+        "{} is not symmetric: entries {}, {} and {}, {} ({}, {}) are {:.12g} and {:.12g}. They differ by {:.3g}, "
+        "{:.2g} of the largest entry; expected at most {:g}; {}",
+        name, read.row, read.column, read.column, read.row, dof(read.row), dof(read.column), read.there, read.across,
+        std::abs(read.there - read.across), read.asymmetry, most_asymmetry, not_treated));
+  notes.push_back(
+      fmt::format("{} is symmetric to {:.1e} of its largest entry (at most {:g}): the mean of both triangles is used",
+                  name, read.asymmetry, most_asymmetry));
 }
 
 /// ℓ T A T, T = 1/ℓ on displacements and 1 on rotations.
@@ -188,12 +191,8 @@ class StructureMaker {
       if (stiff[i] == 0 && heavy[i] == 0)
         throw FileError(fmt::format("nothing holds or moves {}: its rows of {} and {} are zero", dof_text(i),
                                     files_.stiffness_name, files_.mass_name));
-    if (const auto found = negative_pivot(out_.mass))
-      throw FileError(fmt::format("{} is not positive semidefinite: pivot {:.3g} at {}", files_.mass_name, found->value,
-                                  dof_text(found->row)));
-    if (const auto found = negative_pivot(out_.stiffness))
-      throw FileError(fmt::format("{} has a negative pivot {:.3g} at {}: expected a structure in stable equilibrium",
-                                  files_.stiffness_name, found->value, dof_text(found->row)));
+    check_pivots(out_.mass, files_.mass_name, "a mass is positive semidefinite");
+    check_pivots(out_.stiffness, files_.stiffness_name, "expected a structure in stable equilibrium");
     SparseLdlt ldlt;
     out_.definite = ldlt.factorise(out_.stiffness) && !moves_rigidly(out_.stiffness, ldlt);
     if (out_.definite) return;
@@ -201,6 +200,25 @@ class StructureMaker {
     if (!ldlt.factorise(out_.stiffness + sigma * out_.mass))
       throw FileError(fmt::format("{} and {} have a motion that neither holds nor moves: {}", files_.stiffness_name,
                                   files_.mass_name, ldlt.reason()));
+  }
+
+  /// Refuses a negative pivot, unless it is round-off of the largest. Rows whose diagonal is that round-off become 0.
+  void check_pivots(SparseMatrix& matrix, const std::string& name, const char* why) {
+    constexpr double round_off = 1e-12;
+    const Eigen::VectorXd diagonal = matrix.diagonal();
+    const double largest = diagonal.maxCoeff();
+    const auto first = negative_pivot(matrix);
+    for (auto found = first; found;) {
+      if (!(largest > 0 && -found->value <= round_off * largest))
+        throw FileError(fmt::format("{} has a negative pivot {:.3g} at {}, beyond {:g} of the largest: {}", name,
+                                    found->value, dof_text(found->row), -round_off, why));
+      const Eigen::Index entries = matrix.nonZeros();
+      matrix.prune([&](Eigen::Index i, Eigen::Index j, double) { return diagonal[i] > 0 && diagonal[j] > 0; });
+      found = matrix.nonZeros() < entries ? negative_pivot(matrix) : std::nullopt;
+    }
+    if (first)
+      out_.notes.push_back(fmt::format("{} has a negative pivot {:.3g} at {}, {:.1e} of the largest: taken for 0", name,
+                                       first->value, dof_text(first->row), first->value / largest));
   }
 
   // 1 on the displacements that a support holds.

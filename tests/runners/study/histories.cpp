@@ -134,6 +134,39 @@ TEST_CASE("a table is part of what a case is: another content makes another case
   CHECK_THAT(studies.refusal(stored), Contains("base.csv has changed since the run began"));
 }
 
+TEST_CASE("an accelerogram moves a structure alike in each form, and the case says which that was") {
+  Studies studies;
+  const auto ends = [&](const std::string& file, double factor, const std::string& text) {
+    studies.write(file, text);
+    const Json study = moved_by("/scene/motions/0/acceleration",
+                                {{"file", file}, {"value", "a"}, {"factor", factor}, {"after", "zero"}});
+    const CaseRecord record = studies.of(study).front();
+    REQUIRE(record.status == "done");
+    std::string notes;
+    for (const std::string& note : record.notes)
+      if (note.starts_with(file)) notes += note + "\n";
+    return std::pair(end_of(record, "tip_displacement"), notes);
+  };
+  const auto [plain, none] = ends("plain.csv", 9.81, "t,a\n0,0\n0.25,1\n0.5,0\n");
+  CHECK_THAT(none, !Contains(" read"));
+  const auto [at2, said] = ends("a.AT2", 9.81, "RECORD\nVALLEY\nUNITS OF G\nNPTS= 3, DT= .25 SEC\n 0. .1D+01\n 0.\n");
+  CHECK(at2 == plain);
+  CHECK_THAT(said, Contains("a.AT2 is read as AT2: 3 values in G, dt 0.25 s, the first at t = 0"));
+  const auto [german, points] = ends("b.csv", 9.81, "t [s];a [g]\n0;0\n0,25;1\n0,5;0\n");
+  CHECK(german == plain);
+  CHECK_THAT(points, Contains("b.csv: decimal commas are read as points\nb.csv: semicolons separate its cells\n"));
+  // A unit without a factor would be taken for m/s².
+  studies.write("c.csv", "t [s],a [g]\n0,0\n0.5,1\n");
+  studies.write("d.csv", "t [ms],a\n0,0\n500,1\n");
+  const auto refused = [&](const char* file, double factor) {
+    return studies.refusal(
+        moved_by("/scene/motions/0/acceleration", {{"file", file}, {"value", "a"}, {"factor", factor}}));
+  };
+  CHECK_THAT(refused("a.AT2", 1), Contains("a.AT2 is in G; expected \"factor\", which makes SI units of it"));
+  CHECK_THAT(refused("c.csv", 1), Contains("c.csv: the column a [g] is in g; expected \"factor\""));
+  CHECK_THAT(refused("d.csv", 2), Contains("d.csv: the column t [ms] is in ms; expected s"));
+}
+
 TEST_CASE("without motions, random loads and frames nothing of a study changes") {
   Studies studies;
   const Json resolved = studies.study(with_force(1)).resolved;
