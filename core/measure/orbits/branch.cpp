@@ -9,6 +9,11 @@
 
 namespace ricochet {
 
+const char* text(TraceEnd end) {
+  static constexpr const char* words[] = {"", "range", "closed", "joined", "asked", "limit", "left"};
+  return words[static_cast<std::size_t>(end)];
+}
+
 CornerRoots roots_at(const std::vector<std::complex<double>>& multipliers) {
   constexpr double least_angle = 0.01;
   CornerRoots roots;
@@ -128,9 +133,9 @@ void BranchRun::keep(bool special) {
 void BranchRun::finish(const Piece& piece) {
   const BranchState& state = follower_.state();
   if (piece.end == BranchEnd::range)
-    trace_.end = fmt::format("the range ends at {:.10g}", state.parameter);
+    trace_.end_by(TraceEnd::range, fmt::format("the range ends at {:.10g}", state.parameter));
   else if (piece.end == BranchEnd::unresolved)
-    trace_.end = fmt::format("the branch was left at λ = {:.10g}: {}", state.parameter, piece.why);
+    trace_.end_by(TraceEnd::left, fmt::format("the branch was left at λ = {:.10g}: {}", state.parameter, piece.why));
 }
 
 bool BranchRun::advance(long long pieces) {
@@ -180,17 +185,17 @@ bool BranchRun::advance(long long pieces) {
     const bool closed = follower_.state().sets == first_;
     keep(changes(was, now) || closed);
     if (limits_.ends_at_image && is_image(map_->sets(), follower_.state().sets))
-      trace_.end = fmt::format("its orbits become their own images at {:.10g}", now.parameter);
+      trace_.end_by(TraceEnd::joined, fmt::format("its orbits become their own images at {:.10g}", now.parameter));
     else if (const int sooner = limits_.ends_sooner ? repeats_sooner(follower_.state().sets, clock_.period) : 0)
-      trace_.end = fmt::format("its orbits repeat after {} period{} from {:.10g} on", sooner, sooner == 1 ? "" : "s",
-                               now.parameter);
+      trace_.end_by(TraceEnd::joined, fmt::format("its orbits repeat after {} period{} from {:.10g} on", sooner,
+                                                  sooner == 1 ? "" : "s", now.parameter));
     else if (closed)
-      trace_.end = "closed: the branch came back to its first piece";
+      trace_.end_by(TraceEnd::closed, "closed: the branch came back to its first piece");
     else if (follower_.state().pieces >= limits_.pieces)
-      trace_.end =
-          fmt::format("{} piece{}, the most that the study allows", limits_.pieces, limits_.pieces == 1 ? "" : "s");
+      trace_.end_by(TraceEnd::limit,
+                    fmt::format("{} piece{}, the most of at_most", limits_.pieces, limits_.pieces == 1 ? "" : "s"));
     else if (follower_.state().arc >= limits_.arc)
-      trace_.end = fmt::format("an arc of {:g} m, the longest that the study allows", limits_.arc);
+      trace_.end_by(TraceEnd::limit, fmt::format("an arc of {:.4g} m, the longest of at_most", limits_.arc));
     if (trace_.ended()) trace_.states.emplace(static_cast<long long>(size) - 1, follower_.state().x);
   }
   return !trace_.ended();

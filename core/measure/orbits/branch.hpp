@@ -7,6 +7,7 @@
 #include <ricochet/measure/orbits/multipliers.hpp>
 #include <ricochet/measure/orbits/periodic_map.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ricochet {
@@ -146,6 +147,7 @@ struct BranchCorner {
   SetChange change;                           ///< that made it; none of the first corner
   double residual = 0;                        ///< m
   double rebounds = 0;                        ///< u where stops give back speed (stepped_map.hpp), m
+  double slowest = 0;                         ///< of its rebounds, m/s (stepped_map.hpp)
 };
 
 /// Over all points, those of each stage on their own.
@@ -164,6 +166,12 @@ struct MarkedOrbit {
   Eigen::VectorXd x;
 };
 
+/// How a branch ended: at an end of the range, at its first orbit, where it becomes part of another branch, at a point
+/// at which the study stops, at a limit of the study, or where it could not be followed.
+enum class TraceEnd { none, range, closed, joined, asked, limit, left };
+/// Its word; "" of none.
+const char* text(TraceEnd end);
+
 /// A branch as far as it was followed.
 struct BranchTrace {
   std::vector<BranchCorner> corners;
@@ -172,8 +180,13 @@ struct BranchTrace {
   std::vector<MarkedOrbit> marks;
   long long ties = 0;   ///< corners at which two bounds were met at once
   double rebounds = 0;  ///< largest u of orbits that give back speed, m (stepped_map.hpp); 0: none does
-  std::string end;      ///< why it ended; "" while it goes on
-  bool ended() const { return !end.empty(); }
+  TraceEnd ends = TraceEnd::none;
+  std::string end;  ///< why it ended; "" while it goes on
+  bool ended() const { return ends != TraceEnd::none; }
+  void end_by(TraceEnd how, std::string why) {
+    ends = how;
+    end = std::move(why);
+  }
 };
 
 /// Where a branch ends at the latest, and what is looked for on it.

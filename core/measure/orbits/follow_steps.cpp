@@ -28,14 +28,15 @@ StepFollower::StepFollower(FollowedMap& map, const MapClock& clock, VectorXd x, 
   step_ = limits.first > 0 ? limits.first : first_step * range();
   Step first{now_, map.march(now_.x, parameter, clock, true)};
   if (first.image.end) {
-    trace_.end = "the first orbit cannot be marched: " + text(first.image.end);
+    trace_.end_by(TraceEnd::left, "the first orbit cannot be marched: " + text(first.image.end));
     return;
   }
   if (!set_tangent(way, first.image.derivative)) return;
   first.multipliers = multipliers_of(first.image.derivative);
   orientation_ = way * outside(first.multipliers).side();
   keep(std::move(first));
-  if (!within(now_)) trace_.end = fmt::format("its first orbit is beyond the range, at {:.10g}", parameter);
+  if (!within(now_))
+    trace_.end_by(TraceEnd::left, fmt::format("its first orbit is beyond the range, at {:.10g}", parameter));
   if (limits_.branch.ends_at_image) apart_ = asymmetry(now_);
 }
 
@@ -53,8 +54,9 @@ bool StepFollower::set_tangent(int way, const MatrixXd& derivative) {
   if (found)
     along_ = {way * found->x, way * found->parameter};
   else
-    trace_.end = trace_.corners.empty() ? "the branch has no direction at its first orbit"
-                                        : fmt::format("the branch has no direction at {:.10g}", now_.parameter);
+    trace_.end_by(TraceEnd::left, trace_.corners.empty()
+                                      ? "the branch has no direction at its first orbit"
+                                      : fmt::format("the branch has no direction at {:.10g}", now_.parameter));
   return found.has_value();
 }
 
@@ -169,6 +171,12 @@ bool StepFollower::correct(Step& step, const Point& along) {
     }
     step.to.x += correction.head(D);
     step.to.parameter += correction[D];
+    // Beyond the range the scene may not be possible, or be another one.
+    const double beyond = largest_step * (limits_.branch.largest - limits_.branch.least);
+    if (step.to.parameter < limits_.branch.least - beyond || step.to.parameter > limits_.branch.largest + beyond) {
+      failure_ = fmt::format("Newton's method goes beyond the range, to {:.4g}", step.to.parameter);
+      return false;
+    }
   }
   return false;
 }
@@ -200,6 +208,7 @@ void StepFollower::keep(Step step) {
   corner.leading = std::move(step.multipliers);
   corner.residual = map_->metric().size(step.image.image - step.to.x);
   corner.rebounds = step.image.rebounds;
+  corner.slowest = step.image.slowest;
   trace_.rebounds = std::max(trace_.rebounds, step.image.rebounds);
   trace_.corners.push_back(std::move(corner));
   trace_.states.emplace(static_cast<long long>(trace_.corners.size()) - 1, std::move(step.to.x));
@@ -233,7 +242,7 @@ bool StepFollower::reaches_end(const Point& beyond) {
   trace_.corners.back().way = along_.parameter < 0 ? -1 : 1;
   mark_up_to(end);
   keep({end, map_->march(at.x, limit, clock_, true)});
-  trace_.end = fmt::format("the range ends at {:.10g}", limit);
+  trace_.end_by(TraceEnd::range, fmt::format("the range ends at {:.10g}", limit));
   return true;
 }
 
@@ -282,9 +291,14 @@ StepFollower::Verdict StepFollower::judge(Step& step) {
 }
 
 std::string StepFollower::why_left(const Step& tried) const {
-  if (trace_.rebounds > 0 && tried.image.runs != trace_.corners.back().runs)
-    return fmt::format("the derivative is infinite at a graze with e > 0; ended at speed {:.3g} m/s, λ = {:.10g}",
-                       tried.image.slowest, now_.parameter);
+  // Impacts of a hundredth of the speed that they had are grazes.
+  constexpr double graze_share = 0.01;
+  const double slowest = trace_.corners.back().slowest;
+  double fastest = 0;
+  for (const BranchCorner& corner : trace_.corners) fastest = std::max(fastest, corner.slowest);
+  if (trace_.rebounds > 0 && (tried.image.runs != trace_.corners.back().runs || slowest < graze_share * fastest))
+    return fmt::format("an impact becomes a graze, where the derivative is infinite; ended at λ = {:.10g}, {:.3g} m/s",
+                       now_.parameter, slowest);
   return fmt::format("the branch was left at λ = {:.10g}: {}step below {:.3g} m; {}", now_.parameter,
                      tried.jumps ? "no orbit was found beyond a contact that comes or goes; " : "",
                      smallest_step * range(), failure_);
@@ -309,7 +323,7 @@ std::optional<StepFollower::Step> StepFollower::next_orbit() {
       return step;
     }
     if (step_ < smallest_step * range() && !turn_corner()) {
-      trace_.end = why_left(step);
+      trace_.end_by(TraceEnd::left, why_left(step));
       return std::nullopt;
     }
     const Verdict verdict = judge(step);
@@ -325,10 +339,11 @@ void StepFollower::take(Step step) {
   const auto [secant, far] = secant_to(step.to);
   const VectorXd apart = apart_.size() > 0 ? std::exchange(apart_, asymmetry(step.to)) : VectorXd();
   if (apart_.dot(apart) < 0)
-    trace_.end = fmt::format("its orbits become their own images at {:.10g}", step.to.parameter);
+    trace_.end_by(TraceEnd::joined, fmt::format("its orbits become their own images at {:.10g}", step.to.parameter));
   else
     mark_up_to(step.to);
-  if (!trace_.ended() && comes_back(secant, far)) trace_.end = "closed: the branch came back to its first orbit";
+  if (!trace_.ended() && comes_back(secant, far))
+    trace_.end_by(TraceEnd::closed, "closed: the branch came back to its first orbit");
   if (trace_.ended()) return;
   const BranchCorner& last = trace_.corners.back();
   const int side = outside(step.multipliers).side();
@@ -345,9 +360,9 @@ void StepFollower::take(Step step) {
   if (step.iterations <= easy) step_ = std::min(growth * step_, largest_step * range());
   if (step.iterations > hard) step_ /= growth;
   if (pieces() > limits_.branch.pieces)
-    trace_.end = fmt::format("{} steps, the most that the study allows", limits_.branch.pieces);
+    trace_.end_by(TraceEnd::limit, fmt::format("{} steps, the most of at_most", limits_.branch.pieces));
   else if (trace_.corners.back().arc >= limits_.branch.arc)
-    trace_.end = fmt::format("an arc of {:g} m, the longest that the study allows", limits_.branch.arc);
+    trace_.end_by(TraceEnd::limit, fmt::format("an arc of {:.4g} m, the longest of at_most", limits_.branch.arc));
 }
 
 bool StepFollower::advance(long long steps) {

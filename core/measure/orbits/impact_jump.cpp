@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ricochet/kernels/quadratic_form.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
-#include <ricochet/scene/massless_part.hpp>
 
 namespace ricochet {
 namespace {
@@ -15,8 +13,6 @@ namespace {
 constexpr int clear_flight = 10;
 // An impact is over within this many steps of contact: restitution over three levels takes two.
 constexpr int longest_impact = 3;
-// hω up to which a step resolves the motion that an impact leaves; tangents are held for some steps.
-constexpr double resolved_turn = 0.1;
 // e is read off an integration of the plan: of none, round-off over h is left.
 constexpr double rebounds_above = 1e-6;
 
@@ -25,74 +21,6 @@ bool no_rebound(const std::optional<double>& restitution) {
 }
 
 }  // namespace
-
-std::vector<bool> points_with_mass(const SemiDiscrete& problem) {
-  std::vector<bool> massive(static_cast<std::size_t>(problem.points()), true);
-  if (problem.inertia.kernel_dimension == 0) return massive;
-  const MasslessPart massless(problem.stiffness, problem.inertia);
-  const Eigen::VectorXd stiff = problem.stiffness.diagonal();
-  for (int i = 0; i < problem.points(); ++i) {
-    const Eigen::VectorXd push = problem.measured().row(i).transpose();
-    double held = 0;  // what the push would store in each dof alone
-    for (Eigen::Index j = 0; j < push.size(); ++j)
-      if (push[j] != 0) held += 0.5 * push[j] * push[j] / stiff[j];
-    massive[static_cast<std::size_t>(i)] = massless.energy(push) < 1e-9 * held;
-  }
-  return massive;
-}
-
-std::vector<bool> thrown_points(const Program& program, double least) {
-  const SemiDiscrete& problem = *program.problem;
-  std::vector<bool> thrown(static_cast<std::size_t>(problem.points()), false);
-  if (!program.contact || program.law->reads()) return thrown;
-  const double of_all = std::abs(plan_restitution(program.plan, program.h).value_or(0));
-  for (std::size_t i = 0; i < thrown.size(); ++i)
-    thrown[i] = (i < problem.own.size() ? problem.own[i].restitution.value_or(of_all) : of_all) >= least;
-  if (std::find(thrown.begin(), thrown.end(), true) == thrown.end()) return thrown;
-  const std::vector<bool> massive = points_with_mass(problem);
-  for (std::size_t i = 0; i < thrown.size(); ++i) thrown[i] = thrown[i] && massive[i];
-  return thrown;
-}
-
-std::vector<bool> resolved_points(const SemiDiscrete& problem, double h) {
-  const auto given_way = [&](double time) {
-    QuasiDefinite matrix;
-    matrix.A = time * time * problem.stiffness;
-    if (problem.inertia.assembled()) {
-      matrix.A += problem.inertia.mass;
-    } else {
-      const MassFactors factors = mass_factors(problem.inertia);
-      matrix.G = factors.coupling;
-      matrix.Cv = factors.velocity_mass;
-      matrix.border_first = problem.inertia.inverted();
-    }
-    return InverseForm(matrix);
-  };
-  const InverseForm within_step = given_way(h), at_once = given_way(1e-3 * h);
-  std::vector<bool> resolved(static_cast<std::size_t>(problem.points()));
-  for (int i = 0; i < problem.points(); ++i) {
-    const Eigen::VectorXd push = problem.measured().row(i).transpose();
-    const auto step = within_step(push), instant = at_once(push);
-    resolved[static_cast<std::size_t>(i)] = step && instant && *instant <= (1 + resolved_turn * resolved_turn) * *step;
-  }
-  return resolved;
-}
-
-bool stops_met_at_steps(const Program& program) {
-  const auto& stages = program.plan.stages;
-  return program.contact && !program.law->reads() && std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
-           return stage.impact && stage.impact->gate;
-         });
-}
-
-bool tangents_miss_impacts(const Program& program) {
-  if (!stops_met_at_steps(program)) return false;
-  const std::vector<bool> massive = points_with_mass(*program.problem),
-                          resolved = resolved_points(*program.problem, program.h);
-  for (std::size_t i = 0; i < massive.size(); ++i)
-    if (massive[i] && !resolved[i]) return true;
-  return false;
-}
 
 // The last three displacements, newest first.
 struct ImpactJump::Past {
@@ -115,9 +43,13 @@ struct ImpactJump::Past {
 
 struct ImpactJump::Impact {
   int point = 0;
-  double time = 0;                         // t*
-  Eigen::VectorXd velocity, acceleration;  // v⁻, a⁻ at t*
-  double approach = 0;                     // w⁻
+  double time = 0;                                       // t*
+  Eigen::VectorXd displacement, velocity, acceleration;  // q⁻, v⁻, a⁻ at t*
+  double approach = 0;                                   // w⁻
+};
+
+struct ImpactJump::Moved {
+  Eigen::VectorXd place, rate, bend;  // displacement, velocity, acceleration at t*
 };
 
 struct ImpactJump::Lane {
@@ -126,11 +58,16 @@ struct ImpactJump::Lane {
   bool contact = false, known = false;
   int steps = 0;       // of contact in this impact
   int free_steps = 0;  // since
+  int unshifted = 0;   // steps since columns were set anew, 3 at most
   Impact impact;
   int applied = 0;
   std::vector<int> age;       // per point, steps of contact in a row
   std::vector<bool> pushing;  // per point, in the step under way
-  bool skipped = false;       // an impact has no jump, and its point has neither come to rest nor flown since
+  void forget_columns() {
+    for (Past& past : columns) past.known = 0;
+    unshifted = 0;
+  }
+  bool skipped = false;  // an impact has no jump, and its point has neither come to rest nor flown since
   int resting = 0, most_resting = 0, untold = 0;
 };
 
@@ -150,9 +87,9 @@ struct ImpactJump::Inverse {
   }
 };
 
-ImpactJump::ImpactJump(Marcher& marcher) {
+ImpactJump::ImpactJump(Marcher& marcher, Orbit orbit) : places_(orbit == Orbit::placed) {
   const Program& program = marcher.program();
-  if (program.tangents == 0 || !program.contact || program.law->reads()) return;
+  if ((program.tangents == 0 && !places_) || !program.contact || program.law->reads()) return;
   massive_ = points_with_mass(*program.problem);
   const auto some = [&] { return std::find(massive_.begin(), massive_.end(), true) != massive_.end(); };
   if (!some()) return;
@@ -184,8 +121,7 @@ ImpactJump::ImpactJump(Marcher& marcher) {
 ImpactJump::~ImpactJump() = default;
 
 void ImpactJump::columns_replaced() {
-  for (auto& lane : lanes_)
-    for (Past& past : lane->columns) past.known = 0;
+  for (auto& lane : lanes_) lane->forget_columns();
 }
 
 int ImpactJump::applied(int lane) const {
@@ -229,6 +165,16 @@ void ImpactJump::stage_solved(const Marcher& marcher, const StageView& view) {
   }
 }
 
+namespace {
+
+// What clamps accelerate a contact point by.
+double clamp_acceleration(const Marcher& marcher, int lane, int point, double time) {
+  const double omega = marcher.program().problem->support.pulsation;
+  return -omega * omega * marcher.support(lane, time) + marcher.motions().point_acceleration(point, time);
+}
+
+}  // namespace
+
 // The orbit just before an impact, carried to the time at which the gap of the point closes.
 void ImpactJump::watch(const Marcher& marcher, Lane& lane, int index, int point, int side, double time) {
   const double h = marcher.program().h;
@@ -242,8 +188,16 @@ void ImpactJump::watch(const Marcher& marcher, Lane& lane, int index, int point,
   const double gap = (side == 0 ? spec.lower[point] : spec.upper[point]) - rows.times(point, lane.orbit.q[0].data()) -
                      marcher.lift(index, point, time);
   // Closing towards a lower stop, gap and speed are both negative.
-  const double ahead = speed != 0 ? std::min(std::max(gap / speed, -2 * h), 2 * h) : 0.0;
+  double ahead = speed != 0 ? gap / speed : 0.0;
+  if (places_) {  // to the order of the orbit's own place
+    const double bend = rows.times(point, impact.acceleration.data()) + clamp_acceleration(marcher, index, point, time);
+    for (int k = 0; k < 3 && speed != 0; ++k)
+      if (const double then = speed + ahead * bend; then * speed > 0)
+        ahead -= (ahead * (speed + ahead * bend / 2) - gap) / then;
+  }
+  ahead = std::min(std::max(ahead, -2 * h), 2 * h);
   impact.time = time + ahead;
+  impact.displacement = lane.orbit.displacement(h, -ahead);
   impact.velocity = lane.orbit.velocity(h, -ahead);
   impact.approach = rows.times(point, impact.velocity.data()) + marcher.lift_rate(index, point, impact.time);
   lane.known = impact.approach != 0;
@@ -255,6 +209,7 @@ void ImpactJump::step_done(Marcher& marcher) {
     Lane& lane = *lanes_[index];
     const int number = static_cast<int>(index);
     lane.orbit.add(marcher.slot(0), rows, width, number);
+    lane.unshifted = std::min(lane.unshifted + 1, 3);
     for (std::size_t k = 0; k < lane.columns.size(); ++k)
       lane.columns[k].add(marcher.slot(0), rows, width, marcher.tangent_lane(number, static_cast<int>(k)));
     bool comes_to_rest = false;
@@ -271,7 +226,7 @@ void ImpactJump::step_done(Marcher& marcher) {
       lane.skipped = lane.known && lane.age[static_cast<std::size_t>(lane.impact.point)] <= longest_impact;
       lane.known = lane.contact = false;
       lane.steps = lane.free_steps = 0;
-      for (Past& past : lane.columns) past.known = 0;
+      lane.forget_columns();
       continue;
     }
     if (lane.contact) {
@@ -291,7 +246,7 @@ void ImpactJump::step_done(Marcher& marcher) {
       lane.skipped = true;
       continue;
     }
-    if (lane.free_steps < 2 || lane.columns.empty() || lane.columns.front().known < 3) continue;
+    if (lane.free_steps < 2 || lane.unshifted < 3) continue;
     finish(marcher, lane, number);
     lane.known = false;
     lane.steps = 0;
@@ -334,20 +289,58 @@ void ImpactJump::hold(Marcher& marcher, Lane& lane, int index) {
   }
 }
 
+// What an impact takes of the velocities. Its direction is that of the orbit; its size is the law's, which the orbit
+// itself keeps to O(h) only.
+Eigen::VectorXd ImpactJump::lost_speed(const Marcher& marcher, const Impact& impact,
+                                       const Eigen::VectorXd& after) const {
+  Eigen::VectorXd lost = impact.velocity - after;
+  const double taken = marcher.program().model->measured().times(impact.point, lost.data());
+  if (restitution_ && taken != 0) lost *= (1 + *restitution_) * impact.approach / taken;
+  return lost;
+}
+
+// Adds to a state what an impact moves, so long after it.
+void ImpactJump::put(const Marcher& marcher, const Moved& by, double since, LaneState& state) const {
+  const Eigen::VectorXd place = by.place + (since * by.rate + since * since / 2 * by.bend),
+                        rate = by.rate + since * by.bend;
+  double* slot = state.slots.data();
+  for (const auto& [position, velocity] : marcher.program().plan.initial) {
+    for (int i = 0; i < place.size(); ++i)
+      slot[i] += position != 0
+                     ? position * place[i] + velocity * rate[i]
+                     : (velocity != 0 ? velocity * (rate[i] + offset_ * marcher.program().h * by.bend[i]) : by.bend[i]);
+    slot += place.size();
+  }
+}
+
+// Puts the orbit where an impact at t* leads to.
+void ImpactJump::place(Marcher& marcher, Lane& lane, int index, double since) const {
+  const double h = marcher.program().h;
+  const Eigen::VectorXd after = lane.orbit.velocity(h, since);
+  Moved by;
+  by.place = lane.impact.displacement - lane.orbit.displacement(h, since);
+  by.rate = lane.impact.velocity - lost_speed(marcher, lane.impact, after) - after;
+  by.bend = inverse_mass_ ? inverse_mass_->of(by.place, by.rate) : Eigen::VectorXd::Zero(after.size());
+  LaneState state = marcher.lane_state(index);
+  put(marcher, by, since, state);
+  marcher.set_lane(index, LaneSpec(marcher.program().lanes[static_cast<std::size_t>(index)]), state);
+  double then = since;
+  for (Eigen::VectorXd& q : lane.orbit.q) {
+    q += by.place + then * by.rate + then * then / 2 * by.bend;
+    then -= h;
+  }
+}
+
 void ImpactJump::finish(Marcher& marcher, Lane& lane, int index) {
   const Program& program = marcher.program();
   const double h = program.h, since = marcher.time() - lane.impact.time;
+  if (places_) place(marcher, lane, index, since);
   const RowMatrix& rows = program.model->measured();
   const Impact& impact = lane.impact;
-  const double omega = program.problem->support.pulsation;
   const Eigen::VectorXd after = lane.orbit.velocity(h, since), acceleration = lane.orbit.acceleration(h);
-  // Its direction is that of the orbit; its size is the law's, which the orbit itself keeps to O(h) only.
-  Eigen::VectorXd lost = impact.velocity - after;
-  const double taken = rows.times(impact.point, lost.data());
-  if (restitution_ && taken != 0) lost *= (1 + *restitution_) * impact.approach / taken;
-  const double clamp = -omega * omega * marcher.support(index, impact.time) +
-                       marcher.motions().point_acceleration(impact.point, impact.time);
-  const double pushed = rows.times(impact.point, impact.acceleration.data()) + clamp;
+  const Eigen::VectorXd lost = lost_speed(marcher, impact, after);
+  const double pushed = rows.times(impact.point, impact.acceleration.data()) +
+                        clamp_acceleration(marcher, index, impact.point, impact.time);
   for (std::size_t k = 0; k < lane.columns.size(); ++k) {
     const Past& past = lane.columns[k];
     const Eigen::VectorXd dq = past.displacement(h, since), dv = past.velocity(h, since);
@@ -357,20 +350,12 @@ void ImpactJump::finish(Marcher& marcher, Lane& lane, int index) {
     Eigen::VectorXd rate = (impact.acceleration - acceleration) * shift - lost * (closing / impact.approach);
     Eigen::VectorXd bend = Eigen::VectorXd::Zero(place.size());
     if (inverse_mass_) bend = inverse_mass_->of(place, rate);
-    place += since * rate + since * since / 2 * bend;
-    rate += since * bend;
     LaneState column = marcher.tangent(index, static_cast<int>(k));
-    double* slot = column.slots.data();
-    for (const auto& [position, velocity] : program.plan.initial) {
-      for (int i = 0; i < place.size(); ++i)
-        slot[i] += position != 0 ? position * place[i] + velocity * rate[i]
-                                 : (velocity != 0 ? velocity * (rate[i] + offset_ * h * bend[i]) : bend[i]);
-      slot += place.size();
-    }
+    put(marcher, {std::move(place), std::move(rate), std::move(bend)}, since, column);
     marcher.set_tangent(index, static_cast<int>(k), column);
   }
   if (lane.resting > 0) hold(marcher, lane, index);
-  for (Past& past : lane.columns) past.known = 0;
+  lane.forget_columns();
   ++lane.applied;
 }
 

@@ -32,17 +32,31 @@ namespace ricochet {
 ///
 /// An impact has no jump where the jump of the last one could not be put on yet. Two points that meet their stops
 /// together have none either. Both count as untold, unless the point comes to rest after at most ten steps of flight.
+///
+/// A fixed step has its impact up to h late, so that an orbit jumps by h|v⁺ − v⁻| where its impact goes from one step
+/// to the next. An orbit that is `placed` does not: after an impact its state becomes the one that an impact at t*
+/// leads to,
+///
+///     q ← q + Δq + Δv τ + Δa τ²/2,  v ← v + Δv + Δa τ,      τ = t − t*
+///     Δq = q⁻ − q⁺,  Δv = v⁻ − (1+e) r w⁻ − v⁺
+///
+/// with q⁺ and v⁺ of the marched orbit carried back to t*, and Δa the free acceleration of (Δq, Δv). Its impacts are
+/// second-order accurate in h, and what it comes to depends on where it began without a jump of first order.
+///
 /// Points whose impact the step does not resolve (resolved_points(): the mass of one node of a beam) are not looked at.
 /// They meet their stop like points without mass: the motion after it is the step's own, and so is its derivative.
 /// Source: Müller (1995), Chaos, Solitons & Fractals 5, 1671–1681; saltation of Leine and Nijmeijer (2004), §7.
 class ImpactJump final : public StepObserver {
  public:
+  /// Whether the orbit itself is left as the steps make it, or placed too.
+  enum class Orbit { as_marched, placed };
+
   /// Looks at rigid contact points whose mass is not zero and whose impacts the step resolves, and has the marcher hold
-  /// the tangents there.
-  explicit ImpactJump(Marcher& marcher);
+  /// the tangents there. Without tangents only orbits that are placed are looked at.
+  explicit ImpactJump(Marcher& marcher, Orbit orbit = Orbit::as_marched);
   ~ImpactJump();
 
-  /// Whether there are such points and tangents at all; otherwise the integration need not be observed.
+  /// Whether there is anything to do; otherwise the integration need not be observed.
   bool needed() const { return needed_; }
   /// Tangent columns were replaced (orthonormalised): their past is not theirs any more.
   void columns_replaced();
@@ -63,9 +77,13 @@ class ImpactJump final : public StepObserver {
   struct Lane;
   void watch(const Marcher& marcher, Lane& lane, int index, int point, int side, double time);
   void finish(Marcher& marcher, Lane& lane, int index);
+  void place(Marcher& marcher, Lane& lane, int index, double since) const;
+  struct Moved;
+  void put(const Marcher& marcher, const Moved& by, double since, LaneState& state) const;
+  Eigen::VectorXd lost_speed(const Marcher& marcher, const Impact& impact, const Eigen::VectorXd& after) const;
   void hold(Marcher& marcher, Lane& lane, int index);
 
-  bool needed_ = false;
+  bool needed_ = false, places_ = false;
   double offset_ = 0;  // of velocity slots, in steps
   std::optional<double> restitution_;
   std::vector<bool> massive_;

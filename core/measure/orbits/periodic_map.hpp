@@ -6,6 +6,7 @@
 #include <optional>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/orbits/set_steps.hpp>
+#include <ricochet/measure/orbits/state_metric.hpp>
 #include <string>
 #include <vector>
 
@@ -58,38 +59,6 @@ struct MapMarch {
   double penetration = 0;            ///< m
 };
 
-/// The state of one lane as numbers, and back.
-class StateVector {
- public:
-  explicit StateVector(const Program& program);
-  int size() const { return static_cast<int>(slots_) + static_cast<int>(efforts_.size()) * points_; }
-  Eigen::VectorXd read(const LaneState& state) const;
-  /// What is not part of x stays as `state` has it.
-  void write(const Eigen::VectorXd& x, LaneState& state) const;
-
- private:
-  std::size_t slots_ = 0;
-  std::vector<std::ptrdiff_t> efforts_;  // where p₋₁, p₋₂, … stand in LaneState::efforts; −1: no such effort
-  int points_ = 0;
-};
-
-/// How long states are, m: the root mean square over nodal displacements, or the tip's where the state is in modes.
-/// Velocities count over ω, accelerations over ω². All slots and the parameter times its scale in metres add in
-/// squares.
-class StateMetric {
- public:
-  StateMetric(const Program& program, int state_size, double parameter_metres);
-  StateMetric(Eigen::MatrixXd rows, double parameter_metres) : rows_(std::move(rows)), metres_(parameter_metres) {}
-  double size(const Eigen::VectorXd& x, double parameter = 0) const;
-  /// Weighted readings over x: size² = |rows x|² + (metres λ)².
-  const Eigen::MatrixXd& rows() const { return rows_; }
-  double parameter_metres() const { return metres_; }
-
- private:
-  Eigen::MatrixXd rows_;  // of all weighted readings over x
-  double metres_;
-};
-
 /// Loads that are affine in λ: what makes a program at a value, and another value than that of the lanes' origin.
 /// Without a program loads are the same at every value.
 struct AffineLoad {
@@ -102,7 +71,7 @@ struct AffineLoad {
 class PeriodicMap {
  public:
   /// `program` has one lane and no tangents. Throws Refusal where SetSteps refuses it.
-  PeriodicMap(Program program, AffineLane lanes, double parameter_metres, AffineLoad load = {});
+  PeriodicMap(Program program, AffineLane lanes, const ArcUnits& units, AffineLoad load = {});
 
   PeriodicMap(const PeriodicMap&) = delete;
 
@@ -167,6 +136,7 @@ class PeriodicMap {
 /// The tip where steps over a map begin, and its central velocity over two steps there, as the map's sign has it.
 struct StrobeTip {
   double displacement = 0, velocity = 0;  ///< m, absolute; m/s
+  double open = 0;                        ///< how far the tip is from there at the end, m
 };
 /// Marches lane 0 over the steps of a map, from a set clock.
 StrobeTip march_over(Marcher& marcher, const MapClock& clock, const Observers& observers);

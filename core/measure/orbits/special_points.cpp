@@ -215,14 +215,22 @@ void place(const Corners& corners, double metres, SpecialPoint& point) {
   add_note(point, "stops give back speed: the interval is not exact");
 }
 
+// Whether a real multiplier passes 1 between the neighbours of a corner, as it does at a fold.
+bool passes_one(const Corners& corners, std::size_t i) {
+  return corners[i - 1].raw.outside.above != corners[i + 1].raw.outside.above;
+}
+
 void add_folds(const BranchTrace& trace, const PointSearch& search, std::vector<SpecialPoint>& points) {
   const Corners& corners = trace.corners;
   for (const Turn& turn : turns_of(trace, search.before)) {
     // What turns within the uncertainty of its orbits turns nowhere.
     const double unknown = 2 * rebounds_at(corners, static_cast<std::size_t>(turn.corner)) / search.metres;
     const double least = std::max(search.prominence, unknown);
-    if (turn.prominence < least || turn.shortest < cut_share * least) continue;
     const auto i = static_cast<std::size_t>(turn.corner);
+    if (turn.prominence < least) continue;
+    // Along a curve the multipliers tell a fold from a kink, however soon the branch ends behind it.
+    const bool told = search.by_steps && passes_one(corners, i);
+    if (turn.shortest < cut_share * least && !told) continue;
     SpecialPoint point = at_corner(corners, i, "fold", "LP");
     // A motion without contact is one piece, however long: where it touches its stop the other piece tells.
     const double before = std::abs(corners[i].parameter - corners[i - 1].parameter),
@@ -350,6 +358,7 @@ std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSe
   if (trace.ended()) {
     SpecialPoint end = at_corner(corners, corners.size() - 1, "end", "EP");
     end.low = end.high = end.parameter;
+    end.ends = trace.ends;
     end.note = trace.end;
     points.push_back(std::move(end));
   }

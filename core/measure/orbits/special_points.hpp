@@ -23,6 +23,7 @@ struct SpecialPoint {
   std::optional<SetChange> change;  ///< of a contact
   int runs_before = 0, runs_after = 0;
   int held_before = 0, held_after = 0;  ///< of these runs, those that never end
+  TraceEnd ends = TraceEnd::none;       ///< of an end
   std::string note;
 };
 

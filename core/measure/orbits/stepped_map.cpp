@@ -62,6 +62,7 @@ class ContactWatch final : public StepObserver {
       each_run(
           n, half, [&](long long k) { return sides_[static_cast<std::size_t>(k)][point]; }, run);
     }
+    out.pace = pace(h);
     out.runs = runs.count;
     out.held = runs.held;
     out.shortest = runs.shortest;
@@ -70,6 +71,18 @@ class ContactWatch final : public StepObserver {
   double deepest = 0;
 
  private:
+  double pace(double h) const {
+    if (places_.size() < 2) return 0;
+    VectorXd mean = VectorXd::Zero(points_);
+    for (const VectorXd& y : places_) mean += y / static_cast<double>(places_.size());
+    double way = 0, far = 0;
+    for (std::size_t k = 1; k < places_.size(); ++k) {
+      way += (places_[k] - places_[k - 1]).squaredNorm();
+      far += (places_[k] - mean).squaredNorm();
+    }
+    return far > 0 ? std::sqrt(way / far) / h : 0;
+  }
+
   int points_;
   std::vector<int> closed_, now_;
   std::vector<VectorXd> places_;
@@ -78,14 +91,14 @@ class ContactWatch final : public StepObserver {
 
 }  // namespace
 
-SteppedMap::SteppedMap(Make make, Carry carry, double at, double parameter_metres, bool rebounds)
+SteppedMap::SteppedMap(Make make, Carry carry, double at, const ArcUnits& units, bool rebounds)
     : make_(std::move(make)), carry_(std::move(carry)), rebounds_(rebounds) {
   Scene scene = make_(at, 0);
   if (scene.program.contact && scene.program.law->memory_per_point() > 0)
     throw Refusal{"a law that keeps a memory has no derivative of it"};
   group_ = scene.group;
   vector_ = std::make_unique<StateVector>(scene.program);
-  metric_ = std::make_unique<StateMetric>(scene.program, size(), parameter_metres);
+  metric_ = std::make_unique<StateMetric>(scene.program, size(), units);
   reference_ = std::make_unique<Program>(make_(at, 0).program);
   template_ = Marcher(std::move(scene.program)).lane_state(0);
 }
@@ -126,14 +139,15 @@ SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const M
     auto [marcher, group] = begin(x, parameter, columns);
     for (int k = 0; k < columns; ++k) marcher.set_tangent(0, k, carry_(unit(first + k), group_, group));
     std::optional<ImpactJump> jump;
-    if (rebounds_ && columns > 0) jump.emplace(marcher);
+    if (rebounds_) jump.emplace(marcher, ImpactJump::Orbit::placed);
     ContactWatch watch(marcher);
     Observers observers;
     if (first == 0) observers.add(&watch);
     if (jump && jump->needed()) observers.add(&*jump);
     const StrobeTip tip = march_over(marcher, clock, observers);
     out.tip = tip.displacement;
-    out.tip_velocity = tip.velocity;
+    // What does not close is no speed.
+    out.tip_velocity = tip.velocity + tip.open / (2 * marcher.program().h);
     out.end = marcher.status(0).end;
     if (out.end) return out;
     if (first == 0) {
@@ -165,7 +179,7 @@ ShotOrbit shoot(FollowedMap& map, VectorXd x, double parameter, const MapClock& 
     }
     // Where an iteration gains nothing any more the rest is round-off.
     const bool settled = orbit.iterations > 1 && orbit.residual < stalled * tolerance && orbit.residual > 0.1 * last;
-    orbit.found = settled || orbit.residual <= std::max(tolerance, made.rebounds);
+    orbit.found = settled || orbit.residual <= std::max(tolerance, placed_share * made.rebounds);
     if (settled || orbit.residual <= tolerance || orbit.iterations == most || !std::isfinite(orbit.residual)) break;
     // What gives back speed is not solved more nearly than its impacts are placed: two more iterations are tried.
     if (orbit.found && orbit.iterations > 2 && orbit.residual > 0.5 * orbit.nearest) break;

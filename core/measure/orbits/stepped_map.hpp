@@ -9,6 +9,9 @@
 
 namespace ricochet {
 
+/// Of u = h Σ|v⁺ − v⁻|: what steps leave of impacts that are placed within them.
+inline constexpr double placed_share = 1e-3;
+
 /// P(x, λ) as steps of arclength need it. Not to be shared between threads.
 class FollowedMap {
  public:
@@ -24,6 +27,7 @@ class FollowedMap {
     int runs = 0, held = 0, shortest = 0;
     double rebounds = 0;  ///< u = h Σ|v⁺ − v⁻| over contacts that rebound, m
     double slowest = 0;   ///< least approach among these, m/s; 0: none rebounds
+    double pace = 0;      ///< of contact points, rms speed over rms distance from their mean place, rad/s
     double tip = 0, tip_velocity = 0, penetration = 0;
     bool untold = false;  ///< an impact had no jump
   };
@@ -45,7 +49,7 @@ class SteppedMap final : public FollowedMap {
 
   /// `at`: the value whose coordinates x has. `rebounds`: whether stops give back speed to masses, or are met at whole
   /// steps; without, derivatives are those of the steps. Throws Refusal of a law that keeps a memory.
-  SteppedMap(Make make, Carry carry, double at, double parameter_metres, bool rebounds = true);
+  SteppedMap(Make make, Carry carry, double at, const ArcUnits& units, bool rebounds = true);
 
   int size() const override { return vector_->size(); }
   const StateMetric& metric() const override { return *metric_; }

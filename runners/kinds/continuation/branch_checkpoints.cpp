@@ -49,7 +49,7 @@ void serialize(Archive& archive, CornerRoots& roots) {
 template <class Archive>
 void serialize(Archive& archive, BranchCorner& corner) {
   archive(corner.parameter, corner.arc, corner.tip, corner.way, corner.runs, corner.held, corner.shortest, corner.raw,
-          corner.smooth, corner.leading, corner.change, corner.residual, corner.rebounds);
+          corner.smooth, corner.leading, corner.change, corner.residual, corner.rebounds, corner.slowest);
 }
 
 template <class Archive>
@@ -59,7 +59,7 @@ void serialize(Archive& archive, MarkedOrbit& mark) {
 
 template <class Archive>
 void serialize(Archive& archive, BranchTrace& trace) {
-  archive(trace.corners, trace.states, trace.stride, trace.marks, trace.ties, trace.rebounds, trace.end);
+  archive(trace.corners, trace.states, trace.stride, trace.marks, trace.ties, trace.rebounds, trace.ends, trace.end);
 }
 
 template <class Archive>
@@ -75,7 +75,7 @@ void serialize(Archive& archive, KeptBranch& kept) {
 
 namespace {
 
-constexpr int branches_version = 5;
+constexpr int branches_version = 6;
 constexpr double keep_interval = 2;  // s
 
 struct KeptWithSets {

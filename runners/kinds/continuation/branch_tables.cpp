@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <ricochet/measure/orbits/own_march.hpp>
 
 #include "runners/store/record_values.hpp"
 
@@ -26,7 +27,7 @@ void cut_at(BranchTrace& trace, const SpecialPoint& point) {
   if (left < trace.corners.size()) trace.corners.resize(left);
   std::erase_if(trace.states, [&](const auto& one) { return one.first >= static_cast<long long>(left); });
   std::erase_if(trace.marks, [&](const MarkedOrbit& one) { return one.corner >= static_cast<long long>(left); });
-  trace.end = fmt::format("stopped at the first {}, at {:.10g}", point.kind, point.parameter);
+  trace.end_by(TraceEnd::asked, fmt::format("stopped at the first {}, at {:.10g}", point.kind, point.parameter));
 }
 
 namespace {
@@ -62,14 +63,23 @@ BranchRow row_of(const Map& map, const March& made, const MapClock& clock, const
   return row;
 }
 
+BranchRow with_march(BranchRow row, const OwnMarch& own) {
+  if (own.end) return row;
+  row.march_displacement = own.displacement;
+  row.march_velocity = own.velocity;
+  return row;
+}
+
 }  // namespace
 
 BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter) {
-  return row_of(map, map.march(x, parameter, clock, true), clock, x, parameter);
+  return with_march(row_of(map, map.march(x, parameter, clock, true), clock, x, parameter),
+                    own_march(map, x, parameter, clock, told_periods));
 }
 
 BranchRow orbit_row(SteppedMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter) {
-  return row_of(map, map.march(x, parameter, clock), clock, x, parameter);
+  return with_march(row_of(map, map.march(x, parameter, clock), clock, x, parameter),
+                    own_march(map, x, parameter, clock, told_periods));
 }
 
 void put_multipliers(const std::vector<std::complex<double>>& multipliers, const Outside& outside, int most,
@@ -149,6 +159,8 @@ std::vector<BranchRow> rows_of(Map& map, const FollowedBranch& branch, int multi
     row->tip_velocity = marched.tip_velocity;
     row->penetration = marched.penetration;
     row->residual = marched.residual;
+    row->march_displacement = marched.march_displacement;
+    row->march_velocity = marched.march_velocity;
     put_half_step(branch.trace.corners[static_cast<std::size_t>(number)].smooth, *row);
     ++row;
   }
@@ -212,6 +224,7 @@ std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std:
     for (const auto& [corner, name] : branch.leaves)
       if (corner == point.corner && (point.kind == "symmetry" || point.kind == "flip"))
         row.to_branch += (row.to_branch.empty() ? "" : " ") + name;
+    row.ended = text(point.ends);
     row.note = point.note;
     rows.push_back(std::move(row));
   }
@@ -253,6 +266,7 @@ void BranchResults::add_missing(const std::string& name, double at, std::string 
   row.kind = "end";
   row.label = "EP";
   row.parameter = at;
+  row.ended = "missing";
   row.note = why;
   if (missing_.empty()) missing_ = std::move(why);
 }

@@ -102,8 +102,10 @@ std::vector<Field> continuation_keys() {
   marks.nullable = true;
 
   ObjectForm at_most;
-  at_most.fields = {integer("pieces", {1, 1000000000, false, false}, 200000, "Pieces or steps of a branch."),
-                    single(real("arc", "m", positive, 1.0, "Length of a branch."))};
+  at_most.fields = {
+      integer("pieces", {1, 1000000000, false, false}, 200000, "Pieces or steps of a branch."),
+      optional(single(real("arc", "m", positive, std::nullopt,
+                           "Length of a branch; null: ten times the sum of the gap and the range in metres.")))};
   Field reference = methods("reference", Role::reference,
                             "A reference whose orbits are followed too, or a list, whose first counts; null: none.");
   reference.fallback = Json(nullptr);
@@ -276,7 +278,7 @@ ContinuationPlan continuation_plan(const Json& settings) {
   if (const auto given = settings.find("mark"); given != settings.end())
     plan.marks = given->at("parameter").get<std::vector<double>>();
   plan.most_pieces = settings.at("at_most").at("pieces").get<long long>();
-  plan.longest = settings.at("at_most").at("arc").get<double>();
+  if (const Json& arc = settings.at("at_most").at("arc"); arc.is_number()) plan.longest = arc.get<double>();
   return plan;
 }
 

@@ -46,8 +46,11 @@ struct ContinuationPlan {
   int multipliers = 4;
   std::vector<double> marks;
   long long most_pieces = 200000;
-  double longest = 1;  ///< arc, m
+  std::optional<double> longest;  ///< arc, m
   double range() const { return to - from; }
+  /// Arclength at which a branch ends, m. Without one of the study ten times the gap and the range: a branch that goes
+  /// to and fro over both some times ends at ends of its own. `metres`: of one unit of the parameter.
+  double longest_arc(double gap, double metres) const { return longest.value_or(10 * (gap + metres * range())); }
 };
 
 std::vector<Field> continuation_keys();

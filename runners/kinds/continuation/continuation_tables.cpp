@@ -83,8 +83,16 @@ RowType<BranchRow> branch_row_type(int multipliers, const SweptColumns& swept = 
       .add({"penetration", "m", "Largest distance by which a point is beyond its stop."}, &BranchRow::penetration)
       .add({"iterations", "1", "Iterations of Newton's method for this orbit; 0: its piece ended there."},
            &BranchRow::iterations)
-      .add({"residual", "m", "Root mean square of what a marched period changes, velocities over ω."},
-           &BranchRow::residual)
+      .add(
+          {"residual", "m",
+           "Root mean square of what a period changes, velocities over ω. Impacts that rebound are placed within their "
+           "step."},
+          &BranchRow::residual)
+      .add({"march_displacement", "m",
+            "How far the scheme's own march is from the orbit after one or two periods, the larger; root mean square "
+            "over nodes."},
+           &BranchRow::march_displacement)
+      .add({"march_velocity", "m/s", "The same of velocities."}, &BranchRow::march_velocity)
       .add({"pieces", "1", "Pieces, or steps, since the row before."}, &BranchRow::pieces)
       .add({"direction", "1", "1 where the parameter grows along the branch, −1 where it falls."},
            &BranchRow::direction)
@@ -138,6 +146,10 @@ TableType<SpecialRow> special_points_type(const SweptColumns& swept) {
       .add({"held_before", "1", "Of the runs before the point, contacts that never open."}, &SpecialRow::held_before)
       .add({"held_after", "1", "Of the runs after it, contacts that never open."}, &SpecialRow::held_after)
       .add({"to_branch", "", "The branch that begins here."}, &SpecialRow::to_branch)
+      .add({"ended", "",
+            "Of an end: range (of the parameter), closed, joined (another branch), asked (stop_at), limit (at_most or "
+            "budget), left, missing."},
+           &SpecialRow::ended)
       .add({"note", "", "What is not certain, or why the branch ends."}, &SpecialRow::note);
   return {"special_points", "One special point of a branch.", rows};
 }

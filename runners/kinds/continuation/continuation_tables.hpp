@@ -28,6 +28,7 @@ struct BranchRow {
   std::optional<double> penetration;
   std::optional<int> iterations;
   std::optional<double> residual;
+  std::optional<double> march_displacement, march_velocity;  ///< of OwnMarch, over told_periods
   std::optional<long long> pieces;
   std::optional<int> direction;
   std::optional<int> point;  ///< of special_points, where the row is one
@@ -49,7 +50,7 @@ struct SpecialRow {
   std::string side;
   std::optional<double> contact_phase, contact_x;
   std::optional<int> runs_before, runs_after, held_before, held_after;
-  std::string to_branch, note;
+  std::string to_branch, ended, note;
 };
 TableType<SpecialRow> special_points_type(const SweptColumns& swept = {});
 

@@ -271,7 +271,7 @@ std::unique_ptr<PeriodicMap> ContinuedMap::map() {
       return program(scene);
     };
   }
-  return std::make_unique<PeriodicMap>(program(origin_), *lanes_, metres_, std::move(load));
+  return std::make_unique<PeriodicMap>(program(origin_), *lanes_, units(), std::move(load));
 }
 
 SteppedMap ContinuedMap::stepped_map(double at) {
@@ -286,7 +286,7 @@ SteppedMap ContinuedMap::stepped_map(double at) {
     return SteppedMap::Scene{scenes_.program(scene.group, {scene.lane}, tangents), scene.group};
   };
   const auto carry = [this](const LaneState& state, int from, int to) { return scenes_.carry(state, from, to); };
-  return {make, carry, at, metres_, rebounds_};
+  return {make, carry, at, units(), rebounds_};
 }
 
 }  // namespace ricochet

@@ -43,6 +43,8 @@ class ContinuedMap {
   double gap() const { return gap_; }
   /// Metres per unit of the parameter, in the length of a branch: 1 of a length, else the gap over the value.
   double parameter_metres() const { return metres_; }
+  /// With the pulsation of the forcing at the first orbit.
+  ArcUnits units() const { return {metres_, scenes_[reference_].pulsation}; }
   /// Unit of prominences: the gap for a length, else the value.
   double parameter_scale() const { return gap_ / metres_; }
   /// The map, which this outlives; only where no_pieces() is "".

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ricochet/measure/orbits/own_march.hpp>
 #include <ricochet/measure/orbits/stepped_map.hpp>
 
 #include "runners/kinds/kind.hpp"
@@ -33,6 +34,15 @@ int alternating_point(const FollowedMap&, const ShotOrbit&) {
 }
 
 template <class Map>
+OwnMarch own_march_of(Map& map, const Eigen::VectorXd& x, double parameter, const MapClock& clock) {
+  return own_march(map, x, parameter, clock, 1);
+}
+// What is solved without steps is its own march.
+OwnMarch own_march_of(ReferenceOrbits&, const Eigen::VectorXd&, double, const MapClock&) {
+  return {};
+}
+
+template <class Map>
 class OrbitSearch {
  public:
   OrbitSearch(Map& map, const OrbitStarts& starts, const WantedOrbit& orbit)
@@ -50,18 +60,29 @@ class OrbitSearch {
     if (const int sooner = repeats_after(found); sooner > 0)
       throw Refusal{fmt::format("the orbit found from {} at λ = {:g} repeats after {} period{}; expected period {}",
                                 from(), orbit_.at, sooner, sooner == 1 ? "" : "s", orbit_.period)};
-    // Where impacts are placed so badly every motion is near to an orbit.
-    constexpr double largest_rebounds = 0.01;  // of the gap
-    if (const double placed = rebounds_of(map_.march(found.shot.x, orbit_.at, found.clock));
-        placed > largest_rebounds * starts_.gap)
-      throw Refusal{
-          fmt::format("impacts that rebound are placed to {:.3g} m alone at λ = {:g}, more than a hundredth of the "
-                      "gap: give more steps per period",
-                      placed, orbit_.at)};
+    check_march(found);
     return found;
   }
 
  private:
+  // Whether the scheme's own march stays with the orbit for a period, in displacement and in velocity: to a millionth
+  // of the gap, or to what the steps of its impacts explain. An impact is up to h late, some schemes take two steps of
+  // it.
+  void check_march(const FirstOrbit& found) {
+    constexpr double late = 4;
+    const OwnMarch own = own_march_of(map_, found.shot.x, orbit_.at, found.clock);
+    const auto made = map_.march(found.shot.x, orbit_.at, found.clock);
+    const double far = std::max(image_tolerance * starts_.gap, late * rebounds_of(made)),
+                 fast = far * std::max(map_.metric().pulsation(), pace_of(made));
+    if (!own.end && own.displacement <= far && own.velocity <= fast) return;
+    throw Refusal{fmt::format(
+        "no orbit at λ = {:g}: the scheme's own march leaves what was solved by {:.3g} m and {:.3g} "
+        "m/s in a period; its impacts explain {:.3g} m and {:.3g} m/s{}",
+        orbit_.at, own.displacement, own.velocity, far, fast, own.end ? "; " + text(own.end) : std::string())};
+  }
+  static double pace_of(const MapMarch&) { return 0; }
+  static double pace_of(const FollowedMap::Image& image) { return image.pace; }
+
   MapClock clock(bool half) const { return {starts_.steps_per_period, orbit_.period, half}; }
 
   ShotOrbit solve(const Eigen::VectorXd& x, const MapClock& clock) {
@@ -93,11 +114,11 @@ class OrbitSearch {
     }
   }
 
-  // Whether the map brings an orbit back to itself: to a millionth of the gap, or to what its impacts are placed to.
+  // Whether the map brings an orbit back to itself: to a millionth of the gap, or to what placed impacts leave.
   bool returns(const Eigen::VectorXd& x, const MapClock& clock) const {
     const auto made = map_.march(x, orbit_.at, clock);
     return !made.end &&
-           map_.metric().size(made.image - x) <= std::max(image_tolerance * starts_.gap, rebounds_of(made));
+           map_.metric().size(made.image - x) <= std::max(image_tolerance * starts_.gap, placed_share * rebounds_of(made));
   }
   static double rebounds_of(const MapMarch&) { return 0; }
   static double rebounds_of(const FollowedMap::Image& image) { return image.rebounds; }

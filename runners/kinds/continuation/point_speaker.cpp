@@ -244,6 +244,72 @@ void PointSpeaker::say_orbits(say::Answer& answer) const {
   answer.say(std::move(said));
 }
 
+void PointSpeaker::say_ends(say::Answer& answer) const {
+  // Of the reference case each branch that ends inside the range, in words; of other cases their number.
+  struct Ways {
+    const char *ended, *words;
+    int count = 0;
+  } ways[] = {{"range", "go to an end of the range"},
+              {"closed", "close"},
+              {"joined", "join another branch"},
+              {"asked", "stop at a point of stop_at"}};
+  int branches = 0, others = 0;
+  std::vector<SpecialRow> inside;
+  for (const CaseRecord* one : points_.cases()) {
+    bool here = false;
+    for (SpecialRow& row : special_points_type().read(one->tables)) {
+      if (row.kind != "end" || row.ended == "missing") continue;
+      ++branches;
+      const auto way =
+          std::find_if(std::begin(ways), std::end(ways), [&](const Ways& known) { return row.ended == known.ended; });
+      if (way != std::end(ways))
+        ++way->count;
+      else if (one == points_.reference())
+        inside.push_back(std::move(row));
+      else
+        here = true;
+    }
+    others += here;
+  }
+  if (branches == 0) return;
+  std::vector<std::string> parts;
+  Sentence whole;
+  for (const Ways& way : ways) {
+    if (way.count == 0) continue;
+    parts.push_back(fmt::format("{} {}", way.count, way.words));
+    Clause part{.form = "value", .measure = "branches", .status = way.ended};
+    part.value = way.count;
+    part.unit = "1";
+    whole.clauses.push_back(part);
+  }
+  whole.text = parts.empty() ? fmt::format("None of {} branches goes to an end of the range.", branches)
+                             : fmt::format("Of {} branches {}.", branches, and_list(parts));
+  if (parts.empty()) whole.clauses.push_back({.form = "status", .measure = "branches", .status = "none"});
+  answer.say(std::move(whole));
+  constexpr std::size_t most_inside = 2;
+  for (std::size_t k = 0; k < std::min(most_inside, inside.size()); ++k) {
+    const SpecialRow& row = inside[k];
+    Clause end{.form = "value", .measure = "end of a branch", .who = row.branch, .methods = points_.reference()->id};
+    end.value = row.parameter;
+    end.unit = unit_;
+    end.status = row.ended;
+    answer.say(fmt::format("{} ends inside the range, at {}{}: {}.", row.branch, short_number(*row.parameter, 6),
+                           unit(), row.note),
+               end);
+  }
+  const std::size_t more = inside.size() - std::min(most_inside, inside.size());
+  parts.clear();
+  if (more > 0) parts.push_back(fmt::format("{} more branch{} of that case", more, more == 1 ? "" : "es"));
+  if (others > 0) parts.push_back(fmt::format("branches of {} other case{}", others, others == 1 ? "" : "s"));
+  if (parts.empty()) return;
+  Clause rest{.form = "value", .measure = "branches", .status = "inside"};
+  rest.value = static_cast<double>(more) + others;
+  rest.unit = "1";
+  answer.say(
+      fmt::format("Inside the range end {}{} (special_points.csv).", inside.empty() ? "" : "also ", and_list(parts)),
+      rest);
+}
+
 void PointSpeaker::say_nothing(say::Answer& answer) const {
   std::string note;
   for (const CaseRecord& one : study_.results().cases)
@@ -267,6 +333,7 @@ answers::Answer continuation_answer(const answers::Compared& study) {
   }
   constexpr std::size_t most = 6;
   answer.keep(most);
+  if (speaker.known()) speaker.say_ends(answer);
   for (answers::Sentence& one : answers::ended(study)) answer.say(std::move(one));
   return answer;
 }

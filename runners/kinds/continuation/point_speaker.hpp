@@ -48,6 +48,8 @@ class PointSpeaker {
   void say_absent(answers::Answer& answer) const;
   void say_turns(answers::Answer& answer) const;
   /// Why no branch began.
+  /// How far branches went, and why those that end inside the range do.
+  void say_ends(answers::Answer& answer) const;
   void say_nothing(answers::Answer& answer) const;
 
  private:

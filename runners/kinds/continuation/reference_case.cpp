@@ -141,7 +141,7 @@ class ReferenceRun {
 
   void follow_branch(ReferenceOrbits& map, FollowedBranch& branch, const ShotOrbit& shot, int way) {
     ArcSteps limits;
-    limits.branch = {plan_.from, plan_.to, plan_.most_pieces, plan_.longest, {}, plan_.multipliers};
+    limits.branch = {plan_.from, plan_.to, plan_.most_pieces, plan_.longest_arc(gap_, metres_), {}, plan_.multipliers};
     limits.tolerance = solved * gap_;
     constexpr double located = 2.5e-5;
     limits.located = located;
@@ -159,8 +159,9 @@ class ReferenceRun {
       failure = refusal.sentence;
     }
     branch.trace = follower.trace();
-    if (!failure.empty()) branch.trace.end = failure;
-    if (over_budget_) branch.trace.end = fmt::format("the budget of {:g} s was spent", budget_of(case_));
+    if (!failure.empty()) branch.trace.end_by(TraceEnd::left, failure);
+    if (over_budget_)
+      branch.trace.end_by(TraceEnd::limit, fmt::format("the budget of {:g} s was spent", budget_of(case_)));
     if (const auto point = stopping(branch, branch.trace)) cut_at(branch.trace, *point);
     steps_ += static_cast<long long>(branch.trace.corners.size());
   }

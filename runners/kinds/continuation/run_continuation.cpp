@@ -145,7 +145,7 @@ class ContinuationRun {
       if (way < 0) branch.other = &followed_[first];
       run_branch(branch, shot, way, depth);
       // A branch that closes has been followed both ways.
-      if (followed_.back().trace.end.starts_with("closed")) break;
+      if (followed_.back().trace.ends == TraceEnd::closed) break;
       if (over_budget_ && depth > 0) break;
     }
     const std::size_t behind = followed_.size();
@@ -179,8 +179,9 @@ class ContinuationRun {
   }
 
   auto begin(const FollowedBranch& branch, const ShotOrbit& shot, int way) {
-    BranchLimits limits{continued_.from(), continued_.to(), plan_.most_pieces,
-                        plan_.longest,     plan_.marks,     plan_.multipliers};
+    BranchLimits limits{continued_.from(), continued_.to(),
+                        plan_.most_pieces, plan_.longest_arc(continued_.gap(), continued_.parameter_metres()),
+                        plan_.marks,       plan_.multipliers};
     limits.ends_at_image = !branch.clock.half && branch.clock.period % 2 != 0 && continued_.no_image().empty();
     return begin_branch(map_, branch.clock, shot, way, std::move(limits), round_off_,
                         checkpoints_.find(branch.name, sets_of(map_)));
@@ -228,9 +229,10 @@ class ContinuationRun {
     if (!stopping && !over_budget_) stopping = stopping_point(branch, branch.trace);
     if (stopping) cut_at(branch.trace, *stopping);
     if (const std::string& why = continued_.impossible(branch.trace.corners.back().parameter);
-        branch.trace.end.starts_with("the range ends") && !why.empty())
+        branch.trace.ends == TraceEnd::range && !why.empty())
       branch.trace.end += "; " + why;
-    if (over_budget_) branch.trace.end = fmt::format("the budget of {:g} s was spent", budget_of(case_));
+    if (over_budget_)
+      branch.trace.end_by(TraceEnd::limit, fmt::format("the budget of {:g} s was spent", budget_of(case_)));
     checkpoints_.keep(branch.name, kept(run), sets_of(map_));
     pieces_ += run.pieces();
     ties_ += branch.trace.ties;

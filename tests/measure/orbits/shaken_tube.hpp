@@ -38,7 +38,7 @@ inline PeriodicMap tube_map(int steps, int elements = 10, const Methods& methods
   const Program low = tube_program(0.05, steps, elements, methods), high = tube_program(0.1, steps, elements, methods);
   const auto lanes = affine_lane(low.lanes[0], 0.05, high.lanes[0], 0.1);
   REQUIRE(lanes);
-  return PeriodicMap(tube_program(0.08, steps, elements, methods), *lanes, 1.0);
+  return PeriodicMap(tube_program(0.08, steps, elements, methods), *lanes, {1.0, tube_pulsation});
 }
 
 /// The state that so many periods from rest lead to.

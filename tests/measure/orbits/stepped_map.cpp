@@ -23,7 +23,7 @@ SteppedMap amplitude_map(int steps, int elements) {
     REQUIRE(std::holds_alternative<Program>(program));
     return SteppedMap::Scene{std::move(std::get<Program>(program)), 0};
   };
-  return {make, [](const LaneState& state, int, int) { return state; }, 0.08, 1.0};
+  return {make, [](const LaneState& state, int, int) { return state; }, 0.08, {1.0, tube_pulsation}};
 }
 
 }  // namespace
