@@ -251,8 +251,9 @@ StrobeTip march_over(Marcher& marcher, const MapClock& clock, const Observers& o
   marcher.march(clock.steps() - 2, observers);
   const double before = marcher.tip(0);
   marcher.march(1, observers);
-  tip.velocity = (after - clock.sign() * before) / (2 * marcher.program().h);
-  tip.open = clock.sign() * marcher.tip(0) - tip.displacement;
+  // What does not close is no speed.
+  const double open = clock.sign() * marcher.tip(0) - tip.displacement;
+  tip.velocity = (after - clock.sign() * before + open) / (2 * marcher.program().h);
   return tip;
 }
 

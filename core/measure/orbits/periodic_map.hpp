@@ -136,7 +136,6 @@ class PeriodicMap {
 /// The tip where steps over a map begin, and its central velocity over two steps there, as the map's sign has it.
 struct StrobeTip {
   double displacement = 0, velocity = 0;  ///< m, absolute; m/s
-  double open = 0;                        ///< how far the tip is from there at the end, m
 };
 /// Marches lane 0 over the steps of a map, from a set clock.
 StrobeTip march_over(Marcher& marcher, const MapClock& clock, const Observers& observers);

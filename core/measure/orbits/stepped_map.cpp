@@ -146,8 +146,7 @@ SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const M
     if (jump && jump->needed()) observers.add(&*jump);
     const StrobeTip tip = march_over(marcher, clock, observers);
     out.tip = tip.displacement;
-    // What does not close is no speed.
-    out.tip_velocity = tip.velocity + tip.open / (2 * marcher.program().h);
+    out.tip_velocity = tip.velocity;
     out.end = marcher.status(0).end;
     if (out.end) return out;
     if (first == 0) {

@@ -247,18 +247,18 @@ void PointSpeaker::say_orbits(say::Answer& answer) const {
 void PointSpeaker::say_ends(say::Answer& answer) const {
   // Of the reference case each branch that ends inside the range, in words; of other cases their number.
   struct Ways {
-    const char *ended, *words;
+    const char *ended, *one, *many;
     int count = 0;
-  } ways[] = {{"range", "go to an end of the range"},
-              {"closed", "close"},
-              {"joined", "join another branch"},
-              {"asked", "stop at a point of stop_at"}};
+  } ways[] = {{"range", "goes to an end of the range", "go to an end of the range"},
+              {"closed", "closes", "close"},
+              {"joined", "joins another branch", "join another branch"},
+              {"asked", "stops at a point of stop_at", "stop at a point of stop_at"}};
   int branches = 0, others = 0;
   std::vector<SpecialRow> inside;
   for (const CaseRecord* one : points_.cases()) {
     bool here = false;
     for (SpecialRow& row : special_points_type().read(one->tables)) {
-      if (row.kind != "end" || row.ended == "missing") continue;
+      if (row.kind != "end" || row.ended.empty() || row.ended == "missing") continue;
       ++branches;
       const auto way =
           std::find_if(std::begin(ways), std::end(ways), [&](const Ways& known) { return row.ended == known.ended; });
@@ -276,14 +276,15 @@ void PointSpeaker::say_ends(say::Answer& answer) const {
   Sentence whole;
   for (const Ways& way : ways) {
     if (way.count == 0) continue;
-    parts.push_back(fmt::format("{} {}", way.count, way.words));
+    parts.push_back(fmt::format("{} {}", way.count, way.count == 1 ? way.one : way.many));
     Clause part{.form = "value", .measure = "branches", .status = way.ended};
     part.value = way.count;
     part.unit = "1";
     whole.clauses.push_back(part);
   }
-  whole.text = parts.empty() ? fmt::format("None of {} branches goes to an end of the range.", branches)
-                             : fmt::format("Of {} branches {}.", branches, and_list(parts));
+  const std::string all = fmt::format("{} branch{}", branches, branches == 1 ? "" : "es");
+  whole.text = parts.empty() ? fmt::format("None of {} goes to an end of the range.", all)
+                             : fmt::format("Of {} {}.", all, and_list(parts));
   if (parts.empty()) whole.clauses.push_back({.form = "status", .measure = "branches", .status = "none"});
   answer.say(std::move(whole));
   constexpr std::size_t most_inside = 2;

@@ -227,6 +227,43 @@ TEST_CASE("a study without orbits says why") {
   CHECK_NOTHROW(with_tables(nothing));
 }
 
+TEST_CASE("an answer says how far branches went, and why those that end inside the range do") {
+  const auto with_ends = [](const std::vector<std::vector<std::string>>& of_cases) {
+    StudyResults all = synthetic::points();
+    // That of the finest case of the first method, which is told of, comes first.
+    all.cases = {all.cases[5], all.cases[15]};
+    for (std::size_t c = 0; c < all.cases.size(); ++c) {
+      std::vector<SpecialRow> rows;
+      for (const std::string& ended : of_cases[c]) {
+        SpecialRow& row = rows.emplace_back();
+        row.branch = rows.size() == 1 ? "orbit-1+" : "orbit-1-";
+        row.kind = "end";
+        row.parameter = 0.0998;
+        row.ended = ended;
+        row.note = "why it " + ended;
+      }
+      std::erase_if(all.cases[c].tables, [](const Table& table) { return table.name == "special_points"; });
+      all.cases[c].tables.push_back(special_points_type().with(rows));
+    }
+    std::vector<std::string> said = sentences_of(with_tables(std::move(all)));
+    std::erase_if(said, [](const std::string& one) {
+      return one.find("branch") == std::string::npos && one.find("orbit-") == std::string::npos;
+    });
+    return said;
+  };
+  CHECK(with_ends({{"range", "range"}, {"range", "closed"}}) ==
+        std::vector<std::string>{"Of 4 branches 3 go to an end of the range and 1 closes."});
+  CHECK(with_ends({{"range", "left"}, {"limit", "joined"}}) ==
+        std::vector<std::string>{"Of 4 branches 1 goes to an end of the range and 1 joins another branch.",
+                                 "orbit-1- ends inside the range, at 0.0998: why it left.",
+                                 "Inside the range end also branches of 1 other case (special_points.csv)."});
+  CHECK(with_ends({{"left"}, {}}) ==
+        std::vector<std::string>{"None of 1 branch goes to an end of the range.",
+                                 "orbit-1+ ends inside the range, at 0.0998: why it left."});
+  // Stores of earlier versions do not say.
+  CHECK(with_ends({{"", ""}, {""}}).empty());
+}
+
 TEST_CASE("values are said to the digits that their intervals bear") {
   CHECK(point_value(0.1005653, 1.2e-6) == "0.1005653 ± 1.2e-6");
   CHECK(point_value(0.1005653, 3e-5) == "0.10057 ± 3e-5");
