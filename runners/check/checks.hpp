@@ -70,6 +70,8 @@ struct ParameterSet {
 /// default a hundredth and a hundredfold. Each word, both truths.
 std::vector<ParameterSet> parameter_sets(const std::vector<ParameterSpec>& specs);
 
+ParameterSet parameter_set(const std::vector<ParameterSpec>& specs, Parameters values);
+
 /// A method with one set of values.
 template <class Interface>
 struct Subject {

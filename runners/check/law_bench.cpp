@@ -74,6 +74,26 @@ void LawBench::remember(bool on) {
   std::fill(memory_.begin(), memory_.end(), 0.0);
 }
 
+void LawBench::keep(std::vector<double> memory) {
+  remembers_ = true;
+  memory_ = std::move(memory);
+}
+
+std::vector<double> LawBench::of_lane(const std::vector<double>& memory, int lane) const {
+  std::vector<double> numbers;
+  for (auto at = static_cast<std::size_t>(lane); at < memory.size(); at += static_cast<std::size_t>(lanes_))
+    numbers.push_back(memory[at]);
+  return numbers;
+}
+
+std::vector<double> LawBench::of_point(const std::vector<double>& memory, Eigen::Index point, int lane) const {
+  std::vector<double> numbers;
+  for (auto at = static_cast<std::size_t>(point * lanes_ + lane); at < memory.size();
+       at += static_cast<std::size_t>(points_ * lanes_))
+    numbers.push_back(memory[at]);
+  return numbers;
+}
+
 StopState LawBench::state(int side, double depth) const {
   StopState state{.depth = depth, .side = -side};
   if (!memory_.empty()) state.memory = {memory_.data(), points_ * lanes_};

@@ -43,6 +43,12 @@ class LawBench {
 
   /// Whether what the law keeps lasts from one solve to the next (not at first); it begins with none.
   void remember(bool on);
+  /// What the law keeps, and the same put in its place, to last; of it, what belongs to a lane, or to one of its
+  /// points.
+  const std::vector<double>& memory() const { return memory_; }
+  void keep(std::vector<double> memory);
+  std::vector<double> of_lane(const std::vector<double>& memory, int lane) const;
+  std::vector<double> of_point(const std::vector<double>& memory, Eigen::Index point, int lane) const;
   /// How the law left that side of the first point of the first lane, and its depth; `side` as in at_point().
   StopState state(int side, double depth) const;
   /// Asks the law: `touched` lanes of `problems` (one per lane). The law's memory is forgotten before, unless it lasts.
@@ -70,6 +76,8 @@ struct PointAnswer {
   ContactSlopes slopes;
 };
 PointAnswer at_point(LawBench& bench, int side, double depth, double speed, double before);
+/// Depths at which a law that acts from its layer on can be asked, in order; a barrier never lets a point reach 0.
+std::vector<double> depths_of(LawBench& bench);
 /// Whether the law acts before its stop and has no force beyond it.
 bool is_barrier(LawBench& bench);
 
@@ -81,6 +89,16 @@ DenseDelassus random_delassus(std::mt19937& random, int points, double flexibili
 
 /// m/N at which the law is asked: the inverse of its stiffness, found from what one point answers; 1e-4 where rigid.
 double flexibility_of(const Law& law);
+
+/// Lanes of a block that are solved together.
+constexpr int lanes_of_block = 4;
+/// The layer of a law that is a barrier, else 0; the reach at which a law is asked: no effort moves a barrier's point.
+double barrier_of(const Law& law);
+double reach_of(const Law& law);
+/// A block of random lanes; those of a barrier lie within its layer.
+std::vector<LaneProblem> random_lanes(std::mt19937& random, int points, double barrier);
+
+inline constexpr const char* no_contact_at_all = "the law is the absence of contact";
 
 // Rigid laws.
 Verdict complementarity_holds(const Law& law);
@@ -94,14 +112,24 @@ Verdict potential_stores_the_force(const Law& law);
 Verdict energy_over_a_step(const Law& law);
 Verdict dissipation_is_reported(const Law& law);
 
+// What lasts from one solve to the next (law_memory.cpp).
+Verdict answers_follow_from_memory(const Law& law);
+/// A law that remembers, pressed, let go and pressed again, deeper. It stores no more than was put in, and nothing that
+/// no force gives back. What it reports as dissipated is a damper's at least, and no more than is lost.
+Verdict stores_what_it_gives_back(const Law& law);
+Verdict dissipates_what_is_lost(const Law& law);
+
 // Laws that change the problem.
 Verdict changed_problem_is_sound(const Law& law);
 
 // All laws.
 Verdict solve_allocates_nothing(const Law& law);
-Verdict lanes_are_independent(const Law& law);
-Verdict untouched_lanes_are_left_alone(const Law& law);
 Verdict warm_start_changes_nothing(const Law& law);
+
+// Lanes and points with parameters of their own (law_lanes.cpp).
+Verdict lanes_are_independent(const Law& law);
+Verdict unlike_lanes_are_their_own(const Law& law);
+Verdict untouched_lanes_are_left_alone(const Law& law);
 Verdict points_have_own_sets(const Law& law);
 
 const std::vector<Check<ContactLaw>>& law_checks();

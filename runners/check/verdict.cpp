@@ -171,26 +171,26 @@ std::string value_text(const ParameterValue& value) {
   return fmt::format("{:g}", as_real(value));
 }
 
-ParameterSet described(const std::vector<ParameterSpec>& specs, Parameters values) {
+}  // namespace
+
+ParameterSet parameter_set(const std::vector<ParameterSpec>& specs, Parameters values) {
   std::string text;
   for (const ParameterSpec& spec : specs)
     text += (text.empty() ? "" : ", ") + spec.key + " " + value_text(values.values().at(spec.key));
   return {std::move(values), std::move(text)};
 }
 
-}  // namespace
-
 std::vector<ParameterSet> parameter_sets(const std::vector<ParameterSpec>& specs) {
   constexpr std::size_t most_sets = 24;
   Parameters base;
   for (const ParameterSpec& spec : specs) base.set(spec.key, first_value(spec));
-  std::vector<ParameterSet> sets = {described(specs, base)};
+  std::vector<ParameterSet> sets = {parameter_set(specs, base)};
   for (const ParameterSpec& spec : specs)
     for (const ParameterValue& value : further_values(spec)) {
       if (check_parameter(spec, value)) continue;
       Parameters values = base;
       values.set(spec.key, value);
-      ParameterSet set = described(specs, std::move(values));
+      ParameterSet set = parameter_set(specs, std::move(values));
       const bool known =
           std::any_of(sets.begin(), sets.end(), [&](const ParameterSet& other) { return other.text == set.text; });
       if (!known && sets.size() < most_sets) sets.push_back(std::move(set));
