@@ -9,6 +9,7 @@
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
 #include "runners/study/axis_meaning.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet::answers {
 namespace {
@@ -69,14 +70,7 @@ std::string spaced(std::string text) {
 }  // namespace
 
 std::optional<double> as_number(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  std::size_t read = 0;
-  try {
-    const double value = std::stod(text, &read);
-    return read == text.size() ? std::optional(value) : std::nullopt;
-  } catch (const std::exception&) {
-    return std::nullopt;
-  }
+  return number_in(text);
 }
 
 bool is_refinement(const std::string& column) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "runners/report/html.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet::answers {
 namespace {
@@ -82,13 +83,13 @@ std::string short_number(double value, int digits) {
       mantissa.erase(mantissa.find_last_not_of('0') + 1);
       if (mantissa.ends_with('.')) mantissa.pop_back();
     }
-    return with_minus(fmt::format("{}e{}", mantissa, std::stoi(text.substr(at + 1))));
+    return with_minus(fmt::format("{}e{}", mantissa, number_in(text.substr(at + 1)).value_or(0)));
   }
   const int whole =
       std::abs(value) >= 1 && std::abs(value) < many ? static_cast<int>(std::log10(std::abs(value))) + 1 : 0;
   std::string text = fmt::format("{:.{}g}", value, std::max(digits, whole));
   if (const std::size_t at = text.find('e'); at != std::string::npos) {
-    const int exponent = std::stoi(text.substr(at + 1));
+    const double exponent = number_in(text.substr(at + 1)).value_or(0);
     text = fmt::format("{}e{}", text.substr(0, at), exponent);
   }
   return with_minus(text);

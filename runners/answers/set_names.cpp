@@ -8,6 +8,7 @@
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/study/axis_meaning.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet::answers {
 namespace {
@@ -21,16 +22,6 @@ bool is_role(const std::string& column) {
 
 bool contains(const std::vector<std::string>& list, const std::string& item) {
   return std::find(list.begin(), list.end(), item) != list.end();
-}
-
-std::optional<double> number_of(const std::string& text) {
-  try {
-    std::size_t read = 0;
-    const double value = std::stod(text, &read);
-    return read == text.size() ? std::optional(value) : std::nullopt;
-  } catch (const std::exception&) {
-    return std::nullopt;
-  }
 }
 
 }  // namespace
@@ -131,9 +122,9 @@ std::optional<std::string> SetNames::end_of_number(const Attribute& attribute,
   if (attribute.whole || levels.size() < few || levels.size() == attribute.all.size()) return std::nullopt;
   std::vector<std::pair<double, std::string>> all, chosen;
   for (const std::string& level : attribute.all)
-    if (const auto number = number_of(level)) all.emplace_back(*number, level);
+    if (const auto number = number_in(level)) all.emplace_back(*number, level);
   for (const std::string& level : levels) {
-    const auto number = number_of(level);
+    const auto number = number_in(level);
     if (!number) return std::nullopt;
     chosen.emplace_back(*number, level);
   }

@@ -11,6 +11,7 @@
 #include "runners/run/environment.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/atomic_file.hpp"
+#include "runners/table/plain_output.hpp"
 #include "runners/workers/worker_process.hpp"
 
 namespace ricochet {
@@ -304,6 +305,7 @@ const std::vector<Subcommand>& subcommands() {
 
 int run_command(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err,
                 const FindHosts& hosts) {
+  const PlainOutput plain_out(out), plain_err(err);
   const int code = guarded(arguments, out, err, hosts);
   if (!out.flush()) {
     err << "ricochet: the output could not be written completely\n";

@@ -17,7 +17,7 @@ std::string plain(const nlohmann::ordered_json& value) {
   if (value.is_number_float()) {
     const auto number = value.get<double>();
     const std::string exact = fmt::format("{}", number), brief = fmt::format("{:g}", number);
-    return brief.size() < exact.size() && std::stod(brief) == number ? brief : exact;
+    return brief.size() < exact.size() && number_in(brief) == number ? brief : exact;
   }
   return value.dump();
 }

@@ -7,6 +7,7 @@
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/store/fingerprint.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {
@@ -28,7 +29,9 @@ long long slurm_seconds(const std::string& text) {
   std::smatch part;
   if (!std::regex_match(text, part, form))
     throw UsageError("--time expects a time as Slurm writes it: minutes, H:M:S or D-H:M:S; \"" + text + "\" is none");
-  const auto number = [&](std::size_t i) { return part[i].matched ? std::stoll(part[i]) : 0; };
+  const auto number = [&](std::size_t i) {
+    return part[i].matched ? static_cast<long long>(number_in(part[i].str()).value_or(0)) : 0;
+  };
   constexpr long long minute = 60, hour = 3600, day = 86400;
   long long seconds = 0;
   if (part[1].matched)

@@ -8,6 +8,7 @@
 #include "runners/json/json_text.hpp"
 #include "runners/plan_files/plan_file.hpp"
 #include "runners/plan_files/plan_reader.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {
@@ -146,12 +147,7 @@ Range range_of(const std::string& text, const JsonPlace& place) {
     word.erase(0, word.find_first_not_of(' '));
     word.erase(word.find_last_not_of(' ') + 1);
     if (word == "∞" || word == "-∞" || word == "−∞") return unbounded;
-    try {
-      std::size_t end = 0;
-      const double value = std::stod(word, &end);
-      if (end == word.size() && std::isfinite(value)) return value;
-    } catch (const std::exception&) {
-    }
+    if (const auto value = number_in(word); value && std::isfinite(*value)) return *value;
     place.unexpected(expected);
   };
   constexpr double infinity = std::numeric_limits<double>::infinity();

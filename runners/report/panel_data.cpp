@@ -8,6 +8,7 @@
 #include "runners/report/page_data.hpp"
 #include "runners/store/snapshots.hpp"
 #include "runners/table/table_reader.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -20,7 +21,7 @@ constexpr size_t most_cases = 200, most_impacts = 20, most_points = 400, most_po
 PanelJson rounded(double value) {
   if (!std::isfinite(value)) return nullptr;
   constexpr int digits = 6;
-  return std::stod(fmt::format("{:.{}g}", value, digits));
+  return to_digits(value, digits);
 }
 
 PanelJson head_json(const Column& column) {

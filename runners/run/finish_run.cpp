@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "runners/answers/answer.hpp"
 #include "runners/kinds/kind.hpp"
@@ -13,6 +14,8 @@
 #include "runners/run/choice_effects.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/checksums.hpp"
+#include "runners/store/read_store.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/store.hpp"
 #include "runners/store/study_tables.hpp"
@@ -21,6 +24,10 @@
 #include "runners/table/text.hpp"
 
 namespace ricochet {
+
+void say(std::FILE* out, std::string_view text) {
+  say_as_it_is(out, plain_text(text));
+}
 
 void derive_tables(StudyResults& results) {
   results.derived.clear();
@@ -95,28 +102,39 @@ int unless_unusable(const std::function<void()>& work) {
   } catch (const StoreError& error) {
     say(stderr, fmt::format("ricochet: {}\n", error.what()));
     return store_unusable;
+  } catch (const nlohmann::json::exception& error) {
+    // A study that no program wrote: one that did is checked by its checksum.
+    say(stderr, fmt::format("ricochet: what the store says of its study cannot be ({})\n", error.what()));
+    return store_unusable;
   }
+}
+
+/// After all that is whole is written.
+void tell_damage(const std::filesystem::path& folder, const StudyResults& results) {
+  if (results.damage.any()) throw StoreError(damage_text(folder / "results.sqlite", results.damage));
 }
 
 }  // namespace
 
 int rebuild_report_with(const RenderReport& render, const std::filesystem::path& folder) {
   return unless_unusable([&] {
-    const StudyResults results = with_tables(read_store(folder));
+    const StudyResults results = with_tables(read_what_is_whole(folder));
     write_outputs(folder, results, render);
     say(stdout, fmt::format("{}\nreport: {}\n", totals_text(results), (folder / "report.html").string()));
+    tell_damage(folder, results);
   });
 }
 
 int export_tables(const std::filesystem::path& folder, const std::filesystem::path& to, bool one_file) {
   return unless_unusable([&] {
-    const StudyResults results = with_tables(read_store(folder));
+    const StudyResults results = with_tables(read_what_is_whole(folder));
     write_tables(to, results, one_file);
     say(stdout, fmt::format("tables: {}\n", to.string()));
     if (!one_file && !has_curve_files(results))
       say(stdout,
           fmt::format("curves: not written, for more than {} cases have one; --curves writes them all into one file\n",
                       kMostCurveFiles));
+    tell_damage(folder, results);
   });
 }
 

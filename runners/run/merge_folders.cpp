@@ -15,6 +15,7 @@
 #include "runners/run/finish_run.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/checksums.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/folder_lock.hpp"
 #include "runners/store/read_store.hpp"
@@ -88,6 +89,9 @@ class FolderMerge {
     }
     const int code = tell_results(
         said, results, out_, fmt::format("merged from {} folder{}", sources_.size(), sources_.size() == 1 ? "" : "s"));
+    for (const MergedFolder& source : sources_)
+      if (const Damage damage = StoreReader(source.folder).damage(); damage.any())
+        say(said, damage_text(source.folder / "results.sqlite", damage) + "\n");
     if (const std::size_t missing = expected_.size() - results.cases.size(); missing > 0)
       say(said,
           fmt::format("{} of {} cases {} in none of these folders: `ricochet run {} --out {}` goes on\n", missing,

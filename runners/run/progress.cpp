@@ -177,14 +177,14 @@ ProgressState Progress::state() const {
 void Progress::draw() {
   last_line_ = Clock::now();
   if (terminal_)
-    say(out_, fmt::format("\r{}\x1b[K", progress_bar(state(), terminal_width(out_) - 1)));
+    say_as_it_is(out_, fmt::format("\r{}\x1b[K", progress_bar(state(), terminal_width(out_) - 1)));
   else
     say(out_, fmt::format("{}\n", progress_text(state())));
 }
 
 void Progress::erase() {
   if (!terminal_) return;
-  say(out_, "\r\x1b[K");
+  say_as_it_is(out_, "\r\x1b[K");
 }
 
 void Progress::refresh() {

@@ -6,13 +6,14 @@
 #include <numeric>
 
 #include "runners/store/fingerprint.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {
 
 /// What is left of a prediction when the last digits of processors are not told apart.
 double three_digits(double seconds) {
-  return std::stod(fmt::format("{:.2e}", seconds));
+  return to_digits(seconds, 3);
 }
 
 }  // namespace

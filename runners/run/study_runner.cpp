@@ -106,6 +106,9 @@ class FolderRun {
              std::none_of(cases_.begin(), cases_.end(), [&](const StudyCase* one) { return one->id == id; });
     });
     constexpr std::size_t named = 8;
+    if (const std::vector<std::string>& damaged = store_.damaged(); !damaged.empty())
+      tell(fmt::format("{}: {} {} damaged: computed again", (folder_ / "results.sqlite").string(),
+                       plain_text(report::list_text(damaged, named)), damaged.size() == 1 ? "is" : "are"));
     if (!left.empty())
       tell(fmt::format("an earlier run ended while {} {} under way: run again", report::list_text(left, named),
                        left.size() == 1 ? "was" : "were"));

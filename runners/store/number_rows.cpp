@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/checksums.hpp"
 #include "runners/store/folder_lock.hpp"
 #include "runners/store/read_store.hpp"
 #include "runners/store/schema.hpp"
@@ -96,6 +98,8 @@ void keep_numbers(const std::filesystem::path& folder, const std::string& case_i
   const FolderLock lock(folder);
   with_store(folder, [&](SQLite::Database& database) {
     SQLite::Transaction transaction(database);
+    if (!is_whole(database, "", case_id))
+      throw StoreError(fmt::format("{}: the case {} is damaged; run its study again", folder.string(), case_id));
     SQLite::Statement remove(database, "DELETE FROM case_numbers WHERE case_id = ? AND name = ?");
     remove.bind(1, case_id);
     remove.bind(2, table.name);
@@ -107,6 +111,12 @@ void keep_numbers(const std::filesystem::path& folder, const std::string& case_i
     last.reset();
     SQLite::Statement add(database, insert_numbers_sql);
     insert_numbers(add, case_id, position, table);
+    std::map<std::string, SQLite::Statement> statements;
+    const Prepare prepare = [&](const std::string& sql) -> SQLite::Statement& {
+      return statements.try_emplace(sql, database, sql).first->second;
+    };
+    seal_case(prepare, "", case_id);
+    statements.clear();
     transaction.commit();
   });
 }

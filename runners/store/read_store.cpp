@@ -6,35 +6,83 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
 
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/checksums.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/number_rows.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/schema.hpp"
 #include "runners/store/store.hpp"
 #include "runners/study/case_id.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// The cases that are read, and those of them whose rows make no sense: a store of an earlier program has no checksums.
+struct ReadCases {
+  std::map<std::string, CaseRecord*> records;
+  std::set<std::string> damaged = {};
+};
+
+/// A text of a column, as it may be shown.
+std::string text_in(const SQLite::Column& column) {
+  return plain_text(column.getString());
+}
+
+Json plain(const Json& value) {
+  if (value.is_string()) return plain_text(value.get_ref<const std::string&>());
+  if (value.is_array()) {
+    Json out = Json::array();
+    for (const Json& one : value) out.push_back(plain(one));
+    return out;
+  }
+  if (!value.is_object()) return value;
+  Json out = Json::object();
+  for (const auto& [key, one] : value.items()) out[plain_text(key)] = plain(one);
+  return out;
+}
+
+/// A JSON value of a column, its texts as they may be shown. Throws Json::exception.
+Json json_in(const SQLite::Column& column) {
+  const std::string text = column.getString();
+  Json value = Json::parse(text);
+  return is_plain(text) && text.find("\\u") == std::string::npos ? value : plain(value);
+}
+
+/// What a row says cannot be.
+struct BadRow : std::runtime_error {
+  BadRow() : std::runtime_error("a row that cannot be") {}
+};
+
 /// Calls `row(record, statement)` for each row of these columns of `table`, in the order of `order`: of all cases, or
 /// of the only one.
 template <class Row>
-void per_case(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, const char* columns,
-              const char* table, const char* order, Row row) {
-  const bool only = cases.size() == 1;
+void per_case(SQLite::Database& database, ReadCases& cases, const char* columns, const char* table, const char* order,
+              Row row) {
+  const bool only = cases.records.size() == 1;
   SQLite::Statement statement(database, fmt::format("SELECT case_id, {} FROM {}{} ORDER BY case_id, {}", columns, table,
                                                     only ? " WHERE case_id = ?" : "", order));
-  if (only) statement.bind(1, cases.begin()->first);
+  if (only) statement.bind(1, cases.records.begin()->first);
   while (statement.executeStep()) {
-    const auto found = cases.find(statement.getColumn(0).getString());
-    if (found != cases.end()) row(*found->second, statement);
+    const auto found = cases.records.find(statement.getColumn(0).getString());
+    if (found == cases.records.end()) continue;
+    try {
+      row(*found->second, statement);
+    } catch (const BadRow&) {
+      cases.damaged.insert(found->first);
+    } catch (const Json::exception&) {
+      cases.damaged.insert(found->first);
+    }
   }
 }
 
@@ -43,10 +91,17 @@ StudyPart part_of(const Json& value) {
 }
 
 void read_study(SQLite::Database& database, StudyResults& results) {
+  std::set<std::string> unsure = damaged_keys(database);
+  results.damage.environment = unsure.erase("environment") > 0;
+  if (!unsure.empty())
+    throw StoreError(
+        fmt::format("{}: what it says of the study is damaged ({}); `ricochet run STUDY.json` writes that "
+                    "again, and keeps the cases",
+                    database.getFilename(), plain_text(fmt::format("{}", fmt::join(unsure, ", ")))));
   SQLite::Statement statement(database, "SELECT key, value FROM study");
   while (statement.executeStep()) {
     const std::string key = statement.getColumn(0).getString();
-    const Json value = Json::parse(statement.getColumn(1).getString());
+    const Json value = json_in(statement.getColumn(1));
     if (key == "name") results.name = value.get<std::string>();
     if (key == "question") results.question = value.get<std::string>();
     if (key == "kind") results.kind = value.get<std::string>();
@@ -69,13 +124,13 @@ CaseRecord case_of(SQLite::Statement& row) {
   CaseRecord record;
   record.id = row.getColumn(0).getString();
   record.status = row.getColumn(1).getString();
-  record.reason = row.getColumn(2).getString();
+  record.reason = text_in(row.getColumn(2));
   record.steps = row.getColumn(3).getInt64();
   record.setup_seconds = row.getColumn(4).getDouble();
   record.run_seconds = row.getColumn(5).getDouble();
-  record.operator_name = row.getColumn(6).getString();
+  record.operator_name = text_in(row.getColumn(6));
   record.partial = row.getColumn(7).getString().empty();
-  record.arithmetic = row.getColumn(8).getString();
+  record.arithmetic = text_in(row.getColumn(8));
   return record;
 }
 
@@ -94,10 +149,10 @@ std::size_t count_of_numbers(const SQLite::Column& bytes) {
   return static_cast<std::size_t>(bytes.getInt64()) / sizeof(double);
 }
 
-void read_curves(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, StoredSeries* later) {
+void read_curves(SQLite::Database& database, ReadCases& cases, StoredSeries* later) {
   per_case(database, cases, "position, name, length(series)", "curves", "position",
            [&](CaseRecord& record, SQLite::Statement& row) {
-             record.curve.names.push_back(row.getColumn(2).getString());
+             record.curve.names.push_back(text_in(row.getColumn(2)));
              record.curve.columns.push_back(series_of(database, record,
                                                       {{StoredPiece::Of::curves, record.id, row.getColumn(1).getInt(),
                                                         0, count_of_numbers(row.getColumn(3))}},
@@ -105,13 +160,17 @@ void read_curves(SQLite::Database& database, std::map<std::string, CaseRecord*>&
            });
 }
 
-void read_numbers(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, StoredSeries* later) {
+void read_numbers(SQLite::Database& database, ReadCases& cases, StoredSeries* later) {
   std::map<CaseRecord*, std::vector<std::vector<std::vector<StoredPiece>>>> pieces;  // of each table, of each column
   per_case(database, cases, "position, part, name, exported, column_name, words, length(series)", "case_numbers",
            "position, part", [&](CaseRecord& record, SQLite::Statement& row) {
              auto& tables = pieces[&record];
-             const auto part = static_cast<std::size_t>(row.getColumn(2).getInt());
+             const int number = row.getColumn(2).getInt();
+             const auto part = static_cast<std::size_t>(number);
              const std::string name = row.getColumn(3).getString();
+             const std::size_t known = record.numbers.empty() ? 0 : record.numbers.back().columns.size();
+             const bool next = part == 0 || (known > 0 && part <= known && record.numbers.back().name == name);
+             if (number < 0 || !next || !is_table_name(name)) throw BadRow();
              if (part == 0 && (record.numbers.empty() || record.numbers.back().name != name)) {
                NumberTable& first = record.numbers.emplace_back();
                first.name = name;
@@ -121,39 +180,45 @@ void read_numbers(SQLite::Database& database, std::map<std::string, CaseRecord*>
              NumberTable& table = record.numbers.back();
              if (part == table.columns.size()) {
                tables.back().emplace_back();
-               table.columns.push_back({row.getColumn(5).getString(), "", ""});
+               table.columns.push_back({text_in(row.getColumn(5)), "", ""});
                if (!row.getColumn(6).isNull())
                  table.words.emplace_back(table.columns.back().name,
-                                          Json::parse(row.getColumn(6).getString()).get<std::vector<std::string>>());
+                                          json_in(row.getColumn(6)).get<std::vector<std::string>>());
              }
              tables.back()[part].push_back({StoredPiece::Of::case_numbers, record.id, row.getColumn(1).getInt(),
                                             static_cast<int>(part), count_of_numbers(row.getColumn(7))});
            });
-  for (auto& [record, tables] : pieces)
+  for (auto& [record, tables] : pieces) {
     for (std::size_t t = 0; t < tables.size(); ++t)
       for (std::vector<StoredPiece>& column : tables[t])
         record->numbers[t].values.push_back(series_of(database, *record, std::move(column), later));
+    // A piece that is lost: the columns of a table are equally long.
+    for (const NumberTable& table : record->numbers)
+      for (const Series& column : table.values)
+        if (table.exported && column.size() != table.rows()) cases.damaged.insert(record->id);
+  }
 }
 
 /// Reads what belongs to these cases.
-void read_rows(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, StoredSeries* later) {
+void read_rows(SQLite::Database& database, ReadCases& cases, StoredSeries* later) {
   using Statement = SQLite::Statement;
   per_case(database, cases, "name, value", "axes", "position", [](CaseRecord& record, Statement& row) {
-    record.axes.emplace_back(row.getColumn(1).getString(), Json::parse(row.getColumn(2).getString()));
+    record.axes.emplace_back(text_in(row.getColumn(1)), json_in(row.getColumn(2)));
   });
   per_case(database, cases, "name, value", "measures", "position", [](CaseRecord& record, Statement& row) {
-    record.measures.emplace_back(row.getColumn(1).getString(), row.getColumn(2).getDouble());
+    record.measures.emplace_back(text_in(row.getColumn(1)), row.getColumn(2).getDouble());
   });
   per_case(database, cases, "item, reason", "left_out", "position", [](CaseRecord& record, Statement& row) {
-    record.left_out.emplace_back(row.getColumn(1).getString(), row.getColumn(2).getString());
+    record.left_out.emplace_back(text_in(row.getColumn(1)), text_in(row.getColumn(2)));
   });
   per_case(database, cases, "note", "notes", "position",
-           [](CaseRecord& record, Statement& row) { record.notes.push_back(row.getColumn(1).getString()); });
+           [](CaseRecord& record, Statement& row) { record.notes.push_back(text_in(row.getColumn(1))); });
   read_curves(database, cases, later);
   per_case(database, cases, "name, content", "case_tables", "position", [](CaseRecord& record, Statement& row) {
     // What the columns mean is not stored: the kind of study declares it.
-    const Json content = Json::parse(row.getColumn(2).getString());
+    const Json content = json_in(row.getColumn(2));
     const std::string name = row.getColumn(1).getString();
+    if (!is_table_name(name)) throw BadRow();
     if (record.tables.empty() || record.tables.back().name != name) {
       Table& first = record.tables.emplace_back();
       first.name = name;
@@ -163,6 +228,7 @@ void read_rows(SQLite::Database& database, std::map<std::string, CaseRecord*>& c
     for (const Json& cells : content.at("rows")) {
       Row& one = table.rows.emplace_back();
       for (const Json& cell : cells) one.push_back(cell_of(cell));
+      if (one.size() != table.columns.size()) throw BadRow();
     }
   });
   read_numbers(database, cases, later);
@@ -181,8 +247,7 @@ std::optional<StudyPart> read_part(SQLite::Database& database) {
 Environment read_environment(SQLite::Database& database) {
   Environment environment;
   SQLite::Statement rows(database, "SELECT name, value FROM environment ORDER BY position");
-  while (rows.executeStep())
-    environment.entries.emplace_back(rows.getColumn(0).getString(), rows.getColumn(1).getString());
+  while (rows.executeStep()) environment.entries.emplace_back(text_in(rows.getColumn(0)), text_in(rows.getColumn(1)));
   return environment;
 }
 
@@ -190,14 +255,36 @@ StudyResults read_tables(SQLite::Database& database) {
   StudyResults results;
   SQLite::Transaction transaction(database);
   read_study(database, results);
-  SQLite::Statement rows(database, fmt::format("SELECT {} FROM cases ORDER BY position", kStoredCase));
-  while (rows.executeStep()) results.cases.push_back(case_of(rows));
-  std::map<std::string, CaseRecord*> cases;
-  for (CaseRecord& record : results.cases) cases[record.id] = &record;
+  results.damage.merge(find_damage(database));
+  try {
+    SQLite::Statement rows(database, fmt::format("SELECT {} FROM cases ORDER BY position", kStoredCase));
+    while (rows.executeStep()) results.cases.push_back(case_of(rows));
+  } catch (const SQLite::Exception&) {
+    results.damage.pages = true;
+  }
+  const auto left_out = [&](const CaseRecord& record) { return results.damage.cases.contains(record.id); };
+  constexpr std::array known = {"done", "refused", "diverged", "failed"};
+  for (const CaseRecord& record : results.cases)
+    if (!is_case_id(record.id) || std::find(known.begin(), known.end(), record.status) == known.end())
+      results.damage.cases.insert(record.id);
+  std::erase_if(results.cases, left_out);
   const auto later = std::make_shared<StoredSeries>(database.getFilename());
-  if (!cases.empty()) read_rows(database, cases, later.get());
+  ReadCases cases;
+  for (CaseRecord& record : results.cases) cases.records[record.id] = &record;
+  if (!results.damage.pages) {
+    if (!cases.records.empty()) read_rows(database, cases, later.get());
+  } else {
+    // Of a file with pages that cannot be read, what is whole is read case by case.
+    for (CaseRecord& record : results.cases) {
+      ReadCases one{{{record.id, &record}}};
+      read_rows(database, one, later.get());
+      cases.damaged.merge(one.damaged);
+    }
+  }
+  results.damage.cases.merge(cases.damaged);
+  std::erase_if(results.cases, left_out);
   for (CaseRecord& record : results.cases) record.id = id_of_today(record.id);
-  results.environment = read_environment(database);
+  if (!results.damage.environment) results.environment = read_environment(database);
   tell_arithmetics(results);
   return results;
 }
@@ -205,7 +292,7 @@ StudyResults read_tables(SQLite::Database& database) {
 StudyResults read_head(SQLite::Database& database) {
   StudyResults results;
   read_study(database, results);
-  results.environment = read_environment(database);
+  if (!results.damage.environment) results.environment = read_environment(database);
   return results;
 }
 
@@ -215,8 +302,9 @@ std::optional<CaseRecord> read_case(SQLite::Database& database, const std::strin
   row.bind(2, former_id(id));
   if (!row.executeStep()) return std::nullopt;
   CaseRecord record = case_of(row);
-  std::map<std::string, CaseRecord*> only = {{record.id, &record}};
+  ReadCases only{{{record.id, &record}}};
   read_rows(database, only, nullptr);
+  if (!only.damaged.empty()) throw StoreError(damage_text(database.getFilename(), {.cases = only.damaged}));
   record.id = id_of_today(record.id);
   return record;
 }
@@ -226,7 +314,12 @@ std::string find_motion(SQLite::Database& database, const std::string& whole_key
   find.bind(1, whole_key);
   if (!find.executeStep()) return "";
   const SQLite::Column blob = find.getColumn(0);
-  return {static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes())};
+  std::string content(static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes()));
+  if (!database.tableExists("motion_sums")) return content;
+  SQLite::Statement stated(database, "SELECT sum FROM motion_sums WHERE key = ?");
+  stated.bind(1, whole_key);
+  // What is damaged is computed again.
+  return stated.executeStep() && stated.getColumn(0).getString() != checksum_of(content) ? "" : content;
 }
 
 std::unique_ptr<SQLite::Database> open_store(const std::filesystem::path& folder) {
@@ -250,62 +343,21 @@ void with_store(const std::filesystem::path& folder, const std::function<void(SQ
   guarded(folder / "results.sqlite", database.get(), [&] { use(*database); });
 }
 
-StudyResults read_store(const std::filesystem::path& folder) {
+StudyResults read_what_is_whole(const std::filesystem::path& folder) {
   StudyResults results;
   with_store(folder, [&](SQLite::Database& database) { results = read_tables(database); });
+  return results;
+}
+
+StudyResults read_store(const std::filesystem::path& folder) {
+  StudyResults results = read_what_is_whole(folder);
+  if (results.damage.any()) throw StoreError(damage_text(folder / "results.sqlite", results.damage));
   return results;
 }
 
 std::string read_motion(const std::filesystem::path& folder, const std::string& key, const std::string& arithmetic) {
   std::string content;
   with_store(folder, [&](SQLite::Database& database) { content = find_motion(database, motion_key(arithmetic, key)); });
-  return content;
-}
-
-StoreReader::StoreReader(const std::filesystem::path& folder)
-    : file_(folder / "results.sqlite"), database_(open_store(folder)) {}
-
-StudyResults StoreReader::head() const {
-  StudyResults head;
-  guarded(file_, database_.get(), [&] { head = read_head(*database_); });
-  return head;
-}
-
-std::vector<StoreReader::Finished> StoreReader::finished() const {
-  std::vector<Finished> found;
-  guarded(file_, database_.get(), [&] {
-    SQLite::Statement rows(*database_,
-                           "SELECT id, fingerprint, status, arithmetic FROM cases WHERE fingerprint != '' "
-                           "ORDER BY position");
-    while (rows.executeStep())
-      found.push_back({id_of_today(rows.getColumn(0).getString()), rows.getColumn(1).getString(),
-                       rows.getColumn(2).getString(), rows.getColumn(3).getString()});
-  });
-  return found;
-}
-
-CaseRecord StoreReader::read(const std::string& id) const {
-  std::optional<CaseRecord> found;
-  guarded(file_, database_.get(), [&] { found = read_case(*database_, id); });
-  if (!found) throw StoreError(fmt::format("{}: the case {} is no longer there", file_.string(), id));
-  return std::move(*found);
-}
-
-std::vector<std::string> StoreReader::motion_keys(const std::string& arithmetic) const {
-  std::vector<std::string> found;
-  const std::string prefix = motion_key(arithmetic, "");
-  guarded(file_, database_.get(), [&] {
-    SQLite::Statement rows(*database_, "SELECT key FROM motions ORDER BY key");
-    while (rows.executeStep())
-      if (const std::string key = rows.getColumn(0).getString(); key.starts_with(prefix))
-        found.push_back(key.substr(prefix.size()));
-  });
-  return found;
-}
-
-std::string StoreReader::motion(const std::string& key, const std::string& arithmetic) const {
-  std::string content;
-  guarded(file_, database_.get(), [&] { content = find_motion(*database_, motion_key(arithmetic, key)); });
   return content;
 }
 

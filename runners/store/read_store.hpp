@@ -46,13 +46,15 @@ class StoreReader {
  public:
   explicit StoreReader(const std::filesystem::path& folder);
 
+  /// What is not as it was stored.
+  Damage damage() const;
   /// The study and the environment, without cases.
   StudyResults head() const;
   /// A case that is finished, and what tells whether it is still that of the study.
   struct Finished {
     std::string id, fingerprint, status, arithmetic;
   };
-  /// In the study's order.
+  /// In the study's order; what is damaged is left out.
   std::vector<Finished> finished() const;
   /// A case that finished() names.
   CaseRecord read(const std::string& id) const;

@@ -2,6 +2,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,10 +67,26 @@ struct StudyHeader {
   StudyPart part = {};  ///< of which these are the cases
   Environment environment;
 };
+
+/// What of a store is not as it was stored.
+struct Damage {
+  std::set<std::string> cases;  ///< ids, as they stand there
+  bool environment = false;
+  bool pages = false;  ///< the file has pages that cannot be read
+
+  bool any() const { return !cases.empty() || environment || pages; }
+  void merge(Damage other) {
+    cases.merge(other.cases);
+    environment = environment || other.environment;
+    pages = pages || other.pages;
+  }
+};
+
 /// Everything a store holds, which is everything a report is made from.
 struct StudyResults : StudyHeader {
   std::vector<CaseRecord> cases;  ///< in the study's order; those not run yet are absent
   std::vector<Table> derived;     ///< worked out of the cases when they are read, not stored
+  Damage damage = {};             ///< what of the store is left out, because it is not as it was stored
 };
 
 /// What a measure of a case means, as the kinds of study declare theirs (also the report's tooltips).

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/checksums.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/case_id.hpp"
 
@@ -97,6 +98,15 @@ ALTER TABLE cases ADD COLUMN arithmetic TEXT NOT NULL DEFAULT '';
 ALTER TABLE aside_cases ADD COLUMN arithmetic TEXT NOT NULL DEFAULT '';
 )sql";
 
+// Version 8 adds checksums (checksums.hpp): of a case with all that belongs to it, and of its place; of what is
+// computed once. Those of the study are a value of it.
+constexpr const char* kSumTables = R"sql(
+CREATE TABLE {0}sums(
+  case_id TEXT PRIMARY KEY REFERENCES {0}cases({1}) ON DELETE CASCADE, sum TEXT NOT NULL, place TEXT NOT NULL);
+)sql";
+constexpr const char* kMotionSumTable =
+    "CREATE TABLE motion_sums(key TEXT PRIMARY KEY REFERENCES motions(key) ON DELETE CASCADE, sum TEXT NOT NULL);";
+
 void create(SQLite::Database& database, const char* tables, const char* prefix = "", const char* key = "id") {
   database.exec(fmt::format(fmt::runtime(tables), prefix, key));
 }
@@ -121,6 +131,16 @@ void create_from(SQLite::Database& database, int version) {
   if (version < 6) {
     database.exec(kEpochTable);
     database.exec(kArithmeticColumns);
+  }
+  if (version < 8) {
+    create(database, kSumTables);
+    create(database, kSumTables, "aside_", "fingerprint");
+    database.exec(kMotionSumTable);
+    // Of an earlier program: what is there counts as whole.
+    if (version > 0) {
+      for (const char* prefix : {"", "aside_"}) seal_cases(database, prefix);
+      seal_study(database);
+    }
   }
   database.exec(fmt::format("PRAGMA user_version={};", kStoreVersion));
 }
@@ -164,7 +184,9 @@ std::string sentence(const SQLite::Exception& error, const SQLite::Database* dat
     case SQLITE_NOTADB:
       return "this file is not a Ricochet store; move it away or choose another folder with --out";
     case SQLITE_CORRUPT:
-      return "this store is damaged; move it away, or forget it with --fresh";
+      return "pages of this store are damaged; `ricochet merge FOLDER --out NEW` keeps the cases that are whole, "
+             "--fresh "
+             "forgets it";
     default:
       return fmt::format("the store reports: {}", error.what());
   }
@@ -201,6 +223,8 @@ void prepare_schema(SQLite::Database& database, const std::filesystem::path& fil
       transaction.commit();
     } else if (application != kStoreApplication) {
       not_ours(file);
+    } else if (version == 7 && sqlite3_db_readonly(database.getHandle(), "main") == 1) {
+      // It is read as it is: it lacks checksums alone.
     } else if (version >= 1 && version < kStoreVersion) {
       SQLite::Transaction transaction(database);
       create_from(database, version);
@@ -265,127 +289,6 @@ void make_views(SQLite::Database& database, const StudyResults& results) {
   database.exec("DROP VIEW IF EXISTS v_cases");
   database.exec(
       fmt::format("CREATE VIEW v_cases AS SELECT {} FROM cases WHERE fingerprint != '' ORDER BY position", columns));
-}
-
-namespace {
-
-using EnvironmentEntries = decltype(Environment::entries);
-
-constexpr const char* kCaseColumns = "status, reason, steps, setup_seconds, run_seconds, operator, arithmetic";
-// The tables of what belongs to a case: name, columns beside case_id.
-constexpr std::pair<const char*, const char*> kRowsOfCases[] = {
-    {"axes", "position, name, value"},
-    {"measures", "position, name, value"},
-    {"left_out", "position, item, reason"},
-    {"notes", "position, note"},
-    {"curves", "position, name, series"},
-    {"case_tables", "position, name, content"},
-    {"case_numbers", "position, part, name, exported, column_name, words, series"}};
-
-/// Executes `query`, whose parameters are these texts and numbers.
-template <class... Values>
-void execute(SQLite::Database& database, const std::string& query, const Values&... values) {
-  SQLite::Statement statement(database, query);
-  int index = 0;
-  (statement.bind(++index, values), ...);
-  statement.exec();
-}
-
-void copy_rows(SQLite::Database& database, const char* from, const std::string& key, const char* to,
-               const std::string& new_key) {
-  for (const auto& [table, columns] : kRowsOfCases)
-    execute(database,
-            fmt::format("INSERT INTO {0}{2}(case_id, {3}) SELECT ?, {3} FROM {1}{2} WHERE case_id = ?", to, from, table,
-                        columns),
-            new_key, key);
-}
-
-// Of the ids of earlier programs.
-std::string ten_digits() {
-  std::string pattern;
-  for (int k = 0; k < 10; ++k) pattern += "[0-9a-f]";
-  return pattern;
-}
-
-/// The key under which an environment is kept; cases that ran together share it.
-std::int64_t keep(SQLite::Database& database, const Environment& environment) {
-  const std::string entries = nlohmann::ordered_json(environment.entries)
-                                  .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  execute(database, "INSERT OR IGNORE INTO aside_environments(entries) VALUES(?)", entries);
-  SQLite::Statement find(database, "SELECT id FROM aside_environments WHERE entries = ?");
-  find.bind(1, entries);
-  find.executeStep();
-  return find.getColumn(0).getInt64();
-}
-
-}  // namespace
-
-std::vector<std::string> name_as_today(SQLite::Database& database) {
-  const std::string pattern = ten_digits(), letter(1, case_letter);
-  std::vector<std::string> former;
-  SQLite::Statement find(database, "SELECT id FROM cases WHERE id GLOB ?");
-  find.bind(1, pattern);
-  while (find.executeStep()) former.push_back(find.getColumn(0).getString());
-  find.reset();
-  if (!former.empty()) {
-    // Rows name their case: until all do, some name one that is not there.
-    database.exec("PRAGMA defer_foreign_keys=ON");
-    for (const auto& [table, columns] : kRowsOfCases)
-      execute(database, fmt::format("UPDATE {} SET case_id = ? || case_id WHERE case_id GLOB ?", table), letter,
-              pattern);
-    execute(database, "UPDATE cases SET id = ? || id WHERE id GLOB ?", letter, pattern);
-  }
-  execute(database, "UPDATE begun SET case_id = ? || case_id WHERE case_id GLOB ?", letter, pattern);
-  execute(database, "UPDATE aside_cases SET id = ? || id WHERE id GLOB ?", letter, pattern);
-  return former;
-}
-
-void set_aside(SQLite::Database& database, const std::vector<std::string>& ids, const Environment& environment) {
-  if (ids.empty()) return;
-  const std::int64_t ran_in = keep(database, environment);
-  for (const std::string& id : ids) {
-    SQLite::Statement find(database, "SELECT fingerprint FROM cases WHERE id = ?");
-    find.bind(1, id);
-    find.executeStep();
-    const std::string fingerprint = find.getColumn(0).getString();
-    execute(database,
-            fmt::format("INSERT INTO aside_cases(fingerprint, id, environment, {0}) SELECT fingerprint, id, ?, {0} "
-                        "FROM cases WHERE id = ?",
-                        kCaseColumns),
-            ran_in, id);
-    copy_rows(database, "", id, "aside_", fingerprint);
-    execute(database, "DELETE FROM cases WHERE id = ?", id);
-  }
-}
-
-bool is_aside(SQLite::Database& database, const std::string& fingerprint) {
-  SQLite::Statement find(database, "SELECT 1 FROM aside_cases WHERE fingerprint = ?");
-  find.bind(1, fingerprint);
-  return find.executeStep();
-}
-
-Environment bring_back(SQLite::Database& database, const std::string& fingerprint, int position) {
-  SQLite::Statement find(database,
-                         "SELECT aside_cases.id, entries FROM aside_cases JOIN aside_environments "
-                         "ON aside_environments.id = environment WHERE fingerprint = ?");
-  find.bind(1, fingerprint);
-  find.executeStep();
-  const std::string id = find.getColumn(0).getString();
-  const Environment environment{nlohmann::ordered_json::parse(find.getColumn(1).getString()).get<EnvironmentEntries>()};
-  execute(database,
-          fmt::format("INSERT INTO cases(position, fingerprint, id, {0}) SELECT ?, fingerprint, id, {0} "
-                      "FROM aside_cases WHERE fingerprint = ?",
-                      kCaseColumns),
-          position, fingerprint);
-  copy_rows(database, "aside_", fingerprint, "", id);
-  find.reset();
-  execute(database, "DELETE FROM aside_cases WHERE fingerprint = ?", fingerprint);
-  database.exec("DELETE FROM aside_environments WHERE id NOT IN (SELECT environment FROM aside_cases)");
-  return environment;
-}
-
-int count_aside(SQLite::Database& database) {
-  return database.execAndGet("SELECT count(*) FROM aside_cases").getInt();
 }
 
 }  // namespace ricochet

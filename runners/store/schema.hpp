@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runners/store/record.hpp"
@@ -12,7 +13,19 @@ namespace ricochet {
 
 /// Identity of results.sqlite, in the file's header (PRAGMA application_id, user_version).
 constexpr int kStoreApplication = 0x5249434F;  // "RICO"
-constexpr int kStoreVersion = 7;
+constexpr int kStoreVersion = 8;
+
+/// The columns of a case beside its id, its fingerprint and its place.
+inline constexpr const char* kCaseColumns = "status, reason, steps, setup_seconds, run_seconds, operator, arithmetic";
+/// The tables of what belongs to a case: name, columns beside case_id.
+inline constexpr std::pair<const char*, const char*> kRowsOfCases[] = {
+    {"axes", "position, name, value"},
+    {"measures", "position, name, value"},
+    {"left_out", "position, item, reason"},
+    {"notes", "position, note"},
+    {"curves", "position, name, series"},
+    {"case_tables", "position, name, content"},
+    {"case_numbers", "position, part, name, exported, column_name, words, series"}};
 
 /// Creates the tables in an empty database, in one transaction; checks the identity of one that is not empty. A store
 /// of an earlier version gets the tables that came later. Throws StoreError for a file of another application or

@@ -10,12 +10,14 @@
 #include <numeric>
 
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/checksums.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/folder_lock.hpp"
 #include "runners/store/number_rows.hpp"
 #include "runners/store/read_store.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/schema.hpp"
+#include "runners/store/statements.hpp"
 #include "runners/study/case_id.hpp"
 
 namespace ricochet {
@@ -27,25 +29,6 @@ std::string text_of(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// Texts are read where they stand: they live until the row is there.
-void bind_value(SQLite::Statement& statement, int index, const std::string& text) {
-  statement.bindNoCopy(index, text);
-}
-void bind_value(SQLite::Statement& statement, int index, const char* text) {
-  statement.bindNoCopy(index, text);
-}
-void bind_value(SQLite::Statement& statement, int index, auto number) {
-  statement.bind(index, number);
-}
-
-template <class... Values>
-void insert(SQLite::Statement& statement, const Values&... values) {
-  statement.reset();
-  int index = 0;
-  (bind_value(statement, ++index, values), ...);
-  statement.exec();
-}
-
 /// About, of what may be large.
 std::size_t bytes_of(const CaseRecord& record) {
   std::size_t numbers = 0;
@@ -54,13 +37,6 @@ std::size_t bytes_of(const CaseRecord& record) {
     for (const auto& column : table.values) numbers += column.size();
   for (const Table& table : record.tables) numbers += table.rows.size() * table.columns.size();
   return numbers * sizeof(double);
-}
-
-void remove_curve(const std::filesystem::path& folder, const std::string& id) {
-  const std::filesystem::path file = folder / "curves" / (id + ".csv");
-  std::error_code error;
-  std::filesystem::remove(file, error);
-  if (error) throw StoreError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
 }
 
 }  // namespace
@@ -100,7 +76,8 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
   std::set<std::string> kept;
   write_alone([&] {
     SQLite::Statement name(*database_, "SELECT value FROM study WHERE key = 'name'");
-    if (name.executeStep()) {
+    const std::set<std::string> unsure = damaged_keys(*database_);
+    if (name.executeStep() && !unsure.contains("name")) {
       const std::string stored = Json::parse(name.getColumn(0).getString()).get<std::string>();
       if (stored != study.name)
         throw StoreError(
@@ -127,48 +104,10 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
     insert(state, "method_words", text_of(study.method_words));
     insert(state, "expected_cases", text_of(study.expected_cases));
     insert(state, "part", text_of({study.part.number, study.part.of}));
+    state.reset();
+    seal_study(*database_);
   });
   rows_ = kept;
-  return kept;
-}
-
-std::set<std::string> Store::settle_rows() {
-  std::set<std::string> kept;
-  std::vector<std::string> aside, dropped, back;
-  SQLite::Statement stored(*database_, "SELECT id, fingerprint, status FROM cases");
-  while (stored.executeStep()) {
-    const std::string id = stored.getColumn(0).getString(), fingerprint = stored.getColumn(1).getString();
-    const auto found = expected_.find(id);
-    if (found != expected_.end() && found->second.first == fingerprint)
-      kept.insert(id);
-    else if (fingerprint.empty() || stored.getColumn(2).getString() == "refused")
-      dropped.push_back(id);  // not finished, or nothing that was computed
-    else
-      aside.push_back(id);
-  }
-  stored.reset();
-  for (const auto& [id, expected] : expected_)
-    if (kept.count(id) == 0 && is_aside(*database_, expected.first)) back.push_back(id);
-
-  // Before the rows: a run that is killed here misses a file, which is written anew, and never has that of another row.
-  for (const auto& ids : {aside, dropped, back})
-    for (const std::string& id : ids) remove_curve(file_.parent_path(), id);
-  SQLite::Statement drop(*database_, "DELETE FROM cases WHERE id = ?");
-  for (const std::string& id : dropped) insert(drop, id);
-  Environment environment = read_environment(*database_);
-  set_aside(*database_, aside, environment);
-  SQLite::Statement move(*database_, "UPDATE cases SET position = ? WHERE id = ?");
-  for (const std::string& id : kept) insert(move, expected_.at(id).second, id);
-
-  bool any = !kept.empty();  // of whose environment something is left
-  for (const std::string& id : back) {
-    const Environment earlier = bring_back(*database_, expected_.at(id).first, expected_.at(id).second);
-    environment = any ? merge_environments(environment, earlier) : earlier;
-    any = true;
-  }
-  if (!back.empty()) write_environment(environment);
-  returned_ = static_cast<int>(back.size());
-  kept.insert(back.begin(), back.end());
   return kept;
 }
 
@@ -204,6 +143,8 @@ void Store::write_environment(const Environment& environment) {
   SQLite::Statement add(*database_, "INSERT INTO environment(position, name, value) VALUES(?, ?, ?)");
   int position = 0;
   for (const auto& [name, value] : environment.entries) insert(add, position++, name, value);
+  add.reset();
+  seal_study(*database_);
 }
 
 void Store::save_environment(const Environment& environment) {
@@ -219,7 +160,7 @@ void Store::write_alone(const std::function<void()>& rows) {
   guarded(file_, database_.get(), [&] { group_->write_alone(rows); });
 }
 
-SQLite::Statement& Store::prepared(const char* sql) {
+SQLite::Statement& Store::prepared(const std::string& sql) {
   const auto found = prepared_.find(sql);
   return found != prepared_.end() ? found->second
                                   : prepared_.emplace(sql, SQLite::Statement(*database_, sql)).first->second;
@@ -354,6 +295,7 @@ void Store::save_one(const CaseRecord& record, bool partial) {
     curve.exec();
   }
   save_numbers(record);
+  seal_case([this](const std::string& sql) -> SQLite::Statement& { return prepared(sql); }, "", record.id);
 }
 
 void Store::save_numbers(const CaseRecord& record) {
@@ -377,6 +319,9 @@ void Store::save_motion(const std::string& key, const std::string& content) {
     change.bind(1, motion_key(arithmetic_, key));
     if (!content.empty()) change.bindNoCopy(2, content.data(), static_cast<int>(content.size()));
     change.exec();
+    if (!content.empty())
+      insert(prepared("INSERT OR REPLACE INTO motion_sums(key, sum) VALUES(?, ?)"), motion_key(arithmetic_, key),
+             checksum_of(content));
   });
 }
 
@@ -392,6 +337,7 @@ StudyResults Store::load() const {
     group_->commit();
     results = read_tables(*database_);
   });
+  if (results.damage.any()) throw StoreError(damage_text(file_, results.damage));
   return results;
 }
 

@@ -117,6 +117,8 @@ class Store {
   std::optional<StudyPart> part() const;
   /// How many of them begin() brought back.
   int returned() const { return returned_; }
+  /// The stored cases that begin() dropped because they were not as they were stored.
+  const std::vector<std::string>& damaged() const { return damaged_; }
   /// How many cases of earlier versions of the study are kept aside.
   int aside() const;
   /// How many finished cases were computed with another arithmetic than this run's.
@@ -164,7 +166,7 @@ class Store {
   void write_environment(const Environment& environment);
   void write(std::size_t bytes, const std::function<void()>& rows);
   void write_alone(const std::function<void()>& rows);
-  SQLite::Statement& prepared(const char* sql);
+  SQLite::Statement& prepared(const std::string& sql);
   void note_begin(const std::string& id, Stage stage);
   void save_one(const CaseRecord& record, bool partial);
   void save_numbers(const CaseRecord& record);
@@ -176,6 +178,7 @@ class Store {
   std::unique_ptr<SQLite::Database> database_;
   std::map<std::string, std::pair<std::string, int>> expected_;  // id → fingerprint, position
   int returned_ = 0;
+  std::vector<std::string> damaged_;
   std::set<std::string> rows_;                         // ids that have one
   std::map<std::string, SQLite::Statement> prepared_;  // by their text
   mutable std::mutex mutex_;
@@ -183,8 +186,10 @@ class Store {
 };
 
 /// Everything that FOLDER/results.sqlite holds, without the right to change it: works while a run goes on. The series
-/// of finished cases are read when somebody asks for them. Throws StoreError.
+/// of finished cases are read when somebody asks for them. Throws StoreError, also where something is damaged.
 StudyResults read_store(const std::filesystem::path& folder);
+/// The same of a store of which something is damaged: what is whole, the rest named (StudyResults::damaged).
+StudyResults read_what_is_whole(const std::filesystem::path& folder);
 
 /// What FOLDER/results.sqlite keeps under a key of Store::motion for runs of this arithmetic, "" where there is none.
 std::string read_motion(const std::filesystem::path& folder, const std::string& key, const std::string& arithmetic);

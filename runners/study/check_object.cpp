@@ -110,7 +110,9 @@ Json check_words(const Field& field, const Json& value, const std::string& point
   for (std::size_t i = 0; i < (list ? value.size() : 1); ++i) {
     const std::string here = list ? pointer_to(pointer, i) : pointer;
     const Json& one = list ? value[i] : value;
-    if (names && !one.is_string()) throw InputError(here, "expected a name, found " + quote(one));
+    if ((names && !one.is_string()) || (list && one.is_null()))
+      throw InputError(here, (names ? std::string("expected a name") : "expected one of " + quoted_list(field.spec.words)) +
+                                 ", found " + quote(one));
     result.push_back(names || is_of_each(field, one, here) ? one : check_scalar(field, one, here));
     for (std::size_t j = 0; j < i; ++j)
       if (result[j] == result[i]) throw InputError(here, "repeats " + quote(result[i]));
@@ -124,6 +126,7 @@ Json check_numbers(const Field& field, const Json& value, const std::string& poi
   if (list && value.empty()) throw InputError(pointer, "an empty list; expected at least one number");
   for (std::size_t i = 0; i < (list ? value.size() : 1); ++i) {
     const std::string here = list ? pointer_to(pointer, i) : pointer;
+    if (list && value[i].is_null()) throw InputError(here, "expected a number, found null");
     result.push_back(check_scalar(field, list ? value[i] : value, here));
     result.back() = result.back().get<double>();
   }

@@ -10,6 +10,7 @@
 #include "runners/json/json_text.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/study/study_files.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 
@@ -328,7 +329,8 @@ std::string pointer_in_study(const StopsSpec& stops, const std::string& pointer)
   const std::string before = "/scene/stops/";
   if (stops.named.empty() || !pointer.starts_with(before)) return pointer;
   const std::size_t end = std::min(pointer.find('/', before.size()), pointer.size());
-  const auto row = static_cast<std::size_t>(std::stoul(pointer.substr(before.size(), end - before.size())));
+  const auto number = number_in(pointer.substr(before.size(), end - before.size()));
+  const auto row = number && *number >= 0 ? static_cast<std::size_t>(*number) : stops.named.size();
   return row < stops.named.size() ? before + std::to_string(stops.named[row].entry) + pointer.substr(end) : pointer;
 }
 

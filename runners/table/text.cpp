@@ -8,8 +8,72 @@
 #include <boost/uuid/nil_generator.hpp>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 
 namespace ricochet {
+
+namespace {
+
+/// The character that begins a text, its bytes taken from it; nothing where they are no UTF-8, one byte taken then.
+std::optional<char32_t> take_character(std::string_view& text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  const std::size_t length = first < 0x80   ? 1
+                             : first < 0xC2 ? 0
+                             : first < 0xE0 ? 2
+                             : first < 0xF0 ? 3
+                             : first < 0xF5 ? 4
+                                            : 0;
+  char32_t code = length == 1 ? first : first & (0xFFU >> (length + 1));
+  bool valid = length > 0 && length <= text.size();
+  for (std::size_t i = 1; valid && i < length; ++i) {
+    valid = (byte(i) & 0xC0U) == 0x80U;
+    code = code << 6U | (byte(i) & 0x3FU);
+  }
+  // Longer than it needs to be, half of a pair of UTF-16, beyond the last one.
+  valid = valid && !(length == 3 && code < 0x800) && !(length == 4 && (code < 0x10000 || code > 0x10FFFF)) &&
+          !(code >= 0xD800 && code < 0xE000);
+  text.remove_prefix(valid ? length : 1);
+  return valid ? std::optional(code) : std::nullopt;
+}
+
+/// Whether a character steers what shows it: C0 without tab and line break, DEL, C1, marks of direction and of lines.
+bool steers(char32_t code) {
+  return (code < 0x20 && code != '\t' && code != '\n') || (code >= 0x7F && code < 0xA0) || code == 0x61C ||
+         (code >= 0x200E && code <= 0x200F) || (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
+}
+
+}  // namespace
+
+bool is_plain(std::string_view text) {
+  while (!text.empty()) {
+    const auto sign = static_cast<unsigned char>(text.front());
+    if ((sign >= 0x20 && sign < 0x7F) || sign == '\t' || sign == '\n') {
+      text.remove_prefix(1);
+      continue;
+    }
+    const auto code = take_character(text);
+    if (!code || steers(*code)) return false;
+  }
+  return true;
+}
+
+std::string plain_text(std::string_view text) {
+  if (is_plain(text)) return std::string(text);
+  std::string out;
+  while (!text.empty()) {
+    const std::string_view before = text;
+    const auto code = take_character(text);
+    if (!code)
+      out += "\uFFFD";
+    else if (steers(*code))
+      out += fmt::format("<U+{:04X}>", static_cast<std::uint32_t>(*code));
+    else
+      out += before.substr(0, before.size() - text.size());
+  }
+  return out;
+}
 
 void append_csv_number(double value, std::string& text) {
   if (!std::isfinite(value)) return;
@@ -24,6 +88,7 @@ std::string csv_number(double value) {
 }
 
 std::string csv_field(std::string_view text) {
+  if (!is_plain(text)) return csv_field(plain_text(text));
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
   std::string field = "\"";
   for (const char c : text) {
@@ -61,6 +126,18 @@ std::string table_csv(const Table& table) {
     text += csv_line(fields);
   }
   return text;
+}
+
+std::optional<double> number_in(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+double to_digits(double value, int digits) {
+  // Rounding the largest one would give none.
+  return number_in(fmt::format("{:.{}e}", value, digits - 1)).value_or(value);
 }
 
 std::size_t shown_width(const std::string& text) {

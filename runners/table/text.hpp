@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,13 +10,20 @@
 /// Tables as CSV after RFC 4180, numbers in the shortest digits that read back as the same double.
 namespace ricochet {
 
+/// A text as it may be shown: UTF-8, what is none as U+FFFD, control characters and marks of direction as U+XXXX in
+/// angle brackets. Line breaks and tabs stay.
+std::string plain_text(std::string_view text);
+/// Whether a text may be shown as it is.
+bool is_plain(std::string_view text);
+
 /// The shortest decimal text that reads back as the same double; "" when not finite (no NaN reaches a row).
 std::string csv_number(double value);
 
 /// The same, behind what `text` holds.
 void append_csv_number(double value, std::string& text);
 
-/// A field: in double quotes, with inner quotes doubled, when it holds a comma, a quote or a line break.
+/// A field, plain_text() of it: in double quotes, with inner quotes doubled, when it holds a comma, a quote or a line
+/// break.
 std::string csv_field(std::string_view text);
 
 /// A cell as a field, quoted where it must be.
@@ -29,6 +37,12 @@ std::vector<std::string> csv_head(const std::vector<Column>& columns);
 
 /// The whole table: its columns, then one line per row; empty fields for nothing.
 std::string table_csv(const Table& table);
+
+/// The number that a text is, a + before it allowed; nothing where it is no number, or one that no double holds.
+std::optional<double> number_in(std::string_view text);
+
+/// A number rounded to so many significant digits.
+double to_digits(double value, int digits);
 
 // What a terminal shows: tables and spans of time as plain text.
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <ricochet/measure/attractors/diagram.hpp>
@@ -12,11 +13,9 @@ bool refines(const std::string& axis) {
 }
 
 double size_of(const std::string& level) {
-  try {
-    return std::stod(level);
-  } catch (const std::exception&) {
-    return 0;
-  }
+  double size = 0;
+  const auto [end, error] = std::from_chars(level.data(), level.data() + level.size(), size);
+  return error == std::errc() ? size : 0;
 }
 
 /// Whether the finest case of each group of like cases lacks what a coarser one shows.

@@ -15,6 +15,7 @@
 #include "runners/study/fields.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/table_reader.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {
@@ -145,8 +146,7 @@ std::vector<double> steps_of(const StudyCase& study_case) {
   std::vector<double> steps;
   // Twelve digits: 1e-05 rather than 9.999999999999999e-06.
   for (int i = 0; i < count; ++i)
-    steps.push_back(
-        std::stod(fmt::format("{:.12g}", count == 1 ? from : from * std::pow(to / from, i / (count - 1.0)))));
+    steps.push_back(to_digits(count == 1 ? from : from * std::pow(to / from, i / (count - 1.0)), 12));
   return steps;
 }
 

@@ -8,6 +8,7 @@
 #include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet::dynamics {
 namespace {
@@ -18,7 +19,7 @@ constexpr std::size_t kMostSets = 3, kLevelsNamed = 6;
 
 /// Half way between two values, without the digits of round-off.
 double rounded(double value) {
-  return std::stod(fmt::format("{:.12g}", value));
+  return to_digits(value, 12);
 }
 
 const char* word(Robustness verdict) {

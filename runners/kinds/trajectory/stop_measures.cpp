@@ -12,6 +12,7 @@
 
 #include "runners/json/json_text.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {
@@ -366,7 +367,7 @@ void put_third_octaves(CaseRecord& record, Table& table, const std::string& of, 
     if (!octave_names().contains(measure)) continue;
     put_measure(record, measure + "[" + of + "]", band.rms);
     table.rows.push_back(
-        {of, force ? "force" : "displacement", std::stod(band.nominal()), band.from, band.to, band.rms});
+        {of, force ? "force" : "displacement", number_in(band.nominal()).value_or(0), band.from, band.to, band.rms});
   }
 }
 

@@ -22,7 +22,7 @@
 
   function sectionOf(data, cases) {
     const section = document.createElement("section"),
-          option = (one) => '<option value="' + one.id + '">' + escape(nameOf(data, one)) + "</option>",
+          option = (one) => '<option value="' + escape(one.id) + '">' + escape(nameOf(data, one)) + "</option>",
           options = cases.map(option).join("");
     const {stride} = data.page.snapshots,
           more = cases.length < data.cases.length ?

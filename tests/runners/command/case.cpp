@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "runners/store/checksums.hpp"
 #include "tests/runners/command/said.hpp"
 
 using Catch::Matchers::Contains;
@@ -82,8 +83,12 @@ TEST_CASE("A case is marched again to the last bit, and its study alone has the 
 TEST_CASE("What differs from the stored case is told by its name and both numbers") {
   const ScratchFolder here;
   const std::string id = run(here, trajectory());
-  SQLite::Database(here / "there" / "results.sqlite", SQLite::OPEN_READWRITE)
-      .exec("UPDATE measures SET value = 7 WHERE name = 'impulse' AND case_id = '" + id + "'");
+  {
+    SQLite::Database store(here / "there" / "results.sqlite", SQLite::OPEN_READWRITE);
+    store.exec("UPDATE measures SET value = 7 WHERE name = 'impulse' AND case_id = '" + id + "'");
+    CHECK(say(here, "case there " + id).code == 5);
+    seal_cases(store, "");
+  }
   const Said again = say(here, "case there " + id);
   CHECK(again.code == 0);
   CHECK_THAT(again.out, Contains("not as stored") && Contains("impulse is ") && Contains(", stored is 7"));

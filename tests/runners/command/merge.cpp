@@ -6,6 +6,7 @@
 #include <set>
 
 #include "runners/store/folder_lock.hpp"
+#include "runners/store/checksums.hpp"
 #include "runners/store/read_store.hpp"
 #include "runners/store/store.hpp"
 #include "tests/runners/command/said.hpp"
@@ -65,6 +66,9 @@ class TwoParts {
   void change(const std::string& part, const std::string& sql) const {
     SQLite::Database store((here / ("parts/" + part + "/results.sqlite")).string(), SQLite::OPEN_READWRITE);
     REQUIRE(store.exec(sql) > 0);
+    // As if it had been stored so.
+    seal_cases(store, "");
+    seal_study(store);
   }
   /// The message of a merge that is refused with this code, and leaves nothing.
   std::string refused(const std::string& folders, int code) const {
