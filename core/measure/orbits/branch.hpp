@@ -147,6 +147,7 @@ struct BranchCorner {
   SetChange change;                           ///< that made it; none of the first corner
   double residual = 0;                        ///< m
   double rebounds = 0;                        ///< u where stops give back speed (stepped_map.hpp), m
+  double placed = 0;                          ///< what is left of u where impacts are placed (stepped_map.hpp), m
   double slowest = 0;                         ///< of its rebounds, m/s (stepped_map.hpp)
 };
 

@@ -208,6 +208,7 @@ void StepFollower::keep(Step step) {
   corner.leading = std::move(step.multipliers);
   corner.residual = map_->metric().size(step.image.image - step.to.x);
   corner.rebounds = step.image.rebounds;
+  corner.placed = step.image.placed;
   corner.slowest = step.image.slowest;
   trace_.rebounds = std::max(trace_.rebounds, step.image.rebounds);
   trace_.corners.push_back(std::move(corner));

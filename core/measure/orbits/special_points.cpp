@@ -35,9 +35,9 @@ void add_note(SpecialPoint& point, const std::string& text) {
   point.note += (point.note.empty() ? "" : "; ") + text;
 }
 
-// m: arclength to which the orbits of a corner and of the one before are known, where stops give back speed.
-double rebounds_at(const Corners& corners, std::size_t i) {
-  return std::max(corners[i].rebounds, corners[i > 0 ? i - 1 : 0].rebounds);
+// Of a corner and the one before, the larger. m: arclength to which orbits are known where stops give back speed.
+double larger_at(const Corners& corners, std::size_t i, double BranchCorner::*known) {
+  return std::max(corners[i].*known, corners[i > 0 ? i - 1 : 0].*known);
 }
 
 void widen(SpecialPoint& point, double value) {
@@ -164,7 +164,8 @@ void add_group(const Corners& corners, const Circle& circle, const std::vector<C
   int shortest = corners[first].shortest;
   for (std::size_t i = first - 1; i <= last; ++i)
     if (corners[i].shortest > 0) shortest = std::min(shortest, corners[i].shortest);
-  if (shortest > 0 && shortest < shortest_told && rebounds_at(corners, last) == 0 && !root->jumps)
+  if (shortest > 0 && shortest < shortest_told && larger_at(corners, last, &BranchCorner::rebounds) == 0 &&
+      !root->jumps)
     add_note(point, fmt::format("unresolved: a run of contact has {} step{}", shortest, shortest == 1 ? "" : "s"));
   points.push_back(std::move(point));
 }
@@ -200,15 +201,17 @@ double vertex(const Corners& corners, std::size_t i) {
 }
 
 // Widens an interval by what is not known of the orbits along the branch. At a fold λ stands still along it: an orbit
-// that is known to so much is one of a value that far.
+// that is known to so much is one of a value that far. Orbits are known as their impacts are placed, multipliers to
+// first order in the step.
 void place(const Corners& corners, double metres, SpecialPoint& point) {
   const auto i = static_cast<std::size_t>(std::max(1LL, point.corner));
   if (i >= corners.size()) return;
-  const double far = corners[i].arc - corners[i - 1].arc, known = rebounds_at(corners, i);
-  double by = known / metres;
+  const double far = corners[i].arc - corners[i - 1].arc;
+  double by = larger_at(corners, i, &BranchCorner::placed) / metres;
   if (point.kind != "fold") {
     if (!(far > 0)) return;
-    by = known * std::abs(corners[i].parameter - corners[i - 1].parameter) / far;
+    by = larger_at(corners, i, &BranchCorner::rebounds) * std::abs(corners[i].parameter - corners[i - 1].parameter) /
+         far;
   }
   point.low -= by;
   point.high += by;
@@ -224,7 +227,8 @@ void add_folds(const BranchTrace& trace, const PointSearch& search, std::vector<
   const Corners& corners = trace.corners;
   for (const Turn& turn : turns_of(trace, search.before)) {
     // What turns within the uncertainty of its orbits turns nowhere.
-    const double unknown = 2 * rebounds_at(corners, static_cast<std::size_t>(turn.corner)) / search.metres;
+    const double unknown =
+        2 * larger_at(corners, static_cast<std::size_t>(turn.corner), &BranchCorner::placed) / search.metres;
     const double least = std::max(search.prominence, unknown);
     const auto i = static_cast<std::size_t>(turn.corner);
     if (turn.prominence < least) continue;

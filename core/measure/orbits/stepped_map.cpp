@@ -63,6 +63,7 @@ class ContactWatch final : public StepObserver {
           n, half, [&](long long k) { return sides_[static_cast<std::size_t>(k)][point]; }, run);
     }
     out.pace = pace(h);
+    out.placed = out.rebounds * std::min(1.0, h * out.pace);
     out.runs = runs.count;
     out.held = runs.held;
     out.shortest = runs.shortest;
@@ -152,7 +153,7 @@ SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const M
     if (first == 0) {
       out.image = clock.sign() * read(marcher.lane_state(0), group);
       watch.sum(marcher.program().h, clock.half, out);
-      if (!rebounds_) out.rebounds = out.slowest = 0;
+      if (!rebounds_) out.rebounds = out.placed = out.slowest = 0;
     }
     for (int k = 0; k < columns; ++k) out.derivative.col(first + k) = clock.sign() * read(marcher.tangent(0, k), group);
     out.untold = out.untold || (jump && jump->untold(0) > 0);
@@ -178,7 +179,7 @@ ShotOrbit shoot(FollowedMap& map, VectorXd x, double parameter, const MapClock& 
     }
     // Where an iteration gains nothing any more the rest is round-off.
     const bool settled = orbit.iterations > 1 && orbit.residual < stalled * tolerance && orbit.residual > 0.1 * last;
-    orbit.found = settled || orbit.residual <= std::max(tolerance, placed_share * made.rebounds);
+    orbit.found = settled || orbit.residual <= std::max(tolerance, made.placed);
     if (settled || orbit.residual <= tolerance || orbit.iterations == most || !std::isfinite(orbit.residual)) break;
     // What gives back speed is not solved more nearly than its impacts are placed: two more iterations are tried.
     if (orbit.found && orbit.iterations > 2 && orbit.residual > 0.5 * orbit.nearest) break;

@@ -9,9 +9,6 @@
 
 namespace ricochet {
 
-/// Of u = h Σ|v⁺ − v⁻|: what steps leave of impacts that are placed within them.
-inline constexpr double placed_share = 1e-3;
-
 /// P(x, λ) as steps of arclength need it. Not to be shared between threads.
 class FollowedMap {
  public:
@@ -28,6 +25,7 @@ class FollowedMap {
     double rebounds = 0;  ///< u = h Σ|v⁺ − v⁻| over contacts that rebound, m
     double slowest = 0;   ///< least approach among these, m/s; 0: none rebounds
     double pace = 0;      ///< of contact points, rms speed over rms distance from their mean place, rad/s
+    double placed = 0;    ///< u h pace: what is left of u where impacts are placed within their steps, m
     double tip = 0, tip_velocity = 0, penetration = 0;
     bool untold = false;  ///< an impact had no jump
   };

@@ -49,7 +49,8 @@ void serialize(Archive& archive, CornerRoots& roots) {
 template <class Archive>
 void serialize(Archive& archive, BranchCorner& corner) {
   archive(corner.parameter, corner.arc, corner.tip, corner.way, corner.runs, corner.held, corner.shortest, corner.raw,
-          corner.smooth, corner.leading, corner.change, corner.residual, corner.rebounds, corner.slowest);
+          corner.smooth, corner.leading, corner.change, corner.residual, corner.rebounds, corner.placed,
+          corner.slowest);
 }
 
 template <class Archive>

@@ -118,8 +118,10 @@ class OrbitSearch {
   bool returns(const Eigen::VectorXd& x, const MapClock& clock) const {
     const auto made = map_.march(x, orbit_.at, clock);
     return !made.end &&
-           map_.metric().size(made.image - x) <= std::max(image_tolerance * starts_.gap, placed_share * rebounds_of(made));
+           map_.metric().size(made.image - x) <= std::max(image_tolerance * starts_.gap, placed_of(made));
   }
+  static double placed_of(const MapMarch&) { return 0; }
+  static double placed_of(const FollowedMap::Image& image) { return image.placed; }
   static double rebounds_of(const MapMarch&) { return 0; }
   static double rebounds_of(const FollowedMap::Image& image) { return image.rebounds; }
 

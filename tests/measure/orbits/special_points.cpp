@@ -96,7 +96,7 @@ TEST_CASE("a fold next to a graze, where its branch ends, is listed, and what tu
 
 TEST_CASE("where stops give back speed a turn within the uncertainty of orbits is none, and intervals hold it") {
   BranchTrace trace = branch_through({1, 0.4, 0.402, 0.3, 0.9});
-  for (BranchCorner& corner : trace.corners) corner.rebounds = 0.005;
+  for (BranchCorner& corner : trace.corners) corner.rebounds = corner.placed = 0.005;
   trace.rebounds = 0.005;
   const auto found = points_of(special_points(trace, folds_from(1e-4)), "fold");
   REQUIRE(found.size() == 1);

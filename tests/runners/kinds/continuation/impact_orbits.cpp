@@ -36,8 +36,9 @@ struct Impacting {
 /// other stop.
 struct ImpactOrbit {
   double speed = 0, time = 0;
-  Eigen::Vector2d strobe;  ///< (x, x') at t = 0
-  double largest = 0;      ///< |multiplier|, over half a period of symmetric orbits
+  Eigen::Vector2d strobe;   ///< (x, x') at t = 0
+  double largest = 0;       ///< |multiplier|, over half a period of symmetric orbits
+  double at_minus_one = 0;  ///< ∏ (1 + μ)
 };
 
 /// With f = x − p, p the motion without stops: f(t₀) = v g₁, f'(t₀⁺) = v g₂ with (s − R) g = −(1 + e) (0, 1), R the
@@ -112,6 +113,7 @@ std::optional<ImpactOrbit> impact_orbit(const Impacting& one, double force) {
   jump << -e, 0, (behind + e * before) / orbit.speed, -e;
   const Eigen::Matrix2d map_of = jump * one.flow(map);
   orbit.largest = map_of.eigenvalues().cwiseAbs().maxCoeff();
+  orbit.at_minus_one = 1 + map_of.trace() + map_of.determinant();
   return orbit;
 }
 
@@ -220,6 +222,55 @@ TEST_CASE("impact orbits fold where their closed forms meet, within the interval
     CHECK(*folds[0].parameter == Approx(fold).epsilon(1e-4));
     CHECK(*folds[0].low <= fold);
     CHECK(*folds[0].high >= fold);
+  }
+  CHECK(found == 2);
+}
+
+TEST_CASE("impact orbits double their period where a multiplier of the closed form is −1") {
+  const std::string time = GENERATE("moreau-jean", "newmark-dumont-paoli");
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> share(0, 1);
+  int found = 0;
+  for (int times = 0; times < 100 && found < 2; ++times) {
+    Impacting one;
+    one.damping = 0.05 * share(random);
+    one.restitution = 0.6 + 0.3 * share(random);
+    one.stop = 0.02 + 0.1 * share(random);
+    const auto at = [&](double pulsation) {
+      one.pulsation = pulsation;
+      return impact_orbit(one, 1);
+    };
+    double low = 2.4, high = 0;
+    if (!at(low) || at(low)->at_minus_one < 0) continue;
+    for (double tried = low; tried < 3.2 && high == 0; tried += 0.02)
+      if (const auto orbit = at(tried); !orbit)
+        break;
+      else
+        (orbit->at_minus_one > 0 ? low : high) = tried;
+    if (high == 0) continue;
+    for (int k = 0; k < 40; ++k) {
+      const double middle = 0.5 * (low + high);
+      (at(middle)->at_minus_one > 0 ? low : high) = middle;
+    }
+    ++found;
+    const double first = low - 0.01;
+    one.pulsation = first;
+    Json study = study_of(one, time, low - 0.015, low + 0.015, first, 2000);
+    study["scene"]["structure"]["force"]["amplitude"] = 1;
+    const auto orbit = impact_orbit(one, 1);
+    REQUIRE(orbit);
+    study["scene"]["initial"] = {{"displacement", orbit->strobe[0]}, {"velocity", orbit->strobe[1]}};
+    study["parameter"]["pointer"] = "/scene/structure/force/pulsation";
+    const CaseRecord record = continued(study);
+    INFO(time << " " << low << " " << study.dump() << " " << record.reason);
+    REQUIRE(record.status == "done");
+    std::vector<SpecialRow> flips;
+    for (const SpecialRow& point : points_of(record))
+      if (point.kind == "flip") flips.push_back(point);
+    REQUIRE(flips.size() == 1);
+    CHECK(*flips[0].parameter == Approx(low).margin(3e-4));
+    CHECK(*flips[0].low <= low);
+    CHECK(*flips[0].high >= low);
   }
   CHECK(found == 2);
 }
