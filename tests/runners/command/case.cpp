@@ -87,7 +87,7 @@ TEST_CASE("What differs from the stored case is told by its name and both number
     SQLite::Database store(here / "there" / "results.sqlite", SQLite::OPEN_READWRITE);
     store.exec("UPDATE measures SET value = 7 WHERE name = 'impulse' AND case_id = '" + id + "'");
     CHECK(say(here, "case there " + id).code == 5);
-    seal_cases(store, "");
+    ricochet::seal_cases(store, "");
   }
   const Said again = say(here, "case there " + id);
   CHECK(again.code == 0);
