@@ -17,6 +17,7 @@ namespace ricochet::checking {
 const std::vector<Check<ContactLaw>>& law_checks() {
   static const std::vector<Check<ContactLaw>> all = {
       {"manual", [](const Law& law) { return manual_complete(law.entry->manual); }},
+      {"arrays", solve_stays_within},
       {"complementarity", complementarity_holds},
       {"force law", force_law_is_one},
       {"solution", solution_answers_the_force_law},
@@ -49,6 +50,7 @@ const std::vector<Check<MassStrategy>>& mass_checks() {
       {"semidefinite", matrix_is_semidefinite},
       {"kernel", kernel_as_declared},
       {"total mass", total_mass_is_right},
+      {"rotations", rotations_have_their_inertia},
       {"both ends alike", ends_are_treated_alike},
       {"frequencies", frequencies_converge},
   };

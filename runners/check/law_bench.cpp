@@ -1,6 +1,10 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <ricochet/contact_solvers/box_problem.hpp>
+#include <stdexcept>
 
 #include "runners/check/allocation_count.hpp"
 #include "runners/check/bench.hpp"
@@ -20,23 +24,40 @@ void show_beam(ContactLaw& law, int points) {
   discretised(scene, elements, *consistent_bench_mass(), &law);
 }
 
+// Made ready where the sizes of its arrays can be asked.
+std::unique_ptr<ContactLaw> prepared(const Law& law, int points, int lanes) {
+  auto made = law.make();
+  if (made->changes_problem()) show_beam(*made, points);
+  made->prepare(points, std::vector<Parameters>(static_cast<std::size_t>(lanes), law.set.values));
+  return made;
+}
+
 }  // namespace
 
-LawBench::LawBench(const Law& law, int points, int lanes) : law_(law.make()), points_(points), lanes_(lanes) {
-  if (law_->changes_problem()) show_beam(*law_, points);
-  const std::vector<Parameters> parameters(static_cast<std::size_t>(lanes), law.set.values);
-  law_->prepare(points, parameters);
-  const auto size = static_cast<std::size_t>(points * lanes);
-  for (auto* block : {&free_, &lower_, &upper_, &rate_, &before_, &effort_}) block->assign(size, 0);
-  memory_.assign(size * static_cast<std::size_t>(std::max(0, law_->memory_per_point())), 0);
-  outcomes_.resize(static_cast<std::size_t>(lanes));
+DenseDelassus::DenseDelassus(Eigen::MatrixXd matrix)
+    : matrix_(std::move(matrix)),
+      shown_(std::make_shared<GuardedArray<double>>("column", static_cast<std::size_t>(matrix_.size()))) {
+  std::copy_n(matrix_.data(), matrix_.size(), shown_->begin());
+  shown_->block().freeze();
 }
+
+LawBench::LawBench(const Law& law, int points, int lanes)
+    : law_(prepared(law, points, lanes)),
+      points_(points),
+      lanes_(lanes),
+      free_("free", numbers()),
+      lower_("lower", numbers()),
+      upper_("upper", numbers()),
+      rate_("rate_free", numbers()),
+      before_("before", numbers()),
+      effort_("effort", numbers()),
+      memory_("memory", numbers() * static_cast<std::size_t>(std::max(0, law_->memory_per_point()))),
+      outcomes_("outcome", static_cast<std::size_t>(lanes)) {}
 
 void LawBench::solve(DenseDelassus& W, double reach, double rate_reach, const std::vector<LaneProblem>& problems,
                      const std::vector<int>& touched) {
-  const auto put = [&](std::vector<double>& block, int lane, const Eigen::VectorXd& values) {
-    for (int i = 0; i < points_; ++i)
-      block[static_cast<std::size_t>(i * lanes_ + lane)] = values.size() > 0 ? values[i] : 0.0;
+  const auto put = [&](const GuardedArray<double>& block, int lane, const Eigen::VectorXd& values) {
+    for (int i = 0; i < points_; ++i) block[i * lanes_ + lane] = values.size() > 0 ? values[i] : 0.0;
   };
   for (int l = 0; l < lanes_; ++l) {
     const LaneProblem& lane = problems[static_cast<std::size_t>(l)];
@@ -60,13 +81,29 @@ void LawBench::solve(DenseDelassus& W, double reach, double rate_reach, const st
   problem.rate_reach = law_->reads_rate() ? rate_reach : 0.0;
   problem.rate_free = law_->reads_rate() ? rate_.data() : nullptr;
   problem.before = law_->reads() == Evaluation::conserving ? before_.data() : nullptr;
-  problem.memory = memory_.empty() ? nullptr : memory_.data();
+  problem.memory = memory_.data();
   problem.effort = effort_.data();
   problem.touched = touched;
   problem.outcome = outcomes_.data();
-  const long before = allocations_of_this_thread();
-  law_->solve(problem);
-  allocations_ = allocations_of_this_thread() - before;
+  call_guarded([&] {
+    const long before = allocations_of_this_thread();
+    law_->solve(problem);
+    allocations_ = allocations_of_this_thread() - before;
+  });
+  for (int l = 0; l < lanes_; ++l) {
+    const LaneProblem& lane = problems[static_cast<std::size_t>(l)];
+    const auto as_put = [&](const GuardedArray<double>& block, const Eigen::VectorXd& values) {
+      for (int i = 0; i < points_; ++i)
+        if (const double was = values.size() > 0 ? values[i] : 0.0; block[i * lanes_ + l] != was)
+          throw std::runtime_error(
+              fmt::format("writes into the array `{}` that it is given, which it may only read", block.block().name()));
+    };
+    as_put(free_, lane.free);
+    as_put(lower_, lane.lower);
+    as_put(upper_, lane.upper);
+    as_put(rate_, lane.rate);
+    as_put(before_, lane.before.size() > 0 ? lane.before : lane.free);
+  }
 }
 
 void LawBench::remember(bool on) {
@@ -74,9 +111,9 @@ void LawBench::remember(bool on) {
   std::fill(memory_.begin(), memory_.end(), 0.0);
 }
 
-void LawBench::keep(std::vector<double> memory) {
+void LawBench::keep(const std::vector<double>& memory) {
   remembers_ = true;
-  memory_ = std::move(memory);
+  std::copy(memory.begin(), memory.end(), memory_.begin());
 }
 
 std::vector<double> LawBench::of_lane(const std::vector<double>& memory, int lane) const {
@@ -96,18 +133,18 @@ std::vector<double> LawBench::of_point(const std::vector<double>& memory, Eigen:
 
 StopState LawBench::state(int side, double depth) const {
   StopState state{.depth = depth, .side = -side};
-  if (!memory_.empty()) state.memory = {memory_.data(), points_ * lanes_};
+  if (memory_.size() > 0) state.memory = {memory_.data(), points_ * lanes_};
   return state;
 }
 
 Eigen::VectorXd LawBench::effort(int lane) const {
   Eigen::VectorXd p(points_);
-  for (int i = 0; i < points_; ++i) p[i] = effort_[static_cast<std::size_t>(i * lanes_ + lane)];
+  for (int i = 0; i < points_; ++i) p[i] = effort_[i * lanes_ + lane];
   return p;
 }
 
 PointAnswer at_point(LawBench& bench, int side, double depth, double speed, double before) {
-  DenseDelassus W(Eigen::MatrixXd::Constant(1, 1, 1e-6));
+  thread_local DenseDelassus W(Eigen::MatrixXd::Constant(1, 1, 1e-6));
   const auto one = [](double x) { return Eigen::VectorXd(Eigen::VectorXd::Constant(1, x)); };
   const double layer = bench.layer();
   LaneProblem lane;

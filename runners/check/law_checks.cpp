@@ -132,6 +132,25 @@ Verdict complementarity_holds(const Law& law) {
       fmt::format("1, 3 and 10 points, one and two stops: {:.1g} of the violation is left, as reported", worst));
 }
 
+// The arrays of a bench are guarded, whatever is asked; here they are of many sizes.
+Verdict solve_stays_within(const Law& law) {
+  if (law.make()->absent()) return not_applicable(no_contact_at_all);
+  std::mt19937 random(20261129);
+  const double flexibility = flexibility_of(law);
+  for (const int points : {1, 2, 3, 10}) {
+    LawBench bench(law, points, lanes_of_block), alone(law, points, 1);
+    bench.remember(true);
+    alone.remember(true);
+    for (const std::vector<int>& touched : {std::vector<int>{0, 1, 2, 3}, {3}, {0}, {0, 1, 2, 3}}) {
+      DenseDelassus W = random_delassus(random, points, flexibility);
+      const std::vector<LaneProblem> lanes = random_lanes(random, points, barrier_of(law));
+      bench.solve(W, reach_of(law), reach_of(law), lanes, touched);
+      alone.solve(W, reach_of(law), reach_of(law), lanes, {0});
+    }
+  }
+  return fine("nothing is touched beyond those that it is given, 1 to 10 points, 1 and 4 lanes");
+}
+
 Verdict solve_allocates_nothing(const Law& law) {
   if (law.make()->absent()) return not_applicable(no_contact_at_all);
   if (!allocations_are_counted()) return not_applicable("this build of the program cannot count allocations");

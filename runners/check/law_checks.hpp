@@ -1,10 +1,12 @@
 #pragma once
 #include <Eigen/Core>
+#include <memory>
 #include <random>
 #include <ricochet/contract/contact_law.hpp>
 #include <vector>
 
 #include "runners/check/checks.hpp"
+#include "runners/check/guarded_memory.hpp"
 
 /// \file
 /// What is looked at in a contact law.
@@ -14,15 +16,16 @@ namespace ricochet::checking {
 
 using Law = Subject<ContactLaw>;
 
-/// A dense Delassus operator.
+/// A dense Delassus operator. Its columns may only be read.
 class DenseDelassus final : public DelassusColumns {
  public:
-  explicit DenseDelassus(Eigen::MatrixXd matrix) : matrix_(std::move(matrix)) {}
-  const double* column(int j) override { return matrix_.col(j).data(); }
+  explicit DenseDelassus(Eigen::MatrixXd matrix);
+  const double* column(int j) override { return &(*shown_)[j * matrix_.rows()]; }
   const Eigen::MatrixXd& matrix() const { return matrix_; }
 
  private:
   Eigen::MatrixXd matrix_;
+  std::shared_ptr<GuardedArray<double>> shown_;
 };
 
 /// What one lane asks: m numbers each.
@@ -30,7 +33,9 @@ struct LaneProblem {
   Eigen::VectorXd free, lower, upper, rate, before, effort;
 };
 
-/// A block of lanes before a law, and what the law answers. Nothing allocates between asking and answer.
+/// A block of lanes before a law, and what the law answers. Nothing allocates between asking and answer. The law is
+/// given arrays that are guarded: what it touches beyond them, or writes where it may only read, is a
+/// std::runtime_error.
 class LawBench {
  public:
   /// Makes and prepares the law for `points` points and `lanes` lanes. A law that changes the problem gets those of a
@@ -45,8 +50,8 @@ class LawBench {
   void remember(bool on);
   /// What the law keeps, and the same put in its place, to last; of it, what belongs to a lane, or to one of its
   /// points.
-  const std::vector<double>& memory() const { return memory_; }
-  void keep(std::vector<double> memory);
+  std::vector<double> memory() const { return {memory_.begin(), memory_.end()}; }
+  void keep(const std::vector<double>& memory);
   std::vector<double> of_lane(const std::vector<double>& memory, int lane) const;
   std::vector<double> of_point(const std::vector<double>& memory, Eigen::Index point, int lane) const;
   /// How the law left that side of the first point of the first lane, and its depth; `side` as in at_point().
@@ -55,14 +60,16 @@ class LawBench {
   void solve(DenseDelassus& W, double reach, double rate_reach, const std::vector<LaneProblem>& problems,
              const std::vector<int>& touched);
   Eigen::VectorXd effort(int lane) const;
-  const LaneOutcome& outcome(int lane) const { return outcomes_[static_cast<std::size_t>(lane)]; }
+  const LaneOutcome& outcome(int lane) const { return outcomes_[lane]; }
   long allocations() const { return allocations_; }  ///< of the last solve
 
  private:
+  std::size_t numbers() const { return static_cast<std::size_t>(points_ * lanes_); }
+
   std::unique_ptr<ContactLaw> law_;
   int points_, lanes_;
-  std::vector<double> free_, lower_, upper_, rate_, before_, effort_, memory_;
-  std::vector<LaneOutcome> outcomes_;
+  GuardedArray<double> free_, lower_, upper_, rate_, before_, effort_, memory_;
+  GuardedArray<LaneOutcome> outcomes_;
   long allocations_ = 0;
   bool remembers_ = false;
 };
@@ -123,6 +130,7 @@ Verdict dissipates_what_is_lost(const Law& law);
 Verdict changed_problem_is_sound(const Law& law);
 
 // All laws.
+Verdict solve_stays_within(const Law& law);
 Verdict solve_allocates_nothing(const Law& law);
 Verdict warm_start_changes_nothing(const Law& law);
 

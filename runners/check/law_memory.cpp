@@ -74,7 +74,8 @@ Verdict answers_follow_from_memory(const Law& law) {
         if (!bench.effort(l).allFinite() || !bench.outcome(l).converged)
           return fails(fmt::format("solve {} of a load, unload and reload, {}", solves,
                                    bench.outcome(l).converged ? "an effort is not finite" : "does not converge"));
-      if (std::any_of(bench.memory().begin(), bench.memory().end(), [](double x) { return std::isnan(x); }))
+      const std::vector<double> left = bench.memory();
+      if (std::any_of(left.begin(), left.end(), [](double x) { return std::isnan(x); }))
         return fails(fmt::format("keeps a number that is none after {} solves", solves));
       if (k % 2 == 0) {
         LawBench other(law, touching, both);

@@ -5,8 +5,8 @@
 #include "runners/check/checks.hpp"
 
 /// \file
-/// Displacement spaces on which masses are checked: a beam or a bar of unit length and density. Each end is fixed or
-/// free. Stops are nowhere, at the free ends, or at all nodes.
+/// Displacement spaces on which masses are checked: a beam or a bar of unit length and, where it is even, of unit
+/// density. Each end is fixed or free. Stops are nowhere, at the free ends, or at all nodes.
 namespace ricochet::checking {
 
 using Mass = Subject<MassStrategy>;
@@ -19,12 +19,20 @@ struct SpaceBench {
   bool point_mass = false;  ///< 0.3 kg in the middle
   Stops stops = Stops::none;
   bool pinned = false;  ///< the displacement of a beam is held at a node at a third of its length, too
+  /// Elements of unlike lengths, from 0.6 to 1.4 of the mean, and two halves of unlike section, of 1 and 2.5 kg/m.
+  bool uneven = false;
+  bool mirrored = false;       ///< what is uneven, seen from the other end
+  bool rotary = false;         ///< the sections of a beam resist rotation, with 2e-3 and 6e-3 kg m
+  bool point_inertia = false;  ///< 0.05 kg m² on the rotation in the middle of a beam
 };
 /// Where stops may stand.
 std::vector<SpaceBench::Stops> stops_of(bool no_free_end);
 FiniteElementSpace unit_space(const SpaceBench& bench);
 /// "a beam of 6 elements, fixed at its left end".
 std::string space_text(const SpaceBench& bench);
+/// kg of its elements, and kg m² that they resist a rotation with by their sections alone.
+double mass_of(const FiniteElementSpace& space);
+double rotary_of(const FiniteElementSpace& space);
 /// One mass of 1 kg without elements.
 FiniteElementSpace oscillator_space();
 
@@ -49,6 +57,7 @@ Verdict kernel_as_declared(const Mass& mass);
 Verdict total_mass_is_right(const Mass& mass);
 Verdict ends_are_treated_alike(const Mass& mass);
 Verdict frequencies_converge(const Mass& mass);
+Verdict rotations_have_their_inertia(const Mass& mass);
 
 const std::vector<Check<MassStrategy>>& mass_checks();
 

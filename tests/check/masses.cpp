@@ -84,7 +84,8 @@ class HeldEndsAlone final : public MassStrategy {
       for (const int a : {0, hermite ? 2 : 1})
         if (element.dof[static_cast<std::size_t>(a)] >= 0)
           diagonal[element.dof[static_cast<std::size_t>(a)]] += element.line_density * element.length / 2;
-    for (const auto& point : space.point_masses) diagonal[point.dof] += point.mass;
+    for (const auto& point : space.point_masses)
+      if (!point.rotation) diagonal[point.dof] += point.mass;
     inertia.mass = SparseMatrix(Eigen::MatrixXd(diagonal.asDiagonal()).sparseView());
     inertia.kernel_dimension = hermite ? space.dofs / 2 : 0;
     return inertia;
