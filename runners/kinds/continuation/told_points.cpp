@@ -73,8 +73,9 @@ bool is_point_kind(const std::string& kind) {
 std::vector<ToldPoint> told_points(const StudyPoints& study, const std::vector<PointLimitRow>& limits,
                                    const std::vector<PointOrderRow>& orders) {
   const std::string& reference = study.reference()->id;
-  // Changes of contact last; else where stability ends, orders, the kind, and in how many cases it was found alone.
-  using Rank = std::tuple<bool, bool, bool, bool, std::size_t, long, double>;
+  // Changes of contact last; else where stability ends, orders, whether a reference has it, the kind, and how well it
+  // is located.
+  using Rank = std::tuple<bool, bool, bool, bool, bool, std::size_t, double, double>;
   std::vector<std::pair<Rank, ToldPoint>> ranked;
   std::map<std::string, std::vector<BranchRow>> rows;
   for (BranchRow& row : branch_rows_in(*find_table(study.reference()->tables, branches_name)))
@@ -96,15 +97,13 @@ std::vector<ToldPoint> told_points(const StudyPoints& study, const std::vector<P
     const bool ordered = std::any_of(orders.begin(), orders.end(), [&](const PointOrderRow& row) {
       return row.name == name.text && row.method == reference && row.verdict == order_told;
     });
-    long found = 0;
-    for (std::size_t c = 0; c < study.cases().size(); ++c)
-      found += study.presence(c, static_cast<int>(k), nullptr) == PointPresence::found;
     // An interval of a fiftieth of the range locates nothing.
     constexpr double wide_share = 0.02;
-    const bool wide = limit->low && limit->high && *limit->high - *limit->low > wide_share * study.range();
+    const double width = limit->low && limit->high ? *limit->high - *limit->low : 0;
+    const bool wide = width > wide_share * study.range();
     const ToldPoint told{&name, &*limit, point, ends_stability(rows, point->row)};
-    ranked.push_back({{name.kind == "contact", !told.ends_stability, !ordered, wide, kind_rank(name.kind), -found,
-                       -point->row.prominence.value_or(0)},
+    ranked.push_back({{name.kind == "contact", !told.ends_stability, !ordered, !limit->reference, wide,
+                       kind_rank(name.kind), width, -point->row.prominence.value_or(0)},
                       told});
   }
   const auto by_rank = [](const auto& a, const auto& b) { return a.first < b.first; };
