@@ -322,10 +322,17 @@ std::string read_text(const std::filesystem::path& file, const std::string& expe
     throw InputError("", "is a folder; expected " + expected + ", a JSON file");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf() || stream.peek() == std::ifstream::traits_type::eof()))
+  // What is no regular file has no size to ask for.
+  std::string text, piece(std::size_t{1} << 16U, '\0');
+  while (stream && text.size() <= largest_text) {
+    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    text.append(piece, 0, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (text.size() > largest_text)
+    throw InputError("", fmt::format("has more than {} MiB; expected {}, a JSON file", largest_text >> 20U, expected));
+  if (!stream.eof())
     throw InputError("", std::string("cannot be read: ") + (errno ? std::strerror(errno) : "unknown cause"));
-  return text.str();
+  return text;
 }
 
 std::string explained(const InputError& error, std::string place, const std::string& text) {

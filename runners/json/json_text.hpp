@@ -50,7 +50,10 @@ Json parse_json(const std::string& text);
 /// names nothing (a missing key), where its nearest ancestor stands. None for the whole document.
 std::optional<TextPosition> locate(const std::string& text, const std::string& pointer);
 
-/// A text file. Throws InputError, pointer "", where it cannot be read or is a folder; `expected`: "a study".
+/// Bytes of the largest text that is read.
+inline constexpr std::size_t largest_text = std::size_t{32} << 20U;
+
+/// A text file. Throws InputError, pointer "", where it cannot be read, is a folder or too large; `expected`: "a study".
 std::string read_text(const std::filesystem::path& file, const std::string& expected);
 
 /// The error as a person reads it: "PLACE:LINE: at /json/pointer: what is wrong; what was expected", the line where

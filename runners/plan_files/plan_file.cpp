@@ -1,11 +1,15 @@
 #include "runners/plan_files/plan_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <ricochet/contract/step_plan.hpp>
+#include <ricochet/scene/files/text_file.hpp>
 
 #include "runners/json/json_text.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace fs = std::filesystem;
@@ -41,9 +45,17 @@ PlanSource source_of(const Json& entry, const std::string& pointer, const fs::pa
   const std::string here = pointer_to(pointer, file_key);
   if (!file->is_string() || file->get<std::string>().empty())
     throw InputError(here, "expected the path of a plan, a JSON file, found " + quote(*file));
+  const std::string name = file->get<std::string>();
+  if (!is_plain(name))
+    throw InputError(here, "control characters, or bytes that are no UTF-8; expected the path of a plan without them");
+  const fs::path path = (folder / name).lexically_normal();
   try {
-    return read_plan_file((folder / file->get<std::string>()).lexically_normal());
+    return read_plan_file(path);
   } catch (const InputError& error) {
+    // What a file says that lies elsewhere is not shown.
+    if (!lies_within(folder.empty() ? "." : folder, path) && fs::exists(path))
+      throw InputError(here, fmt::format("\"{}\" lies outside the folder of the study, and is no plan that can be read",
+                                         shortened(name)));
     throw InputError(here, error.what());
   }
 }

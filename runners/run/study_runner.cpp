@@ -18,6 +18,7 @@
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/store.hpp"
+#include "runners/study/study_files.hpp"
 #include "runners/table/text.hpp"
 #include "runners/workers/allowed_processors.hpp"
 
@@ -207,6 +208,11 @@ class FolderRun {
       progress.started(ids.front(), cases.front().predicted_seconds);
     };
     events.finished = [&](const CaseRecord& record, const PendingCase* next) {
+      if (record.status == "failed" && record.reason.find(changed_since) != std::string::npos)
+        throw StoreError(
+            fmt::format("{}. This case is not kept, those that finished are. Put the file back, or keep it, "
+                        "and run again",
+                        record.reason));
       note_failure(record);
       store_.save({&record, 1});
       progress.finished(record.id);

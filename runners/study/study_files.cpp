@@ -107,25 +107,31 @@ StudyFiles::StudyFiles(std::filesystem::path folder, const Json& known, bool out
 }
 
 const StudyFiles::File& StudyFiles::file(const std::string& name, const std::string& pointer) {
+  if (!is_plain(name))
+    throw InputError(pointer, fmt::format("\"{}\" has control characters or bytes that are no UTF-8; expected the name "
+                                          "of a file without them",
+                                          plain_text(shortened(name))));
   const std::filesystem::path path = name;
   bool leaves = path.is_absolute();
   for (const auto& part : path) leaves = leaves || part == "..";
-  if (leaves && !outside_)
+  // A link may lead out of the folder.
+  if ((leaves || !lies_within(folder_, folder_ / path)) && !outside_)
     throw InputError(pointer,
                      fmt::format("\"{}\" is outside the folder of the study; expected a file in it, or a study "
                                  "that says \"outside\": true",
                                  shortened(name)));
   File& one = files_[name];
   if (!one.content.empty()) return one;
+  const Json digests = known_.is_object() ? known_.at("digests") : Json::object();
   try {
     one.content = read_file(folder_, name);
   } catch (const FileError& error) {
-    throw InputError(pointer, error.what());
+    const bool known = !one.digest.empty() || digests.contains(name);
+    throw InputError(pointer, known ? fmt::format("{} {}: {}", name, changed_since, error.what()) : error.what());
   }
   const std::string digest = content_hash(one.content);
-  const Json digests = known_.is_object() ? known_.at("digests") : Json::object();
   const std::string before = one.digest.empty() ? digests.value(name, digest) : one.digest;
-  if (before != digest) throw InputError(pointer, name + " has changed since the run began");
+  if (before != digest) throw InputError(pointer, name + " " + changed_since);
   one.digest = digest;
   return one;
 }

@@ -11,6 +11,9 @@
 
 namespace ricochet {
 
+/// What is said of a file that is no longer what it was: a run ends by it.
+inline constexpr const char* changed_since = "has changed since the run began";
+
 /// The files that the scenes of a study name, each read once. Names are relative to the study's folder and stay in it,
 /// unless the study says that they may lie outside.
 /// Safe for several threads.

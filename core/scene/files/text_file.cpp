@@ -184,6 +184,15 @@ std::optional<long long> whole_number(std::string_view text) {
   return value;
 }
 
+bool lies_within(const std::filesystem::path& folder, const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path inner = std::filesystem::weakly_canonical(file, error);
+  if (error) return false;
+  const std::filesystem::path outer = std::filesystem::weakly_canonical(folder, error);
+  if (error) return false;
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
 std::string read_file(const std::filesystem::path& folder, const std::string& name) {
   const std::filesystem::path file = folder / name;
   std::error_code error;

@@ -68,6 +68,9 @@ std::string no_number(std::string_view text, const std::string& of = "");
 /// A whole number from 0; nothing where the text is none.
 std::optional<long long> whole_number(std::string_view text);
 
+/// Whether a file lies in a folder or below it, links followed. One that cannot be looked at does not.
+bool lies_within(const std::filesystem::path& folder, const std::filesystem::path& file);
+
 /// Content of `folder`/`name`. Throws FileError where it is missing (with the nearest name of the folder), is no file
 /// or cannot be read. The same where it is larger than the limit: 256 MiB, or RICOCHET_FILE_LIMIT bytes.
 std::string read_file(const std::filesystem::path& folder, const std::string& name);
