@@ -193,7 +193,8 @@ std::string ChildOutcome::sentence() const {
   return "plugin " + plugin.text() + ", " + function + "(): " + cause();
 }
 
-ChildOutcome run_in_child(const std::function<std::string()>& work, double seconds) {
+ChildOutcome run_in_child(const std::function<std::string()>& work, double seconds,
+                          const std::function<void()>& waits) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0)
     throw std::runtime_error(fmt::format("no pipe to a child process can be had: {}", std::strerror(errno)));
@@ -214,7 +215,11 @@ ChildOutcome run_in_child(const std::function<std::string()>& work, double secon
     return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
   };
   Watch watch(child, ends[0]);
-  const bool in_time = watch.until(from_now(seconds));
+  constexpr double long_wait = 3;  // s
+  const Clock::time_point limit = from_now(seconds);
+  bool in_time = waits && seconds > long_wait && watch.until(from_now(long_wait));
+  if (!in_time && waits && seconds > long_wait) waits();
+  in_time = in_time || watch.until(limit);
   if (!in_time) {
     // First asked what it does, then ended whatever it does.
     constexpr double patience = 3;  // s, which a child that shares its processor may need to answer

@@ -28,6 +28,8 @@ struct ChildOutcome {
 /// Runs `work` in a child process and waits for it, at most `seconds` long. Whatever a plugin does there (abort, exit,
 /// write where it must not, never return), this process stays as it was. The child writes nothing to the streams of
 /// this process and leaves no core file. Throws std::runtime_error when no process can be had.
-ChildOutcome run_in_child(const std::function<std::string()>& work, double seconds);
+/// `waits` is called in this process, once, where the work lasts longer than some seconds.
+ChildOutcome run_in_child(const std::function<std::string()>& work, double seconds,
+                          const std::function<void()>& waits = {});
 
 }  // namespace ricochet

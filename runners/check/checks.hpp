@@ -46,7 +46,9 @@ struct Refused {
 /// Where checks run: each in a child process, ended after so many seconds, or in this process (for tests).
 struct Isolation {
   bool child = true;
-  double seconds = 60;
+  double seconds = 60;  ///< by the clock
+  /// Told once of a check that lasts longer than some seconds, while it runs.
+  std::function<void(const std::string& check)> lasts = {};
 };
 
 /// A trial of the method with one set of parameter values.

@@ -102,7 +102,10 @@ CheckResult run_check(const std::string& name, const std::vector<Trial>& trials,
                       bool* hangs) {
   if (hangs) *hangs = false;
   if (!isolation.child) return over_all(name, trials);
-  const ChildOutcome outcome = run_in_child([&] { return encoded(over_all(name, trials)); }, isolation.seconds);
+  const ChildOutcome outcome = run_in_child([&] { return encoded(over_all(name, trials)); }, isolation.seconds,
+                                            [&] {
+                                              if (isolation.lasts) isolation.lasts(name);
+                                            });
   CheckResult result{name, Finding::fails, {}};
   if (outcome.ok())
     decode(outcome.text, result);

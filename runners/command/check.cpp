@@ -1,6 +1,9 @@
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <chrono>
 #include <filesystem>
+#include <iostream>
 #include <ostream>
 #include <ricochet/loader/catalogue.hpp>
 #include <string>
@@ -71,8 +74,9 @@ FoundMethods find_methods(const std::string& operand, const std::vector<fs::path
   for (const Role role : all_roles)
     if (const Unusable* file = catalogue.unusable_provider(role, operand))
       throw PluginError(file->file.string() + ": " + file->reason);
-  throw UsageError("no method is called \"" + operand + "\"" + did_you_mean(operand, names) + " (found: " +
-                   quoted_list(names) + "); a file is given with a '/', or ends in .so (a library) or .json (a plan)");
+  throw UsageError("no method is called \"" + operand + "\"" + did_you_mean(operand, names) +
+                   " (found: " + quoted_list(names) + "); " + where_looked(catalogue) +
+                   "; a file is given with a '/', or ends in .so (a library) or .json (a plan)");
 }
 
 }  // namespace ricochet::checking
@@ -84,7 +88,15 @@ using checking::CheckResult;
 using checking::Finding;
 
 std::vector<CheckResult> checked(const Registry& registry, Role role, const std::string& name) {
-  const checking::Isolation isolation;
+  checking::Isolation isolation;
+  isolation.lasts = [&](const std::string& check) {
+    constexpr int begun = 3;  // s before
+    const auto end =
+        std::chrono::system_clock::now() + std::chrono::seconds(static_cast<int>(isolation.seconds) - begun);
+    std::cerr << fmt::format(
+        "ricochet: {} {}: \"{}\" is still running; it is ended at {:%H:%M:%S}, {:g} s after it began\n",
+        role_name(role), name, check, fmt::localtime(std::chrono::system_clock::to_time_t(end)), isolation.seconds);
+  };
   switch (role) {
     case Role::mass:
       return checking::check_mass(*registry.mass(name), isolation);

@@ -16,11 +16,14 @@
 namespace ricochet {
 namespace {
 
+constexpr const char* plan_word = "plan";
+
 namespace fs = std::filesystem;
 
 /// What `new` was asked for.
 struct Wish {
-  Role role;
+  std::string word;  ///< a role, or "plan"
+  Role role;         ///< time, of a plan
   std::string name;
   fs::path program;  ///< this one
   fs::path prefix() const { return program.parent_path().parent_path(); }
@@ -43,6 +46,8 @@ void check_name(const Wish& wish, const Arguments& arguments) {
     throw UsageError("\"" + name +
                      "\" cannot be the name of a method: expected small letters, digits and '-', and no "
                      "'-' at its beginning");
+  if (wish.word == plan_word && name == stated_plan)
+    throw UsageError("a plan has a name of its own: in a study \"plan\" stands for any scheme given by a file");
   const Catalogue catalogue = standard_catalogue(arguments.plugins);
   for (const Provided& method : catalogue.provided())
     if (method.role == wish.role && method.name == name)
@@ -55,18 +60,20 @@ void check_name(const Wish& wish, const Arguments& arguments) {
     throw UsageError("\"" + name + "\" is here already: choose another name, or another folder to make it in");
 }
 
-/// The files of the example of a role, and its name: that of its source.
+/// The files of an example, and its name: that of its source, or of its plan.
 struct Example {
   std::string name;
   std::vector<ExampleFile> files;
 };
 
-Example example_of(Role role) {
+Example example_of(const std::string& word) {
   Example example;
   for (const ExampleFile& file : example_files()) {
-    if (file.role != role_name(role)) continue;
+    if (file.role != word) continue;
     example.files.push_back(file);
-    if (const fs::path path(file.name); path.extension() == ".cpp") example.name = path.stem().string();
+    if (const fs::path path(file.name);
+        path.extension() == (word == plan_word ? ".json" : ".cpp") && path != "study.json")
+      example.name = path.stem().string();
   }
   return example;
 }
@@ -148,23 +155,37 @@ std::string called(const fs::path& program) {
 }  // namespace
 
 int command_new(const Arguments& arguments, std::ostream& out) {
-  const Wish wish{role_called(arguments.operands[0]), arguments.operands[1], fs::read_symlink("/proc/self/exe")};
+  const std::string& word = arguments.operands[0];
+  const bool plan = word == plan_word;
+  const Wish wish{word, plan ? Role::time : role_called(word), arguments.operands[1],
+                  fs::read_symlink("/proc/self/exe")};
   check_name(wish, arguments);
-  const Example example = example_of(wish.role);
+  const Example example = example_of(wish.word);
   std::string files;
   for (const std::string& file : make(wish, example)) files += (files.empty() ? "" : ", ") + file;
   const std::string ricochet = called(wish.program);
-  const std::string plugin = fmt::format("{0}/build/plugins/{1}-{0}.so", wish.name, role_name(wish.role));
-  out << fmt::format(
-      "{0}/ holds {1}: the example {2} under your name, which works as it stands. Build it, check it, run its "
-      "study:\n\n"
-      "    cmake -S {0} -B {0}/build && cmake --build {0}/build\n"
-      "    {3} check {4}\n"
-      "    {3} run {0}/study.json --plugin {4}\n",
-      wish.name, files, example.name, ricochet, plugin);
+  const std::string works = fmt::format("{}/ holds {}: the example {} under your name, which works as it stands.",
+                                        wish.name, files, example.name);
+  if (plan) {
+    out << fmt::format(
+        "{1} There is nothing to build. Read its step, check it, run its study:\n\n"
+        "    {2} describe {0}/{0}.json\n"
+        "    {2} check {0}/{0}.json\n"
+        "    {2} run {0}/study.json\n",
+        wish.name, works, ricochet);
+  } else {
+    const std::string plugin = fmt::format("{0}/build/plugins/{1}-{0}.so", wish.name, role_name(wish.role));
+    out << fmt::format(
+        "{3} Build it, check it, run its study:\n\n"
+        "    cmake -S {0} -B {0}/build && cmake --build {0}/build\n"
+        "    {1} check {2}\n"
+        "    {1} run {0}/study.json --plugin {2}\n",
+        wish.name, ricochet, plugin, works);
+  }
   std::error_code ignored;
-  const fs::path page = wish.prefix() / "share/doc/ricochet/plugins.md";
-  if (fs::exists(page, ignored)) out << "\nWhat the loop does with each field: " << page.string() << "\n";
+  const fs::path page = wish.prefix() / "share/doc/ricochet" / (plan ? "plan-files.md" : "plugins.md");
+  if (fs::exists(page, ignored))
+    out << (plan ? "\nAll keys of a plan: " : "\nWhat the loop does with each field: ") << page.string() << "\n";
   return exit_done;
 }
 

@@ -183,6 +183,25 @@ void add_plans(const fs::path& folder, Catalogue& catalogue) {
   for (const fs::path& file : files) add_plan(file, catalogue, false);
 }
 
+std::string where_looked(const Catalogue& catalogue) {
+  const std::vector<fs::path>&folders = catalogue.folders(), missing = catalogue.missing_folders();
+  const auto among = [](const std::vector<fs::path>& all, const fs::path& one) {
+    return std::find(all.begin(), all.end(), one) != all.end();
+  };
+  std::string text;
+  for (const fs::path& folder : folders)
+    text +=
+        (text.empty() ? "looked in " : ", ") + folder.string() + (among(missing, folder) ? " (no such folder)" : "");
+  std::vector<fs::path> single;
+  const auto add = [&](const fs::path& file) {
+    if (!among(folders, file.parent_path()) && !among(single, file)) single.push_back(file);
+  };
+  for (const Provided& method : catalogue.provided()) add(method.file);
+  for (const Unusable& file : catalogue.unusable()) add(file.file);
+  for (const fs::path& file : single) text += ", " + file.string();
+  return text + "; RICOCHET_PLUGIN_PATH adds folders, --plugin a file";
+}
+
 Catalogue standard_catalogue(const std::vector<fs::path>& files) {
   std::vector<fs::path> libraries, plans;
   for (const fs::path& file : files) (is_plan_file(file) ? plans : libraries).push_back(file);

@@ -53,6 +53,8 @@ std::optional<PlanSource> take_stated_plan(Json& entry, const std::string& point
 /// hold a plan (an object with "slots" or "stages"), and those among `files`. One that is wrong is unusable; in `files`
 /// it is a PluginError.
 Catalogue standard_catalogue(const std::vector<std::filesystem::path>& files = {});
+/// Where methods were looked for, a sentence: the folders, which of them are none, the files of --plugin.
+std::string where_looked(const Catalogue& catalogue);
 /// Adds the plans of one folder.
 void add_plans(const std::filesystem::path& folder, Catalogue& catalogue);
 

@@ -179,6 +179,7 @@ const PluginManual& require_method(Role role, const std::string& name, const std
   message += names.empty() ? " (no " + std::string(role_phrase(role)) +
                                  " was found at all; `ricochet doctor` shows the plugin folders)"
                            : " (found: " + quoted_list(names) + ")";
+  message += "; " + where_looked(catalogue);
   // The file is the fault, not the study, where one that cannot serve is meant for this method. Also where it tells
   // nothing of itself and no name is near.
   const Unusable* meant = catalogue.unusable_provider(role, name);

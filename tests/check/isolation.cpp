@@ -1,4 +1,6 @@
 // Whatever the code of a plugin does, a check ends with a sentence.
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
@@ -48,6 +50,24 @@ TEST_CASE("check: a crash, an exit and a loop without end are failures with a ca
   CHECK(endless.finding == Finding::fails);
   CHECK_THAT(endless.sentences.at(0), Contains("did not end within 1 s"));
   CHECK(hangs);
+}
+
+TEST_CASE("check: a check that lasts is told of while it runs, one that does not is not") {
+  std::vector<std::string> told;
+  const auto of = [&](unsigned tenths) {
+    const Isolation isolation{.seconds = 600, .lasts = [&](const std::string& check) { told.push_back(check); }};
+    return run_check("slow",
+                     {{"",
+                       [=] {
+                         ::usleep(100000 * tenths);
+                         return fine();
+                       }}},
+                     isolation);
+  };
+  CHECK(of(0).finding == Finding::ok);
+  CHECK(told.empty());
+  CHECK(of(35).finding == Finding::ok);
+  CHECK(told == std::vector<std::string>{"slow"});
 }
 
 TEST_CASE("check: one failing value makes a check fail, refused values count only when nothing else was measured") {

@@ -99,6 +99,7 @@ class StabilityRun {
     record_.status = "done";
     tabulate(sides, observe);
     measure(sides);
+    compare_declared(sides.front());
     return std::move(record_);
   }
 
@@ -215,14 +216,6 @@ class StabilityRun {
     if (spent())
       record_.notes.push_back(
           fmt::format("the budget of {:g} s was spent: some cells were not observed", budget_of(case_)));
-  }
-
-  static std::string growth_text(const StepSpectrum& known, bool closed) {
-    const double growth = known.radius - 1;
-    return fmt::format(
-        "grows {} per step{} on {}",
-        growth < 1 ? fmt::format("by {:.3g} %", 100 * growth) : fmt::format("{:.3g} times", known.radius),
-        closed ? " with " + known.contact + " closed" : "", known.mode);
   }
 
   // Status and reason of one row: the prediction, what was seen, and whether they agree. A scene is open now and then:
@@ -363,6 +356,16 @@ class StabilityRun {
       if (const auto* step = std::get_if<StepPlan>(&made)) return std::pair(*step, h);
     }
     return std::nullopt;
+  }
+
+  void compare_declared(const Side& open) {
+    const auto step = some_plan();
+    const StepLimit& limit = open.predicted;
+    const bool unstable = limit.below_range || open.observed.below_range || open.never_stable();
+    const double growing = limit.beyond ? limit.beyond->pulsation : 0;
+    const auto seen = open.observed.step ? open.observed.step : limit.step;
+    if (step && !spent())
+      compare_with_declared(step->first, *problem_, {seen, growing, steps_.back(), unstable}, record_);
   }
 
   void say_restitution() {

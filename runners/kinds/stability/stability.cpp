@@ -69,6 +69,8 @@ std::string limits_text(const CaseRecord& record) {
   if (const auto steps = measure(record, "contradictions"))
     parts.push_back(fmt::format("spectrum and march disagree without contact at {:.0f} step{}: an error of the method",
                                 *steps, *steps == 1 ? "" : "s"));
+  if (const auto product = measure(record, "undeclared_limit"))
+    parts.push_back(fmt::format("stable up to h·ω = {:.4g}, which the scheme declares otherwise", *product));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -81,6 +83,9 @@ std::vector<MeasureInfo> stability_measures() {
       {"agreement", "1", "Observed over predicted step limit."},
       {"contradictions", "1",
        "Steps of the range at which spectrum and march disagree without contact: an error of the method.",
+       Of::computation},
+      {"undeclared_limit", "1",
+       "h·ω up to which steps were stable, where the scheme declares another limit, or none: an error of its facts.",
        Of::computation},
   };
 }
@@ -126,7 +131,8 @@ class StabilityKind final : public Kind {
   }
   std::string outcome(const CaseRecord& record) const override { return limits_text(record); }
   std::string contradiction(const CaseRecord& record) const override {
-    return measure(record, "contradictions").value_or(0) > 0 ? "spectrum and march disagree without contact" : "";
+    if (measure(record, "contradictions").value_or(0) > 0) return "spectrum and march disagree without contact";
+    return measure(record, "undeclared_limit") ? "the step limit is not the one that the scheme declares" : "";
   }
   report::KindPage page() const override { return report::stability_page(); }
 };

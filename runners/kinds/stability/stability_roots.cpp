@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <ricochet/measure/stability/stability.hpp>
 
@@ -57,6 +59,13 @@ void add_roots(std::vector<RootRow>& rows, bool closed, double h, std::size_t of
     row->to = h;
     row->times = std::max(row->times, times[at]);
   }
+}
+
+std::string growth_text(const StepSpectrum& known, bool closed) {
+  const double growth = known.radius - 1;
+  return fmt::format("grows {} per step{} on {}",
+                     growth < 1 ? fmt::format("by {:.3g} %", 100 * growth) : fmt::format("{:.3g} times", known.radius),
+                     closed ? " with " + known.contact + " closed" : "", known.mode);
 }
 
 }  // namespace ricochet

@@ -8,7 +8,12 @@
 
 namespace ricochet {
 
+struct SemiDiscrete;
+struct StepPlan;
 struct StepSpectrum;
+
+/// By how much a step grows, and what does.
+std::string growth_text(const StepSpectrum& known, bool closed);
 
 /// One row of `stability`: a step and contact state, what the plan predicts there and what became of it.
 struct StabilityRow {
@@ -86,6 +91,18 @@ std::vector<Disagreement> disagreements(const StepRange& range);
 
 /// An observed limit agrees with the expected one within this share of it.
 inline constexpr double limit_tolerance = 0.02;
+
+/// How far the steps of the open structure were stable, marched, else by the spectrum.
+struct OpenLimit {
+  std::optional<double> step;  ///< s; none: all were, or none
+  double pulsation = 0;        ///< rad/s, of the mode that grows beyond it; 0: none does
+  double last = 0;             ///< s, the largest step of the range
+  bool unstable = false;       ///< below the range already
+};
+/// Compares it with the limit that the plan declares, where nothing is damped. Where they differ by more than
+/// limit_tolerance the record gets a note and the measure `undeclared_limit`: h·ω up to which steps were stable.
+void compare_with_declared(const StepPlan& plan, const SemiDiscrete& problem, const OpenLimit& open,
+                           CaseRecord& record);
 
 /// One row of `step_limits`: a case and a contact state.
 struct LimitRow {

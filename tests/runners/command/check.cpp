@@ -71,3 +71,74 @@ TEST_CASE("check says what is wrong with what it cannot check", "[command]") {
     CHECK_THAT(outcome.err, Contains(part));
   }
 }
+
+TEST_CASE("new plan makes a plan that passes its check and runs in its study", "[command]") {
+  const Folder here;
+  const Outcome made = here.run("new plan my-rule");
+  INFO(made.out << made.err);
+  REQUIRE(made.code == 0);
+  CHECK_THAT(made.out, Contains("my-rule.json") && Contains("study.json") && Contains("check my-rule/my-rule.json"));
+  CHECK_THAT(read(here / "my-rule/study.json"), Contains("my-rule.json") && !Contains("theta-rule"));
+  const Outcome checked = here.run("check my-rule/my-rule.json");
+  INFO(checked.out << checked.err);
+  CHECK(checked.code == 0);
+  const Outcome run = here.run("run my-rule/study.json --out results");
+  INFO(run.out << run.err);
+  CHECK(run.code == 0);
+  CHECK_THAT(read(here / "results/cases.csv"), Contains("my-rule"));
+  CHECK(here.run("new plan my-rule").code == 2);
+  const Outcome taken = here.run("new plan plan");
+  CHECK(taken.code == 2);
+  CHECK_THAT(taken.err, Contains("a name of its own"));
+  CHECK_THAT(here.run("new plan newmark").err, Contains("there is a time method \"newmark\" already"));
+}
+
+TEST_CASE("what no plugin provides is told with where it was looked for", "[command]") {
+  const Folder here;
+  auto study = tiny();
+  study["methods"]["time"] = "my-scheme";
+  here.write("study.json", study.dump(2));
+  here.write("theta.json", theta_plan("1"));
+  fs::create_directory(here / "mine");
+  const Outcome outcome = here.run("plan study.json --plugin theta.json", "RICOCHET_PLUGIN_PATH=mine:nowhere");
+  INFO(outcome.err);
+  CHECK(outcome.code == 2);
+  CHECK_THAT(outcome.err, Contains("no plugin provides the time scheme \"my-scheme\"") && Contains("looked in ") &&
+                              Contains("lib/ricochet, mine, nowhere (no such folder), theta.json"));
+  CHECK_THAT(here.run("check my-scheme").err, Contains("looked in "));
+}
+
+TEST_CASE("a study of stability says where the limit that a scheme declares is another", "[command]") {
+  const Folder here;
+  // Newmark with β = 0.1 and γ = ½ is stable up to h·ω = 2.582.
+  const auto ended = [&](const char* limit, double damping) {
+    std::string plan = read(RICOCHET_SOURCE_DIR "/tests/plugins/plan_files/newmark.json");
+    const std::string right = "\"2*beta < gamma ? 1/sqrt(gamma/2-beta) : none\"";
+    plan.replace(plan.find(right), right.size(), limit);
+    here.write("plan.json", plan);
+    nlohmann::ordered_json study = nlohmann::ordered_json::parse(R"({
+      "name": "limits", "question": "How far?", "kind": "stability",
+      "scene": {"structure": {"type": "beam", "length": 1.501, "young": 2e11, "density": 8000,
+                              "section": {"type": "tube", "outer_diameter": 0.01, "wall": 0.0005}}},
+      "mesh": {"elements": 4},
+      "methods": {"mass": "consistent", "contact": "none", "time": {"name": "plan", "file": "plan.json", "beta": 0.1}},
+      "steps": {"from": 1e-5, "to": 1e-2, "count": 7}})");
+    if (damping > 0) study["scene"]["structure"]["damping"] = {{"stiffness", damping}};
+    here.write("limits.json", study.dump(2));
+    return here.run("run limits.json --fresh --out results");
+  };
+  const std::string told = "the step limit is not the one that the scheme declares";
+  for (const char* wrong : {"3.5", "2", "null"}) {
+    const Outcome outcome = ended(wrong, 0);
+    INFO(wrong << "\n" << outcome.out << outcome.err);
+    CHECK(outcome.code == 3);
+    CHECK_THAT(outcome.out, Contains(told));
+    CHECK_THAT(read(here / "results/cases.csv"), Contains("undeclared_limit"));
+  }
+  const char* is_so = "\"2*beta < gamma ? 1/sqrt(gamma/2-beta) : none\"";
+  const Outcome right = ended(is_so, 0), damped = ended(is_so, 1e-5);
+  INFO(right.out << right.err << damped.out << damped.err);
+  CHECK(right.code == 0);
+  CHECK(damped.code == 0);
+  CHECK_THAT(right.out + damped.out, !Contains(told));
+}
