@@ -52,6 +52,30 @@ TEST_CASE("run: what was finished is not run again, whatever its status, until -
   CHECK(run.runs == 6);
 }
 
+TEST_CASE("run: a data file that changes ends the run, and the cases that met it are not results") {
+  const ScratchFolder scratch;
+  FakeRun run(scratch);
+  const auto whole = run.runner.cases.run;
+  run.runner.cases.run = [&](const StudyCase& one, const std::atomic<bool>& stop) {
+    if (run.runs < 2) return whole(one, stop);
+    ++run.runs;
+    throw InputError("/scene/load/0/force/file", "a.csv has changed since the run began");
+  };
+  const RunOptions options{scratch / "out", 1, false};
+  CHECK(run(fake_study(6), options) == 5);
+  CHECK_THAT(run.messages, Contains("a.csv has changed since the run began. This case is not kept"));
+  CHECK(run.runs == 3);
+  {
+    const SQLite::Database store(options.out / "results.sqlite");
+    SQLite::Statement rows(store, "SELECT count(*), sum(status = 'done') FROM cases");
+    rows.executeStep();
+    CHECK((rows.getColumn(0).getInt() == 2 && rows.getColumn(1).getInt() == 2));
+  }
+  run.runner.cases.run = whole;
+  CHECK(run(fake_study(6), options) == 0);
+  CHECK(run.runs == 4);
+}
+
 TEST_CASE("run: a changed plugin runs again the cases that use it, and only those") {
   const ScratchFolder scratch;
   FakeRun run(scratch);
