@@ -13,6 +13,8 @@ namespace {
 
 /// Why a case that ran has no value of a measure.
 std::string why_blank(const MeasureWords& words, const CaseRecord& record) {
+  for (const auto& [item, reason] : record.left_out)
+    if (item == words.measure) return reason;
   const bool of_energy = words.scale == "energy_brought_in" || words.most;
   if (!of_energy) return "";
   // Works are known together or not at all.

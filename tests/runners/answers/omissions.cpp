@@ -99,6 +99,21 @@ TEST_CASE("a method that has no value of a measure is named with the reason") {
   CHECK_THAT(blank, !Contains("the energy left is"));
 }
 
+TEST_CASE("a value that a case left out is told with the reason that the case has") {
+  StudyResults results = full_factorial(
+      {{"contact", {"soft", "hard"}}}, refined, [](const auto&, double) { return 400; }, "peak_contact_force");
+  for (CaseRecord& record : results.cases) {
+    put(record, "impulse", 2);
+    if (!is_of(record, "hard")) continue;
+    record.measures = {{"impulse", 2}};
+    record.left_out = {{"impulse of nothing", "another item"}, {"peak_contact_force", "it grows without end"}};
+  }
+  results.study["observe"] = {"peak_contact_force", "impulse"};
+  const std::string text = sentences(results);
+  INFO(text);
+  CHECK_THAT(text, Contains("without a value of the peak force: hard: it grows without end."));
+}
+
 TEST_CASE("where no stop was touched the first sentence says so, with the gap") {
   StudyResults results = full_factorial(
       {{"contact", {"hard", "soft"}}}, refined, [](const auto&, double) { return 0; }, "dissipated_at_contact");
