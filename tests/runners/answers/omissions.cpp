@@ -111,7 +111,7 @@ TEST_CASE("a value that a case left out is told with the reason that the case ha
   results.study["observe"] = {"peak_contact_force", "impulse"};
   const std::string text = sentences(results);
   INFO(text);
-  CHECK_THAT(text, Contains("without a value of the peak force: hard: it grows without end."));
+  CHECK_THAT(text, Contains("without a value of peak force: hard: it grows without end."));
 }
 
 TEST_CASE("where no stop was touched the first sentence says so, with the gap") {
