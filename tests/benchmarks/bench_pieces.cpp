@@ -62,7 +62,8 @@ int main(int argc, char** argv) {
     if (std::strcmp(argv[i], "--pieces") == 0) setting.pieces = std::atoll(argv[i + 1]);
   }
   const Program low = program(0.05, setting), high = program(0.1, setting);
-  PeriodicMap map(program(start, setting), *affine_lane(low.lanes[0], 0.05, high.lanes[0], 0.1), 1.0);
+  PeriodicMap map(program(start, setting), *affine_lane(low.lanes[0], 0.05, high.lanes[0], 0.1),
+                  {1.0, low.problem->support.pulsation});
   LaneEnd end;
   const auto state = settle(program(start, setting), setting.steps, 300, end);
   const MapClock clock{setting.steps, 1, true};
