@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -359,45 +358,6 @@ std::string read_motion(const std::filesystem::path& folder, const std::string& 
   std::string content;
   with_store(folder, [&](SQLite::Database& database) { content = find_motion(database, motion_key(arithmetic, key)); });
   return content;
-}
-
-RunStatus read_status(const std::filesystem::path& folder) {
-  RunStatus status;
-  with_store(folder, [&](SQLite::Database& database) {
-    SQLite::Transaction transaction(database);
-    SQLite::Statement study(
-        database, "SELECT key, value FROM study WHERE key NOT IN ('resolved', 'columns', 'axes', 'method_words')");
-    while (study.executeStep()) {
-      const std::string key = study.getColumn(0).getString();
-      const auto value = nlohmann::json::parse(study.getColumn(1).getString());
-      if (key == "name") status.name = value.get<std::string>();
-      if (key == "question") status.question = value.get<std::string>();
-      if (key == "kind") status.kind = value.get<std::string>();
-      if (key == "expected_cases") status.expected = value.get<int>();
-      if (key == "progress") {
-        status.progress = value.at("text").get<std::string>();
-        status.heard = value.at("at").get<std::string>();
-      }
-    }
-    status.part = read_part(database).value_or(StudyPart{});
-    SQLite::Statement rows(database, "SELECT status, fingerprint = '', count(*) FROM cases GROUP BY 1, 2");
-    while (rows.executeStep()) {
-      const int count = rows.getColumn(2).getInt();
-      (rows.getColumn(1).getInt() != 0 ? status.partial : status.rows[rows.getColumn(0).getString()]) += count;
-    }
-    SQLite::Statement begun(database, "SELECT case_id, stage, since FROM begun ORDER BY since, case_id");
-    while (begun.executeStep())
-      status.under_way.push_back({id_of_today(begun.getColumn(0).getString()), begun.getColumn(1).getString(),
-                                  begun.getColumn(2).getString()});
-    SQLite::Statement epoch(database, "SELECT run FROM epoch");
-    if (epoch.executeStep()) status.run = RunIdentity::from_json(epoch.getColumn(0).getString());
-  });
-  std::error_code error;
-  const auto written = std::filesystem::last_write_time(folder / "results.sqlite", error);
-  if (!error)
-    status.silent =
-        std::max(0.0, std::chrono::duration<double>(std::filesystem::file_time_type::clock::now() - written).count());
-  return status;
 }
 
 }  // namespace ricochet
