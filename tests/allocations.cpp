@@ -17,8 +17,9 @@ void* take(std::size_t size, std::align_val_t alignment = std::align_val_t(align
 }
 
 void* insist(void* memory) {
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
+  if (memory != nullptr) return memory;
+  if (const std::new_handler handler = std::get_new_handler()) handler();
+  throw std::bad_alloc();
 }
 }  // namespace
 

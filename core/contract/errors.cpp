@@ -48,4 +48,12 @@ std::string shortened(std::string_view text) {
   return std::string(text);
 }
 
+std::string cut_short(std::string_view text) {
+  constexpr std::string_view more = "…";
+  if (text.size() <= longest_text) return std::string(text);
+  std::size_t end = longest_text - more.size();
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  return std::string(text.substr(0, end)) + std::string(more);
+}
+
 }  // namespace ricochet

@@ -40,4 +40,10 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
 inline constexpr std::size_t longest_quoted = 80;
 std::string shortened(std::string_view text);
 
+/// What a text of somebody else takes at most where it is stored or shown, in bytes: of an exception, a refusal, a
+/// manual, a question.
+inline constexpr std::size_t longest_text = 2000;
+/// The text, or its beginning and "…": together at most `longest_text` bytes. No character is cut.
+std::string cut_short(std::string_view text);
+
 }  // namespace ricochet

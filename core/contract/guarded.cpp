@@ -15,10 +15,10 @@ namespace {
     throw;
   } catch (const PluginFault&) {
     throw;
-  } catch (const InputError&) {
-    throw;
-  } catch (const PluginError&) {
-    throw;
+  } catch (const InputError& error) {
+    throw InputError(error.pointer(), cut_short(error.what()));
+  } catch (const PluginError& error) {
+    throw PluginError(cut_short(error.what()));
   } catch (const std::bad_alloc&) {
     throw PluginFault(plugin, function, "not enough memory");
   } catch (const std::exception& error) {
@@ -40,9 +40,10 @@ decltype(auto) ask(const PluginIdentity& plugin, const char* function, Question&
   }
 }
 
-void check_refusal(const PluginIdentity& plugin, const char* function, const Refusal& refusal) {
+void check_refusal(const PluginIdentity& plugin, const char* function, Refusal& refusal) {
   if (refusal.sentence.find_first_not_of(" \t\r\n") == std::string::npos)
     throw PluginFault(plugin, function, "refuses without a sentence");
+  refusal.sentence = cut_short(refusal.sentence);
 }
 
 /// What every guard holds. The identity is shared: objects may outlive the registry that made them.
@@ -78,7 +79,7 @@ class GuardedMass final : public Guard<MassStrategy> {
   using Guard::Guard;
   InertiaOrRefusal build(const FiniteElementSpace& space) const override {
     InertiaOrRefusal answer = ask("build", [&](auto& inner) { return inner.build(space); });
-    if (const auto* refusal = std::get_if<Refusal>(&answer))
+    if (auto* refusal = std::get_if<Refusal>(&answer))
       check_refusal(*plugin_, "build", *refusal);
     else if (const auto wrong = check_inertia(std::get<Inertia>(answer), space))
       fault("build", *wrong);
@@ -144,7 +145,9 @@ class GuardedLaw final : public Guard<ContactLaw> {
     return answer;
   }
   bool closed_form(int points) const override { RICOCHET_FORWARD(closed_form, points); }
-  std::string how_solved() const override { RICOCHET_FORWARD(how_solved); }
+  std::string how_solved() const override {
+    return cut_short(ask("how_solved", [](auto& inner) { return inner.how_solved(); }));
+  }
 
  private:
   std::shared_ptr<const std::vector<ParameterSpec>> declared_;
@@ -155,7 +158,7 @@ class GuardedScheme final : public Guard<TimeScheme> {
   using Guard::Guard;
   PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
     PlanOrRefusal answer = ask("plan", [&](auto& inner) { return inner.plan(h, facts); });
-    if (const auto* refusal = std::get_if<Refusal>(&answer))
+    if (auto* refusal = std::get_if<Refusal>(&answer))
       check_refusal(*plugin_, "plan", *refusal);
     else if (const auto wrong = check_plan(std::get<StepPlan>(answer), h))
       fault("plan", "ill-formed plan: " + *wrong);
@@ -198,7 +201,7 @@ class GuardedReference final : public Guard<ReferenceSolver> {
   bool of_the_mesh() const override { RICOCHET_FORWARD(of_the_mesh); }
   ReferenceOrRefusal solve(const ReferenceProblem& problem, const SampleGrid& grid) const override {
     ReferenceOrRefusal answer = ask("solve", [&](auto& inner) { return inner.solve(problem, grid); });
-    if (const auto* refusal = std::get_if<Refusal>(&answer)) {
+    if (auto* refusal = std::get_if<Refusal>(&answer)) {
       check_refusal(*plugin_, "solve", *refusal);
     } else {
       const auto& found = std::get<ReferenceMotion>(answer);
@@ -209,7 +212,7 @@ class GuardedReference final : public Guard<ReferenceSolver> {
   }
   ReferenceMapOrRefusal map(const ReferenceProblem& problem) const override {
     ReferenceMapOrRefusal answer = ask("map", [&](auto& inner) { return inner.map(problem); });
-    if (const auto* refusal = std::get_if<Refusal>(&answer)) {
+    if (auto* refusal = std::get_if<Refusal>(&answer)) {
       check_refusal(*plugin_, "map", *refusal);
       return answer;
     }

@@ -1,14 +1,9 @@
-#include <cxxabi.h>
-#include <dlfcn.h>
-
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
-#include <memory>
 #include <ricochet/contract/abi.hpp>
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/loader/child.hpp>
-#include <ricochet/loader/float_control.hpp>
+#include <ricochet/loader/library.hpp>
 #include <sstream>
 
 namespace ricochet {
@@ -18,6 +13,7 @@ namespace {
 constexpr std::string_view provides_prefix = "ricochet_provides__";
 constexpr std::string_view abi_prefix = "ricochet_abi__";
 constexpr std::string_view layout_prefix = "ricochet_layout__";
+constexpr std::string_view own_symbol = "ricochet_own";
 
 std::optional<std::pair<Role, std::string>> parse_provides(std::string_view symbol) {
   symbol.remove_prefix(provides_prefix.size());
@@ -45,70 +41,6 @@ Methods meant_by_name(const fs::path& file) {
 
 std::string text(Role role, const std::string& name) {
   return std::string(role_name(role)) + " '" + name + "'";
-}
-
-// "undefined symbol: _Z7nowherev" → "undefined symbol: nowhere()"
-std::string demangled(const std::string& text) {
-  std::string result;
-  const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; };
-  for (std::size_t at = 0; at < text.size();) {
-    std::size_t end = at;
-    while (end < text.size() && in_name(text[end])) ++end;
-    if (end == at) {
-      result += text[at++];
-      continue;
-    }
-    const std::string word = text.substr(at, end - at);
-    const std::unique_ptr<char, decltype(&std::free)> plain(
-        word.starts_with("_Z") ? abi::__cxa_demangle(word.c_str(), nullptr, nullptr, nullptr) : nullptr, std::free);
-    result += plain ? plain.get() : word;
-    at = end;
-  }
-  return result;
-}
-
-// Loads a library and lets it register. It stays open for the life of the process, also when registering fails. An
-// exception, or a copy of what was registered, may hold its code. Methods may outlive any catalogue.
-void load(const fs::path& file, Registry& registry) {
-  const std::string place = file.string() + ": ", path = fs::absolute(file).string();
-  void* const library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!library) {
-    const char* told = ::dlerror();
-    std::string reason = told ? told : "for no reason that the loader tells";
-    if (reason.starts_with(path + ": ")) reason.erase(0, path.size() + 2);
-    throw PluginError(place + "cannot be loaded: " + demangled(reason));
-  }
-  auto* const enter = reinterpret_cast<void (*)(Registry&)>(::dlsym(library, "ricochet_register"));
-  if (!enter) throw PluginError(place + "has no function ricochet_register; does it end with RICOCHET_PLUGIN?");
-  try {
-    enter(registry);
-  } catch (const PluginError& error) {
-    throw PluginError(place + error.what());
-  } catch (const std::exception& error) {
-    throw PluginError(place + "failed while registering: " + error.what());
-  } catch (...) {
-    throw PluginError(place + "failed while registering, with an exception that says nothing");
-  }
-}
-
-bool is_loaded(const fs::path& file) {
-  void* const library = ::dlopen(fs::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
-  if (library) ::dlclose(library);
-  return library != nullptr;
-}
-
-// What its constructors or its registration may do to the process that loads it, they do to a child.
-void try_to_load(const fs::path& file) {
-  constexpr double seconds = 10;
-  const ChildOutcome tried = run_in_child(
-      [&] {
-        Registry scratch;
-        load(file, scratch);
-        return std::string();
-      },
-      seconds);
-  if (tried.end == ChildOutcome::End::exception) throw PluginError(tried.text);
-  if (!tried.ok()) throw PluginError(file.string() + ": " + tried.cause() + " while it was loaded");
 }
 
 }  // namespace
@@ -161,6 +93,7 @@ void Catalogue::read_library(const fs::path& file, bool insist) {
   std::string strange;
   Layout layout;
   for (const auto& [name, size] : symbols) {
+    if (name == own_symbol && file.parent_path() == folders_.front()) own_.insert(file);
     if (name.starts_with(layout_prefix)) layout[name.substr(layout_prefix.size())] = size;
     if (!name.starts_with(provides_prefix)) continue;
     if (const auto method = parse_provides(name))
@@ -214,7 +147,7 @@ std::vector<fs::path> Catalogue::shadowed(Role role, const std::string& name) co
 }
 
 bool Catalogue::foreign(const fs::path& file) const {
-  return file.parent_path() != folders_.front();
+  return !file.empty() && own_.count(file) == 0 && read_.count(file) == 0;
 }
 
 std::vector<fs::path> Catalogue::missing_folders() const {
@@ -234,6 +167,8 @@ bool Catalogue::require(Role role, const std::string& name, Registry& registry) 
     adopt(method->file, read->second, registry);
     return true;
   }
+  const PluginIdentity loaded{role_name(role), name, method->file.string()};
+  const PluginCallScope scope(loaded, "load");
   open(method->file, registry);
   return true;
 }
@@ -265,12 +200,11 @@ void Catalogue::provide(const fs::path& file, Registry methods, bool first) {
 }
 
 void Catalogue::open(const fs::path& file, Registry& registry) {
-  const KeepFloatControl control;  // -ffast-math in a plugin would be everyone's
-  if (foreign(file) && !is_loaded(file)) try_to_load(file);
   if (std::find(opened_.begin(), opened_.end(), file) == opened_.end()) opened_.push_back(file);
+  if (foreign(file) && !ForeignCode::may_run()) return adopt(file, describe_library(file, remark_), registry);
   Registry found;
   found.set_current_file(file.string());
-  load(file, found);
+  load_library(file, found);
   adopt(file, found, registry);
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <ricochet/contract/registry.hpp>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -45,7 +47,8 @@ class Catalogue {
   std::vector<std::filesystem::path> shadowed(Role role, const std::string& name) const;
   /// The file that provides the method, or null.
   const std::filesystem::path* provider(Role role, const std::string& name) const;
-  /// Whether a library is not one of the install folder: what it does when asked is tried in a child process first.
+  /// Whether a file is a library and none of the program's own in the install folder. Where code of such files may not
+  /// run (ForeignCode), a child process says what it registers, and its code is loaded by who asks for an object.
   bool foreign(const std::filesystem::path& file) const;
   /// Folders to search that are none (a misspelt entry of RICOCHET_PLUGIN_PATH).
   std::vector<std::filesystem::path> missing_folders() const;
@@ -61,11 +64,12 @@ class Catalogue {
   /// Opens the library that provides the method and lets it register what it provides first, unless the method is there
   /// already. Returns false when no file provides it. Throws PluginError (naming the file) when the library does not
   /// load, throws while it registers, or does not register exactly what it says. The registry is then as it was before.
-  /// A foreign library is loaded in a child process first. It is a PluginError too where it ends that process, or does
-  /// not come to an end within 10 s.
+  /// It is a PluginError too where a foreign library ends the child process that opens it, or takes longer than 10 s.
   bool require(Role role, const std::string& name, Registry& registry);
   /// Opens everything (for `describe` without a name and for `schema`); failures go to unusable().
   void open_all(Registry& registry);
+  /// Is told what a person should know of a library that serves all the same.
+  void on_remark(std::function<void(const std::string&)> remark) { remark_ = std::move(remark); }
   /// Libraries opened so far.
   const std::vector<std::filesystem::path>& opened() const { return opened_; }
 
@@ -78,6 +82,8 @@ class Catalogue {
   std::vector<Provided> provided_;
   std::vector<Unusable> unusable_;
   std::vector<std::filesystem::path> opened_;
+  std::set<std::filesystem::path> own_;
+  std::function<void(const std::string&)> remark_;
   std::map<std::filesystem::path, Registry> read_;  // of files that are no libraries
 };
 

@@ -1,37 +1,47 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
+#include <memory>
+#include <new>
 #include <ricochet/loader/child.hpp>
-#include <stdexcept>
+#include <system_error>
+#include <utility>
 
 namespace ricochet {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// What the child sends: a tag, then text up to the end; for `call` role, name, file and function, each with its '\0'.
-constexpr char tag_value = 'v', tag_exception = 'e', tag_call = 'c';
+// What the child sends: a tag, the length of a text, the text; then the tag of what came afterwards.
+constexpr char tag_value = 'v', tag_exception = 'e', tag_afterwards = 'a';
+constexpr std::size_t head = 1 + sizeof(std::uint64_t);
 
-int pipe_end = -1;  // of the child
-alignas(16) char handler_stack[64 * 1024];
+// Of the child.
+constexpr int message_end = 3;
+CallNote* shared_note = nullptr;
+bool is_afterwards = false;
+std::uint64_t memory_allowed = 0;  // beside what the parent had
 
-// Safe in a signal handler.
 bool send(const char* data, std::size_t size) {
   while (size > 0) {
-    const ssize_t written = ::write(pipe_end, data, size);
+    const ssize_t written = ::write(message_end, data, size);
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) return false;
     data += written;
@@ -39,60 +49,71 @@ bool send(const char* data, std::size_t size) {
   }
   return true;
 }
-void send_with_end(const char* text) {
-  send(text, std::strlen(text) + 1);
-}
 
-void send_call() {
-  const PluginCall& call = current_plugin_call();
-  if (!call.plugin) return;
-  send(&tag_call, 1);
-  send_with_end(call.plugin->role.c_str());
-  send_with_end(call.plugin->name.c_str());
-  send_with_end(call.plugin->file.c_str());
-  send_with_end(call.function);
-}
-
-// The handler is reset on entry: raised again, the signal ends the child as it would have.
-extern "C" void ricochet_child_signal(int signal) {
-  send_call();
-  ::raise(signal);
-}
-// Before all handlers of the parent: what it would tidy up at its end is not this child's.
+// Before all handlers of the parent: what it would tidy up at its end is not this child's. Those of libraries that were
+// opened here came before.
 extern "C" void ricochet_child_exit(int code, void*) {
-  send_call();
-  ::_exit(code);
+  if (is_afterwards) send(&tag_afterwards, 1);
+  ::_exit(is_afterwards ? 0 : code);
 }
 
-void catch_signals() {
-  stack_t stack = {};
-  stack.ss_sp = handler_stack;
-  stack.ss_size = sizeof handler_stack;
-  ::sigaltstack(&stack, nullptr);
-  struct sigaction action = {};
-  action.sa_handler = ricochet_child_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_ONSTACK | SA_NODEFER);
-  ::sigemptyset(&action.sa_mask);
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) ::sigaction(signal, &action, nullptr);
-  for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) ::signal(signal, SIG_DFL);
+void out_of_memory() {
+  shared_note->memory_exceeded = memory_allowed;
+  ::_exit(1);
+}
+
+void limit_memory(double bytes) {
+  // A sanitizer takes far more of it than it uses.
+#ifndef RICOCHET_SANITIZED
+  if (bytes <= 0) return;
+  memory_allowed = static_cast<std::uint64_t>(bytes);
+  long pages = 0;
+  if (std::FILE* const file = std::fopen("/proc/self/statm", "r")) {
+    if (std::fscanf(file, "%ld", &pages) != 1) pages = 0;
+    std::fclose(file);
+  }
+  rlimit limit{};
+  ::getrlimit(RLIMIT_AS, &limit);
+  const double most = bytes + static_cast<double>(pages) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  limit.rlim_cur = std::min(limit.rlim_max, static_cast<rlim_t>(most));
+  limit.rlim_max = limit.rlim_cur;
+  ::setrlimit(RLIMIT_AS, &limit);
+#endif
+  std::set_new_handler(out_of_memory);
+}
+
+// Signals as a new process has them, and no descriptor of the parent.
+void start_anew(int message, int said) {
+  for (int signal = 1; signal < NSIG; ++signal) ::signal(signal, SIG_DFL);
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  const int nowhere = ::open("/dev/null", O_RDONLY);
+  // Out of the way of the numbers that they get.
+  constexpr int aside = 10;
+  message = ::fcntl(message, F_DUPFD, aside);
+  said = ::fcntl(said, F_DUPFD, aside);
+  ::dup2(nowhere, STDIN_FILENO);
+  for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(said, stream);
+  ::dup2(message, message_end);
+  ::close_range(message_end + 1, ~0U, 0);
 }
 
-[[noreturn]] void be_the_child(const std::function<std::string()>& work, int write_end) {
+[[noreturn]] void be_the_child(const ChildWork& child, CallNote* note, int message, int said) {
+  ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const rlimit no_core = {0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
-  if (const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC); nowhere >= 0)
-    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, stream);
-  pipe_end = write_end;
-  catch_signals();
+  start_anew(message, said);
+  shared_note = note;
+  note_plugin_calls(note);
+  limit_memory(child.memory);
+  ForeignCode::allow();
   ::on_exit(ricochet_child_exit, nullptr);
   char tag = tag_value;
   std::string text;
   try {
-    text = work();
+    text = child.work();
   } catch (const std::exception& error) {
     tag = tag_exception;
     text = error.what();
@@ -100,77 +121,175 @@ void catch_signals() {
     tag = tag_exception;
     text = "an exception that says nothing";
   }
-  ::_exit(send(&tag, 1) && send(text.data(), text.size()) ? 0 : 1);
+  std::fflush(nullptr);
+  std::cout.flush();
+  const std::uint64_t size = text.size();
+  if (!send(&tag, 1) || !send(reinterpret_cast<const char*>(&size), sizeof size) || !send(text.data(), text.size()))
+    ::_exit(1);
+  if (tag == tag_value && child.afterwards) {
+    is_afterwards = true;
+    child.afterwards();
+    std::exit(0);
+  }
+  ::_exit(0);
 }
 
-/// The parent's view: what came through the pipe so far, and whether the child has ended.
+/// The parent's view: what came through the pipes so far, and whether the child has ended.
 class Watch {
  public:
-  Watch(pid_t child, int pipe) : child_(child), pipe_(pipe) { ::fcntl(pipe, F_SETFL, O_NONBLOCK); }
+  Watch(pid_t child, int message, int said) : child_(child), message_pipe_(message), said_pipe_(said) {
+    for (const int pipe : {message, said}) ::fcntl(pipe, F_SETFL, O_NONBLOCK);
+  }
+  ~Watch() {
+    ::close(message_pipe_);
+    ::close(said_pipe_);
+  }
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
 
-  /// Reads until the child has ended; false when the limit came first. The pipe alone does not tell: another child that
-  /// was begun meanwhile may hold it open.
-  bool until(Clock::time_point limit) {
+  /// Reads until the child has ended, or until it has sent its value where `until_sent`; false when the limit came
+  /// first. The pipes alone do not tell: another process may hold them open.
+  bool wait(Clock::time_point limit, bool until_sent) {
     constexpr int beat = 10;  // ms
-    for (; !ended_; drain()) {
+    for (;; drain()) {
+      if (ended_ || (until_sent && sent())) return true;
       if (Clock::now() >= limit) return false;
-      pollfd wait = {pipe_, POLLIN, 0};
-      if (open_)
-        ::poll(&wait, 1, beat);
+      pollfd wait[] = {{message_open_ ? message_pipe_ : -1, POLLIN, 0}, {said_open_ ? said_pipe_ : -1, POLLIN, 0}};
+      if (message_open_ || said_open_)
+        ::poll(wait, 2, beat);
       else
         ::usleep(1000);
-      const pid_t found = ::waitpid(child_, &status_, WNOHANG);
-      ended_ = found == child_ || (found < 0 && errno != EINTR);
+      siginfo_t info{};
+      const int found = ::waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOHANG | WNOWAIT);
+      if ((found == 0 && info.si_pid == child_) || (found < 0 && errno != EINTR)) reap();
     }
-    return true;
   }
   void kill() {
     ::kill(child_, SIGKILL);
-    while (::waitpid(child_, &status_, 0) < 0 && errno == EINTR) {
-    }
+    if (!ended_) reap();
     drain();
   }
-  const std::string& message() const { return message_; }
+  /// All of its value or exception is there.
+  bool sent() const { return message_.size() >= head && message_.size() - head >= text_size(); }
+  char tag() const { return sent() ? message_.front() : '\0'; }
+  std::string text() const { return message_.substr(head, text_size()); }
+  bool came_back_afterwards() const {
+    return sent() && message_.size() > head + text_size() && message_[head + text_size()] == tag_afterwards;
+  }
   int status() const { return status_; }
 
  private:
-  void drain() {
+  std::uint64_t text_size() const {
+    std::uint64_t size = 0;
+    std::memcpy(&size, message_.data() + 1, sizeof size);
+    return size;
+  }
+  // Its number is its own and its group's as long as nobody has asked for its status.
+  void reap() {
+    siginfo_t info{};
+    while (::waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
+    }
+    ::kill(-child_, SIGKILL);
+    while (::waitpid(child_, &status_, 0) < 0 && errno == EINTR) {
+    }
+    ended_ = true;
+  }
+  // Up to so many bytes: somebody may write without end.
+  template <class Take>
+  static void drain(int pipe, bool& open, Take take) {
+    constexpr std::size_t most = 1U << 20U;
     char part[4096];
-    for (;;) {
-      const ssize_t size = ::read(pipe_, part, sizeof part);
-      if (size > 0) {
-        message_.append(part, static_cast<std::size_t>(size));
-        continue;
-      }
+    for (std::size_t all = 0; open && all < most;) {
+      const ssize_t size = ::read(pipe, part, sizeof part);
       if (size < 0 && errno == EINTR) continue;
-      if (size == 0) open_ = false;
-      return;
+      if (size == 0) open = false;
+      if (size <= 0) return;
+      take(part, static_cast<std::size_t>(size));
+      all += static_cast<std::size_t>(size);
     }
   }
-  pid_t child_;
-  int pipe_, status_ = 0;
-  bool ended_ = false, open_ = true;
+  void drain() {
+    drain(message_pipe_, message_open_, [&](const char* part, std::size_t size) { message_.append(part, size); });
+    drain(said_pipe_, said_open_,
+          [](const char* part, std::size_t size) { std::cerr.write(part, static_cast<std::streamsize>(size)); });
+  }
+  const pid_t child_;
+  const int message_pipe_, said_pipe_;
+  int status_ = 0;
+  bool ended_ = false, message_open_ = true, said_open_ = true;
   std::string message_;
 };
 
-void read_call(const std::string& message, ChildOutcome& outcome) {
-  std::string* const fields[] = {&outcome.plugin.role, &outcome.plugin.name, &outcome.plugin.file, &outcome.function};
-  std::size_t at = 1;
-  for (std::string* field : fields) {
-    const std::size_t end = std::min(message.find('\0', at), message.size());
-    *field = message.substr(std::min(at, end), end - std::min(at, end));
-    at = end + 1;
+std::string ended_in_words(int status) {
+  if (WIFSIGNALED(status)) return "ended by " + signal_in_words(WTERMSIG(status));
+  return fmt::format("ended the process with exit code {}", WIFEXITED(status) ? WEXITSTATUS(status) : -1);
+}
+
+std::string late_in_words(double seconds) {
+  return fmt::format("did not end within {:g} s", seconds);
+}
+
+/// Memory that a child shares with this process.
+using SharedNote = std::unique_ptr<CallNote, void (*)(CallNote*)>;
+SharedNote new_note() {
+  void* const memory = ::mmap(nullptr, sizeof(CallNote), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED)
+    throw std::system_error(errno, std::generic_category(), "no memory for a child process can be had");
+  return {new (memory) CallNote, [](CallNote* note) { ::munmap(note, sizeof *note); }};
+}
+
+struct Pipe {
+  int read = -1, write = -1;
+  Pipe() {
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0)
+      throw std::system_error(errno, std::generic_category(), "no pipe to a child process can be had");
+    read = ends[0];
+    write = ends[1];
+  }
+  ~Pipe() {
+    if (write >= 0) ::close(write);
+    if (read >= 0) ::close(read);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  int take_read() { return std::exchange(read, -1); }
+};
+
+Clock::time_point from_now(double seconds) {
+  constexpr double a_year = 3.2e7;
+  return Clock::now() +
+         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, a_year)));
+}
+
+void judge(const Watch& watch, ChildOutcome& outcome, const CallNote& note) {
+  const int status = watch.status();
+  outcome.call = note.seen();
+  if (const std::uint64_t memory = note.memory_exceeded) {
+    outcome.end = ChildOutcome::End::memory;
+    outcome.limit = static_cast<double>(memory);
+  } else if (WIFSIGNALED(status)) {
+    outcome.end = ChildOutcome::End::signal;
+    outcome.number = WTERMSIG(status);
+  } else {
+    outcome.end = ChildOutcome::End::exit;
+    outcome.number = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 }
 
-std::string signal_text(int signal) {
+}  // namespace
+
+std::string signal_in_words(int signal) {
   const char* known = ::strsignal(signal);
   std::string text = known ? known : "unknown";
   text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
-  return text;
+  return fmt::format("signal {} ({})", signal, text);
 }
 
-}  // namespace
+std::string bytes_in_words(double bytes) {
+  constexpr double mebi = 1U << 20U, gibi = 1U << 30U;
+  return bytes >= gibi ? fmt::format("{:.3g} GiB", bytes / gibi) : fmt::format("{:.0f} MiB", bytes / mebi);
+}
 
 std::string ChildOutcome::cause() const {
   switch (end) {
@@ -179,74 +298,78 @@ std::string ChildOutcome::cause() const {
     case End::exception:
       return text;
     case End::signal:
-      return fmt::format("ended by signal {} ({})", number, signal_text(number));
+      return "ended by " + signal_in_words(number);
     case End::exit:
       return fmt::format("ended the process with exit code {}", number);
+    case End::memory:
+      return fmt::format("took more than the {} of memory that it may take", bytes_in_words(limit));
     case End::timeout:
       break;
   }
-  return fmt::format("did not end within {:g} s", limit);
+  return late_in_words(limit);
 }
 
 std::string ChildOutcome::sentence() const {
-  if (function.empty()) return cause();
-  return "plugin " + plugin.text() + ", " + function + "(): " + cause();
+  return call.place() + cause();
+}
+
+ChildOutcome run_in_child(const ChildWork& child) {
+  constexpr double afterwards = 3, long_wait = 3;  // s
+  Pipe message, said;
+  const SharedNote note = new_note();
+  // What is buffered is written once, by this process.
+  std::cout.flush();
+  std::fflush(nullptr);
+  const pid_t process = ::fork();
+  if (process < 0) throw std::system_error(errno, std::generic_category(), "no child process can be had");
+  if (process == 0) be_the_child(child, note.get(), message.write, said.write);
+  ::setpgid(process, process);
+  Watch watch(process, message.take_read(), said.take_read());
+  ::close(std::exchange(message.write, -1));
+  ::close(std::exchange(said.write, -1));
+
+  ChildOutcome outcome;
+  const Clock::time_point limit = from_now(child.seconds);
+  if (child.waits && child.seconds > long_wait && !watch.wait(from_now(long_wait), true)) child.waits();
+  const bool in_time = watch.wait(limit, true);
+  const bool ends = in_time && watch.wait(from_now(afterwards), false);
+  if (!ends) watch.kill();
+  const char tag = watch.tag();
+  if (!in_time) {
+    outcome.end = ChildOutcome::End::timeout;
+    outcome.limit = child.seconds;
+    outcome.call = note->seen();
+  } else if (tag == tag_value || tag == tag_exception) {
+    outcome.end = tag == tag_value ? ChildOutcome::End::value : ChildOutcome::End::exception;
+    outcome.text = watch.text();
+    if (tag == tag_value && child.afterwards && !watch.came_back_afterwards())
+      outcome.afterwards = ends ? ended_in_words(watch.status()) : late_in_words(afterwards);
+  } else {
+    judge(watch, outcome, *note);
+  }
+  return outcome;
 }
 
 ChildOutcome run_in_child(const std::function<std::string()>& work, double seconds,
                           const std::function<void()>& waits) {
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0)
-    throw std::runtime_error(fmt::format("no pipe to a child process can be had: {}", std::strerror(errno)));
-  // What is buffered is written once, by this process.
-  std::cout.flush();
-  std::fflush(nullptr);
-  const pid_t child = ::fork();
-  if (child < 0) {
-    const int error = errno;
-    ::close(ends[0]);
-    ::close(ends[1]);
-    throw std::runtime_error(fmt::format("no child process can be had: {}", std::strerror(error)));
-  }
-  if (child == 0) be_the_child(work, ends[1]);
-  ::close(ends[1]);
+  return run_in_child({.work = work, .seconds = seconds, .waits = waits});
+}
 
-  const auto from_now = [](double s) {
-    return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
-  };
-  Watch watch(child, ends[0]);
-  constexpr double long_wait = 3;  // s
-  const Clock::time_point limit = from_now(seconds);
-  bool in_time = waits && seconds > long_wait && watch.until(from_now(long_wait));
-  if (!in_time && waits && seconds > long_wait) waits();
-  in_time = in_time || watch.until(limit);
-  if (!in_time) {
-    // First asked what it does, then ended whatever it does.
-    constexpr double patience = 3;  // s, which a child that shares its processor may need to answer
-    ::kill(child, SIGALRM);
-    if (!watch.until(from_now(patience))) watch.kill();
-  }
-  ::close(ends[0]);
-  const std::string& message = watch.message();
-  const int status = watch.status();
+namespace {
+std::atomic<bool> foreign_code_may_run{true};
+}  // namespace
 
-  ChildOutcome outcome;
-  const char tag = message.empty() ? '\0' : message.front();
-  if (tag == tag_call) read_call(message, outcome);
-  if (!in_time) {
-    outcome.end = ChildOutcome::End::timeout;
-    outcome.limit = seconds;
-  } else if (WIFSIGNALED(status)) {
-    outcome.end = ChildOutcome::End::signal;
-    outcome.number = WTERMSIG(status);
-  } else if (tag == tag_value || tag == tag_exception) {
-    outcome.end = tag == tag_value ? ChildOutcome::End::value : ChildOutcome::End::exception;
-    outcome.text = message.substr(1);
-  } else {
-    outcome.end = ChildOutcome::End::exit;
-    outcome.number = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  return outcome;
+ForeignCode::InChildrenAlone::InChildrenAlone() {
+  foreign_code_may_run = false;
+}
+ForeignCode::InChildrenAlone::~InChildrenAlone() {
+  foreign_code_may_run = true;
+}
+bool ForeignCode::may_run() {
+  return foreign_code_may_run;
+}
+void ForeignCode::allow() {
+  foreign_code_may_run = true;
 }
 
 }  // namespace ricochet

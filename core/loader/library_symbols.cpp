@@ -27,9 +27,11 @@ constexpr Elf64_Half processor = EM_NONE;  // any: the loader will tell
 // A file of which only what lies inside can be read.
 class Bytes {
  public:
-  explicit Bytes(const fs::path& file) : stream_(file, std::ios::binary) {
+  explicit Bytes(const fs::path& file) {
     std::error_code error;
+    // Before it is opened: opening a pipe waits for who writes to it.
     if (!fs::is_regular_file(file, error)) throw std::runtime_error("not a file");
+    stream_.open(file, std::ios::binary);
     size_ = fs::file_size(file, error);
     if (!stream_ || error) throw std::runtime_error("cannot be read");
   }
@@ -81,6 +83,7 @@ std::vector<ExportedSymbol> exported_symbols(const fs::path& file, std::string_v
       const std::string_view name(&*first, static_cast<std::size_t>(std::find(first, text.end(), '\0') - first));
       if (name.starts_with(prefix)) result.push_back({std::string(name), symbol.st_size});
     }
+    break;  // there is one
   }
   std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return result;

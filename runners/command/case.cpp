@@ -191,11 +191,13 @@ int show_case(const Arguments& arguments, std::ostream& out) {
 }  // namespace
 
 int command_case(const Arguments& arguments, std::ostream& out) {
-  try {
-    return show_case(arguments, out);
-  } catch (const PointRefused& refused) {
-    throw UsageError(refused.what());
-  }
+  return march_apart(arguments, out, [&](std::ostream& to) {
+    try {
+      return show_case(arguments, to);
+    } catch (const PointRefused& refused) {
+      throw UsageError(refused.what());
+    }
+  });
 }
 
 }  // namespace ricochet

@@ -55,6 +55,7 @@ FoundMethods methods_of_file(const fs::path& file) {
     return found;
   }
   Catalogue catalogue({}, {}, {file});
+  tell_remarks(catalogue);
   for (const Provided& provided : catalogue.provided()) catalogue.require(provided.role, provided.name, found.registry);
   add_all(found.registry, found);
   return found;

@@ -3,11 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <iostream>
 #include <new>
 #include <ostream>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/loader/child.hpp>
+#include <system_error>
 
 #include "runners/command/subcommand.hpp"
+#include "runners/march/prepare_case.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/atomic_file.hpp"
@@ -211,7 +216,8 @@ std::string overview() {
   text +=
       "\n  ricochet help COMMAND shows the options of one command; ricochet --version the version.\n\n"
       "Exit codes: 0 all done, 2 bad study or usage, 3 some cases failed or none could run,\n"
-      "4 plugin missing or incompatible, 5 store unusable, 130 interrupted (resumable).\n";
+      "4 plugin missing or incompatible, 5 store unusable, output not written or memory at an end, 130 interrupted "
+      "(resumable).\n";
   return text;
 }
 
@@ -255,6 +261,7 @@ int dispatch(const std::vector<std::string>& arguments, std::ostream& out, const
     return exit_done;
   }
   if (first == "worker" && rest.empty()) return serve_as_worker();  // started by this program, not by a person
+  const ForeignCode::InChildrenAlone elsewhere;
   const Subcommand& command = find_command(first);
   Arguments parsed = parse_arguments(command, rest);
   parsed.hosts = hosts;
@@ -265,9 +272,19 @@ int dispatch(const std::vector<std::string>& arguments, std::ostream& out, const
   return command.run(parsed, out);
 }
 
-int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err, const FindHosts& hosts) {
+/// Whether the machine has no more memory, processes, threads or descriptors to give.
+bool is_at_end(std::error_code code) {
+  for (const std::errc one : {std::errc::resource_unavailable_try_again, std::errc::not_enough_memory,
+                              std::errc::too_many_files_open, std::errc::too_many_files_open_in_system})
+    if (code == one) return true;
+  return false;
+}
+
+}  // namespace
+
+int exit_code_of(const std::function<int()>& work, std::ostream& err) {
   try {
-    return dispatch(arguments, out, hosts);
+    return work();
   } catch (const UsageError& error) {
     err << "ricochet: " << error.what() << "\n";
     return exit_bad_input;
@@ -286,8 +303,16 @@ int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::o
   } catch (const StoreError& error) {
     err << "ricochet: " << error.what() << "\n";
     return exit_store;
+  } catch (const RunError& error) {
+    err << "ricochet: " << error.what() << "\n";
+    return error.of_plugin() ? exit_plugin : exit_store;
   } catch (const std::bad_alloc&) {
     err << "ricochet: not enough memory\n";
+    return exit_store;
+  } catch (const std::system_error& error) {
+    const bool at_end = is_at_end(error.code());
+    err << "ricochet: " << (at_end ? "" : "internal error: ") << error.what() << "\n";
+    if (at_end) return exit_store;
   } catch (const std::exception& error) {
     err << "ricochet: internal error: " << error.what() << "\n";
   } catch (...) {
@@ -295,8 +320,6 @@ int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::o
   }
   return exit_bug;
 }
-
-}  // namespace
 
 const std::vector<Subcommand>& subcommands() {
   static const std::vector<Subcommand> all = all_commands();
@@ -306,8 +329,10 @@ const std::vector<Subcommand>& subcommands() {
 int run_command(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err,
                 const FindHosts& hosts) {
   const PlainOutput plain_out(out), plain_err(err);
-  const int code = guarded(arguments, out, err, hosts);
-  if (!out.flush()) {
+  const int code = exit_code_of([&] { return dispatch(arguments, out, hosts); }, err);
+  // Part of it may have gone through the C library.
+  const bool standard = &out == &std::cout;
+  if (!out.flush() || (standard && (std::fflush(stdout) != 0 || std::ferror(stdout) != 0))) {
     err << "ricochet: the output could not be written completely\n";
     return code == exit_done ? exit_store : code;
   }

@@ -20,7 +20,7 @@ enum ExitCode {
   exit_bad_input = 2,  ///< bad study or usage
   exit_some_failed = 3,
   exit_plugin = 4,  ///< plugin missing or incompatible
-  exit_store = 5,
+  exit_store = 5,   ///< the store, an output or the machine's memory
   exit_interrupted = 130
 };
 

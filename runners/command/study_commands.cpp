@@ -4,6 +4,7 @@
 #include <cctype>
 #include <iostream>
 #include <ostream>
+#include <ricochet/loader/child.hpp>
 #include <set>
 
 #include "runners/command/command.hpp"
@@ -59,7 +60,7 @@ namespace {
 bool runs_foreign_code(const OpenStudy& open) {
   for (const StudyCase& one : open.study.cases)
     for (const std::filesystem::path& file : libraries_of(one, open.registry))
-      if (file.extension() == ".so" && open.catalogue.foreign(file)) return true;
+      if (open.catalogue.foreign(file)) return true;
   return false;
 }
 
@@ -84,6 +85,7 @@ int command_run(const Arguments& arguments, std::ostream&) {
           arguments.isolate || runs_foreign_code(open) ? RunOptions::Where::workers : RunOptions::Where::here_if_short;
     }
     options.plugins = arguments.plugins;
+    if (arguments.here) ForeignCode::allow();  // for a debugger
     return run_study(open.study, open.catalogue, open.registry, options);
   });
 }
@@ -182,11 +184,13 @@ int command_point(const Arguments& arguments, std::ostream& out) {
   const PointRequest asked{arguments.operands[1], arguments.plugins,   arguments.parameter,   arguments.start,
                            arguments.cell,        arguments.periods,   arguments.samples,     arguments.branch,
                            arguments.arc,         arguments.snapshots, arguments.operands[0], arguments.out};
-  try {
-    return kind->point(results, asked, out);
-  } catch (const PointRefused& refused) {
-    throw UsageError(refused.what());
-  }
+  return march_apart(arguments, out, [&](std::ostream& to) {
+    try {
+      return kind->point(results, asked, to);
+    } catch (const PointRefused& refused) {
+      throw UsageError(refused.what());
+    }
+  });
 }
 
 namespace {

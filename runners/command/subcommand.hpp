@@ -128,6 +128,13 @@ struct OpenStudy {
 /// again as a StudyError that names file, line and pointer.
 int with_study(const Arguments& arguments, const std::function<int(const OpenStudy&)>& use);
 
+/// The exit code of a command that does this. What it throws goes to `err`, as one clear message; no exception leaves.
+int exit_code_of(const std::function<int()>& work, std::ostream& err);
+
+/// What `work` prints and returns: in a child process where a third-party library is found, whose code it may run. A
+/// child that ends otherwise is told with its cause on stderr: exit_some_failed.
+int march_apart(const Arguments& arguments, std::ostream& out, const std::function<int(std::ostream&)>& work);
+
 /// What a reader should know of the plugins before the study runs, a sentence each. Methods of the study that a later
 /// library provides too ("time 'newmark' of FILE is shadowed by FILE"), and plugin folders that are none.
 std::vector<std::string> plugin_warnings(const OpenStudy& open);

@@ -320,6 +320,9 @@ std::string read_text(const std::filesystem::path& file, const std::string& expe
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
     throw InputError("", "is a folder; expected " + expected + ", a JSON file");
+  // Opening a pipe waits for who writes to it, and a device may have no end.
+  if (std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored))
+    throw InputError("", "is a pipe, a socket or a device; expected " + expected + ", a JSON file");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   // What is no regular file has no size to ask for.

@@ -54,8 +54,8 @@ struct CaseRunner {
       block;
 };
 
-/// Runs one case and makes a record of whatever happens: what it throws becomes status `failed`. Only Interrupted goes
-/// through.
+/// Runs one case and makes a record of whatever happens: what it throws becomes status `failed`. Only Interrupted and
+/// RunError go through.
 CaseRecord run_guarded(const CaseRunner& cases, const StudyCase& study_case, const std::atomic<bool>& stop);
 
 /// One point of a stored study that is to be marched again.

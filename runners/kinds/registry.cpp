@@ -103,6 +103,8 @@ CaseRecord run_guarded(const CaseRunner& cases, const StudyCase& study_case, con
     record = cases.run(study_case, stop);
   } catch (const Interrupted&) {
     throw;
+  } catch (const RunError&) {
+    throw;
   } catch (const InputError& error) {
     fail(error.pointer().empty() ? error.what() : fmt::format("at {}: {}", error.pointer(), error.what()));
   } catch (const std::bad_alloc&) {

@@ -7,6 +7,7 @@
 #include <ricochet/engine/indefinite_step.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,18 @@ struct CasePlan {
 
 /// Thrown out of a case when `stop` became true while it marched; the case leaves nothing behind.
 struct Interrupted {};
+
+/// What is no case's fault ends the run, and no case is stored for it: memory, processes or threads are at an end (exit
+/// code 5), or a plugin lets no worker begin (4).
+class RunError : public std::runtime_error {
+ public:
+  explicit RunError(const std::string& message, bool of_plugin = false)
+      : std::runtime_error(message), of_plugin_(of_plugin) {}
+  bool of_plugin() const { return of_plugin_; }
+
+ private:
+  bool of_plugin_;
+};
 
 /// The sentence with which the step h (s) of an explicit scheme is refused where the free structure grows in it. The
 /// spectral radius of the step, contact open, is then beyond 1. A scheme is explicit where no stage of `plan` solves

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <ricochet/contract/step_plan.hpp>
 #include <ricochet/scene/files/text_file.hpp>
@@ -127,6 +128,7 @@ void add_plan(const fs::path& file, Catalogue& catalogue, bool insist) {
 
 // A folder of plugins may hold studies and other JSON.
 bool holds_plan(const fs::path& file) {
+  if (std::error_code ignored; !fs::is_regular_file(file, ignored)) return false;
   try {
     const PlanSource source = read_plan_file(file);
     return source.plan.is_object() && (source.plan.contains("slots") || source.plan.contains("stages"));
@@ -202,10 +204,15 @@ std::string where_looked(const Catalogue& catalogue) {
   return text + "; RICOCHET_PLUGIN_PATH adds folders, --plugin a file";
 }
 
+void tell_remarks(Catalogue& catalogue) {
+  catalogue.on_remark([](const std::string& remark) { std::cerr << "ricochet: " << remark << "\n"; });
+}
+
 Catalogue standard_catalogue(const std::vector<fs::path>& files) {
   std::vector<fs::path> libraries, plans;
   for (const fs::path& file : files) (is_plan_file(file) ? plans : libraries).push_back(file);
   Catalogue catalogue = Catalogue::standard(libraries);
+  tell_remarks(catalogue);
   for (const fs::path& folder : catalogue.folders()) add_plans(folder, catalogue);
   for (const fs::path& file : plans) add_plan(file, catalogue, true);
   return catalogue;

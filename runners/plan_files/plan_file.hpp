@@ -49,6 +49,9 @@ inline constexpr const char* stated_plan = "plan";
 std::optional<PlanSource> take_stated_plan(Json& entry, const std::string& pointer, const std::filesystem::path& folder,
                                            const Json& before, Catalogue& catalogue, Registry& registry);
 
+/// What a person should know of libraries that the catalogue opens goes to stderr.
+void tell_remarks(Catalogue& catalogue);
+
 /// The catalogue of this program with plans after all libraries. These are the files *.json in the plugin folders that
 /// hold a plan (an object with "slots" or "stages"), and those among `files`. One that is wrong is unusable; in `files`
 /// it is a PluginError.

@@ -19,6 +19,7 @@ namespace {
 /// The tables that a folder's dictionary tells of: what stands before the first comma of its lines.
 std::set<std::string> told_tables(const std::filesystem::path& dictionary) {
   std::set<std::string> names;
+  if (std::error_code ignored; !std::filesystem::is_regular_file(dictionary, ignored)) return names;
   std::ifstream lines(dictionary);
   for (std::string line; std::getline(lines, line);)
     if (const std::string name = line.substr(0, line.find(','));
@@ -118,7 +119,8 @@ void refuse_foreign_tables(const std::filesystem::path& folder, const StudyResul
   std::error_code ignored;
   if (!std::filesystem::exists(folder / "cases.csv", ignored) && !std::filesystem::exists(folder / "curves", ignored))
     return;
-  std::ifstream stream(folder / "study.json");
+  std::ifstream stream;
+  if (std::filesystem::is_regular_file(folder / "study.json", ignored)) stream.open(folder / "study.json");
   const auto there = nlohmann::ordered_json::parse(stream, nullptr, false);
   if (there == results.study || (there.is_object() && there.value("name", "") == results.name)) return;
   const std::string whose = there.is_object() && there.contains("name") ? "of the study " + there["name"].dump()

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <ricochet/loader/child.hpp>
@@ -64,11 +66,11 @@ CasePlan from_text(const Json& json) {
 }  // namespace
 
 bool CasePlanner::uses_foreign(const StudyCase& study_case) const {
-  for (const auto& [role, name] : {std::pair(Role::mass, study_case.mass.name),
-                                   {Role::contact, study_case.contact.name},
-                                   {Role::time, study_case.time.name}})
-    if (const std::string file = registry_.file(role, name); !file.empty() && catalogue_.foreign(file)) return true;
-  return false;
+  std::vector<std::pair<Role, std::string>> used = {
+      {Role::mass, study_case.mass.name}, {Role::contact, study_case.contact.name}, {Role::time, study_case.time.name}};
+  for (const MethodChoice& reference : study_case.references) used.emplace_back(Role::reference, reference.name);
+  return std::any_of(used.begin(), used.end(),
+                     [&](const auto& one) { return catalogue_.foreign(registry_.file(one.first, one.second)); });
 }
 
 PlanOutcome CasePlanner::plan(const StudyCase& study_case) {
@@ -119,8 +121,8 @@ PlanOutcome CasePlanner::plan_in_child(const StudyCase& study_case) {
       longest_plan);
   if (!outcome.ok()) {
     const std::string sentence = outcome.sentence();
-    if (outcome.end == ChildOutcome::End::timeout && !outcome.function.empty())
-      endless_[{outcome.plugin.role, outcome.plugin.name}] =
+    if (outcome.end == ChildOutcome::End::timeout && outcome.call.serial != 0)
+      endless_[{outcome.call.plugin.role, outcome.call.plugin.name}] =
           sentence + " in case " + study_case.id + "; not tried again";
     return {.plan = {}, .failure = sentence};
   }
@@ -162,7 +164,10 @@ Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Reg
                               return step == steps.end() ? 0 : step->second;
                             }};
     for (const PlannedCase& one : cases) context.cases.push_back(one.study_case);
-    found.beside = kind.beside(context);
+    // It asks methods that may be anybody's: one that goes wrong is told in the rows of its cases.
+    const ChildOutcome beside =
+        run_in_child([&] { return fmt::format("{}", kind.beside(context)); }, std::numeric_limits<double>::infinity());
+    if (beside.ok()) std::from_chars(beside.text.data(), beside.text.data() + beside.text.size(), found.beside);
     found.seconds += found.beside;
   }
   found.seconds += each_run + each_case * static_cast<double>(cases.size());

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <ricochet/measure/statistics/quantiles.hpp>
 #include <span>
+#include <system_error>
 #include <thread>
 
 #include "runners/march/prepare_case.hpp"
@@ -29,7 +30,11 @@ constexpr std::size_t most_together = 64;
 /// Runs `body` on so many threads, this one among them, until each has returned; `body` must not throw.
 void on_threads(int threads, const std::function<void()>& body) {
   std::vector<std::thread> others;
-  for (int i = 1; i < threads; ++i) others.emplace_back(body);
+  try {
+    for (int i = 1; i < threads; ++i) others.emplace_back(body);
+  } catch (const std::system_error&) {
+    // No room for another one: fewer do it all.
+  }
   body();
   for (std::thread& one : others) one.join();
 }

@@ -89,6 +89,16 @@ void remove_leftovers(const std::filesystem::path& folder) {
   for (const auto& leftover : leftovers) std::filesystem::remove(leftover, ignored);
 }
 
+void check_regular(const std::filesystem::path& file) {
+  for (const char* suffix : {"", "-journal", "-wal", "-shm"}) {
+    const std::filesystem::path one = file.string() + suffix;
+    std::error_code ignored;
+    if (std::filesystem::exists(one, ignored) && !std::filesystem::is_regular_file(one, ignored))
+      throw StoreError(fmt::format("{}: is no file but a folder, a pipe, a socket or a device; choose another folder",
+                                   one.string()));
+  }
+}
+
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

@@ -42,6 +42,10 @@ void write_file(const std::filesystem::path& file, std::string_view content);
 /// Removes the temporary files that a killed process left in `folder`. Only while the folder's lock is held.
 void remove_leftovers(const std::filesystem::path& folder);
 
+/// Throws StoreError where a file of a store, or one that SQLite keeps beside it, is a folder, a pipe, a socket or a
+/// device: opening one may never end.
+void check_regular(const std::filesystem::path& file);
+
 /// Creates the folder and its parents. Throws StoreError (path and cause).
 void make_folder(const std::filesystem::path& folder);
 

@@ -51,10 +51,11 @@ Json content_of(const MethodChoice& method) {
 std::string file_hash(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw StoreError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
-  std::ostringstream content;
-  content << stream.rdbuf();
-  if (stream.bad() || content.bad()) throw StoreError(fmt::format("{}: read error", file.string()));
-  return content_hash(content.view());
+  // All of it, or an exception: a stream that runs out of memory would keep the beginning.
+  std::string content(std::filesystem::file_size(file), '\0');
+  if (!stream.read(content.data(), static_cast<std::streamsize>(content.size())))
+    throw StoreError(fmt::format("{}: read error", file.string()));
+  return content_hash(content);
 }
 
 const std::string& program_hash() {

@@ -327,6 +327,7 @@ std::unique_ptr<SQLite::Database> open_store(const std::filesystem::path& folder
   if (!std::filesystem::exists(file, error))
     throw StoreError(fmt::format("{}: there is no results.sqlite here{}; expected the folder of a study that was run",
                                  folder.string(), error ? " (" + error.message() + ")" : ""));
+  check_regular(file);
   std::unique_ptr<SQLite::Database> database;
   guarded(file, nullptr, [&] {
     // Opened for writing where possible: a store left by a killed process is rolled back by its first reader.

@@ -239,6 +239,7 @@ void prepare_schema(SQLite::Database& database, const std::filesystem::path& fil
 }
 
 void check_owner(const std::filesystem::path& file) {
+  check_regular(file);
   // The header is read before SQLite has the file open: closing it later would drop SQLite's own locks.
   std::array<unsigned char, 100> header{};
   std::ifstream stream(file, std::ios::binary);

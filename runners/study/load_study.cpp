@@ -237,7 +237,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   require_mesh(given);
   Json& resolved = study.resolved;
   study.name = resolved["name"].get<std::string>();
-  study.question = resolved["question"].get<std::string>();
+  study.question = cut_short(resolved["question"].get<std::string>());
   study.kind = resolved["kind"].get<std::string>();
   check_name(study.name);
   // A kind without a step of its own goes through a range of them within each case (stability), or counts steps per

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 #include <optional>
 #include <ricochet/contract/errors.hpp>
 
@@ -84,6 +85,7 @@ class IsolatedCases::Coordinator {
       const Taken taken = take(place_of(word), stopping);
       Reply reply = talk_of_case(taken.member, Message{word, to_bytes(std::vector{order_of(study_case)})},
                                  study_case.id, stopping);
+      pass_run_error();
       if (auto answer = answer_in<CaseAnswer>(reply, {Word::planned, Word::ran, Word::timed}, *taken.member->worker)) {
         places_.give_back(taken.member);
         return std::move(*answer);
@@ -208,9 +210,21 @@ class IsolatedCases::Coordinator {
       tell(over ? BlockStatus::What::gave_up : BlockStatus::What::lost, sentence(*reply.lost, *study_case));
     } catch (const Interrupted&) {
       tell(BlockStatus::What::interrupted, "");
+    } catch (const RunError& error) {
+      {
+        const std::lock_guard guard(run_error_mutex_);
+        run_error_ = error;
+      }
+      tell(BlockStatus::What::failed, error.what());
     } catch (const std::exception& error) {
       tell(BlockStatus::What::failed, error.what());
     }
+  }
+
+  /// What a block met ends the run.
+  void pass_run_error() {
+    const std::lock_guard guard(run_error_mutex_);
+    if (run_error_) throw RunError(*run_error_);
   }
 
   /// A worker that has opened the study.
@@ -224,29 +238,16 @@ class IsolatedCases::Coordinator {
       opening.memory = taken.member->host->memory();
       Reply reply = talk(taken.member, Message{Word::study, to_bytes(opening)}, "", stopping, after_stop);
       if (const auto ready = answer_in<WorkerReady>(reply, {Word::ready}, *taken.member->worker)) {
-        check(*ready, name);
+        check_ready(*ready, name, of_all_, opening_.arithmetic);
         return taken;
       }
       if (stopping()) throw Interrupted{};
       if (reply.lost->end.host_lost) continue;
-      if (attempt++ == attempts)
-        throw std::runtime_error(
-            fmt::format("no worker on {} opens the study: {}", name, reply.lost->end.sentence("twice")));
+      if (attempt++ == attempts) {
+        const WorkerEnd& end = reply.lost->end;
+        throw RunError(fmt::format("no worker on {} opens the study: {}", name, end.sentence("twice")), !end.no_memory);
+      }
     }
-  }
-
-  void check(const WorkerReady& ready, const std::string& host) const {
-    if (!ready.failure.empty() && !ready.pointer.empty()) throw InputError(ready.pointer, ready.failure);
-    if (!ready.failure.empty())
-      throw std::runtime_error(fmt::format("a worker on {} did not open the study: {}", host, ready.failure));
-    if (ready.identity != of_all_)
-      throw std::runtime_error(
-          fmt::format("a worker on {} has another program or other plugins than this process", host));
-    if (ready.arithmetic != opening_.arithmetic)
-      throw std::runtime_error(
-          fmt::format("{} computes other last digits than this machine (another processor or C library): a study's "
-                      "results come from one arithmetic. Ask the scheduler for nodes of one kind (--constraint)",
-                      host));
   }
 
   /// Sends an order for a case, unless it has it already, and serves the worker until it is done with it. `patience`: s
@@ -347,7 +348,9 @@ class IsolatedCases::Coordinator {
   WorkerStudy opening_;
   CheckpointStore checkpoints_;
   KeyClaims claims_;
-  std::atomic<int> open_{0};  // cases that were planned and have not run to their end
+  std::mutex run_error_mutex_;
+  std::optional<RunError> run_error_;  // met by a block
+  std::atomic<int> open_{0};           // cases that were planned and have not run to their end
   WorkerPlaces places_;
   BlockPool pool_;  // last: its threads use all of the above
 };

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <ricochet/contract/errors.hpp>
+#include <stdexcept>
 
 #include "runners/march/prepare_case.hpp"
 
@@ -13,6 +15,21 @@ Lost ended_for_nonsense(Worker& worker) {
   Lost lost{worker.end(), {}};
   if (!lost.end.host_lost) lost.end.cause = "this program: what it said was no message";
   return lost;
+}
+
+void check_ready(const WorkerReady& ready, const std::string& host, const std::string& identity,
+                 const std::string& arithmetic) {
+  if (!ready.failure.empty() && !ready.pointer.empty()) throw InputError(ready.pointer, ready.failure);
+  if (!ready.failure.empty())
+    throw std::runtime_error(fmt::format("a worker on {} did not open the study: {}", host, ready.failure));
+  if (ready.identity != identity)
+    throw std::runtime_error(
+        fmt::format("a worker on {} has another program or other plugins than this process", host));
+  if (ready.arithmetic != arithmetic)
+    throw std::runtime_error(
+        fmt::format("{} computes other last digits than this machine (another processor or C library): a study's "
+                    "results come from one arithmetic. Ask the scheduler for nodes of one kind (--constraint)",
+                    host));
 }
 
 double longest_call_of(const StudyCase& study_case) {

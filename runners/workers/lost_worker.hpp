@@ -36,6 +36,11 @@ std::optional<T> answer_in(Reply& reply, std::initializer_list<Message::Word> wo
   return std::nullopt;
 }
 
+/// Throws where a worker on this host did not open the study (an InputError with its pointer), or is of another
+/// program, of other plugins or of another arithmetic.
+void check_ready(const WorkerReady& ready, const std::string& host, const std::string& identity,
+                 const std::string& arithmetic);
+
 /// s that a call of a plugin's function may last for this case: its budget, or 60 where it has none.
 double longest_call_of(const StudyCase& study_case);
 

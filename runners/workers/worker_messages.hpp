@@ -161,14 +161,16 @@ extern template CaseRecord message_from(const std::string&);
 
 /// How a worker ended.
 struct WorkerEnd {
-  std::string cause = {};  ///< "signal 11 (segmentation fault)", "exit code 7"
-  std::string plugin = {},
-              function = {};    ///< whose function it was in, where it could say so: "contact 'x' (file)", "solve"
+  std::string cause = {};       ///< "signal 11 (segmentation fault)", "exit code 7"
+  std::string place = {};       ///< of a plugin's function, SeenCall::place()
+  bool in_call = false;         ///< it was under way, not the last one before
   std::string last_lines = {};  ///< of its stderr, "|" between two
+  bool no_memory = false;       ///< it wanted more memory than it may take
   bool silent = false;          ///< it said nothing for too long, and was killed for that
   bool host_lost = false;       ///< the machine it was on is gone: no fault of its own
 
-  /// "plugin contact 'x' (x.so), solve(): its process was ended by signal 11 (segmentation fault); it wrote: …".
+  /// "plugin contact 'x' (x.so), solve(): its process was ended by signal 11 (segmentation fault); it wrote: …". Where
+  /// no function was under way the third-party libraries of the study are named.
   /// `times`: put behind the verb, "twice".
   std::string sentence(const std::string& times = "") const;
 };
@@ -197,7 +199,7 @@ class WorkerHost {
   virtual double memory() const = 0;
   /// Whether workers can still be started there.
   virtual bool there() const = 0;
-  /// Throws std::runtime_error where no process can be had.
+  /// Throws RunError where no process can be had.
   virtual std::unique_ptr<Worker> start() = 0;
 };
 

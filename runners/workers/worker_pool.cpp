@@ -2,7 +2,9 @@
 #include <chrono>
 #include <set>
 #include <string>
+#include <system_error>
 
+#include "runners/march/prepare_case.hpp"
 #include "runners/workers/isolated_cases.hpp"
 
 namespace ricochet {
@@ -103,10 +105,13 @@ BlockPool::~BlockPool() {
 void BlockPool::begin(Block block) {
   const std::lock_guard guard(mutex_);
   waiting_.push_back(std::move(block));
-  if (static_cast<int>(waiting_.size()) > free_ && static_cast<int>(threads_.size()) < width_) {
-    ++free_;
-    threads_.emplace_back([this] { work(); });
-  }
+  if (static_cast<int>(waiting_.size()) > free_ && static_cast<int>(threads_.size()) < width_) try {
+      threads_.emplace_back([this] { work(); });
+      ++free_;
+    } catch (const std::system_error&) {
+      // No room for another one: those that are there take the block in their turn.
+      if (threads_.empty()) throw RunError("not enough memory: no thread for a block can be started");
+    }
   changed_.notify_one();
 }
 

@@ -2,9 +2,9 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
-#include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,12 +15,16 @@
 #include <cmath>
 #include <cstring>
 #include <ricochet/engine/cost_model.hpp>
+#include <ricochet/loader/child.hpp>
+#include <ricochet/loader/library.hpp>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
+#include "runners/march/prepare_case.hpp"
 #include "runners/store/fingerprint.hpp"
-#include "runners/workers/crash_record.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 
@@ -32,7 +36,7 @@ const std::string& worker_program() {
 std::vector<std::string> worker_environment() {
   constexpr std::array<std::string_view, 5> of_launchers = {"OMPI_", "PMIX_", "PMI_", "MPI_LOCAL", "OPAL_"};
   std::vector<std::string> variables;
-  for (char** one = environ; *one; ++one)
+  for (char** one = environ; one && *one; ++one)
     if (const std::string_view text = *one; std::none_of(of_launchers.begin(), of_launchers.end(),
                                                          [&](std::string_view head) { return text.starts_with(head); }))
       variables.emplace_back(text);
@@ -55,22 +59,11 @@ namespace {
 constexpr std::size_t kept_of_stderr = 2000;
 
 [[noreturn]] void fail(const char* what) {
-  throw std::runtime_error(fmt::format("no worker process can be started: {}: {}", what, std::strerror(errno)));
-}
-
-std::string content_of_descriptor(int descriptor) {
-  std::string content;
-  std::array<char, 4096> part{};
-  ::lseek(descriptor, 0, SEEK_SET);
-  for (ssize_t got = 0; (got = ::read(descriptor, part.data(), part.size())) > 0;)
-    content.append(part.data(), static_cast<std::size_t>(got));
-  return content;
+  throw RunError(fmt::format("no worker process can be started: {}: {}", what, std::strerror(errno)));
 }
 
 std::string ended_by(int status) {
-  if (WIFEXITED(status)) return fmt::format("exit code {}", WEXITSTATUS(status));
-  const int number = WTERMSIG(status);
-  return fmt::format("signal {} ({})", number, number == SIGKILL ? "killed" : ::strsignal(number));
+  return WIFEXITED(status) ? fmt::format("exit code {}", WEXITSTATUS(status)) : signal_in_words(WTERMSIG(status));
 }
 
 }  // namespace
@@ -91,11 +84,18 @@ double memory_for_each(double free, int workers) {
 }
 
 std::string WorkerEnd::sentence(const std::string& times) const {
-  std::string text;
+  // Of what came before the end only a third-party function is told: it may have left damage behind.
+  std::vector<std::string> others;
+  bool told = in_call;
+  for (const auto& library : described_libraries()) {
+    others.push_back(library.string());
+    told = told || place.find(library.string()) != std::string::npos;
+  }
+  std::string text = told ? place : "";
   const std::string often = times.empty() ? "" : " " + times;
-  if (!plugin.empty()) text += fmt::format("plugin {}, {}(): ", plugin, function);
   text += silent ? fmt::format("its process did not answer any more and was killed{}", often)
                  : fmt::format("its process was ended{} by {}", often, cause);
+  if (!told && !others.empty()) text += fmt::format("; third-party libraries in it: {}", fmt::join(others, ", "));
   if (!last_lines.empty()) text += fmt::format("; it wrote: {}", last_lines);
   return text;
 }
@@ -108,16 +108,15 @@ WorkerProcess::WorkerProcess() {
     ::close(sockets[1]);
     fail("pipe");
   }
-  crash_record_ = ::memfd_create("ricochet-crash", MFD_CLOEXEC);
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   // Their numbers may be those that the worker expects: moved out of the way first.
   constexpr int aside = 100;
   ::posix_spawn_file_actions_adddup2(&actions, sockets[1], aside);
-  ::posix_spawn_file_actions_adddup2(&actions, crash_record_, aside + 1);
+  ::posix_spawn_file_actions_adddup2(&actions, note_.descriptor(), aside + 1);
   ::posix_spawn_file_actions_adddup2(&actions, errors[1], STDERR_FILENO);
   ::posix_spawn_file_actions_adddup2(&actions, aside, kWorkerChannel);
-  ::posix_spawn_file_actions_adddup2(&actions, aside + 1, kWorkerCrashRecord);
+  ::posix_spawn_file_actions_adddup2(&actions, aside + 1, kWorkerNote);
   ::posix_spawn_file_actions_addclose(&actions, aside);
   ::posix_spawn_file_actions_addclose(&actions, aside + 1);
   ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -144,13 +143,21 @@ WorkerProcess::WorkerProcess() {
   ::close(errors[1]);
   if (error != 0) {
     ::close(errors[0]);
-    ::close(crash_record_);
     pid_ = -1;
     ended_ = true;
     errno = error;
     fail(worker_program().c_str());
   }
-  listener_ = std::thread([this, descriptor = errors[0]] { pass_on_stderr(descriptor); });
+  try {
+    listener_ = std::thread([this, descriptor = errors[0]] { pass_on_stderr(descriptor); });
+  } catch (const std::system_error&) {
+    ::close(errors[0]);
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+    ended_ = true;
+    errno = EAGAIN;
+    fail("thread");
+  }
 }
 
 WorkerProcess::~WorkerProcess() {
@@ -172,20 +179,24 @@ WorkerEnd WorkerProcess::end() {
   while (::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
   }
   {
-    // From here on its number may be another process's.
+    // From here on its number, and that of the group of what it began, may be others'.
     const std::lock_guard guard(mutex_);
+    ::kill(-pid_, SIGKILL);
     while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
     }
     ended_ = true;
   }
   listener_.join();
+  const CallNote& note = note_.note();
   found.cause = ended_by(status);
-  if (const auto crash = parse_crash_record(content_of_descriptor(crash_record_))) {
-    found.cause = crash->ended;
-    found.plugin = crash->plugin;
-    found.function = crash->function;
-  }
-  ::close(crash_record_);
+  if (note.exit_called) found.cause = "a call of exit()";
+  const std::uint64_t most = note.memory_exceeded;
+  found.no_memory = most != 0;
+  if (found.no_memory)
+    found.cause = fmt::format("want of memory: a worker may take {}", bytes_in_words(static_cast<double>(most)));
+  const SeenCall call = note.seen();
+  found.place = call.place();
+  found.in_call = call.serial != 0;
   const std::lock_guard guard(mutex_);
   found.last_lines = last_lines_;
   while (found.last_lines.ends_with('\n')) found.last_lines.pop_back();
@@ -193,14 +204,41 @@ WorkerEnd WorkerProcess::end() {
   return found;
 }
 
+bool WorkerProcess::has_ended() const {
+  siginfo_t info{};
+  return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == pid_;
+}
+
+Channel::Heard WorkerProcess::receive(Message& message, double seconds) {
+  constexpr double beat = 0.25;
+  for (;; seconds -= beat) {
+    if (const auto heard = channel_->receive(message, std::min(seconds, beat)); heard != Channel::Heard::silence)
+      return heard;
+    if (has_ended())  // what it said before stands
+      return channel_->receive(message, 0) == Channel::Heard::message ? Channel::Heard::message : Channel::Heard::gone;
+    if (seconds <= beat) return Channel::Heard::silence;
+  }
+}
+
 void WorkerProcess::pass_on_stderr(int descriptor) {
+  constexpr int beat = 50;                        // ms
+  constexpr std::size_t most_afterwards = 65536;  // of what others say who hold the descriptor
   std::array<char, 4096> part{};
-  for (ssize_t got = 0;;) {
+  std::size_t afterwards = 0;
+  for (ssize_t got = 0; afterwards < most_afterwards;) {
+    pollfd wait{descriptor, POLLIN, 0};
+    const bool last = ended_;
+    if (::poll(&wait, 1, beat) == 0) {
+      if (last) break;
+      continue;
+    }
     got = ::read(descriptor, part.data(), part.size());
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) break;
+    if (last) afterwards += static_cast<std::size_t>(got);
     const std::string_view text(part.data(), static_cast<std::size_t>(got));
-    std::fwrite(text.data(), 1, text.size(), stderr);
+    const std::string shown = plain_text(text);
+    std::fwrite(shown.data(), 1, shown.size(), stderr);
     const std::lock_guard guard(mutex_);
     last_lines_ += text;
     if (last_lines_.size() > kept_of_stderr) {

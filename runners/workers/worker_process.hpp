@@ -3,12 +3,14 @@
 #include <sys/types.h>
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "runners/workers/call_watch.hpp"
 #include "runners/workers/worker_messages.hpp"
 
 namespace ricochet {
@@ -31,7 +33,7 @@ sigset_t coordinator_signals();
 /// on to this process's, and its end is kept.
 class WorkerProcess : public Worker {
  public:
-  /// Throws std::runtime_error where no process can be had.
+  /// Throws RunError where no process can be had.
   WorkerProcess();
   /// Ends it.
   ~WorkerProcess() override;
@@ -39,20 +41,22 @@ class WorkerProcess : public Worker {
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
   bool send(const Message& message) override { return channel_->send(message); }
-  Channel::Heard receive(Message& message, double seconds) override { return channel_->receive(message, seconds); }
+  /// Gone where its process has ended: others that it began may hold its end of the channel.
+  Channel::Heard receive(Message& message, double seconds) override;
   void kill() override;
   WorkerEnd end() override;
 
  private:
   void pass_on_stderr(int descriptor);
+  bool has_ended() const;
 
   pid_t pid_ = -1;
   std::unique_ptr<Channel> channel_;
-  int crash_record_ = -1;  // a file without a name, which the worker writes when it crashes
+  const NoteFile note_;
   std::thread listener_;
   std::mutex mutex_;
   std::string last_lines_;
-  bool ended_ = false;
+  std::atomic<bool> ended_ = false;
 };
 
 /// The name of this machine, "?" where it has none.
@@ -84,7 +88,7 @@ class LocalHost : public WorkerHost {
 };
 
 /// Descriptors that a worker is born with.
-inline constexpr int kWorkerChannel = 3, kWorkerCrashRecord = 4;
+inline constexpr int kWorkerChannel = 3, kWorkerNote = 4;
 
 /// The life of a worker. It opens the study that it is sent. Then it does what it is asked to, case by case, until the
 /// other end of its channel closes. What cases keep and look for is the coordinator's. Returns its exit code; ends the

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <cstdlib>
 #include <deque>
 #include <future>
 #include <limits>
@@ -14,6 +15,8 @@
 #include <optional>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/loader/catalogue.hpp>
+#include <system_error>
+#include <thread>
 #include <unordered_map>
 
 #include "runners/kinds/kind.hpp"
@@ -21,7 +24,7 @@
 #include "runners/march/study_identity.hpp"
 #include "runners/plan_files/plan_file.hpp"
 #include "runners/study/load_study.hpp"
-#include "runners/workers/crash_record.hpp"
+#include "runners/workers/call_watch.hpp"
 #include "runners/workers/worker_messages.hpp"
 #include "runners/workers/worker_process.hpp"
 
@@ -36,24 +39,33 @@ constexpr double kLeast = 2;      // s that any call of a plugin's function may 
 constexpr double kAfterStop = 3;  // s for coming back
 constexpr int kGaveUp = 1;
 
+CallNote* own_note = nullptr;
+std::uint64_t memory_allowed = 0;
+
 // What a plugin asks for beyond the limit ends this process: the coordinator then knows which orbits asked.
 void out_of_memory() {
-  constexpr char text[] = "the memory that a worker may take is exhausted\n";
-  static_cast<void>(!::write(STDERR_FILENO, text, sizeof(text) - 1));
-  ::raise(SIGABRT);
+  own_note->memory_exceeded = memory_allowed;
+  ::_exit(kGaveUp);
+}
+
+// Static destructors of plugins do not run.
+void on_exit_called() {
+  own_note->exit_called = true;
   ::_exit(kGaveUp);
 }
 
 void limit_memory(double bytes) {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_AS, &limit);
   // A sanitizer takes far more of them than it uses.
-#ifdef RICOCHET_SANITIZED
-  return;
+#ifndef RICOCHET_SANITIZED
+  if (bytes > 0) {
+    limit.rlim_cur = std::min(limit.rlim_max, static_cast<rlim_t>(bytes));
+    limit.rlim_max = limit.rlim_cur;
+    ::setrlimit(RLIMIT_AS, &limit);
+  }
 #endif
-  if (bytes <= 0) return;
-  const auto most = static_cast<rlim_t>(bytes);
-  const rlimit limit{most, most};
-  ::setrlimit(RLIMIT_AS, &limit);
-  std::set_new_handler(out_of_memory);
+  memory_allowed = limit.rlim_cur;
 }
 
 class WorkerService : public BlockService {
@@ -61,16 +73,18 @@ class WorkerService : public BlockService {
   WorkerService() : channel_(kWorkerChannel) {}
 
   int run() {
-    std::thread reader([this] { read(); });
-    std::thread heart([this] {
-      for (int rounds = 1;; ++rounds) {
-        std::this_thread::sleep_for(kPollEvery);
-        const std::string waiting = long_call();
-        if (rounds % kRoundsPerAlive == 0) tell({Word::alive, waiting});
-      }
-    });
-    reader.detach();
-    heart.detach();
+    try {
+      std::thread([this] { read(); }).detach();
+      std::thread([this] {
+        for (int rounds = 1;; ++rounds) {
+          std::this_thread::sleep_for(kPollEvery);
+          const std::string waiting = long_call();
+          if (rounds % kRoundsPerAlive == 0) tell({Word::alive, waiting});
+        }
+      }).detach();
+    } catch (const std::system_error&) {  // no room for a thread
+      out_of_memory();
+    }
     for (;;) serve(next());
   }
 
@@ -271,6 +285,8 @@ class WorkerService : public BlockService {
     } catch (const InputError& error) {
       ready.failure = error.what();
       ready.pointer = error.pointer();
+    } catch (const std::bad_alloc&) {
+      out_of_memory();
     } catch (const std::exception& error) {
       ready.failure = error.what();
     } catch (const Refusal& refusal) {
@@ -291,7 +307,7 @@ class WorkerService : public BlockService {
   }
 
   Channel channel_;
-  CallWatch calls_;  // of the thread that serves
+  CallWatch calls_{*own_note};  // of the thread that serves
   std::atomic<bool> stop_{false};
   std::optional<std::chrono::steady_clock::time_point> stopped_;  // of the watching thread
   std::atomic<double> budget_{std::numeric_limits<double>::infinity()};
@@ -319,8 +335,12 @@ int serve_as_worker() {
   // Held back until now: a plugin finds a mask as usual.
   const sigset_t ignored = coordinator_signals();
   ::pthread_sigmask(SIG_UNBLOCK, &ignored, nullptr);
-  const HandlerStack handler_stack;
-  const CrashGuard guard("/proc/self/fd/" + std::to_string(kWorkerCrashRecord));
+  own_note = take_note(kWorkerNote);
+  note_plugin_calls(own_note);
+  limit_memory(0);
+  std::set_new_handler(out_of_memory);
+  std::atexit(on_exit_called);
+  std::at_quick_exit(on_exit_called);
   return WorkerService().run();
 }
 

@@ -214,7 +214,7 @@ TEST_CASE("the exported symbols of a library are read without loading it") {
   for (const auto& symbol : exported_symbols(library, "ricochet_"))
     if (!symbol.name.starts_with("ricochet_layout__")) names.push_back(symbol.name);
   CHECK(std::is_sorted(names.begin(), names.end()));
-  CHECK(names == std::vector<std::string>{abi_tag(), "ricochet_provides__reference__event_driven",
+  CHECK(names == std::vector<std::string>{abi_tag(), "ricochet_own", "ricochet_provides__reference__event_driven",
                                           "ricochet_provides__reference__event_driven_semi_discrete",
                                           "ricochet_provides__reference__exact", "ricochet_register"});
   CHECK(exported_symbols(library, "ricochet_provides__").size() == 3);

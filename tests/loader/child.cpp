@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <functional>
 #include <iostream>
 #include <ricochet/loader/child.hpp>
 #include <thread>
@@ -22,7 +23,7 @@ constexpr double long_enough = 600;  // s: no child here needs a second of a pro
 // Until then a child has begun, whatever else the machine does.
 constexpr double soon = 1;
 
-const PluginIdentity mine{"time", "mine", "here.so"};
+const PluginIdentity mine{"time", "mine", "here.so"}, first{"mass", "first", ""};
 
 ChildOutcome asked(const std::function<void()>& act, double seconds = long_enough) {
   return run_in_child(
@@ -71,9 +72,7 @@ TEST_CASE("a child that does not return says which plugin's function it was in")
     const ChildOutcome outcome = asked([signal = number] { ::raise(signal); });
     CHECK(outcome.end == End::signal);
     CHECK(outcome.number == number);
-    // Nothing is left to say anything after SIGKILL.
-    CHECK(outcome.sentence() ==
-          (number == SIGKILL ? "" : place) + "ended by signal " + std::to_string(number) + " (" + name + ")");
+    CHECK(outcome.sentence() == place + "ended by signal " + std::to_string(number) + " (" + name + ")");
   }
   SECTION("a stack that overflows") {
     const ChildOutcome outcome = asked([] { overflow(0); });
@@ -81,7 +80,8 @@ TEST_CASE("a child that does not return says which plugin's function it was in")
   }
   SECTION("an exit, whatever code it gives") {
     const int code = GENERATE(0, 7);
-    const ChildOutcome outcome = asked([&] { std::exit(code); });
+    const bool at_once = GENERATE(false, true);
+    const ChildOutcome outcome = asked([&] { at_once ? ::_exit(code) : std::exit(code); });
     CHECK(outcome.end == End::exit);
     CHECK(outcome.sentence() == place + "ended the process with exit code " + std::to_string(code));
   }
@@ -98,18 +98,103 @@ TEST_CASE("a child that does not return says which plugin's function it was in")
   SECTION("a loop that no signal ends") {
     const ChildOutcome outcome = asked(
         [] {
-          std::signal(SIGALRM, SIG_IGN);
+          for (int one = 1; one < NSIG; ++one) std::signal(one, SIG_IGN);
+          sigset_t all;
+          sigfillset(&all);
+          ::sigprocmask(SIG_BLOCK, &all, nullptr);
           for (;;) ::pause();
         },
         soon);
-    CHECK(outcome.sentence() == "did not end within 1 s");
+    CHECK(outcome.sentence() == place + "did not end within 1 s");
   }
 }
 
 TEST_CASE("outside of a plugin's function a child's end names none") {
   const ChildOutcome outcome = run_in_child([]() -> std::string { std::abort(); }, long_enough);
   CHECK(outcome.sentence() == "ended by signal 6 (aborted)");
-  CHECK(outcome.function.empty());
+  CHECK(outcome.call.function.empty());
+}
+
+TEST_CASE("a child that ends after a plugin's function has returned names it as the last one") {
+  const ChildOutcome outcome = run_in_child(
+      []() -> std::string {
+        {
+          const PluginCallScope outer(first, "build");
+          const PluginCallScope inner(mine, "plan");
+        }
+        std::abort();
+      },
+      long_enough);
+  // Of calls within calls the outer one is under way again.
+  CHECK(outcome.sentence() == "plugin mass 'first', after build(): ended by signal 6 (aborted)");
+  CHECK(outcome.call.serial == 0);
+}
+
+TEST_CASE("a child that takes too much memory is told as such") {
+#ifndef RICOCHET_SANITIZED
+  constexpr double allowed = 64 << 20;
+  const ChildOutcome outcome = run_in_child({.work = []() -> std::string {
+                                               const PluginCallScope scope(mine, "solve");
+                                               for (std::vector<char*> all;;) all.push_back(new char[1 << 20]);
+                                             },
+                                             .seconds = long_enough,
+                                             .memory = allowed});
+  CHECK(outcome.end == End::memory);
+  CHECK(outcome.sentence() ==
+        "plugin time 'mine' (here.so), solve(): took more than the 64 MiB of memory that it may take");
+#endif
+}
+
+TEST_CASE("what a child leaves running, or does to descriptors, keeps nobody waiting") {
+  SECTION("a process that it began") {
+    const ChildOutcome outcome = run_in_child(
+        [] {
+          const pid_t left = ::fork();
+          if (left == 0)
+            for (;;) ::pause();
+          return std::to_string(left);
+        },
+        long_enough);
+    REQUIRE(outcome.ok());
+    // It is of the child's group, which ends with it. Init may take its time to take note.
+    const pid_t left = std::stoi(outcome.text);
+    while (::kill(left, 0) == 0) ::usleep(1000);
+  }
+  SECTION("descriptors of this process") {
+    int ends[2];
+    REQUIRE(::pipe(ends) == 0);
+    const ChildOutcome outcome = run_in_child(
+        [&] {
+          const bool there = ::write(ends[1], "x", 1) == 1;
+          for (int one = 3; one < 1000; ++one) ::close(one);
+          return std::string(there ? "there" : "not there");
+        },
+        long_enough);
+    CHECK_FALSE(outcome.ok());  // its own way to say something is closed as well
+    ::close(ends[1]);
+    char one = 0;
+    CHECK(::read(ends[0], &one, 1) == 0);
+    ::close(ends[0]);
+  }
+}
+
+TEST_CASE("what comes after a child's value is told apart from it") {
+  const auto after = [](std::function<void()> act) {
+    return run_in_child({.work = [] { return std::string("value"); }, .seconds = long_enough, .afterwards = act});
+  };
+  const ChildOutcome well = after([] {});
+  CHECK(well.text == "value");
+  CHECK(well.afterwards.empty());
+  const ChildOutcome ended = after([] { ::raise(SIGSEGV); });
+  CHECK(ended.text == "value");
+  CHECK(ended.afterwards == "ended by signal 11 (segmentation fault)");
+  const ChildOutcome left = after([] { ::_exit(4); });
+  CHECK(left.afterwards == "ended the process with exit code 4");
+  const ChildOutcome late = after([] {
+    for (;;) ::pause();
+  });
+  CHECK(late.text == "value");
+  CHECK(late.afterwards == "did not end within 3 s");
 }
 
 TEST_CASE("what a child does to its process is not done to this one") {

@@ -107,10 +107,9 @@ void check_that_one_case_is_lost(const Installed& installed, const ScratchFolder
   };
   const Bad bad = GENERATE(
       Bad{"contact", "solve", {{"how", "segv"}}, "signal 11 (segmentation fault)"},
-      Bad{"contact", "prepare", {{"how", "abort"}, {"where", "prepare"}}, "signal 6 (abort)"},
+      Bad{"contact", "prepare", {{"how", "abort"}, {"where", "prepare"}}, "signal 6 (aborted)"},
       Bad{"contact", "solve", {{"how", "overflow"}}, "signal 11 (segmentation fault)"},
-      Bad{"time", "plan", {{"how", "exit"}}, "a call of exit()"},
-      Bad{"time", "plan", {{"how", "throw"}}, "plan()"},
+      Bad{"time", "plan", {{"how", "exit"}}, "a call of exit()"}, Bad{"time", "plan", {{"how", "throw"}}, "plan()"},
       Bad{"time", "plan", {{"how", "loop"}}, "did not return from plan() within the budget of 0.5 s", 0.5},
       Bad{"contact", "solve", {{"how", "loop"}}, "did not return from solve() within the budget of 0.5 s", 0.5},
       Bad{"mass", "build", {{"how", "segv"}}, "signal 11 (segmentation fault)"});

@@ -44,3 +44,16 @@ TEST_CASE("No error is long, whatever a study has in a place") {
   for (const auto& [key, ignored] : study.items()) visit(pointer_to("", key));
   CHECK(refused > 30);
 }
+
+TEST_CASE("A long question is cut between two characters where it is kept") {
+  Json study = small_study();
+  std::string question;
+  for (int k = 0; k < 3000; ++k) question += "é";
+  study["question"] = question;
+  const std::string kept = parse(study).question;
+  CHECK(kept.size() <= longest_text);
+  CHECK(kept.size() > longest_text - 4);
+  CHECK(kept.ends_with("éé…"));
+  study["question"] = std::string(longest_text, 'q');
+  CHECK(parse(study).question == study["question"]);
+}
