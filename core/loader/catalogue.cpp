@@ -109,6 +109,7 @@ void Catalogue::read_library(const fs::path& file, bool insist) {
   for (const auto& wrong : {abi_mismatch(tag->name), layout_mismatch(layout)})
     if (wrong) return refuse("built for another ABI: " + *wrong + "; rebuild it against this version of Ricochet");
   if (!strange.empty()) return refuse("provides a role that this version does not know: " + strange);
+  if (methods.empty()) return refuse("names no method that it provides; does it end with RICOCHET_PLUGIN?");
   for (const auto& [role, name] : methods) provided_.push_back({role, name, file});
 }
 

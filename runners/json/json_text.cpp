@@ -325,7 +325,7 @@ std::string read_text(const std::filesystem::path& file, const std::string& expe
     throw InputError("", "is a pipe, a socket or a device; expected " + expected + ", a JSON file");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  // What is no regular file has no size to ask for.
+  // Files of /proc have no size to ask for.
   std::string text, piece(std::size_t{1} << 16U, '\0');
   while (stream && text.size() <= largest_text) {
     stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));

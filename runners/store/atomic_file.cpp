@@ -94,8 +94,8 @@ void check_regular(const std::filesystem::path& file) {
     const std::filesystem::path one = file.string() + suffix;
     std::error_code ignored;
     if (std::filesystem::exists(one, ignored) && !std::filesystem::is_regular_file(one, ignored))
-      throw StoreError(fmt::format("{}: is no file but a folder, a pipe, a socket or a device; choose another folder",
-                                   one.string()));
+      throw StoreError(fmt::format(
+          "{}: cannot be opened: it is a folder, a pipe, a socket or a device; choose another folder", one.string()));
   }
 }
 

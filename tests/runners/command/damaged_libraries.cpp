@@ -67,9 +67,10 @@ class Damage {
 
 /// What a listing says of the copy, without its own words.
 std::string verdict(const std::string& out) {
-  for (const char* said : {"while it was loaded", "cannot be loaded", "damaged", "not a shared library",
-                           "another processor", "another ABI", "no Ricochet plugin", "has no function", "says that it",
-                           "registers", "no manual", "another kind of binary", "failed while registering"})
+  for (const char* said :
+       {"while it was loaded", "cannot be loaded", "damaged", "not a shared library", "another processor",
+        "another ABI", "no Ricochet plugin", "names no method", "has no function", "says that it", "registers",
+        "no manual", "another kind of binary", "failed while registering"})
     if (out.find(said) != std::string::npos) return said;
   return out.find("contact") != std::string::npos && out.find("unruly") != std::string::npos ? "serves"
                                                                                              : "is not there";
