@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 
 // Places of a structure as rows over its dofs.
