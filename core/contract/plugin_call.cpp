@@ -5,20 +5,53 @@
 namespace ricochet {
 namespace {
 
-// constinit and trivially destructible: there before and after everything else.
-constinit thread_local PluginCall call;
-constinit thread_local std::uint64_t calls = 0;
-constinit thread_local CallNote* note = nullptr;
-// What the note's texts say.
-constinit thread_local std::uint64_t noted_plugin = 0;
-constinit thread_local const char* noted_function = nullptr;
+// What the slots of the note say. A slot is used again where there are more than it has.
+template <class Key, std::size_t slots>
+struct Slots {
+  std::array<Key, slots> keys{};
+  std::size_t last = 0, next = 0;
 
-void write_note() {
-  if (!call.plugin) return note->returned();
-  note->write(call, call.plugin->number != noted_plugin, call.function != noted_function);
-  noted_plugin = call.plugin->number;
-  noted_function = call.function;
+  /// The slot of the key; `name` is called for one that is new.
+  template <class Name>
+  std::size_t of(Key key, Name name) {
+    if (keys[last] == key) return last;
+    for (last = 0; last < slots; ++last)
+      if (keys[last] == key) return last;
+    last = next;
+    next = (next + 1) % slots;
+    keys[last] = key;
+    name(last);
+    return last;
+  }
+};
+// All of a thread, in one place: it is found once for each call.
+struct OfThread {
+  PluginCall call;
+  std::uint64_t calls = 0;
+  CallNote* note = nullptr;
+  Slots<std::uint64_t, CallNote::plugins> plugins;
+  Slots<const char*, CallNote::functions> functions;
+  CallNote::Word noted;
+};
+// constinit and trivially destructible: there before and after everything else.
+[[gnu::tls_model("initial-exec")]] constinit thread_local OfThread of_thread;
+
+void write_note(OfThread& mine) {
+  const PluginCall& call = mine.call;
+  if (call.plugin) {
+    mine.noted.serial = call.serial;
+    mine.noted.plugin =
+        mine.plugins.of(call.plugin->number, [&](std::size_t slot) { mine.note->name_plugin(slot, *call.plugin); });
+    mine.noted.function =
+        mine.functions.of(call.function, [&](std::size_t slot) { mine.note->name_function(slot, call.function); });
+  }
+  mine.noted.under_way = call.plugin != nullptr;
+  mine.note->write(mine.noted);
 }
+
+// From the lowest bit: whether it is under way, the slots, the serial number.
+constexpr unsigned function_at = 1, plugin_at = 9, serial_at = 17;
+constexpr std::uint64_t slot_mask = 0xFF;
 
 }  // namespace
 
@@ -32,7 +65,7 @@ std::string PluginIdentity::text() const {
 }
 
 const PluginCall& current_plugin_call() {
-  return call;
+  return of_thread.call;
 }
 
 std::string SeenCall::place() const {
@@ -62,46 +95,57 @@ std::string SharedText<words>::load() const {
   return text.data();
 }
 
-void CallNote::write(const PluginCall& one, bool of_another_plugin, bool of_another_function) {
-  const std::uint64_t version = version_.load(std::memory_order_relaxed);
-  version_.store(version + 1, std::memory_order_relaxed);
-  std::atomic_thread_fence(std::memory_order_release);
-  if (of_another_plugin) {
-    role_.store(one.plugin->role);
-    name_.store(one.plugin->name);
-    file_.store(one.plugin->file);
-  }
-  if (of_another_function) function_.store(one.function);
-  serial_.store(one.serial, std::memory_order_relaxed);
-  version_.store(version + 2, std::memory_order_release);
+std::uint64_t CallNote::Word::packed() const {
+  return serial << serial_at | plugin << plugin_at | function << function_at | std::uint64_t{under_way};
+}
+
+CallNote::Word CallNote::Word::of(std::uint64_t packed) {
+  return {packed >> serial_at, packed >> plugin_at & slot_mask, packed >> function_at & slot_mask, (packed & 1U) != 0};
+}
+
+void CallNote::name_plugin(std::size_t slot, const PluginIdentity& plugin) {
+  plugins_[slot].role.store(plugin.role);
+  plugins_[slot].name.store(plugin.name);
+  plugins_[slot].file.store(plugin.file);
 }
 
 SeenCall CallNote::seen() const {
-  constexpr int trials = 1000;  // a writer that ended while it wrote never ends writing
+  constexpr int trials = 100;  // of a thread that calls without a pause any call may be told
   SeenCall seen;
+  std::uint64_t before = word_.load(std::memory_order_acquire);
   for (int trial = 0; trial < trials; ++trial) {
-    const std::uint64_t version = version_.load(std::memory_order_acquire);
-    seen = {{role_.load(), name_.load(), file_.load()}, function_.load(), serial_.load(std::memory_order_relaxed)};
+    const Word word = Word::of(before);
+    if (word.serial == 0) return {};
+    const Plugin& plugin = plugins_[word.plugin % plugins];
+    seen = {{plugin.role.load(), plugin.name.load(), plugin.file.load()},
+            functions_[word.function % functions].load(),
+            word.under_way ? word.serial : 0};
     std::atomic_thread_fence(std::memory_order_acquire);
-    if (version % 2 == 0 && version_.load(std::memory_order_relaxed) == version) break;
+    const std::uint64_t now = word_.load(std::memory_order_relaxed);
+    if (now == before) break;
+    before = now;
   }
   return seen;
 }
 
 void note_plugin_calls(CallNote* where) {
-  note = where;
-  noted_plugin = 0;
-  noted_function = nullptr;
-  if (note) write_note();
+  OfThread& mine = of_thread;
+  mine.note = where;
+  mine.plugins = {};
+  mine.functions = {};
+  mine.noted = {};
+  if (where) write_note(mine);
 }
 
-PluginCallScope::PluginCallScope(const PluginIdentity& plugin, const char* function) : before_(call) {
-  call = {&plugin, function, ++calls};
-  if (note) write_note();
+PluginCallScope::PluginCallScope(const PluginIdentity& plugin, const char* function) : before_(of_thread.call) {
+  OfThread& mine = of_thread;
+  mine.call = {&plugin, function, ++mine.calls};
+  if (mine.note) write_note(mine);
 }
 PluginCallScope::~PluginCallScope() {
-  call = before_;
-  if (note) write_note();
+  OfThread& mine = of_thread;
+  mine.call = before_;
+  if (mine.note) write_note(mine);
 }
 
 PluginFault::PluginFault(const PluginIdentity& plugin, const char* function, const std::string& what)

@@ -49,24 +49,38 @@ class SharedText {
 };
 
 /// The calls of one thread, written where another thread or process may read them, whatever becomes of the thread.
-/// Zeros are a note without a call. A reader believes none of it: what shares the memory may have damaged it.
+/// Zeros are a note without a call. A reader believes none of it: what shares the memory may have damaged it. A call
+/// costs its writer one word: plugins and functions have their texts in slots, written when they are first met.
 class CallNote {
  public:
+  static constexpr std::size_t plugins = 8, functions = 32;
+  /// A call, in one word; that of serial 0 is none.
+  struct Word {
+    std::uint64_t serial = 0;
+    std::size_t plugin = 0, function = 0;  ///< slots
+    bool under_way = false;
+    std::uint64_t packed() const;
+    static Word of(std::uint64_t packed);
+  };
   /// The last call that began.
   SeenCall seen() const;
-  void write(const PluginCall& call, bool of_another_plugin, bool of_another_function);
-  /// No call is under way.
-  void returned() { serial_.store(0, std::memory_order_relaxed); }
+  void write(Word word) { word_.store(word.packed(), std::memory_order_release); }
+  void name_plugin(std::size_t slot, const PluginIdentity& plugin);
+  void name_function(std::size_t slot, const char* function) { functions_[slot].store(function); }
   /// Bytes that the process may take, where it ended itself for want of more; 0 elsewhere.
   std::atomic<std::uint64_t> memory_exceeded{0};
   /// The process ended because exit() was called in it.
   std::atomic<bool> exit_called{false};
 
  private:
-  std::atomic<std::uint64_t> version_{0}, serial_{0};
-  SharedText<4> role_, function_;
-  SharedText<16> name_;
-  SharedText<128> file_;
+  struct Plugin {
+    SharedText<4> role;
+    SharedText<16> name;
+    SharedText<128> file;
+  };
+  std::atomic<std::uint64_t> word_{0};
+  std::array<Plugin, plugins> plugins_;
+  std::array<SharedText<4>, functions> functions_;
 };
 
 /// From now on this thread writes its calls to the note; null: nowhere.

@@ -130,6 +130,25 @@ TEST_CASE("a child that ends after a plugin's function has returned names it as 
   CHECK(outcome.call.serial == 0);
 }
 
+TEST_CASE("the last of many plugins and functions is named, however many came before") {
+  static std::vector<PluginIdentity> many;
+  static std::vector<std::string> functions;
+  for (int k = 0; k < 100; ++k) {
+    many.push_back({"time", "p" + std::to_string(k), ""});
+    functions.push_back("f" + std::to_string(k));
+  }
+  const std::size_t last = GENERATE(0, 7, 8, 31, 32, 99);
+  const ChildOutcome outcome = run_in_child(
+      [&]() -> std::string {
+        for (std::size_t k = 0; k <= last; ++k) const PluginCallScope scope(many[k], functions[k].c_str());
+        const PluginCallScope again(many[last / 2], functions[last / 2].c_str());
+        std::abort();
+      },
+      long_enough);
+  const std::string number = std::to_string(last / 2);
+  CHECK(outcome.sentence() == "plugin time 'p" + number + "', f" + number + "(): ended by signal 6 (aborted)");
+}
+
 TEST_CASE("a child that takes too much memory is told as such") {
 #ifndef RICOCHET_SANITIZED
   constexpr double allowed = 64 << 20;
