@@ -34,7 +34,7 @@ void compare_with_declared(const StepPlan& plan, const SemiDiscrete& problem, co
                       : !declared ? open.pulsation == 0
                                   : open.pulsation == 0 || std::abs(product / *declared - 1) <= limit_tolerance;
   if (agrees) return;
-  record.measures.emplace_back("undeclared_limit", product);
+  put_measure(record, "undeclared_limit", product);
   record.notes.push_back(fmt::format(
       "open: the scheme declares {}; it is stable up to h·ω = {:.4g}{}: an error of the method's facts, which "
       "`ricochet check` measures",

@@ -112,14 +112,16 @@ class StabilityRun {
 
   PlanOrRefusal plan(double h) const { return scheme_->plan(h, facts_); }
 
-  // The sentence, when no step of the range has a plan.
-  std::optional<std::string> refused_everywhere() const {
+  // Keeps the plan of the smallest step of the range that has one. The sentence, when none has.
+  std::optional<std::string> refused_everywhere() {
     std::optional<std::string> sentence;
     for (const double h : steps_) {
-      const auto made = plan(h);
-      const auto* refusal = std::get_if<Refusal>(&made);
-      if (!refusal) return std::nullopt;
-      sentence = refusal->sentence;
+      auto made = plan(h);
+      if (auto* step = std::get_if<StepPlan>(&made)) {
+        some_plan_.emplace(std::move(*step), h);
+        return std::nullopt;
+      }
+      sentence = std::get<Refusal>(made).sentence;
     }
     return sentence;
   }
@@ -349,31 +351,22 @@ class StabilityRun {
     put_measure(record_, "agreement", agreement);
   }
 
-  // The smallest step of the range that has a plan: neither depends on how long it is.
-  std::optional<std::pair<StepPlan, double>> some_plan() const {
-    for (const double h : steps_) {
-      const auto made = plan(h);
-      if (const auto* step = std::get_if<StepPlan>(&made)) return std::pair(*step, h);
-    }
-    return std::nullopt;
-  }
-
   void compare_declared(const Side& open) {
-    const auto step = some_plan();
     const StepLimit& limit = open.predicted;
     const bool unstable = limit.below_range || open.observed.below_range || open.never_stable();
     const double growing = limit.beyond ? limit.beyond->pulsation : 0;
     const auto seen = open.observed.step ? open.observed.step : limit.step;
-    if (step && !spent())
-      compare_with_declared(step->first, *problem_, {seen, growing, steps_.back(), unstable}, record_);
+    if (some_plan_ && !spent())
+      compare_with_declared(some_plan_->first, *problem_, {seen, growing, steps_.back(), unstable}, record_);
   }
 
   void say_restitution() {
-    const auto step = some_plan();
-    const auto range = step ? restitution_range(step->first, step->second) : std::nullopt;
+    if (!some_plan_) return;
+    const auto& [step, h] = *some_plan_;
+    const auto range = restitution_range(step, h);
     if (!range) return;
-    record_.tables.push_back(restitution_type().with(
-        {{"", step->second, range->least, range->mean, range->most, root_at_infinity(step->first)}}));
+    record_.tables.push_back(
+        restitution_type().with({{"", h, range->least, range->mean, range->most, root_at_infinity(step)}}));
   }
 
   const StudyCase& case_;
@@ -384,6 +377,7 @@ class StabilityRun {
   std::shared_ptr<const SemiDiscrete> problem_;
   std::unique_ptr<TimeScheme> scheme_;
   ProblemFacts facts_;
+  std::optional<std::pair<StepPlan, double>> some_plan_;  // and its step: what is read of it depends on no length
   std::optional<StabilityPredictor> predictor_;
   bool touches_ = false;
   double duration_ = 0, begin_ = 0;
