@@ -45,6 +45,8 @@ struct MergedFolder {
   fs::path folder;
   FolderLock lock;
   StudyResults head;
+  std::vector<StoreReader::Finished> finished = {};
+  Damage damage = {};
 };
 
 /// The entries that say what computes: program and plugins, those of the machine left out.
@@ -73,7 +75,7 @@ class FolderMerge {
     const auto libraries = [this](const StudyCase& one) { return libraries_of(one, stored_->registry); };
     expected_ = expected_cases(libraries, stored_->study);
     for (const ExpectedCase& one : expected_) fingerprints_[one.id] = one.fingerprint;
-    for (const MergedFolder& source : sources_) find_cases(source);
+    for (MergedFolder& source : sources_) find_cases(source);
   }
 
   int run(const RenderReport& render, std::FILE* said) {
@@ -90,8 +92,7 @@ class FolderMerge {
     const int code = tell_results(
         said, results, out_, fmt::format("merged from {} folder{}", sources_.size(), sources_.size() == 1 ? "" : "s"));
     for (const MergedFolder& source : sources_)
-      if (const Damage damage = StoreReader(source.folder).damage(); damage.any())
-        say(said, damage_text(source.folder / "results.sqlite", damage) + "\n");
+      if (source.damage.any()) say(said, damage_text(source.folder / "results.sqlite", source.damage) + "\n");
     if (const std::size_t missing = expected_.size() - results.cases.size(); missing > 0)
       say(said,
           fmt::format("{} of {} cases {} in none of these folders: `ricochet run {} --out {}` goes on\n", missing,
@@ -120,10 +121,12 @@ class FolderMerge {
   }
 
   /// What a folder has, and whether it can stand beside that of the folders before.
-  void find_cases(const MergedFolder& source) {
+  void find_cases(MergedFolder& source) {
     const StoreReader reader(source.folder);
+    source.finished = reader.finished();
+    source.damage = reader.damage();
     std::map<const MergedFolder*, StoreReader> others;
-    for (const StoreReader::Finished& one : reader.finished()) {
+    for (const StoreReader::Finished& one : source.finished) {
       const auto expected = fingerprints_.find(one.id);
       if (expected == fingerprints_.end() || expected->second != one.fingerprint) refuse_program(source, one.id);
       if (one.status != "refused" && !one.arithmetic.empty()) check_arithmetic(source, one);
@@ -169,7 +172,7 @@ class FolderMerge {
     store.save_environment(environment());
     for (const MergedFolder& source : sources_) {
       const StoreReader reader(source.folder);
-      for (const StoreReader::Finished& one : reader.finished()) {
+      for (const StoreReader::Finished& one : source.finished) {
         if (holders_.at(one.id) != &source) continue;
         const CaseRecord record = reader.read(one.id);
         store.save({&record, 1});

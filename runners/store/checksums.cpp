@@ -54,11 +54,11 @@ std::string place_sum(const std::string& sum, std::int64_t position) {
   return place.text();
 }
 
-std::string sum_of(const Prepare& prepare, const std::string& prefix, const std::string& key) {
+std::string sum_of(Statements& prepared, const std::string& prefix, const std::string& key) {
   Checksum sum;
   bool of_case = true;
   for (const std::string& query : queries(prefix, true)) {
-    SQLite::Statement& rows = prepare(query);
+    SQLite::Statement& rows = prepared.of(query);
     rows.reset();
     rows.bind(1, key);
     while (rows.executeStep()) add_row(rows, of_case, sum);
@@ -85,25 +85,8 @@ std::map<std::string, std::string> sums_of_all(SQLite::Database& database, const
   return out;
 }
 
-/// Statements that live as long as this.
-class Statements {
- public:
-  explicit Statements(SQLite::Database& database) : database_(database) {}
-  Prepare prepare() {
-    return [this](const std::string& sql) -> SQLite::Statement& {
-      const auto found = known_.find(sql);
-      return found != known_.end() ? found->second
-                                   : known_.emplace(sql, SQLite::Statement(database_, sql)).first->second;
-    };
-  }
-
- private:
-  SQLite::Database& database_;
-  std::map<std::string, SQLite::Statement> known_;
-};
-
-std::int64_t position_of(const Prepare& prepare, const std::string& id) {
-  SQLite::Statement& find = prepare("SELECT position FROM cases WHERE id = ?");
+std::int64_t position_of(Statements& prepared, const std::string& id) {
+  SQLite::Statement& find = prepared.of("SELECT position FROM cases WHERE id = ?");
   find.reset();
   find.bind(1, id);
   const std::int64_t position = find.executeStep() ? find.getColumn(0).getInt64() : -1;
@@ -111,10 +94,10 @@ std::int64_t position_of(const Prepare& prepare, const std::string& id) {
   return position;
 }
 
-void state(const Prepare& prepare, const std::string& prefix, const std::string& key, const std::string& sum,
+void state(Statements& prepared, const std::string& prefix, const std::string& key, const std::string& sum,
            std::int64_t position) {
   SQLite::Statement& add =
-      prepare(fmt::format("INSERT OR REPLACE INTO {}sums(case_id, sum, place) VALUES(?, ?, ?)", prefix));
+      prepared.of(fmt::format("INSERT OR REPLACE INTO {}sums(case_id, sum, place) VALUES(?, ?, ?)", prefix));
   add.reset();
   add.bind(1, key);
   add.bind(2, sum);
@@ -193,36 +176,35 @@ std::string checksum_of(std::string_view bytes) {
   return sum.text();
 }
 
-void seal_case(const Prepare& prepare, const std::string& prefix, const std::string& key) {
-  state(prepare, prefix, key, sum_of(prepare, prefix, key), prefix.empty() ? position_of(prepare, key) : -1);
+void seal_case(Statements& prepared, const std::string& prefix, const std::string& key) {
+  state(prepared, prefix, key, sum_of(prepared, prefix, key), prefix.empty() ? position_of(prepared, key) : -1);
 }
 
 void seal_cases(SQLite::Database& database, const std::string& prefix) {
-  Statements statements(database);
-  const Prepare prepare = statements.prepare();
+  Statements prepared(database);
   for (const auto& [key, sum] : sums_of_all(database, prefix))
-    state(prepare, prefix, key, sum, prefix.empty() ? position_of(prepare, key) : -1);
+    state(prepared, prefix, key, sum, prefix.empty() ? position_of(prepared, key) : -1);
 }
 
-void seal_place(const Prepare& prepare, const std::string& id) {
-  SQLite::Statement& find = prepare("SELECT sum FROM sums WHERE case_id = ?");
+void seal_place(Statements& prepared, const std::string& id) {
+  SQLite::Statement& find = prepared.of("SELECT sum FROM sums WHERE case_id = ?");
   find.reset();
   find.bind(1, id);
   const std::string sum = find.executeStep() ? find.getColumn(0).getString() : "";
   find.reset();
-  if (!sum.empty()) state(prepare, "", id, sum, position_of(prepare, id));
+  if (!sum.empty()) state(prepared, "", id, sum, position_of(prepared, id));
 }
 
 bool is_whole(SQLite::Database& database, const std::string& prefix, const std::string& key) try {
   if (!has_table(database, prefix + "sums")) return true;
-  Statements statements(database);
+  Statements prepared(database);
   SQLite::Statement stated(database, fmt::format("SELECT sum, place FROM {}sums WHERE case_id = ?", prefix));
   stated.bind(1, key);
   if (!stated.executeStep()) return false;
   const Seal seal{stated.getColumn(0).getString(), stated.getColumn(1).getString()};
-  const std::string sum = sum_of(statements.prepare(), prefix, key);
+  const std::string sum = sum_of(prepared, prefix, key);
   // What is kept aside has no place.
-  return prefix.empty() ? fits(seal, sum, position_of(statements.prepare(), key)) : seal.sum == sum;
+  return prefix.empty() ? fits(seal, sum, position_of(prepared, key)) : seal.sum == sum;
 } catch (const SQLite::Exception&) {
   return false;
 }

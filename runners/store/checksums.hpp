@@ -4,13 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <set>
 #include <string>
 #include <string_view>
 
 #include "runners/store/record.hpp"
+#include "runners/store/statements.hpp"
 
 namespace ricochet {
 
@@ -34,15 +34,12 @@ std::string checksum_of(std::string_view bytes);
 // Each case of a store has the checksum of its row and of all that belongs to it, and one of that and its place. A
 // prefix says which: "" of cases, "aside_" of those kept aside, whose key is their fingerprint.
 
-/// A statement of this text, to be used until it is asked for again.
-using Prepare = std::function<SQLite::Statement&(const std::string& sql)>;
-
 /// States the checksums of a case that was written. Inside a transaction.
-void seal_case(const Prepare& prepare, const std::string& prefix, const std::string& key);
+void seal_case(Statements& prepared, const std::string& prefix, const std::string& key);
 /// The same for every case.
 void seal_cases(SQLite::Database& database, const std::string& prefix);
 /// States the checksum of its place anew.
-void seal_place(const Prepare& prepare, const std::string& id);
+void seal_place(Statements& prepared, const std::string& id);
 
 /// Whether a case has the checksums that were stated, its rows and its place.
 bool is_whole(SQLite::Database& database, const std::string& prefix, const std::string& key);

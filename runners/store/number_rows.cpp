@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "runners/store/atomic_file.hpp"
@@ -111,12 +110,10 @@ void keep_numbers(const std::filesystem::path& folder, const std::string& case_i
     last.reset();
     SQLite::Statement add(database, insert_numbers_sql);
     insert_numbers(add, case_id, position, table);
-    std::map<std::string, SQLite::Statement> statements;
-    const Prepare prepare = [&](const std::string& sql) -> SQLite::Statement& {
-      return statements.try_emplace(sql, database, sql).first->second;
-    };
-    seal_case(prepare, "", case_id);
-    statements.clear();
+    {
+      Statements prepared(database);
+      seal_case(prepared, "", case_id);
+    }
     transaction.commit();
   });
 }

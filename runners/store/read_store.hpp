@@ -46,8 +46,8 @@ class StoreReader {
  public:
   explicit StoreReader(const std::filesystem::path& folder);
 
-  /// What is not as it was stored.
-  Damage damage() const;
+  /// What is not as it was stored, looked for once.
+  const Damage& damage() const;
   /// The study and the environment, without cases.
   StudyResults head() const;
   /// A case that is finished, and what tells whether it is still that of the study.
@@ -66,6 +66,7 @@ class StoreReader {
  private:
   std::filesystem::path file_;
   std::unique_ptr<SQLite::Database> database_;
+  mutable std::optional<Damage> damage_;
 };
 
 /// How far the run of a folder is, as its store tells anybody who may read it.

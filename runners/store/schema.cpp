@@ -185,8 +185,7 @@ std::string sentence(const SQLite::Exception& error, const SQLite::Database* dat
       return "this file is not a Ricochet store; move it away or choose another folder with --out";
     case SQLITE_CORRUPT:
       return "pages of this store are damaged; `ricochet merge FOLDER --out NEW` keeps the cases that are whole, "
-             "--fresh "
-             "forgets it";
+             "--fresh forgets it";
     default:
       return fmt::format("the store reports: {}", error.what());
   }

@@ -59,17 +59,16 @@ std::set<std::string> Store::settle_rows() {
   // What is left of a damaged case, whose own row may be lost.
   for (const std::string& id : damage.cases) {
     for (const auto& [table, columns] : kRowsOfCases)
-      insert(prepared(fmt::format("DELETE FROM {} WHERE case_id = ?", table)), id);
-    insert(prepared("DELETE FROM sums WHERE case_id = ?"), id);
+      insert(prepared_->of(fmt::format("DELETE FROM {} WHERE case_id = ?", table)), id);
+    insert(prepared_->of("DELETE FROM sums WHERE case_id = ?"), id);
   }
   Environment environment;
   if (!damaged_keys(*database_).contains("environment")) environment = read_environment(*database_);
   set_aside(*database_, aside, environment);
   SQLite::Statement move(*database_, "UPDATE cases SET position = ? WHERE id = ?");
-  const Prepare prepare = [this](const std::string& sql) -> SQLite::Statement& { return prepared(sql); };
   for (const std::string& id : kept) {
     insert(move, expected_.at(id).second, id);
-    seal_place(prepare, id);
+    seal_place(*prepared_, id);
   }
 
   bool any = !kept.empty();  // of whose environment something is left
@@ -77,7 +76,7 @@ std::set<std::string> Store::settle_rows() {
     const Environment earlier = bring_back(*database_, expected_.at(id).first, expected_.at(id).second);
     environment = any ? merge_environments(environment, earlier) : earlier;
     any = true;
-    seal_place(prepare, id);
+    seal_place(*prepared_, id);
   }
   if (!back.empty()) write_environment(environment);
   returned_ = static_cast<int>(back.size());

@@ -63,6 +63,7 @@ Store::Store(const std::filesystem::path& folder, bool fresh, bool locked) : fil
         "PRAGMA journal_mode=DELETE; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON; PRAGMA cache_size=-131072;");
   });
   prepare_schema(*database_, file_, true);
+  prepared_ = std::make_unique<Statements>(*database_);
   group_ = std::make_unique<WriteGroup>(*database_, mutex_, [this] { epoch_.check(*database_, file_); });
 }
 
@@ -160,14 +161,8 @@ void Store::write_alone(const std::function<void()>& rows) {
   guarded(file_, database_.get(), [&] { group_->write_alone(rows); });
 }
 
-SQLite::Statement& Store::prepared(const std::string& sql) {
-  const auto found = prepared_.find(sql);
-  return found != prepared_.end() ? found->second
-                                  : prepared_.emplace(sql, SQLite::Statement(*database_, sql)).first->second;
-}
-
 void Store::note_begin(const std::string& id, Stage stage) {
-  insert(prepared("INSERT OR REPLACE INTO begun(case_id, stage, since) VALUES(?, ?, ?)"), id,
+  insert(prepared_->of("INSERT OR REPLACE INTO begun(case_id, stage, since) VALUES(?, ?, ?)"), id,
          std::string(stage == Stage::run ? "run" : "plan"), utc_time());
 }
 
@@ -219,7 +214,7 @@ void Store::save(std::span<const CaseRecord> records) {
   const auto size = std::accumulate(records.begin(), records.end(), std::size_t{0},
                                     [](std::size_t sum, const CaseRecord& record) { return sum + bytes_of(record); });
   write(size, [&] {
-    SQLite::Statement& ended = prepared("DELETE FROM begun WHERE case_id = ?");
+    SQLite::Statement& ended = prepared_->of("DELETE FROM begun WHERE case_id = ?");
     for (const CaseRecord& record : records) {
       save_one(record, false);
       insert(ended, record.id);
@@ -237,8 +232,8 @@ void Store::save_one(const CaseRecord& record, bool partial) {
   const auto expected = expected_.find(record.id);
   if (expected == expected_.end()) throw std::logic_error("a case that begin() did not announce: " + record.id);
   // A case that is saved again (timed after it ran) takes its rows with it.
-  if (!rows_.insert(record.id).second) insert(prepared("DELETE FROM cases WHERE id = ?"), record.id);
-  SQLite::Statement& add = prepared("INSERT INTO cases VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  if (!rows_.insert(record.id).second) insert(prepared_->of("DELETE FROM cases WHERE id = ?"), record.id);
+  SQLite::Statement& add = prepared_->of("INSERT INTO cases VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const auto& [fingerprint, case_position] = expected->second;
   // No case has the fingerprint "": what is partial is never taken for finished.
   insert(add, record.id, case_position, partial ? std::string() : fingerprint, record.status, record.reason,
@@ -246,12 +241,12 @@ void Store::save_one(const CaseRecord& record, bool partial) {
          record.arithmetic.empty() ? arithmetic_ : record.arithmetic);
 
   int position = 0;
-  SQLite::Statement& axis = prepared("INSERT INTO axes VALUES(?, ?, ?, ?)");
+  SQLite::Statement& axis = prepared_->of("INSERT INTO axes VALUES(?, ?, ?, ?)");
   for (const auto& [name, value] : record.axes) insert(axis, record.id, position++, name, text_of(value));
 
   std::vector<std::string> notes = record.notes;
   position = 0;
-  SQLite::Statement& measure = prepared("INSERT INTO measures VALUES(?, ?, ?, ?)");
+  SQLite::Statement& measure = prepared_->of("INSERT INTO measures VALUES(?, ?, ?, ?)");
   for (const auto& [name, value] : record.measures)
     if (std::isfinite(value))
       insert(measure, record.id, position++, name, value);
@@ -259,15 +254,15 @@ void Store::save_one(const CaseRecord& record, bool partial) {
       notes.push_back(fmt::format("{} is not a finite number and is left out", name));
 
   position = 0;
-  SQLite::Statement& left_out = prepared("INSERT INTO left_out VALUES(?, ?, ?, ?)");
+  SQLite::Statement& left_out = prepared_->of("INSERT INTO left_out VALUES(?, ?, ?, ?)");
   for (const auto& [item, reason] : record.left_out) insert(left_out, record.id, position++, item, reason);
 
   position = 0;
-  SQLite::Statement& note = prepared("INSERT INTO notes VALUES(?, ?, ?)");
+  SQLite::Statement& note = prepared_->of("INSERT INTO notes VALUES(?, ?, ?)");
   for (const std::string& text : notes) insert(note, record.id, position++, text);
 
   position = 0;
-  SQLite::Statement& table = prepared("INSERT INTO case_tables VALUES(?, ?, ?, ?)");
+  SQLite::Statement& table = prepared_->of("INSERT INTO case_tables VALUES(?, ?, ?, ?)");
   for (const Table& one : record.tables) {
     Json columns = Json::array();
     for (const Column& column : one.columns) columns.push_back(column.name);
@@ -284,7 +279,7 @@ void Store::save_one(const CaseRecord& record, bool partial) {
     }
   }
 
-  SQLite::Statement& curve = prepared("INSERT INTO curves VALUES(?, ?, ?, ?)");
+  SQLite::Statement& curve = prepared_->of("INSERT INTO curves VALUES(?, ?, ?, ?)");
   for (std::size_t i = 0; i < record.curve.columns.size(); ++i) {
     curve.reset();
     curve.bind(1, record.id);
@@ -295,13 +290,13 @@ void Store::save_one(const CaseRecord& record, bool partial) {
     curve.exec();
   }
   save_numbers(record);
-  seal_case([this](const std::string& sql) -> SQLite::Statement& { return prepared(sql); }, "", record.id);
+  seal_case(*prepared_, "", record.id);
 }
 
 void Store::save_numbers(const CaseRecord& record) {
   int position = 0;
   for (const NumberTable& table : record.numbers)
-    insert_numbers(prepared(insert_numbers_sql), record.id, position, table);
+    insert_numbers(prepared_->of(insert_numbers_sql), record.id, position, table);
 }
 
 std::string Store::motion(const std::string& key) const {
@@ -320,7 +315,7 @@ void Store::save_motion(const std::string& key, const std::string& content) {
     if (!content.empty()) change.bindNoCopy(2, content.data(), static_cast<int>(content.size()));
     change.exec();
     if (!content.empty())
-      insert(prepared("INSERT OR REPLACE INTO motion_sums(key, sum) VALUES(?, ?)"), motion_key(arithmetic_, key),
+      insert(prepared_->of("INSERT OR REPLACE INTO motion_sums(key, sum) VALUES(?, ?)"), motion_key(arithmetic_, key),
              checksum_of(content));
   });
 }

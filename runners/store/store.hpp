@@ -20,6 +20,7 @@
 
 #include "runners/store/folder_lock.hpp"
 #include "runners/store/record.hpp"
+#include "runners/store/statements.hpp"
 
 namespace ricochet {
 
@@ -166,7 +167,6 @@ class Store {
   void write_environment(const Environment& environment);
   void write(std::size_t bytes, const std::function<void()>& rows);
   void write_alone(const std::function<void()>& rows);
-  SQLite::Statement& prepared(const std::string& sql);
   void note_begin(const std::string& id, Stage stage);
   void save_one(const CaseRecord& record, bool partial);
   void save_numbers(const CaseRecord& record);
@@ -179,8 +179,8 @@ class Store {
   std::map<std::string, std::pair<std::string, int>> expected_;  // id → fingerprint, position
   int returned_ = 0;
   std::vector<std::string> damaged_;
-  std::set<std::string> rows_;                         // ids that have one
-  std::map<std::string, SQLite::Statement> prepared_;  // by their text
+  std::set<std::string> rows_;  // ids that have one
+  std::unique_ptr<Statements> prepared_;
   mutable std::mutex mutex_;
   std::unique_ptr<WriteGroup> group_;  // last: it uses what stands before
 };
@@ -188,7 +188,7 @@ class Store {
 /// Everything that FOLDER/results.sqlite holds, without the right to change it: works while a run goes on. The series
 /// of finished cases are read when somebody asks for them. Throws StoreError, also where something is damaged.
 StudyResults read_store(const std::filesystem::path& folder);
-/// The same of a store of which something is damaged: what is whole, the rest named (StudyResults::damaged).
+/// The same of a store of which something is damaged: what is whole, the rest named (StudyResults::damage).
 StudyResults read_what_is_whole(const std::filesystem::path& folder);
 
 /// What FOLDER/results.sqlite keeps under a key of Store::motion for runs of this arithmetic, "" where there is none.

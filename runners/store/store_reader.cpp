@@ -18,10 +18,9 @@ namespace ricochet {
 StoreReader::StoreReader(const std::filesystem::path& folder)
     : file_(folder / "results.sqlite"), database_(open_store(folder)) {}
 
-Damage StoreReader::damage() const {
-  Damage damage;
-  guarded(file_, database_.get(), [&] { damage = find_damage(*database_); });
-  return damage;
+const Damage& StoreReader::damage() const {
+  if (!damage_) guarded(file_, database_.get(), [&] { damage_ = find_damage(*database_); });
+  return *damage_;
 }
 
 StudyResults StoreReader::head() const {
@@ -33,13 +32,12 @@ StudyResults StoreReader::head() const {
 std::vector<StoreReader::Finished> StoreReader::finished() const {
   std::vector<Finished> found;
   guarded(file_, database_.get(), [&] {
-    const Damage damage = find_damage(*database_);
     SQLite::Statement rows(*database_,
                            "SELECT id, fingerprint, status, arithmetic FROM cases WHERE fingerprint != '' "
                            "ORDER BY position");
     while (rows.executeStep()) {
       const std::string id = rows.getColumn(0).getString();
-      if (damage.cases.contains(id) || !is_case_id(id)) continue;
+      if (damage().cases.contains(id) || !is_case_id(id)) continue;
       found.push_back({id_of_today(id), rows.getColumn(1).getString(), rows.getColumn(2).getString(),
                        rows.getColumn(3).getString()});
     }
