@@ -69,10 +69,6 @@ std::string spaced(std::string text) {
 
 }  // namespace
 
-std::optional<double> as_number(const std::string& text) {
-  return number_in(text);
-}
-
 bool is_refinement(const std::string& column) {
   return column == "step" || column == "elements" || column == "modes" || column == "steps_per_period";
 }
@@ -89,7 +85,7 @@ Compared::Compared(const StudyResults& results) : results_(results) {
     }
     std::set<double> numbers;
     for (const std::string& one : texts)
-      if (const auto number = as_number(one)) numbers.insert(*number);
+      if (const auto number = number_in(one)) numbers.insert(*number);
     if (column == "step" || column == "steps_per_period") steps_ = column;
     const bool varies =
         std::any_of(methods.begin(), methods.end(), [&](const auto& one) { return one != methods.front(); });
@@ -173,7 +169,7 @@ const std::vector<double>& Compared::numbers_of(const std::string& column) const
 std::string Compared::value_words(const std::string& column, const std::string& value) const {
   const std::string role = axis_role(column);
   if (column == role && (role == "mass" || role == "contact" || role == "time")) return method_words(role, value);
-  const auto number = as_number(value);
+  const auto number = number_in(value);
   const std::string shown = number ? short_number(*number) : formula_words(value);
   if (role != column) {
     const std::string name = last_part(column);
@@ -241,14 +237,14 @@ std::string Compared::name(const CaseRecord& record, const std::vector<std::stri
 
 std::optional<double> Compared::step(const CaseRecord& record) const {
   if (steps_.empty()) return std::nullopt;
-  const auto number = as_number(text(record, steps_));
+  const auto number = number_in(text(record, steps_));
   if (!number || *number <= 0) return std::nullopt;
   return steps_ == "step" ? *number : 1 / *number;
 }
 
 std::optional<double> Compared::elements(const CaseRecord& record) const {
-  if (!varies("modes")) return as_number(text(record, "elements"));
-  if (const auto modes = as_number(text(record, "modes"))) return modes;
+  if (!varies("modes")) return number_in(text(record, "elements"));
+  if (const auto modes = number_in(text(record, "modes"))) return modes;
   // All dofs of the mesh are more than any number of modes that is named.
   const auto known = numbers_.find("modes");
   return known == numbers_.end() || known->second.empty() ? std::nullopt : std::optional(2 * known->second.back());
@@ -256,7 +252,7 @@ std::optional<double> Compared::elements(const CaseRecord& record) const {
 
 bool Compared::finer(const CaseRecord& a, const CaseRecord& b) const {
   const auto size = [&](const CaseRecord& one) {
-    return std::pair(elements(one).value_or(1), as_number(text(one, "elements")).value_or(1));
+    return std::pair(elements(one).value_or(1), number_in(text(one, "elements")).value_or(1));
   };
   return size(a) != size(b) ? size(a) > size(b) : step(a).value_or(1) < step(b).value_or(1);
 }
@@ -268,7 +264,7 @@ std::string Compared::mesh_words(double size) const {
 
 bool Compared::on_finest_mesh(const CaseRecord& record) const {
   if (!varies("modes") || !varies("elements")) return true;
-  const auto elements = as_number(text(record, "elements"));
+  const auto elements = number_in(text(record, "elements"));
   return !elements || *elements == numbers_.at("elements").back();
 }
 

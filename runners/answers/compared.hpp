@@ -10,8 +10,6 @@
 /// The methods that a study compares, as sentences speak of them.
 namespace ricochet::answers {
 
-/// The number that a text is as a whole; nothing of other texts.
-std::optional<double> as_number(const std::string& text);
 /// Whether a column is refined rather than chosen: step, steps_per_period, elements, modes.
 bool is_refinement(const std::string& column);
 

@@ -8,6 +8,7 @@
 #include "runners/answers/set_names.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
+#include "runners/table/text.hpp"
 
 // What each level of one choice gives, over all combinations of the others.
 namespace ricochet::answers {
@@ -175,7 +176,7 @@ std::optional<Sentence> say_steady_end(const Compared& study, const MeasureLimit
   std::erase(others, asked);
   std::map<std::string, std::map<double, const Method*>> rows;
   for (const Method* method : limits.without_gain())
-    if (const auto number = as_number(study.text(method->first(), asked)))
+    if (const auto number = number_in(study.text(method->first(), asked)))
       rows[study.key(method->first(), others)][*number] = method;
   const double scale = scale_of(limits.words, limits.without_gain());
   if (scale <= 0) return std::nullopt;
@@ -192,7 +193,7 @@ std::optional<Sentence> say_steady_end(const Compared& study, const MeasureLimit
   };
   const auto words = [&](double number) {
     for (const CaseRecord& record : study.results().cases)
-      if (as_number(study.text(record, asked)) == number) return study.value_words(asked, study.text(record, asked));
+      if (number_in(study.text(record, asked)) == number) return study.value_words(asked, study.text(record, asked));
     return short_number(number);
   };
   const double first = numbers.front(), last = numbers.back();

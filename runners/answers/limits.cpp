@@ -7,6 +7,7 @@
 #include "runners/answers/set_names.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet::answers {
 namespace {
@@ -125,7 +126,7 @@ MeasureLimits limits_of(const Compared& study, const std::string& name, bool con
       // Of modes on several meshes, what the nearest coarser mesh says otherwise.
       double most = 0, apart = 0;
       for (const auto& [record, value] : coarser) {
-        const double elements = as_number(study.text(*record, "elements")).value_or(0);
+        const double elements = number_in(study.text(*record, "elements")).value_or(0);
         if (step_or_one(study, *record) != h || elements_or_one(study, *record) != N || elements <= most) continue;
         most = elements;
         apart = std::abs(value - method.grid.at({h, N}));

@@ -51,12 +51,12 @@ namespace {
 /// "1e3, 1e4 and 1e5": where one number has an exponent, whole thousands get one too.
 std::vector<std::string> one_notation(std::vector<std::string> values) {
   const bool exponents = std::any_of(values.begin(), values.end(), [](const std::string& one) {
-    return one.find('e') != std::string::npos && as_number(one) && *as_number(one) >= 1;
+    return one.find('e') != std::string::npos && number_in(one) && *number_in(one) >= 1;
   });
   if (!exponents) return values;
   for (std::string& one : values) {
     constexpr double thousand = 1000;
-    const auto number = as_number(one);
+    const auto number = number_in(one);
     if (!number || one.find('e') != std::string::npos || std::fmod(*number, thousand) != 0 || *number == 0) continue;
     const double power = std::floor(std::log10(*number));
     one = fmt::format("{:g}e{:.0f}", *number / std::pow(10, power), power);

@@ -17,15 +17,6 @@ bool all_numbers(const std::vector<std::string>& cells) {
   return std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return finite_number(cell); });
 }
 
-/// A cell with its decimal comma as a point; nothing where it is no such number.
-std::optional<std::string> pointed(const std::string& cell) {
-  const std::size_t comma = cell.find(',');
-  if (comma == std::string::npos) return std::nullopt;
-  std::string text = cell;
-  text[comma] = '.';
-  return finite_number(text) ? std::optional(text) : std::nullopt;
-}
-
 /// Whether a comma may as well stand between thousands: "1,234", and not "0,234" or "12,34".
 bool maybe_thousands(const std::string& cell) {
   const std::size_t begin = cell.find_first_not_of("+-"), comma = cell.find(',');

@@ -164,14 +164,17 @@ std::optional<double> finite_number(std::string_view text) {
   return plain ? plain : fortran_number(text);
 }
 
+std::optional<std::string> pointed(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos) return std::nullopt;
+  std::string number(text);
+  number[comma] = '.';
+  return finite_number(number) ? std::optional(number) : std::nullopt;
+}
+
 std::string no_number(std::string_view text, const std::string& of) {
   const std::string said = "\"" + shortened(text) + "\"" + (of.empty() ? "" : " for " + shortened(of));
-  std::string pointed(text);
-  const std::size_t comma = pointed.find(',');
-  if (comma != std::string::npos) {
-    pointed[comma] = '.';
-    if (finite_number(pointed)) return said + " has a decimal comma; expected a point";
-  }
+  if (pointed(text)) return said + " has a decimal comma; expected a point";
   if (!text.empty() && text.find_first_not_of('*') == std::string_view::npos)
     return said + " is a number too long for its field in Fortran; expected a finite number";
   return said + "; expected a finite number";

@@ -62,6 +62,9 @@ std::optional<double> plain_number(std::string_view text);
 std::optional<double> fortran_number(std::string_view text);
 /// Either.
 std::optional<double> finite_number(std::string_view text);
+/// A number with its decimal comma as a point; nothing for a text that is none.
+std::optional<std::string> pointed(std::string_view text);
+
 /// Why a text is no finite number, and what was expected: "\"1,5\" has a decimal comma; expected a point". `of`: what
 /// it stands for.
 std::string no_number(std::string_view text, const std::string& of = "");

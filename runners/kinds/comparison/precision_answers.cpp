@@ -9,6 +9,7 @@
 #include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/table/in_order_met.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 
@@ -37,7 +38,7 @@ std::vector<double> accuracies_in(const std::string& question) {
     while (from > 0 && std::string("0123456789.e- ").find(question[from - 1]) != std::string::npos) --from;
     std::string number = question.substr(from, at - from);
     std::erase(number, ' ');
-    if (const auto value = as_number(number); value && *value > 0) out.push_back(*value / 100);
+    if (const auto value = number_in(number); value && *value > 0) out.push_back(*value / 100);
   }
   return out;
 }

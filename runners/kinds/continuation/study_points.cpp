@@ -9,6 +9,7 @@
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/table_reader.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {
@@ -46,7 +47,7 @@ StudyPoints::StudyPoints(const answers::Compared& study) : study_(study) {
                      }});
   if (study.varies(stiffness_column) && study.numbers_of(stiffness_column).size() > 1)
     axes_.push_back({stiffness_column, "stiffness", "1/κ", [&](const CaseRecord& one) -> std::optional<double> {
-                       const auto stiffness = answers::as_number(study.text(one, stiffness_column));
+                       const auto stiffness = number_in(study.text(one, stiffness_column));
                        return stiffness && *stiffness > 0 ? std::optional(1 / *stiffness) : std::nullopt;
                      }});
   for (const std::string& column : study.columns())
