@@ -63,8 +63,6 @@ void out_of_memory() {
 }
 
 void limit_memory(double bytes) {
-  // A sanitizer takes far more of it than it uses.
-#ifndef RICOCHET_SANITIZED
   if (bytes <= 0) return;
   memory_allowed = static_cast<std::uint64_t>(bytes);
   long pages = 0;
@@ -72,13 +70,7 @@ void limit_memory(double bytes) {
     if (std::fscanf(file, "%ld", &pages) != 1) pages = 0;
     std::fclose(file);
   }
-  rlimit limit{};
-  ::getrlimit(RLIMIT_AS, &limit);
-  const double most = bytes + static_cast<double>(pages) * static_cast<double>(::sysconf(_SC_PAGESIZE));
-  limit.rlim_cur = std::min(limit.rlim_max, static_cast<rlim_t>(most));
-  limit.rlim_max = limit.rlim_cur;
-  ::setrlimit(RLIMIT_AS, &limit);
-#endif
+  limit_address_space(bytes + static_cast<double>(pages) * static_cast<double>(::sysconf(_SC_PAGESIZE)));
   std::set_new_handler(out_of_memory);
 }
 
@@ -278,6 +270,19 @@ void judge(const Watch& watch, ChildOutcome& outcome, const CallNote& note) {
 }
 
 }  // namespace
+
+std::uint64_t limit_address_space(double bytes) {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_AS, &limit);
+#ifndef RICOCHET_SANITIZED
+  if (bytes > 0) {
+    limit.rlim_cur = std::min(limit.rlim_max, static_cast<rlim_t>(bytes));
+    limit.rlim_max = limit.rlim_cur;
+    ::setrlimit(RLIMIT_AS, &limit);
+  }
+#endif
+  return limit.rlim_cur;
+}
 
 std::string signal_in_words(int signal) {
   const char* known = ::strsignal(signal);

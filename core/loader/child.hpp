@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <ricochet/contract/plugin_call.hpp>
 #include <string>
@@ -61,6 +62,10 @@ class ForeignCode {
   /// From here on this process runs it.
   static void allow();
 };
+
+/// Lets this process take so many bytes of address space, or fewer where it may have no more; 0: as it is. What it may
+/// take. With a sanitizer, which takes far more of it than it uses, nothing is limited.
+std::uint64_t limit_address_space(double bytes);
 
 /// "signal 11 (segmentation fault)".
 std::string signal_in_words(int signal);

@@ -1,5 +1,4 @@
 #include <signal.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -15,6 +14,7 @@
 #include <optional>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/loader/catalogue.hpp>
+#include <ricochet/loader/child.hpp>
 #include <system_error>
 #include <thread>
 #include <unordered_map>
@@ -52,20 +52,6 @@ void out_of_memory() {
 void on_exit_called() {
   own_note->exit_called = true;
   ::_exit(kGaveUp);
-}
-
-void limit_memory(double bytes) {
-  rlimit limit{};
-  ::getrlimit(RLIMIT_AS, &limit);
-  // A sanitizer takes far more of them than it uses.
-#ifndef RICOCHET_SANITIZED
-  if (bytes > 0) {
-    limit.rlim_cur = std::min(limit.rlim_max, static_cast<rlim_t>(bytes));
-    limit.rlim_max = limit.rlim_cur;
-    ::setrlimit(RLIMIT_AS, &limit);
-  }
-#endif
-  memory_allowed = limit.rlim_cur;
 }
 
 class WorkerService : public BlockService {
@@ -281,7 +267,7 @@ class WorkerService : public BlockService {
       if (cases_.open) cases_.open(checkpoint_store(), stop_);
       ready.identity = identity_->of_all();
       ready.arithmetic = arithmetic_digest();
-      limit_memory(wanted.memory);
+      memory_allowed = limit_address_space(wanted.memory);
     } catch (const InputError& error) {
       ready.failure = error.what();
       ready.pointer = error.pointer();
@@ -337,7 +323,7 @@ int serve_as_worker() {
   ::pthread_sigmask(SIG_UNBLOCK, &ignored, nullptr);
   own_note = take_note(kWorkerNote);
   note_plugin_calls(own_note);
-  limit_memory(0);
+  memory_allowed = limit_address_space(0);
   std::set_new_handler(out_of_memory);
   std::atexit(on_exit_called);
   std::at_quick_exit(on_exit_called);
