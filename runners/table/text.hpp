@@ -10,8 +10,8 @@
 /// Tables as CSV after RFC 4180, numbers in the shortest digits that read back as the same double.
 namespace ricochet {
 
-/// A text as it may be shown: UTF-8, what is none as U+FFFD, control characters and marks of direction as U+XXXX in
-/// angle brackets. Line breaks and tabs stay.
+/// A text as it may be shown: UTF-8, what is none as U+FFFD, control characters and marks of direction by their
+/// numbers, <U+001B>. Line breaks and tabs stay.
 std::string plain_text(std::string_view text);
 /// Whether a text may be shown as it is.
 bool is_plain(std::string_view text);

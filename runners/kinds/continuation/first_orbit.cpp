@@ -71,17 +71,21 @@ class OrbitSearch {
   void check_march(const FirstOrbit& found) {
     constexpr double late = 4;
     const OwnMarch own = own_march_of(map_, found.shot.x, orbit_.at, found.clock);
-    const auto made = map_.march(found.shot.x, orbit_.at, found.clock);
-    const double far = std::max(image_tolerance * starts_.gap, late * rebounds_of(made)),
-                 fast = far * std::max(map_.metric().pulsation(), pace_of(made));
+    const Impacts impacts = impacts_of(map_.march(found.shot.x, orbit_.at, found.clock));
+    const double far = std::max(image_tolerance * starts_.gap, late * impacts.rebounds),
+                 fast = far * std::max(map_.metric().pulsation(), impacts.pace);
     if (!own.end && own.displacement <= far && own.velocity <= fast) return;
     throw Refusal{fmt::format(
         "no orbit at λ = {:g}: the scheme's own march leaves what was solved by {:.3g} m and {:.3g} "
         "m/s in a period; its impacts explain {:.3g} m and {:.3g} m/s{}",
         orbit_.at, own.displacement, own.velocity, far, fast, own.end ? "; " + text(own.end) : std::string())};
   }
-  static double pace_of(const MapMarch&) { return 0; }
-  static double pace_of(const FollowedMap::Image& image) { return image.pace; }
+  // What impacts that rebound make of a march; none do on pieces.
+  struct Impacts {
+    double rebounds = 0, placed = 0, pace = 0;  ///< FollowedMap::Image
+  };
+  static Impacts impacts_of(const MapMarch&) { return {}; }
+  static Impacts impacts_of(const FollowedMap::Image& image) { return {image.rebounds, image.placed, image.pace}; }
 
   MapClock clock(bool half) const { return {starts_.steps_per_period, orbit_.period, half}; }
 
@@ -118,12 +122,8 @@ class OrbitSearch {
   bool returns(const Eigen::VectorXd& x, const MapClock& clock) const {
     const auto made = map_.march(x, orbit_.at, clock);
     return !made.end &&
-           map_.metric().size(made.image - x) <= std::max(image_tolerance * starts_.gap, placed_of(made));
+           map_.metric().size(made.image - x) <= std::max(image_tolerance * starts_.gap, impacts_of(made).placed);
   }
-  static double placed_of(const MapMarch&) { return 0; }
-  static double placed_of(const FollowedMap::Image& image) { return image.placed; }
-  static double rebounds_of(const MapMarch&) { return 0; }
-  static double rebounds_of(const FollowedMap::Image& image) { return image.rebounds; }
 
   // The divisor of the period after which the orbit is back already; 0: none.
   int repeats_after(const FirstOrbit& found) const {
