@@ -1,4 +1,4 @@
-// Compares the figures of studies/README.md with the tables that they are taken from, or puts them there.
+// Compares the figures of studies/findings with the tables that they are taken from, or puts them there.
 #include "tests/runners/command/page_figures.hpp"
 
 #include <cstdlib>
@@ -16,9 +16,7 @@ int main(int argc, char** argv) {
                  "FOLDER/STUDY receives the results of studies that are not there yet\n";
     return 2;
   }
-  const fs::path root = RICOCHET_SOURCE_DIR, page = root / "studies/README.md";
-  std::ostringstream text;
-  text << std::ifstream(page, std::ios::binary).rdbuf();
+  const fs::path root = RICOCHET_SOURCE_DIR;
   const TablesOf tables = tables_in(argv[2], [&](const std::string& study) {
     std::cerr << "running " << study << "\n";
     const std::string command = "'" RICOCHET_COMMAND "' run '" + (root / "studies" / (study + ".json")).string() +
@@ -26,10 +24,18 @@ int main(int argc, char** argv) {
     // Some cases may have failed: the page says how many.
     if (std::system(command.c_str()) < 0) throw std::runtime_error("cannot run " + command);
   });
-  const PageFigures found = compare_page(text.str(), tables, {argv + 3, argv + argc});
-  for (const std::string& wrong : found.wrong) std::cout << "studies/README.md, " << wrong << "\n";
-  std::cout << found.figures << " figures, " << found.wrong.size() << (what == "fill" ? " put right\n" : " wrong\n");
-  if (what == "check") return found.wrong.empty() ? 0 : 1;
-  std::ofstream(page, std::ios::binary) << found.text;
-  return 0;
+  int figures = 0;
+  std::size_t wrong = 0;
+  for (const fs::path& page : pages_of_findings(root)) {
+    std::ostringstream text;
+    text << std::ifstream(page, std::ios::binary).rdbuf();
+    const PageFigures compared = compare_page(text.str(), tables, {argv + 3, argv + argc});
+    for (const std::string& sentence : compared.wrong)
+      std::cout << page.lexically_relative(root).string() << ", " << sentence << "\n";
+    if (what == "fill") std::ofstream(page, std::ios::binary) << compared.text;
+    figures += compared.figures;
+    wrong += compared.wrong.size();
+  }
+  std::cout << figures << " figures, " << wrong << (what == "fill" ? " put right\n" : " wrong\n");
+  return what == "check" && wrong > 0 ? 1 : 0;
 }

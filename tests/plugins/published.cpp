@@ -1,4 +1,4 @@
-// What others published of their computations, and this program's answer to each. See studies/README.md.
+// What others published of their computations, and this program's answer to each. See studies/findings/published.md.
 #include <ricochet/measure/contact/impact_recorder.hpp>
 
 #include "tests/marching.hpp"

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string_view>
 
@@ -23,7 +24,7 @@ std::vector<std::string> conditions_of(const std::string& label, const std::stri
   return conditions;
 }
 
-constexpr std::string_view figure_mark = "<!--=", column_mark = "<!--|", run_mark = "<!-- run ", mark_end = "-->";
+constexpr std::string_view figure_mark = "<!--=", column_mark = "<!--|", mark_end = "-->";
 
 /// What is written before a comment: up to what no number has.
 std::size_t figure_begin(const std::string& line, std::size_t end) {
@@ -173,20 +174,22 @@ PageFigures compare_page(const std::string& page, const TablesOf& tables, const 
   return Page(tables, studies).read(page);
 }
 
-PageStudies studies_of(const std::string& page) {
-  PageStudies out;
+std::set<std::string> studies_of(const std::string& page) {
+  std::set<std::string> out;
   for (const std::string_view mark : {figure_mark, column_mark})
     for (std::size_t at = page.find(mark); at != std::string::npos; at = page.find(mark, at + 1)) {
       const std::vector<std::string> words =
           words_of(page.substr(at + mark.size(), page.find(mark_end, at) - at - mark.size()));
-      if (!words.empty() && words.front().find_first_of("=<>") == std::string::npos) out.figures.insert(words.front());
+      if (!words.empty() && words.front().find_first_of("=<>") == std::string::npos) out.insert(words.front());
     }
-  for (std::size_t at = page.find(run_mark); at != std::string::npos; at = page.find(run_mark, at + 1)) {
-    const std::size_t begin = page.rfind('\n', at) + 1;
-    const std::size_t open = page.find('`', begin), close = page.find('`', open + 1);
-    if (close < at) out.dated.insert(page.substr(open + 1, close - open - 1));
-  }
   return out;
+}
+
+std::vector<std::filesystem::path> pages_of_findings(const std::filesystem::path& source) {
+  const std::filesystem::directory_iterator folder(source / "studies/findings");
+  std::vector<std::filesystem::path> pages(begin(folder), end(folder));
+  std::sort(pages.begin(), pages.end());
+  return pages;
 }
 
 }  // namespace ricochet::tests

@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
@@ -31,7 +32,7 @@
 ///     --> |
 ///
 /// Three parts again: rows, what a cell is, and what it is where the row is not done. A study that takes too long to be
-/// run again has a date, <!-- run 2026-11-24 -->, in its row.
+/// run again has a date, <!-- run 2026-11-24 -->, in its section.
 namespace ricochet::tests {
 
 /// A page beside its tables.
@@ -43,10 +44,10 @@ struct PageFigures {
 /// Of the figures of these studies; of all where none is named.
 PageFigures compare_page(const std::string& page, const TablesOf& tables, const std::set<std::string>& studies = {});
 
-/// The studies that a page takes figures from, and those whose row has the date of a run.
-struct PageStudies {
-  std::set<std::string> figures, dated;
-};
-PageStudies studies_of(const std::string& page);
+/// The studies that a page takes figures from.
+std::set<std::string> studies_of(const std::string& page);
+
+/// The pages of studies/findings.
+std::vector<std::filesystem::path> pages_of_findings(const std::filesystem::path& source);
 
 }  // namespace ricochet::tests

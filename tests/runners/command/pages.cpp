@@ -187,8 +187,9 @@ TEST_CASE("pages: the README is short, its study is one, and what it points at i
       "README.md",         ".github/CONTRIBUTING.md", "studies/tutorial.md",      "studies/README.md",
       "runners/README.md", "runners/operations.md",   "runners/own-structure.md", "plugins/README.md",
       "core/README.md",    "core/glossary.md",        "core/performance.md",      "tests/README.md"};
-  for (const auto& page : fs::directory_iterator(root / "core/numerics"))
-    pages.push_back(fs::relative(page.path(), root).string());
+  for (const char* folder : {"core/numerics", "studies/findings"})
+    for (const auto& page : fs::directory_iterator(root / folder))
+      pages.push_back(fs::relative(page.path(), root).string());
   for (const std::string& page : pages) {
     const std::string text = read_text(root / page);
     for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 1)) {
@@ -260,18 +261,6 @@ TEST_CASE("pages: a figure is that of the rows and columns that it names") {
 }
 
 TEST_CASE("pages: what studies found is what they find") {
-  const std::string page = read_text(root / "studies/README.md");
-  const tests::PageStudies named = tests::studies_of(page);
-  // A row of a study says where its figures are from, or when it ran.
-  for (const std::string& line : lines_of(page)) {
-    if (!line.starts_with("| `") || line.starts_with("| `published-")) continue;
-    CAPTURE(line);
-    CHECK((line.find("<!--= ") != std::string::npos || line.find("<!-- run ") != std::string::npos));
-  }
-  for (const std::string& study : named.figures) {
-    CAPTURE(study);
-    CHECK(fs::exists(root / "studies" / (study + ".json")));
-  }
   // Studies of a few seconds, none of them chaotic.
   const std::set<std::string> quick = {"quick",       "restitution",      "energy-damped",    "family-free",
                                        "family-laws", "extreme-sections", "published-sdnd101"};
@@ -282,7 +271,26 @@ TEST_CASE("pages: what studies found is what they find") {
                              (folder.path() / study).string() + "' >/dev/null 2>&1";
     CHECK(std::system(line.c_str()) == 0);
   });
-  const tests::PageFigures found = tests::compare_page(page, tables, quick);
-  CHECK(found.figures >= 25);
-  for (const std::string& wrong : found.wrong) FAIL_CHECK(wrong << " (`sh tests/pages.sh fill` mends the page)");
+  int figures = 0;
+  for (const fs::path& page : tests::pages_of_findings(root)) {
+    const std::string text = read_text(page);
+    // The section of a study says where its figures are from, or when it ran.
+    for (std::size_t at = text.find("\n## "); at != std::string::npos;) {
+      const std::size_t next = text.find("\n## ", at + 1);
+      const std::string section = text.substr(at + 4, next - at - 4);
+      CAPTURE(page, section);
+      CHECK((section.starts_with("published-") || section.find("<!--= ") != std::string::npos ||
+             section.find("<!-- run ") != std::string::npos));
+      at = next;
+    }
+    for (const std::string& study : tests::studies_of(text)) {
+      CAPTURE(page, study);
+      CHECK(fs::exists(root / "studies" / (study + ".json")));
+    }
+    const tests::PageFigures compared = tests::compare_page(text, tables, quick);
+    figures += compared.figures;
+    for (const std::string& wrong : compared.wrong)
+      FAIL_CHECK(page.filename().string() << ", " << wrong << " (`sh tests/pages.sh fill` mends the page)");
+  }
+  CHECK(figures >= 25);
 }
