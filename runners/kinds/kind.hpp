@@ -89,6 +89,15 @@ struct ForecastContext {
   std::function<double(const StudyCase&)> step_seconds;  ///< of one marched step of a case
 };
 
+/// What a kind makes of the results of one study, once: what its answer and its page ask. It may refer to the results,
+/// which outlive it.
+struct Analysis {
+  /// Its own way to answer, when all tables are there. Empty: methods in tiers, or choices by what they move, in the
+  /// observed measures.
+  std::function<answers::Answer(const answers::Compared&)> answer;
+  report::KindPage page;  ///< what its reports show; empty: what every page has
+};
+
 /// A kind of study, all that the program knows of it.
 class Kind {
  public:
@@ -113,12 +122,9 @@ class Kind {
   /// where a case is more than that.
   virtual CaseRecord march(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) const;
 
-  /// Appends the tables that follow from the cases to results.derived; those that the cases carry.
-  virtual void tables(StudyResults& results) const;
-  /// Whether this kind has its own way to answer; else methods in tiers, or choices by what they move, in the observed
-  /// measures.
-  virtual bool answers_itself() const { return false; }
-  virtual answers::Answer answers(const StudyResults&) const { return {}; }
+  /// Appends the tables that follow from the cases to results.derived: those that the cases carry. `study`: the same
+  /// results as a comparison.
+  virtual Analysis analysis(StudyResults& results, const answers::Compared& study) const;
   /// The measures that an answer is made of where the study names none.
   virtual std::vector<std::string> observed(const StudyResults&) const { return {}; }
   /// `curves` without rows: the sampled series that a case leaves in curves/ID.csv. Without columns: none.
@@ -132,8 +138,6 @@ class Kind {
   virtual bool measures_stand() const { return false; }
   /// A study of one case alone, to be looked at; null where the case cannot be repeated alone.
   virtual nlohmann::ordered_json alone(const StudyResults&, const CaseRecord&) const { return nullptr; }
-  /// What its reports show; asked for when there is one to write. Empty: what every page has.
-  virtual report::KindPage page() const { return {}; }
 
   /// Whether a stored study has points that can be marched again.
   virtual bool has_points() const { return false; }
@@ -156,8 +160,6 @@ const std::vector<KindPointer>& kinds();
 void add_kind(KindPointer kind);
 /// The kind of this name; null where there is none.
 const Kind* find_kind(const std::string& name);
-/// What reports of this kind show; nothing of their own where there is none of this name.
-report::KindPage page_of(const std::string& kind);
 
 /// Appends the tables that cases carry to results.derived, each row behind its case's axes. `left_out` (may be empty)
 /// names those that the kind derives itself.

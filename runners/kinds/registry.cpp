@@ -41,8 +41,9 @@ CaseRecord Kind::march(const StudyCase&, const Registry&, const std::atomic<bool
   throw std::logic_error("a case of kind " + format.name + " is more than one integration");
 }
 
-void Kind::tables(StudyResults& results) const {
+Analysis Kind::analysis(StudyResults& results, const answers::Compared&) const {
   collect_tables(results);
+  return {};
 }
 
 int Kind::point(const StudyResults&, const PointRequest&, std::ostream&) const {
@@ -62,11 +63,6 @@ const Kind* find_kind(const std::string& name) {
   const auto found =
       std::find_if(kinds().begin(), kinds().end(), [&](const KindPointer& kind) { return kind->format.name == name; });
   return found == kinds().end() ? nullptr : found->get();
-}
-
-report::KindPage page_of(const std::string& kind) {
-  const Kind* known = find_kind(kind);
-  return known ? known->page() : report::KindPage();
 }
 
 std::vector<const StudyKind*> study_kinds() {

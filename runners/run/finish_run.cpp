@@ -29,22 +29,32 @@ void say(std::FILE* out, std::string_view text) {
   say_as_it_is(out, plain_text(text));
 }
 
-void derive_tables(StudyResults& results) {
+namespace {
+
+Analysis analysis_of(StudyResults& results, const answers::Compared& study) {
   results.derived.clear();
   const Kind* kind = find_kind(results.kind);
-  if (kind)
-    kind->tables(results);
-  else
-    collect_tables(results);
+  if (kind) return kind->analysis(results, study);
+  collect_tables(results);
+  return {};
+}
+
+}  // namespace
+
+AnalysedResults::AnalysedResults(StudyResults results)
+    : StudyResults(std::move(results)), compared(*this), analysis(analysis_of(*this, compared)) {
   // The answer says the shares, and stands before them.
-  const auto before_shares = static_cast<std::ptrdiff_t>(results.derived.size());
-  if (Table shares = effects_table(results); !shares.rows.empty()) results.derived.push_back(std::move(shares));
-  for (Table& table : evidence_tables(results))
-    if (!table.rows.empty()) results.derived.push_back(std::move(table));
-  if (Table answers = answers_table(results); !answers.rows.empty())
-    results.derived.insert(results.derived.begin() + before_shares, std::move(answers));
-  if (Table reasons = reasons_table(results); !reasons.rows.empty()) results.derived.push_back(std::move(reasons));
-  for (Table& table : report::page_tables(results, page_of(results.kind))) results.derived.push_back(std::move(table));
+  const auto before_shares = static_cast<std::ptrdiff_t>(derived.size());
+  const auto add = [&](Table table) {
+    if (!table.rows.empty()) derived.push_back(std::move(table));
+  };
+  add(effects_table(*this));
+  if (!analysis.answer)
+    for (Table& table : evidence_tables(compared)) add(std::move(table));
+  if (Table answers = answers_table(compared, analysis); !answers.rows.empty())
+    derived.insert(derived.begin() + before_shares, std::move(answers));
+  add(reasons_table(*this));
+  for (Table& table : report::page_tables(*this, analysis.page)) add(std::move(table));
 }
 
 Table reasons_table(const StudyResults& results) {
@@ -61,15 +71,15 @@ Table reasons_table(const StudyResults& results) {
   return reasons_type().with(rows);
 }
 
-StudyResults write_folder(Store& store, const std::filesystem::path& folder, const RenderReport& render,
-                          const std::set<std::string>* changed) {
-  StudyResults results = with_tables(store.load());
-  store.make_views(results);
-  write_outputs(folder, results, render, changed);
+std::unique_ptr<const AnalysedResults> write_folder(Store& store, const std::filesystem::path& folder,
+                                                    const RenderReport& render, const std::set<std::string>* changed) {
+  auto results = std::make_unique<const AnalysedResults>(store.load());
+  store.make_views(*results);
+  write_outputs(folder, *results, [&] { return render(*results); }, changed);
   return results;
 }
 
-int tell_results(std::FILE* out, const StudyResults& results, const std::filesystem::path& folder,
+int tell_results(std::FILE* out, const AnalysedResults& results, const std::filesystem::path& folder,
                  const std::string& how, bool table) {
   constexpr int nothing_ran = 3;
   const bool nothing = std::all_of(results.cases.begin(), results.cases.end(),
@@ -118,8 +128,8 @@ void tell_damage(const std::filesystem::path& folder, const StudyResults& result
 
 int rebuild_report_with(const RenderReport& render, const std::filesystem::path& folder) {
   return unless_unusable([&] {
-    const StudyResults results = with_tables(read_what_is_whole(folder));
-    write_outputs(folder, results, render);
+    const AnalysedResults results(read_what_is_whole(folder));
+    write_outputs(folder, results, [&] { return render(results); });
     say(stdout, fmt::format("{}\nreport: {}\n", totals_text(results), (folder / "report.html").string()));
     tell_damage(folder, results);
   });
@@ -148,11 +158,6 @@ std::vector<std::string> asked(const StudyResults& results) {
   return list ? given->get<std::vector<std::string>>() : std::vector<std::string>{};
 }
 
-bool answers_itself(const StudyResults& results) {
-  const Kind* kind = find_kind(results.kind);
-  return kind && kind->answers_itself();
-}
-
 }  // namespace
 
 std::vector<std::string> observed_measures(const StudyResults& results) {
@@ -167,31 +172,28 @@ std::vector<std::string> observed_measures(const StudyResults& results) {
   return names;
 }
 
-Table answers_table(const StudyResults& results) {
-  const std::vector<std::string> names = asked(results);
+Table answers_table(const answers::Compared& study, const Analysis& analysis) {
+  const std::vector<std::string> names = asked(study.results());
   const bool status_first = !names.empty() && names.front() == status_asked;
-  const answers::Compared study(results);
-  answers::Answer answer = answers_itself(results)
-                               ? find_kind(results.kind)->answers(results)
-                               : answers::measure_answer(study, observed_measures(results), status_first);
+  answers::Answer answer = analysis.answer
+                               ? analysis.answer(study)
+                               : answers::measure_answer(study, observed_measures(study.results()), status_first);
   // Behind the headline: no sentence that is cut off.
   const std::vector<answers::Sentence> doubts = answers::doubted(study);
   answer.sentences.insert(answer.sentences.begin() + (answer.sentences.empty() ? 0 : 1), doubts.begin(), doubts.end());
   return answer.table();
 }
 
-std::vector<Table> evidence_tables(const StudyResults& results) {
-  if (answers_itself(results)) return {};
-  const answers::Compared study(results);
-  const std::vector<std::string> measures = observed_measures(results);
+std::vector<Table> evidence_tables(const answers::Compared& study) {
+  const std::vector<std::string> measures = observed_measures(study.results());
   return {answers::limits_table(study, measures), answers::refinements_table(study, measures),
           answers::differences_table(study, measures)};
 }
 
-std::string evidence_text(const StudyResults& results) {
+std::string evidence_text(const AnalysedResults& results) {
   const std::vector<std::string> measures =
-      answers_itself(results) ? std::vector<std::string>{} : observed_measures(results);
-  return measures.empty() ? "" : answers::evidence_text(answers::Compared(results), measures.front());
+      results.analysis.answer ? std::vector<std::string>{} : observed_measures(results);
+  return measures.empty() ? "" : answers::evidence_text(results.compared, measures.front());
 }
 
 namespace {

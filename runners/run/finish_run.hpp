@@ -1,26 +1,18 @@
 #pragma once
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "runners/run/analysed_results.hpp"
 #include "runners/run/outputs.hpp"
 #include "runners/store/record.hpp"
 #include "runners/store/store.hpp"
 
 namespace ricochet {
-
-/// Works out the tables that stand beside cases.csv from the cases alone: those of the study's kind, then effects
-/// wherever at least two factors vary. Rows speak of finished cases only; a partial study has partial tables.
-void derive_tables(StudyResults& results);
-
-/// The same, returned.
-inline StudyResults with_tables(StudyResults results) {
-  derive_tables(results);
-  return results;
-}
 
 /// reasons: why cases have no result, each reason once with the number of cases that give it; no rows where all are
 /// done.
@@ -39,22 +31,24 @@ inline void say_as_it_is(std::FILE* out, std::string_view text) {
 
 /// Makes the views of the store and writes the tables, curves and report of what it holds, which is returned.
 /// `changed`: see write_outputs().
-StudyResults write_folder(Store& store, const std::filesystem::path& folder, const RenderReport& render,
-                          const std::set<std::string>* changed = nullptr);
+std::unique_ptr<const AnalysedResults> write_folder(Store& store, const std::filesystem::path& folder,
+                                                    const RenderReport& render,
+                                                    const std::set<std::string>* changed = nullptr);
 
 /// Says the answer, the totals (`how` they came about) and where the report is; returns the exit code.
-int tell_results(std::FILE* out, const StudyResults& results, const std::filesystem::path& folder,
+int tell_results(std::FILE* out, const AnalysedResults& results, const std::filesystem::path& folder,
                  const std::string& how, bool table = false);
 
 /// answers: what the study says to its question, in the order in which it is read. Of a kind that answers itself its
 /// rows; else one row per choice and observed measure.
-Table answers_table(const StudyResults& results);
+Table answers_table(const answers::Compared& study, const Analysis& analysis = {});
 
-/// What the answer rests on: limits and differences of the observed measures; of a kind that answers itself its own.
-std::vector<Table> evidence_tables(const StudyResults& results);
+/// What an answer by observed measures rests on: limits, refinements and differences of these.
+std::vector<Table> evidence_tables(const answers::Compared& study);
 
-/// The same for a terminal, of the measure that is observed first: at most twelve lines.
-std::string evidence_text(const StudyResults& results);
+/// The same for a terminal, of the measure that is observed first: at most twelve lines. "" of a kind that answers
+/// itself.
+std::string evidence_text(const AnalysedResults& results);
 
 /// The measures that a study observes: its key "observe", else what its kind asks of such results; those that some
 /// finished case has.

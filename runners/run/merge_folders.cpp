@@ -79,7 +79,7 @@ class FolderMerge {
   }
 
   int run(const RenderReport& render, std::FILE* said) {
-    StudyResults results;
+    std::unique_ptr<const AnalysedResults> results;
     {
       FolderWriter writer(out_);
       {
@@ -90,10 +90,10 @@ class FolderMerge {
       writer.commit();
     }
     const int code = tell_results(
-        said, results, out_, fmt::format("merged from {} folder{}", sources_.size(), sources_.size() == 1 ? "" : "s"));
+        said, *results, out_, fmt::format("merged from {} folder{}", sources_.size(), sources_.size() == 1 ? "" : "s"));
     for (const MergedFolder& source : sources_)
       if (source.damage.any()) say(said, damage_text(source.folder / "results.sqlite", source.damage) + "\n");
-    if (const std::size_t missing = expected_.size() - results.cases.size(); missing > 0)
+    if (const std::size_t missing = expected_.size() - results->cases.size(); missing > 0)
       say(said,
           fmt::format("{} of {} cases {} in none of these folders: `ricochet run {} --out {}` goes on\n", missing,
                       expected_.size(), missing == 1 ? "is" : "are", (out_ / "study.json").string(), out_.string()));

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/run/outputs.hpp"
+#include "runners/run/analysed_results.hpp"
 #include "runners/store/record.hpp"
 
 namespace ricochet {

@@ -149,8 +149,8 @@ void write_failures(const std::filesystem::path& folder, const StudyResults& res
 
 }  // namespace
 
-void write_outputs(const std::filesystem::path& folder, const StudyResults& results, const RenderReport& render,
-                   const std::set<std::string>* changed) {
+void write_outputs(const std::filesystem::path& folder, const StudyResults& results,
+                   const std::function<std::string()>& page, const std::set<std::string>* changed) {
   write_study(folder, results);
   write_curve_files(folder, results, changed);
   TableFolder tables(folder);
@@ -158,7 +158,7 @@ void write_outputs(const std::filesystem::path& folder, const StudyResults& resu
   tables.write_dictionary();
   tables.remove_stale_tables();
   write_failures(folder / "failures", results);
-  write_file(folder / "report.html", render(results));
+  write_file(folder / "report.html", page());
 }
 
 void write_tables(const std::filesystem::path& folder, const StudyResults& results, bool one_file) {

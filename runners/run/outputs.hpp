@@ -8,13 +8,12 @@
 
 namespace ricochet {
 
-using RenderReport = std::function<std::string(const StudyResults&)>;
-
 /// Writes into `folder`, from the results alone: study.json, cases.csv, the derived tables, the exported tables of
-/// numbers, curves/ID.csv, failures/ID.json, report.html. Writes dictionary.csv, too: what every column of these means.
-/// Each file is written whole or not at all. The curves of cases that are no longer in the study are removed.
-/// `changed`: the cases whose curve must be written again; nothing means all. Throws StoreError.
-void write_outputs(const std::filesystem::path& folder, const StudyResults& results, const RenderReport& render,
+/// numbers, curves/ID.csv, failures/ID.json, report.html (what `page` gives). Writes dictionary.csv, too: what every
+/// column of these means. Each file is written whole or not at all. The curves of cases that are no longer in the study
+/// are removed. `changed`: the cases whose curve must be written again; nothing means all. Throws StoreError.
+void write_outputs(const std::filesystem::path& folder, const StudyResults& results,
+                   const std::function<std::string()>& page,
                    const std::set<std::string>* changed = nullptr);
 
 /// Writes study.json and the tables as CSV: cases, the derived ones, those of numbers, curves/ID, measures (what each

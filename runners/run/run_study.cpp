@@ -7,6 +7,7 @@
 #include "runners/march/seconds.hpp"
 #include "runners/march/study_identity.hpp"
 #include "runners/report/report.hpp"
+#include "runners/run/analysed_results.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/merge_folders.hpp"
 #include "runners/run/study_runner.hpp"
@@ -16,8 +17,8 @@
 namespace ricochet {
 namespace {
 
-std::string render(const StudyResults& results) {
-  return render_report(results, page_of(results.kind));
+std::string render(const AnalysedResults& results) {
+  return render_report(results, results.analysis.page);
 }
 
 constexpr double short_run = 1;          // s

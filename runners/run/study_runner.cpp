@@ -239,9 +239,9 @@ class FolderRun {
   }
 
   int finish() {
-    const StudyResults results = write_folder(store_, folder_, runner_.render, &fresh_);
+    const auto results = write_folder(store_, folder_, runner_.render, &fresh_);
     const double seconds = seconds_since(begin_);
-    return tell_results(runner_.out, results, folder_,
+    return tell_results(runner_.out, *results, folder_,
                         fmt::format("{} run now in {}, {} kept", fresh_.size(), duration_text(seconds), kept_.size()),
                         table_);
   }

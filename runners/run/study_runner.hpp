@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "runners/kinds/kind.hpp"
-#include "runners/run/outputs.hpp"
+#include "runners/run/analysed_results.hpp"
 #include "runners/run/run_study.hpp"
 #include "runners/store/store.hpp"
 #include "runners/study/study.hpp"

@@ -29,6 +29,7 @@
 #include "runners/march/seconds.hpp"
 #include "runners/march/study_identity.hpp"
 #include "runners/report/report.hpp"
+#include "runners/run/analysed_results.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/store.hpp"
@@ -167,9 +168,9 @@ void coordinator(int side, double from, const fs::path& folder) {
   runner.plan = [&](const StudyCase& one) { return find_kind("basins")->plan(one, registry); };
   runner.environment = [] { return Environment(); };
   double reported = 0;
-  runner.render = [&](const StudyResults& results) {
+  runner.render = [&](const AnalysedResults& results) {
     const double begin = processor_seconds();
-    std::string page = render_report(results, page_of(results.kind));
+    std::string page = render_report(results, results.analysis.page);
     reported += processor_seconds() - begin;
     return page;
   };

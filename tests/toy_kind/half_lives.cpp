@@ -81,7 +81,10 @@ class HalfLives final : public Kind {
   std::string outcome(const CaseRecord& record) const override {
     return "the slowest takes " + std::to_string(*measure(record, "longest_half_life")) + " s";
   }
-  report::KindPage page() const override { return half_lives_page(); }
+  Analysis analysis(StudyResults& results, const answers::Compared&) const override {
+    collect_tables(results);
+    return {{}, half_lives_page()};
+  }
 };
 
 KindPointer half_lives() {

@@ -50,10 +50,6 @@ class BasinsKind final : public SweepKind {
   CasePlan plan(const StudyCase& study_case, const Registry& registry) const override {
     return plan_basins(study_case, registry);
   }
-  answers::Answer answers(const StudyResults& results) const override {
-    return basins_answer(answers::Compared(results));
-  }
-  report::KindPage page() const override { return report::basins_page(); }
   int point(const StudyResults& results, const PointRequest& asked, std::ostream& out) const override {
     return march_cell_again(results, asked, out);
   }
@@ -63,7 +59,10 @@ class BasinsKind final : public SweepKind {
                  const std::atomic<bool>& stop) const override {
     return run_basins(study_case, registry, context, stop);
   }
-  void derive(StudyResults& results) const override { dynamics::derive_basins(results); }
+  Analysis derive(StudyResults& results) const override {
+    dynamics::derive_basins(results);
+    return {basins_answer, report::basins_page()};
+  }
 };
 
 }  // namespace

@@ -67,10 +67,6 @@ class BifurcationKind final : public SweepKind {
   CasePlan plan(const StudyCase& study_case, const Registry& registry) const override {
     return plan_bifurcation(study_case, registry);
   }
-  answers::Answer answers(const StudyResults& results) const override {
-    return bifurcation_answer(answers::Compared(results));
-  }
-  report::KindPage page() const override { return report::bifurcation_page(); }
   int point(const StudyResults& results, const PointRequest& asked, std::ostream& out) const override {
     return march_orbit_again(results, asked, out);
   }
@@ -80,7 +76,10 @@ class BifurcationKind final : public SweepKind {
                  const std::atomic<bool>& stop) const override {
     return run_bifurcation(study_case, registry, context, stop);
   }
-  void derive(StudyResults& results) const override { derive_dynamics(results); }
+  Analysis derive(StudyResults& results) const override {
+    derive_dynamics(results);
+    return {bifurcation_answer, report::bifurcation_page()};
+  }
 };
 
 }  // namespace

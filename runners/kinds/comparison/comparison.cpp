@@ -233,12 +233,14 @@ CaseRecord ComparisonKind::march(const StudyCase& study_case, const Registry& re
   return run_case(study_case, registry, stop);
 }
 
-void ComparisonKind::tables(StudyResults& results) const {
+void ComparisonKind::put_tables(StudyResults& results, const answers::Compared& study,
+                                std::vector<Table> (*costs)(const StudyResults&)) {
   results.derived.push_back(errors_table(results));
   results.derived.push_back(orders_table(results));
   results.derived.push_back(order_verdicts_table(results.derived.back()));
-  results.derived.push_back(order_runs_table(answers::Compared(results)));
-  costs(results);
+  results.derived.push_back(order_runs_table(study));
+  if (costs)
+    for (Table& table : costs(results)) results.derived.push_back(std::move(table));
   describe_contact(results.cases);
   collect_tables(results);
 }

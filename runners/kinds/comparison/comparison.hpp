@@ -42,18 +42,15 @@ class ComparisonKind : public Kind {
   double beside(const ForecastContext& context) const override { return seconds_beside(context); }
   bool marches_once() const override { return true; }
   CaseRecord march(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) const override;
-  void tables(StudyResults& results) const override;
-  bool answers_itself() const override { return true; }
   Table curve(const StudyResults&) const override;
   std::string outcome(const CaseRecord& record) const override { return errors_text(record); }
   nlohmann::ordered_json alone(const StudyResults& results, const CaseRecord& record) const override;
 
  protected:
   ComparisonKind(const char* name, const char* text, std::vector<Field> keys, std::vector<MeasureInfo> of_cases);
-
- private:
-  /// Appends what the errors cost.
-  virtual void costs(StudyResults&) const {}
+  /// Appends errors and orders, then what `costs` says of them (may be null), then what the cases carry.
+  static void put_tables(StudyResults& results, const answers::Compared& study,
+                         std::vector<Table> (*costs)(const StudyResults&) = nullptr);
 };
 
 class References;

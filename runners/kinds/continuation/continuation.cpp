@@ -55,17 +55,13 @@ class ContinuationKind final : public Kind {
     };
     return runner;
   }
-  void tables(StudyResults& results) const override {
+  Analysis analysis(StudyResults& results, const answers::Compared&) const override {
     const SweptColumns swept = swept_columns(results);
     for (CaseRecord& record : results.cases) describe_continuation(record, swept);
     collect_tables(results);
     derive_points(results);
+    return {continuation_answer, report::continuation_page()};
   }
-  bool answers_itself() const override { return true; }
-  answers::Answer answers(const StudyResults& results) const override {
-    return continuation_answer(answers::Compared(results));
-  }
-  report::KindPage page() const override { return report::continuation_page(); }
   bool has_points() const override { return true; }
   bool only_points() const override { return false; }
   int point(const StudyResults& results, const PointRequest& asked, std::ostream& out) const override {

@@ -11,10 +11,10 @@ class ConvergenceKind final : public ComparisonKind {
   ConvergenceKind()
       : ComparisonKind("convergence", "Each case is compared with a reference, and orders are fitted to the errors.",
                        comparison_keys(), comparison_measures()) {}
-  answers::Answer answers(const StudyResults& results) const override {
-    return orders_answer(answers::Compared(results));
+  Analysis analysis(StudyResults& results, const answers::Compared& study) const override {
+    put_tables(results, study);
+    return {orders_answer, report::comparison_page()};
   }
-  report::KindPage page() const override { return report::comparison_page(); }
 };
 
 }  // namespace

@@ -117,24 +117,20 @@ class StabilityKind final : public Kind {
     };
     return runner;
   }
-  void tables(StudyResults& results) const override {
+  Analysis analysis(StudyResults& results, const answers::Compared&) const override {
     for (CaseRecord& record : results.cases) describe_stability(record);
     collect_tables(results);
     results.derived.push_back(step_limits_table(results));
     results.derived.push_back(step_limit_agreement_table(results.derived.back()));
     for (Table table : {stability_cells_table(results), stability_disagreements_table(results)})
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
-  }
-  bool answers_itself() const override { return true; }
-  answers::Answer answers(const StudyResults& results) const override {
-    return stability_answer(answers::Compared(results));
+    return {stability_answer, report::stability_page()};
   }
   std::string outcome(const CaseRecord& record) const override { return limits_text(record); }
   std::string contradiction(const CaseRecord& record) const override {
     if (measure(record, "contradictions").value_or(0) > 0) return "spectrum and march disagree without contact";
     return measure(record, "undeclared_limit") ? "the step limit is not the one that the scheme declares" : "";
   }
-  report::KindPage page() const override { return report::stability_page(); }
 };
 
 }  // namespace

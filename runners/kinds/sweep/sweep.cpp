@@ -80,11 +80,11 @@ CaseRunner SweepKind::start(const RunContext& context) const {
   return runner;
 }
 
-void SweepKind::tables(StudyResults& results) const {
+Analysis SweepKind::analysis(StudyResults& results, const answers::Compared&) const {
   const SweptColumns swept = swept_columns(results);
   for (CaseRecord& record : results.cases) describe_sweep(record, swept);
   collect_tables(results, derived_as_dynamics);
-  derive(results);
+  return derive(results);
 }
 
 std::string SweepKind::contradiction(const CaseRecord& record) const {

@@ -24,8 +24,7 @@ Field swept_pointer();
 class SweepKind : public Kind {
  public:
   CaseRunner start(const RunContext& context) const override;
-  void tables(StudyResults& results) const override;
-  bool answers_itself() const override { return true; }
+  Analysis analysis(StudyResults& results, const answers::Compared& study) const override;
   std::string contradiction(const CaseRecord& record) const override;
   nlohmann::ordered_json alone(const StudyResults& results, const CaseRecord& record) const override;
   bool has_points() const override { return true; }
@@ -37,8 +36,8 @@ class SweepKind : public Kind {
   /// Runs a case, with the context at which it keeps what would be lost if it were killed.
   virtual CaseRecord run(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                          const std::atomic<bool>& stop) const = 0;
-  /// Appends the tables that follow from the cases to results.derived.
-  virtual void derive(StudyResults& results) const = 0;
+  /// Appends the tables that compare the cases to results.derived.
+  virtual Analysis derive(StudyResults& results) const = 0;
 };
 
 /// The measures of orbits.

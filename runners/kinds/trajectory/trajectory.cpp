@@ -300,12 +300,12 @@ class TrajectoryKind final : public Kind {
                    const std::atomic<bool>& stop) const override {
     return run_case(study_case, registry, stop);
   }
-  void tables(StudyResults& results) const override {
+  Analysis analysis(StudyResults& results, const answers::Compared& study) const override {
     describe_contact(results.cases);
     collect_tables(results);
-    for (Table table : {energy_ends_table(results), energy_ledger_table(results),
-                        answers::uncertainty_table(answers::Compared(results))})
+    for (Table table : {energy_ends_table(results), energy_ledger_table(results), answers::uncertainty_table(study)})
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
+    return {{}, report::trajectory_page()};
   }
   std::vector<std::string> observed(const StudyResults& results) const override { return observed_energies(results); }
   Table curve(const StudyResults& results) const override {
@@ -316,7 +316,6 @@ class TrajectoryKind final : public Kind {
   nlohmann::ordered_json alone(const StudyResults& results, const CaseRecord& record) const override {
     return minimal_study(results, record);
   }
-  report::KindPage page() const override { return report::trajectory_page(); }
 };
 
 }  // namespace

@@ -42,15 +42,11 @@ class WorkPrecisionKind final : public ComparisonKind {
     };
     return runner;
   }
-  answers::Answer answers(const StudyResults& results) const override {
-    return precision_answer(answers::Compared(results));
-  }
-  report::KindPage page() const override { return report::work_precision_page(); }
-
- private:
-  void costs(StudyResults& results) const override {
-    results.derived.push_back(work_precision_table(results));
-    results.derived.push_back(precision_targets_table(results));
+  Analysis analysis(StudyResults& results, const answers::Compared& study) const override {
+    put_tables(results, study, [](const StudyResults& of) -> std::vector<Table> {
+      return {work_precision_table(of), precision_targets_table(of)};
+    });
+    return {precision_answer, report::work_precision_page()};
   }
 };
 

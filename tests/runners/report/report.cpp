@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "runners/kinds/kind.hpp"
+#include "runners/kinds/trajectory/page/page.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/kind_page.hpp"
 #include "runners/store/atomic_file.hpp"
@@ -156,7 +156,7 @@ TEST_CASE("results without a single curve or measure make a page", "[report]") {
 }
 
 TEST_CASE("rendering the same results twice gives the same bytes", "[report]") {
-  const auto kind = page_of("trajectory");
+  const auto kind = report::trajectory_page();
   CHECK(render_report(synthetic::results(), kind) == render_report(synthetic::results(), kind));
 }
 

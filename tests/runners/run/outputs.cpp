@@ -36,7 +36,7 @@ constexpr const char* points =
 
 TEST_CASE("outputs: tables of numbers stand beside cases.csv, those for the report alone do not") {
   const ScratchFolder folder;
-  write_outputs(folder.path(), results_with_points(), [](const StudyResults&) { return std::string("page"); });
+  write_outputs(folder.path(), results_with_points(), [] { return std::string("page"); });
   CHECK(read_text(folder / "points.csv") == points);
   CHECK_FALSE(std::filesystem::exists(folder / "portraits.csv"));
   CHECK(std::filesystem::exists(folder / "cases.csv"));
@@ -47,7 +47,7 @@ TEST_CASE("outputs: tables of numbers stand beside cases.csv, those for the repo
 TEST_CASE(
     "outputs: of tables that the folder had, those that the results have no longer go, and a third party's stay") {
   const ScratchFolder folder;
-  const auto page = [](const StudyResults&) { return std::string("page"); };
+  const auto page = [] { return std::string("page"); };
   write_outputs(folder.path(), results_with_points(), page);
   for (const char* name : {"mine.csv", "notes.csv"}) std::ofstream(folder / name) << "a,b\n1,2\n";
   REQUIRE(std::filesystem::exists(folder / "points.csv"));
@@ -111,7 +111,7 @@ TEST_CASE("outputs: a sweep that went wrong leaves a study of that case alone, w
     results.cases.push_back(record);
   }
   REQUIRE(results.cases.size() > 1);
-  write_outputs(folder.path(), results, [](const StudyResults&) { return std::string("page"); });
+  write_outputs(folder.path(), results, [] { return std::string("page"); });
   for (const CaseRecord& record : results.cases) {
     const Study alone = parse(read_text(folder / ("failures/" + record.id + ".json")));
     REQUIRE(alone.cases.size() == 1);
@@ -152,22 +152,24 @@ std::string dictionary_in(const std::filesystem::path& folder) {
 
 TEST_CASE("outputs: of more cases than a folder is to have files no curve is written, and none of before stays") {
   const ScratchFolder folder;
-  const auto page = [](const StudyResults& results) { return where_curves_are(results); };
+  const auto write = [&](const StudyResults& results) {
+    write_outputs(folder.path(), results, [&] { return where_curves_are(results); });
+  };
   CHECK(has_curve_files(results_with_curves(kMostCurveFiles)));
   CHECK_FALSE(has_curve_files(results_with_curves(kMostCurveFiles + 1)));
   StudyResults refused = results_with_curves(kMostCurveFiles + 1);
   refused.cases.front().curve = {};
   CHECK(has_curve_files(refused));
 
-  write_outputs(folder.path(), results_with_curves(3), page);
+  write(results_with_curves(3));
   CHECK(std::filesystem::exists(folder / "curves/c0000000002.csv"));
   CHECK_THAT(dictionary_in(folder.path()), Catch::Contains("curves,energy"));
   CHECK(read_text(folder / "report.html") == "each case has its own in curves/ID.csv");
-  write_outputs(folder.path(), results_with_curves(kMostCurveFiles + 1), page);
+  write(results_with_curves(kMostCurveFiles + 1));
   CHECK_FALSE(std::filesystem::exists(folder / "curves"));
   CHECK_THAT(dictionary_in(folder.path()), !Catch::Contains("curves,energy"));
   CHECK_THAT(read_text(folder / "report.html"), Catch::Contains("ricochet export") && Catch::Contains("--curves"));
-  write_outputs(folder.path(), results_with_curves(3), page);
+  write(results_with_curves(3));
   CHECK(std::filesystem::exists(folder / "curves/c0000000002.csv"));
 }
 

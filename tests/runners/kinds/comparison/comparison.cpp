@@ -261,7 +261,7 @@ TEST_CASE("a measure that some method never has is left out of the effects, neit
       results.cases.push_back(std::move(record));
     }
   const auto measures = [&] {
-    derive_tables(results);
+    results = with_tables(std::move(results));
     std::set<std::string> found;
     for (const auto& row : table(results, "effects").rows) found.insert(row.front().text());
     return found;

@@ -33,7 +33,8 @@ std::string name_of(const StudyResults& all, const std::string& kind) {
 
 std::vector<std::string> sentences_of(const StudyResults& all) {
   std::vector<std::string> out;
-  for (const answers::Sentence& one : find_kind("continuation")->answers(all).sentences) out.push_back(one.text);
+  const AnalysedResults own(all);
+  for (const answers::Sentence& one : own.analysis.answer(own.compared).sentences) out.push_back(one.text);
   return out;
 }
 
@@ -147,8 +148,7 @@ TEST_CASE("the answer gives value, interval and order, and every number of it st
   INFO(whole);
   CHECK_THAT(whole, Contains("becomes a torus at") && Contains("first touches a stop at 0.0791792"));
   CHECK_THAT(whole, Contains("moves by") && Contains("No such fold"));
-  for (const answers::Sentence& one : find_kind("continuation")->answers(all).sentences)
-    CHECK_FALSE(one.clauses.empty());
+  for (const answers::Sentence& one : all.analysis.answer(all.compared).sentences) CHECK_FALSE(one.clauses.empty());
 }
 
 TEST_CASE("the order of cases changes no number and no sentence") {

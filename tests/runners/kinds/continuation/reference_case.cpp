@@ -144,7 +144,7 @@ TEST_CASE("first orbits of a reference are looked for as those of a method") {
 }
 
 TEST_CASE("a reference fills its columns and changes neither names nor limits nor orders") {
-  const StudyResults plain = with_tables(synthetic::points()), beside = with_tables(with_beam(synthetic::points()));
+  const AnalysedResults plain(synthetic::points()), beside(with_beam(synthetic::points()));
   const auto before = point_limits_type().read(plain.derived), after = point_limits_type().read(beside.derived);
   REQUIRE(before.size() == after.size());
   const synthetic::PointLaw law;
@@ -163,7 +163,7 @@ TEST_CASE("a reference fills its columns and changes neither names nor limits no
   const auto orders = point_orders_type().read(plain.derived), same = point_orders_type().read(beside.derived);
   REQUIRE(orders.size() == same.size());
   for (std::size_t k = 0; k < same.size(); ++k) CHECK(same[k].order == orders[k].order);
-  const auto answer = find_kind("continuation")->answers(beside);
+  const auto answer = beside.analysis.answer(beside.compared);
   CHECK(std::any_of(answer.sentences.begin(), answer.sentences.end(), [](const answers::Sentence& one) {
     return one.text.find("the reference: 0.1005653") != std::string::npos;
   }));

@@ -215,7 +215,7 @@ TEST_CASE("shifts of located changes carry the intervals of both") {
                                      {{"up", "periodic 1", "chaotic", "change", 0.085, 0.0849, 0.0851, 8},
                                       {"up", "no contact", "periodic 1", "grazing", 0.0792, 0.0791, 0.0793, 8},
                                       {"down", "chaotic", "periodic 3", "change", 0.088, 0.0879, 0.0881, 8}}});
-  derive_tables(results);
+  results = with_tables(std::move(results));
   const Derived shifts(results, "shifts"), changes(results, "bifurcations");
   CHECK(changes.size() == 6);
   CHECK(changes.text(3, "case") == id_of(methods[1]));
@@ -245,7 +245,7 @@ TEST_CASE("what failed makes no attractor, and leaves its values open") {
     }));
   StudyResults results = study(methods, range(0.07, 0.09, 5));
   results.cases[0].numbers.clear();
-  derive_tables(results);
+  results = with_tables(std::move(results));
   const Derived values(results, "values"), verdicts(results, "verdicts"), attractors(results, "attractors");
   for (const std::size_t row : values.where("class", "failed")) CHECK(values.at(row, "attractor").is_nothing());
   for (const std::size_t row : values.where("class", "undecided")) CHECK(values.at(row, "attractor").is_nothing());
@@ -262,7 +262,7 @@ TEST_CASE("without points, or with one case, tables are smaller and nothing is i
   std::vector<Method> methods = {method(0.25, 2000, 20, moving), method(0.5, 2000, 20, moving)};
   StudyResults bare = study(methods, range(0.07, 0.09, 5));
   for (CaseRecord& record : bare.cases) record.numbers.clear();
-  derive_tables(bare);
+  bare = with_tables(std::move(bare));
   CHECK(Derived(bare, "attractors").size() == 1);
   const Derived distances(bare, "distances");
   for (std::size_t k = 0; k < distances.size(); ++k) {
@@ -275,7 +275,7 @@ TEST_CASE("without points, or with one case, tables are smaller and nothing is i
   CHECK(Derived(one, "distances").size() == 0);
   StudyResults none;
   none.kind = "bifurcation";
-  CHECK_NOTHROW(derive_tables(none));
+  CHECK_NOTHROW(with_tables(none));
 }
 
 TEST_CASE("every row is as long as its columns, and no cell is NaN") {
@@ -318,7 +318,7 @@ TEST_CASE("the reference case has the stiffest contact, whatever its parameters 
       law.add({laws[k].compliance});
       results.cases[k].numbers.push_back(std::move(law));
     }
-    derive_tables(results);
+    results = with_tables(std::move(results));
     if (known == 1) continue;
     const Derived distances(results, "distances");
     REQUIRE(distances.size() > 0);

@@ -99,7 +99,7 @@ TEST_CASE("every one of many chaotic sections belongs to an attractor") {
       return chaos(k + a * 1300 + static_cast<double>(start.size()));
     }));
   StudyResults results = study(methods, range(0.07, 0.09, 100), {"rest", "up", "state"}, 300);
-  derive_tables(results);
+  results = with_tables(std::move(results));
   const Derived values(results, "values");
   CHECK(values.size() == 2400);
   for (const Cell& attractor : values.column("attractor")) CHECK(attractor.whole());
