@@ -17,7 +17,7 @@ bool is_refinement(const std::string& column);
 /// one level of every choice that varies. What is left of a case is its step and its mesh.
 class Compared {
  public:
-  Compared(const StudyResults& results);
+  explicit Compared(const StudyResults& results);
 
   const StudyResults& results() const { return results_; }
   /// What the study asks to be compared: a choice or one of its columns; "" where it asks for none.

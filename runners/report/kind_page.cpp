@@ -29,7 +29,7 @@ std::vector<Table> page_tables(const StudyResults& results, const KindPage& page
   const auto add = [&](Table table) {
     if (!find_table(results.derived, table.name) && !table.rows.empty()) out.push_back(std::move(table));
   };
-  for (const auto make : page.derived) add(make(view));
+  for (const auto& make : page.derived) add(make(view));
   add(effects_said(view));
   return out;
 }

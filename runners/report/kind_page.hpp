@@ -18,7 +18,7 @@ struct KindPage {
   std::vector<std::string_view> own_tables;  ///< tables of single cases
   std::vector<std::string_view> curves;      ///< columns of the sampled curves, over t
   /// Tables that are worked out so that the page has nothing to work out; one without rows is left out.
-  std::vector<Table (*)(const CaseView&)> derived;
+  std::vector<std::function<Table(const CaseView&)>> derived;
   /// The section "Answer" as HTML: sentences and tables made of rows.
   std::function<std::string(const CaseView&)> answer;
   /// Tables of the page that a file keeps, between its answer and its figure.

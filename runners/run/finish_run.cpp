@@ -75,7 +75,8 @@ std::unique_ptr<const AnalysedResults> write_folder(Store& store, const std::fil
                                                     const RenderReport& render, const std::set<std::string>* changed) {
   auto results = std::make_unique<const AnalysedResults>(store.load());
   store.make_views(*results);
-  write_outputs(folder, *results, [&] { return render(*results); }, changed);
+  write_outputs(
+      folder, *results, [&] { return render(*results); }, changed);
   return results;
 }
 

@@ -13,8 +13,7 @@ namespace ricochet {
 /// column of these means. Each file is written whole or not at all. The curves of cases that are no longer in the study
 /// are removed. `changed`: the cases whose curve must be written again; nothing means all. Throws StoreError.
 void write_outputs(const std::filesystem::path& folder, const StudyResults& results,
-                   const std::function<std::string()>& page,
-                   const std::set<std::string>* changed = nullptr);
+                   const std::function<std::string()>& page, const std::set<std::string>* changed = nullptr);
 
 /// Writes study.json and the tables as CSV: cases, the derived ones, those of numbers, curves/ID, measures (what each
 /// means), left_out, notes, environment, dictionary. `one_file`: all curves in one curves.csv in place of curves/ID.

@@ -8,6 +8,7 @@
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"
+#include "runners/kinds/basins/basin_analysis.hpp"
 #include "runners/kinds/basins/basins.hpp"
 #include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
@@ -48,19 +49,15 @@ struct CaseEnds {
 
 class BasinSpeaker {
  public:
-  explicit BasinSpeaker(const say::Compared& study)
-      : study_(study), fractions_(basin_fractions_type().read(study.results().derived)) {
+  BasinSpeaker(const say::Compared& study, const BasinAnalysis& basins) : study_(study), basins_(basins) {
     std::map<std::string, CaseEnds> by_id;
-    for (const FractionRow& row : fractions_) by_id[row.id].ends[row.attractor] = &row;
-    for (const CellRow& cell : cells_type().read(study.results().derived)) {
-      ++cells_[cell.id];
-      no_starts_[cell.id] += cell.regime == no_start;
-      if (cell.status.value_or("done") == "done" && by_id.contains(cell.id))
-        (cell.attractor ? by_id[cell.id].decided : by_id[cell.id].undecided) += 1;
-    }
+    for (const FractionRow& row : basins.fractions) by_id[row.id].ends[row.attractor] = &row;
     for (const CaseRecord& record : study.results().cases)
       if (const auto found = by_id.find(record.id); found != by_id.end()) {
+        const BasinStarts& starts = basins.starts.at(record.id);
         found->second.record = &record;
+        found->second.decided = static_cast<double>(starts.decided);
+        found->second.undecided = static_cast<double>(starts.undecided);
         (found->second.undecided_share() > half_of_them ? vague_ : cases_).push_back(found->second);
       }
   }
@@ -99,9 +96,8 @@ class BasinSpeaker {
   std::string names(const std::vector<const CaseEnds*>& group) const;
 
   const say::Compared& study_;
-  std::vector<FractionRow> fractions_;
-  std::map<std::string, std::size_t> cells_, no_starts_;  ///< of each case; those that begin beyond a stop
-  std::vector<CaseEnds> cases_, vague_;                   ///< those with half of their starts decided, and the others
+  const BasinAnalysis& basins_;
+  std::vector<CaseEnds> cases_, vague_;  ///< those with half of their starts decided, and the others
 };
 
 std::string BasinSpeaker::names(const std::vector<const CaseEnds*>& group) const {
@@ -115,11 +111,12 @@ std::string BasinSpeaker::names(const std::vector<const CaseEnds*>& group) const
 std::optional<Sentence> BasinSpeaker::no_starts() const {
   std::size_t least = 0, most = 0, of = 0, cases = 0;
   std::string ids;
-  for (const auto& [id, beyond] : no_starts_) {
+  for (const auto& [id, starts] : basins_.starts) {
+    const std::size_t beyond = starts.no_starts;
     if (beyond == 0) continue;
     least = cases == 0 ? beyond : std::min(least, beyond);
     most = std::max(most, beyond);
-    of = std::max(of, cells_.at(id));
+    of = std::max(of, starts.cells);
     ids += (ids.empty() ? "" : " ") + id;
     ++cases;
   }
@@ -132,8 +129,9 @@ std::optional<Sentence> BasinSpeaker::no_starts() const {
   clause.status = no_start;
   const std::string count = least == most ? std::to_string(most) : fmt::format("{} to {}", least, most);
   return Sentence{
-      fmt::format("{} of {} cells begin beyond a stop{}: they are no starts, and no share counts them.", count, of,
-                  cases == cells_.size() ? "" : fmt::format(" in {} of {} cases", cases, cells_.size())),
+      fmt::format(
+          "{} of {} cells begin beyond a stop{}: they are no starts, and no share counts them.", count, of,
+          cases == basins_.starts.size() ? "" : fmt::format(" in {} of {} cases", cases, basins_.starts.size())),
       {clause}};
 }
 
@@ -228,7 +226,7 @@ void BasinSpeaker::say_ends(say::Answer& answer) const {
 
 /// Whether the ends depend on each choice, by the cells in which two cases differ that differ in it alone.
 void BasinSpeaker::say_border(say::Answer& answer) const {
-  const std::vector<BasinDifferenceRow> rows = basin_differences_type().read(study_.results().derived);
+  const std::vector<BasinDifferenceRow>& rows = basins_.differences;
   if (rows.empty()) {
     if (study_.results().cases.size() == 1)
       answer.say("One method only: whether another moves the border is not known.",
@@ -279,7 +277,7 @@ void BasinSpeaker::say_border(say::Answer& answer) const {
 }
 
 void BasinSpeaker::say_fractal(say::Answer& answer) const {
-  std::vector<UncertaintyRow> rows = basin_uncertainty_type().read(study_.results().derived);
+  std::vector<UncertaintyRow> rows = basins_.uncertainty;
   std::erase_if(rows,
                 [&](const UncertaintyRow& row) { return !row.exponent || !row.low || !row.high || !find(row.id); });
   if (rows.empty()) return;
@@ -300,9 +298,9 @@ void BasinSpeaker::say_fractal(say::Answer& answer) const {
 
 }  // namespace
 
-answers::Answer basins_answer(const answers::Compared& study) {
+answers::Answer basins_answer(const answers::Compared& study, const BasinAnalysis& of) {
   answers::Answer answer;
-  const BasinSpeaker basins(study);
+  const BasinSpeaker basins(study, of);
   basins.say_undecided(answer);
   basins.say_ends(answer);
   basins.say_border(answer);

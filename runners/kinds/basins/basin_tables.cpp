@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <ricochet/measure/attractors/basin_grid.hpp>
 #include <set>
 
-#include "runners/kinds/basins/basins.hpp"
+#include "runners/kinds/basins/basin_analysis.hpp"
+#include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/sweep/diagram_tables.hpp"
+#include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/store/record_values.hpp"
 
@@ -16,14 +20,47 @@ namespace {
 constexpr double kShown = 0.25;
 constexpr std::size_t kNoRow = static_cast<std::size_t>(-1);
 
+/// A row of a case: where it leads, but for the attractor.
+struct ReadCell {
+  double x = NAN, y = NAN;
+  std::size_t place = kNoRow;  ///< on the grid
+  MotionClass motion;
+  int period = 0, end = -1;  ///< period 0: nothing repeats; the end within the case, −1: not known
+  std::uint8_t group = 0;    ///< of regime_groups; no_start_group of what begins beyond a stop
+  bool done = true, filled = false;
+};
+
 /// A case with its table, as a grid.
 struct Image {
   const CaseRecord* record = nullptr;
   const Table* table = nullptr;
   SectionIndex sections;
-  std::vector<std::size_t> row_of;  ///< of each place, kNoRow where the case has no cell
-  std::vector<int> periods;         ///< of each row, 0 where nothing repeats
+  std::vector<ReadCell> rows = {};
+  std::map<std::string, std::size_t> reasons = {};  ///< of rows that failed
+  std::vector<std::size_t> row_of = {};             ///< of each place, kNoRow where the case has no cell
 };
+
+using report::failed_group, report::regime_groups, report::undecided_group;
+constexpr std::size_t no_start_group = regime_groups.size();
+
+std::size_t group_of(const CellRow& cell) {
+  const std::string status = cell.status.value_or("");
+  if (status == no_start) return no_start_group;
+  if (status == "failed" || status == "refused" || status == "diverged") return failed_group;
+  return report::regime_group(cell.regime, cell.period);
+}
+
+ReadCell read_cell(const CellRow& row) {
+  const std::string status = row.status.value_or("done");
+  return {.x = row.x.value_or(NAN),
+          .y = row.y.value_or(NAN),
+          .motion = dynamics::motion_of(row.regime, row.period, status),
+          .period = row.period.value_or(0),
+          .end = row.attractor.value_or(0) - 1,
+          .group = static_cast<std::uint8_t>(group_of(row)),
+          .done = status == "done",
+          .filled = !row.marched.value_or(true)};
+}
 
 /// What the grid of the study goes through.
 GridOf grid_of(const StudyResults& results) {
@@ -35,9 +72,9 @@ GridOf grid_of(const StudyResults& results) {
   return states ? GridOf::initial_states : GridOf::parameters;
 }
 
-class BasinImages {
+class BasinCases {
  public:
-  explicit BasinImages(StudyResults& results) : results_(results), grid_of_(grid_of(results)) {
+  explicit BasinCases(const StudyResults& results) : results_(results), grid_of_(grid_of(results)) {
     read_places();
     ScaleOfPoints scale;
     for (const Image& image : images_) image.sections.add_points(scale);
@@ -52,37 +89,55 @@ class BasinImages {
 
   bool empty() const { return images_.empty(); }
 
-  void append_tables() const {
-    for (Table table : {cells(), attractors(), fractions(), differences(), uncertainty()})
-      results_.derived.push_back(std::move(table));
+  BasinAnalysis analysis() {
+    BasinAnalysis out;
+    out.fractions = fractions();
+    out.differences = differences();
+    out.uncertainty = uncertainty();
+    for (std::size_t c = 0; c < images_.size(); ++c) {
+      BasinStarts& starts = out.starts[images_[c].record->id];
+      for (const ReadCell& row : images_[c].rows) {
+        ++starts.cells;
+        starts.no_starts += row.group == no_start_group;
+        if (row.done) ++(attractor_of(c, row) >= 0 ? starts.decided : starts.undecided);
+      }
+    }
+    put_images(out);
+    out.xs = std::move(xs_);
+    out.ys = std::move(ys_);
+    return out;
   }
 
  private:
   /// The grid is what the cases have rows for.
   void read_places() {
-    std::set<double> xs, ys;
     for (const CaseRecord& record : results_.cases) {
       const Table* table = cells_.find(record.tables);
       if (!table) continue;
-      images_.push_back({&record, table, SectionIndex::of_cells(record), {}, {}});
-      cells_.rows.each(*table, [&](std::size_t, const CellRow& cell) {
-        if (!cell.x || !cell.y) return;
-        xs.insert(*cell.x);
-        ys.insert(*cell.y);
+      Image& image = images_.emplace_back(Image{&record, table, SectionIndex::of_cells(record)});
+      image.rows.reserve(table->rows.size());
+      cells_.rows.each(*table, [&](std::size_t, const CellRow& row) {
+        ReadCell& cell = image.rows.emplace_back(read_cell(row));
+        if (!row.x || !row.y) return;
+        xs_.push_back(*row.x);
+        ys_.push_back(*row.y);
+        if (cell.group == failed_group) ++image.reasons[row.reason.value_or("")];
       });
+      for (std::vector<double>* values : {&xs_, &ys_}) {
+        std::sort(values->begin(), values->end());
+        values->erase(std::unique(values->begin(), values->end()), values->end());
+      }
     }
-    xs_.assign(xs.begin(), xs.end());
-    ys_.assign(ys.begin(), ys.end());
     const auto index = [](const std::vector<double>& list, double value) {
       return static_cast<std::size_t>(std::lower_bound(list.begin(), list.end(), value) - list.begin());
     };
     for (Image& image : images_) {
       image.row_of.assign(xs_.size() * ys_.size(), kNoRow);
-      image.periods.assign(image.table->rows.size(), 0);
-      cells_.rows.each(*image.table, [&](std::size_t r, const CellRow& cell) {
-        image.periods[r] = cell.period.value_or(0);
-        if (cell.x && cell.y) image.row_of[index(ys_, *cell.y) * xs_.size() + index(xs_, *cell.x)] = r;
-      });
+      for (std::size_t r = 0; r < image.rows.size(); ++r)
+        if (ReadCell& cell = image.rows[r]; !std::isnan(cell.x) && !std::isnan(cell.y)) {
+          cell.place = index(ys_, cell.y) * xs_.size() + index(xs_, cell.x);
+          image.row_of[cell.place] = r;
+        }
     }
   }
 
@@ -91,17 +146,14 @@ class BasinImages {
     grid.columns = xs_.size();
     grid.rows = ys_.size();
     grid.cells.resize(image.row_of.size());
-    std::vector<std::size_t> place_of(image.table->rows.size(), kNoRow);
-    for (std::size_t place = 0; place < image.row_of.size(); ++place)
-      if (image.row_of[place] != kNoRow) place_of[image.row_of[place]] = place;
-    cells_.rows.each(*image.table, [&](std::size_t r, const CellRow& row) {
-      if (place_of[r] == kNoRow) return;
-      GridCell& cell = grid.cells[place_of[r]];
+    for (const ReadCell& row : image.rows) {
+      if (row.place == kNoRow) continue;
+      GridCell& cell = grid.cells[row.place];
       cell.present = true;
-      cell.motion = motion_of(row.regime, row.period, row.status.value_or("done"));
+      cell.motion = row.motion;
       // What the case itself has told apart while it marched.
-      if (row.attractor && grid_of_ == GridOf::initial_states) cell.end = *row.attractor - 1;
-    });
+      if (grid_of_ == GridOf::initial_states) cell.end = row.end;
+    }
     return grid;
   }
 
@@ -109,10 +161,63 @@ class BasinImages {
     if (motion.regime == Regime::no_contact) return {motion, true, {}};
     const std::size_t row = image.row_of[place];
     const SectionReadings readings = image.sections.read(static_cast<double>(row), "");
-    const int cycle = cycle_of(motion, image.periods[row]);
+    const int cycle = cycle_of(motion, image.rows[row].period);
     return {motion, cycle > 0, make_cloud(readings.points, readings.opposite, scale_, cycle)};
   }
 
+  /// Over all cases, from 0; −1: not decided.
+  int attractor_of(std::size_t c, const ReadCell& row) const {
+    return row.place == kNoRow ? -1 : grids_[c].cells[row.place].attractor;
+  }
+
+  /// Labels, and the label of each cell.
+  void put_images(BasinAnalysis& out) const {
+    constexpr std::size_t most_labels = 250;
+    constexpr std::array attractor_colours = {"#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00",
+                                              "#6A3D9A", "#8C6D31", "#F0E442", "#44AA99", "#882255", "#999933"};
+    constexpr const char* no_start_colour = "#E4DFD2";
+    // By attractor, then by group.
+    const auto rank_of = [&](std::size_t c, const ReadCell& row) {
+      const int attractor = attractor_of(c, row);
+      return attractor >= 0 ? static_cast<std::size_t>(attractor) : attractors_.size() + row.group;
+    };
+    std::vector<char> met(attractors_.size() + no_start_group + 1, 0);
+    for (std::size_t c = 0; c < images_.size(); ++c)
+      for (const ReadCell& row : images_[c].rows)
+        if (row.place != kNoRow) met[rank_of(c, row)] = 1;
+    std::vector<std::uint8_t> label_of(met.size(), 0);
+    for (std::size_t rank = 0; rank < met.size(); ++rank) {
+      if (!met[rank]) continue;
+      // Those beyond the most share the last one.
+      label_of[rank] = static_cast<std::uint8_t>(std::min(out.labels.size(), most_labels - 1));
+      if (out.labels.size() == most_labels) continue;
+      if (rank < attractors_.size()) {
+        const std::string text = regime_text(ricochet::text(attractors_[rank].regime), period_of(attractors_[rank]));
+        const char* colour = attractor_colours[out.labels.size() % attractor_colours.size()];
+        out.labels.push_back({fmt::format("attractor {}{}", rank + 1, text.empty() ? "" : " (" + text + ")"), colour});
+      } else if (const std::size_t group = rank - attractors_.size(); group == no_start_group) {
+        out.labels.push_back({no_start, no_start_colour, false, false});
+      } else {
+        // Without attractors groups such as "period 3" tell the cells apart.
+        out.labels.push_back({regime_groups[group].name, regime_groups[group].colour, group < undecided_group});
+      }
+    }
+    for (std::size_t c = 0; c < images_.size(); ++c) {
+      report::BasinImage image{images_[c].record};
+      image.cells.assign(grids_[c].cells.size(), report::BasinImage::absent);
+      image.reasons = images_[c].reasons;
+      for (const ReadCell& row : images_[c].rows) {
+        if (row.place == kNoRow) continue;
+        const bool started = row.group != no_start_group, failed = row.group == failed_group;
+        image.cells[row.place] = label_of[rank_of(c, row)];
+        image.no_starts += !started;
+        image.filled += row.filled && started && !failed;
+      }
+      if (!images_[c].rows.empty()) out.images.push_back(std::move(image));
+    }
+  }
+
+ public:
   Table cells() const {
     Table table = table_of_cases(results_, cells_.name, cells_.text, {});
     for (std::size_t c = 0; c < images_.size(); ++c) {
@@ -121,9 +226,11 @@ class BasinImages {
       append_rows(results_, *image.record, *image.table, table);
       const auto column = find_column(table.columns, attractor_column.name);
       if (!column) continue;
-      for (std::size_t place = 0; place < image.row_of.size(); ++place)
-        if (const int attractor = grids_[c].cells[place].attractor; image.row_of[place] != kNoRow)
-          table.rows[begin + image.row_of[place]][*column] = attractor >= 0 ? Cell(attractor + 1) : Cell();
+      for (std::size_t r = 0; r < image.rows.size(); ++r)
+        if (image.rows[r].place != kNoRow) {
+          const int attractor = attractor_of(c, image.rows[r]);
+          table.rows[begin + r][*column] = attractor >= 0 ? Cell(attractor + 1) : Cell();
+        }
     }
     return table;
   }
@@ -173,9 +280,19 @@ class BasinImages {
     return attractors_type(swept_).with(rows);
   }
 
-  Table fractions() const {
-    const TableType<FractionRow> type = basin_fractions_type();
+  template <class Record>
+  Table table_of(const TableType<Record>& type, const std::vector<Record>& rows) const {
     Table table = table_of_cases(results_, type.head());
+    std::size_t k = 0;
+    for (const Image& image : images_)
+      for (; k < rows.size() && rows[k].id == image.record->id; ++k)
+        add_row(table, place_of(results_, *image.record), type.rows.row(rows[k]));
+    return table;
+  }
+
+ private:
+  std::vector<FractionRow> fractions() const {
+    std::vector<FractionRow> rows;
     for (std::size_t c = 0; c < grids_.size(); ++c) {
       const std::size_t decided = decided_cells(grids_[c]);
       if (decided == 0) continue;
@@ -184,21 +301,14 @@ class BasinImages {
         const Proportion share =
             wilson_interval(static_cast<double>(count) / static_cast<double>(decided), static_cast<double>(decided));
         const MotionClass& motion = attractors_[a];
-        const FractionRow row{images_[c].record->id,
-                              static_cast<int>(a) + 1,
-                              text(motion.regime),
-                              period_of(motion),
-                              static_cast<int>(count),
-                              share.value,
-                              share.low,
-                              share.high};
-        add_row(table, place_of(results_, *images_[c].record), type.rows.row(row));
+        rows.push_back({images_[c].record->id, static_cast<int>(a) + 1, text(motion.regime), period_of(motion),
+                        static_cast<int>(count), share.value, share.low, share.high});
       }
     }
-    return table;
+    return rows;
   }
 
-  Table differences() const {
+  std::vector<BasinDifferenceRow> differences() const {
     std::vector<BasinDifferenceRow> rows;
     for (std::size_t a = 0; a < grids_.size(); ++a)
       for (std::size_t b = a + 1; b < grids_.size(); ++b) {
@@ -207,29 +317,29 @@ class BasinImages {
         row = {images_[a].record->id, images_[b].record->id, both, differ, {}};
         if (both > 0) row.share = static_cast<double>(differ) / both;
       }
-    return basin_differences_type().with(rows);
+    return rows;
   }
 
-  Table uncertainty() const {
-    const TableType<UncertaintyRow> type = basin_uncertainty_type();
-    Table table = table_of_cases(results_, type.head());
+  std::vector<UncertaintyRow> uncertainty() const {
+    std::vector<UncertaintyRow> rows;
     for (std::size_t c = 0; c < grids_.size(); ++c) {
       const std::vector<int> labels = attractors_of(grids_[c]);
       const auto exponent =
           labels.empty() ? std::nullopt
                          : uncertainty_exponent(labels, static_cast<int>(xs_.size()), static_cast<int>(ys_.size()));
-      UncertaintyRow row{images_[c].record->id, boundary_share(grids_[c]), {}, {}, {}};
+      UncertaintyRow& row = rows.emplace_back();
+      row.id = images_[c].record->id;
+      row.boundary_share = boundary_share(grids_[c]);
       if (exponent) {
         row.exponent = exponent->value;
         row.low = exponent->low;
         row.high = exponent->high;
       }
-      add_row(table, place_of(results_, *images_[c].record), type.rows.row(row));
     }
-    return table;
+    return rows;
   }
 
-  StudyResults& results_;
+  const StudyResults& results_;
   const SweptColumns swept_ = swept_columns(results_);
   const TableType<CellRow> cells_ = cells_type(swept_);
   GridOf grid_of_;
@@ -241,10 +351,20 @@ class BasinImages {
 };
 
 }  // namespace
+}  // namespace ricochet::dynamics
 
-void derive_basins(StudyResults& results) {
-  const BasinImages images(results);
-  if (!images.empty()) images.append_tables();
+namespace ricochet {
+
+BasinAnalysis analyse_basins(StudyResults& results) {
+  dynamics::BasinCases cases(results);
+  if (cases.empty()) return {};
+  BasinAnalysis out = cases.analysis();
+  results.derived.push_back(cases.cells());
+  results.derived.push_back(cases.attractors());
+  results.derived.push_back(cases.table_of(basin_fractions_type(), out.fractions));
+  results.derived.push_back(basin_differences_type().with(out.differences));
+  results.derived.push_back(cases.table_of(basin_uncertainty_type(), out.uncertainty));
+  return out;
 }
 
-}  // namespace ricochet::dynamics
+}  // namespace ricochet

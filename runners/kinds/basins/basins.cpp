@@ -6,8 +6,10 @@
 #include <charconv>
 #include <functional>
 #include <iostream>
+#include <memory>
 
 #include "runners/kinds/all_kinds.hpp"
+#include "runners/kinds/basins/basin_analysis.hpp"
 #include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/basins/page/page.hpp"
 #include "runners/kinds/sweep/march_point.hpp"
@@ -60,8 +62,9 @@ class BasinsKind final : public SweepKind {
     return run_basins(study_case, registry, context, stop);
   }
   Analysis derive(StudyResults& results) const override {
-    dynamics::derive_basins(results);
-    return {basins_answer, report::basins_page()};
+    const auto basins = std::make_shared<const BasinAnalysis>(analyse_basins(results));
+    return {[basins](const answers::Compared& study) { return basins_answer(study, *basins); },
+            report::basins_page(basins)};
   }
 };
 

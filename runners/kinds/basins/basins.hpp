@@ -10,6 +10,8 @@
 /// Cases of kind `basins`, their tables, and what they answer.
 namespace ricochet {
 
+struct BasinAnalysis;
+
 /// What would run for a case of kind `basins`.
 CasePlan plan_basins(const StudyCase& study_case, const Registry& registry);
 
@@ -17,26 +19,16 @@ CasePlan plan_basins(const StudyCase& study_case, const Registry& registry);
 /// the grid, or of the cells that GridRefinement asks for.
 ///
 /// Table `cells`, a cell numbered by its row, x first, both ascending: x, y, class, period, attractor, marched, source,
-/// status, reason. `attractor` is the end within the case, from 1 in the order met; derive_basins() numbers it over all
-/// cases. It is null where undecided, and on a grid of parameters, where attractors move. `marched` false: the cell is
-/// filled from `source`, a cell of the same basin. Numbers `cell_points` (not exported): cell, index, tip_displacement,
-/// tip_velocity, opposite_displacement, opposite_velocity. They are the last strobed points: one period of what
-/// repeats, else at most 64; of filled cells those of the source.
+/// status, reason. `attractor` is the end within the case, from 1 in the order met; analyse_basins() numbers it over
+/// all cases. It is null where undecided, and on a grid of parameters, where attractors move. `marched` false: the cell
+/// is filled from `source`, a cell of the same basin. Numbers `cell_points` (not exported): cell, index,
+/// tip_displacement, tip_velocity, opposite_displacement, opposite_velocity. They are the last strobed points: one
+/// period of what repeats, else at most 64; of filled cells those of the source.
 CaseRecord run_basins(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                       const std::atomic<bool>& stop);
 
 /// What a study of basins says: which share of the starts ends in which motion, whether methods move the border, and
 /// whether it is fractal.
-answers::Answer basins_answer(const answers::Compared& study);
+answers::Answer basins_answer(const answers::Compared& study, const BasinAnalysis& basins);
 
 }  // namespace ricochet
-
-namespace ricochet::dynamics {
-
-/// Appends the tables of kind `basins` to results.derived: cells, attractors, basin_fractions, basin_differences,
-/// basin_uncertainty (see runners/kinds/sweep/sweep_tables.hpp). Which cells end alike is told by one rule
-/// (core/measure/attractors/attractors.hpp), by which the cases refined their grids as well. A motion and its mirror
-/// image are one attractor.
-void derive_basins(StudyResults& results);
-
-}  // namespace ricochet::dynamics

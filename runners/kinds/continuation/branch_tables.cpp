@@ -273,7 +273,7 @@ void BranchResults::add_missing(const std::string& name, double at, std::string 
 
 void BranchResults::put(CaseRecord& record, const ContinuationPlan& plan, long long pieces,
                         std::optional<double> spent) const {
-  record.tables.push_back(branches_table(plan.multipliers, rows_));
+  record.tables.push_back(branches_type(plan.multipliers).with(rows_));
   record.tables.push_back(special_points_type().with(special_));
   record.tables.push_back(turns_type().with(turns_));
   orbits_.put(record);

@@ -55,12 +55,14 @@ class ContinuationKind final : public Kind {
     };
     return runner;
   }
-  Analysis analysis(StudyResults& results, const answers::Compared&) const override {
+  Analysis analysis(StudyResults& results, const answers::Compared& study) const override {
     const SweptColumns swept = swept_columns(results);
     for (CaseRecord& record : results.cases) describe_continuation(record, swept);
-    collect_tables(results);
-    derive_points(results);
-    return {continuation_answer, report::continuation_page()};
+    collect_tables(results, [](const std::string& table) { return table == special_points_type().name; });
+    const auto points = std::make_shared<const PointAnalysis>(study);
+    points->append_tables(results);
+    return {[points](const answers::Compared& of) { return continuation_answer(of, *points); },
+            report::continuation_page(points)};
   }
   bool has_points() const override { return true; }
   bool only_points() const override { return false; }

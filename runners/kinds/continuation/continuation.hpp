@@ -14,6 +14,7 @@
 /// Cases of kind `continuation`, one orbit of theirs, and what they answer.
 namespace ricochet {
 
+struct PointAnalysis;
 struct PointRequest;
 
 /// What would run for a case of kind `continuation`.
@@ -42,6 +43,6 @@ int solve_branch_point(const StudyResults& results, const PointRequest& asked, s
 
 /// What a continuation study says: where the orbits of the reference case have special points, with interval and order.
 /// Then what each choice moves the first of them by, which cases lack it, and what turns a step invents.
-answers::Answer continuation_answer(const answers::Compared& study);
+answers::Answer continuation_answer(const answers::Compared& study, const PointAnalysis& points);
 
 }  // namespace ricochet

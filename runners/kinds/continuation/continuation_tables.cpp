@@ -35,7 +35,7 @@ void add_multiplier(RowType<BranchRow>& type, std::size_t k, const char* suffix,
 }
 
 /// With so many multipliers.
-RowType<BranchRow> branch_row_type(int multipliers, const SweptColumns& swept = {}) {
+RowType<BranchRow> branch_row_type(int multipliers, const SweptColumns& swept) {
   RowType<BranchRow> type;
   type.of_case(&BranchRow::id)
       .add(branch_column, &BranchRow::branch)
@@ -105,15 +105,13 @@ RowType<BranchRow> branch_row_type(int multipliers, const SweptColumns& swept = 
 std::vector<BranchRow> branch_rows_in(const Table& branches) {
   int count = 0;
   while (find_column(branches.columns, fmt::format("multiplier_{}_re", count + 1))) ++count;
-  return branch_row_type(count).read(branches);
+  return branch_row_type(count, {}).read(branches);
 }
 
-Table branches_table(int multipliers, const std::vector<BranchRow>& rows) {
-  return TableType<BranchRow>{branches_name,
-                              "One orbit on a branch; of a branch with more than 2000 the special ones, and others "
-                              "evenly spaced.",
-                              branch_row_type(multipliers)}
-      .with(rows);
+TableType<BranchRow> branches_type(int multipliers, const SweptColumns& swept) {
+  return {branches_name,
+          "One orbit on a branch; of a branch with more than 2000 the special ones, and others evenly spaced.",
+          branch_row_type(multipliers, swept)};
 }
 
 TableType<SpecialRow> special_points_type(const SweptColumns& swept) {
@@ -154,27 +152,22 @@ TableType<SpecialRow> special_points_type(const SweptColumns& swept) {
   return {"special_points", "One special point of a branch.", rows};
 }
 
-TableType<TurnRow> turns_type() {
+TableType<TurnRow> turns_type(const SweptColumns& swept) {
   RowType<TurnRow> rows;
   rows.of_case(&TurnRow::id)
       .add(branch_column, &TurnRow::branch)
-      .add({"prominence", "as the parameter", "Way that the parameter goes back by, at least."}, &TurnRow::prominence)
+      .add({"prominence", swept.parameter.unit, "Way that the parameter goes back by, at least."}, &TurnRow::prominence)
       .add({"folds", "1", "Turns of the parameter along the branch with at least that prominence."}, &TurnRow::folds);
   return {"turns", "How many folds a branch has at one prominence: a scheme invents those that a finer step loses.",
           rows};
 }
 
 void describe_continuation(CaseRecord& record, const SweptColumns& swept) {
-  const auto describe = [&](const std::string& name, const std::vector<Column>& columns) {
-    for (Table& table : record.tables)
-      if (table.name == name) ricochet::describe(table.columns, columns);
-  };
-  describe(branches_name, branch_row_type(64, swept).columns());
-  describe("special_points", special_points_type(swept).rows.columns());
-  std::vector<Column> turns = turns_type().rows.columns();
-  for (Column& one : turns)
-    if (one.name == "prominence") one.unit = swept.parameter.unit;
-  describe("turns", turns);
+  constexpr int most_multipliers = 64;
+  for (Table& table : record.tables)
+    for (const Table& head :
+         {branches_type(most_multipliers, swept).head(), special_points_type(swept).head(), turns_type(swept).head()})
+      if (head.name == table.name) describe(table, head);
 }
 
 }  // namespace ricochet

@@ -36,7 +36,7 @@ struct BranchRow {
 /// The rows of `branches`, with as many multipliers as it has.
 std::vector<BranchRow> branch_rows_in(const Table& branches);
 inline constexpr char branches_name[] = "branches";
-Table branches_table(int multipliers, const std::vector<BranchRow>& rows);
+TableType<BranchRow> branches_type(int multipliers, const SweptColumns& swept = {});
 
 /// One row of `special_points`.
 struct SpecialRow {
@@ -60,9 +60,9 @@ struct TurnRow {
   double prominence = 0;
   int folds = 0;
 };
-TableType<TurnRow> turns_type();
+TableType<TurnRow> turns_type(const SweptColumns& swept = {});
 
-/// Gives the tables of a case the units and names that the study gives its parameter.
+/// Gives the tables of a case their meanings, with the units and names that the study gives its parameter.
 void describe_continuation(CaseRecord& record, const SweptColumns& swept);
 
 }  // namespace ricochet

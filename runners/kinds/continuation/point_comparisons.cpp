@@ -32,9 +32,9 @@ void PointSpeaker::say_shifts(say::Answer& answer) const {
   if (told_.empty()) return;
   const std::string& name = told_.front().name->text;
   std::vector<PointShiftRow> moved, still;
-  for (PointShiftRow& row : point_shifts_type().read(study_.results().derived)) {
+  for (const PointShiftRow& row : of_.shifts) {
     if (row.name != name || say::is_refinement(row.choice) || !row.shift || !row.low || !row.high) continue;
-    (*row.low > 0 || *row.high < 0 ? moved : still).push_back(std::move(row));
+    (*row.low > 0 || *row.high < 0 ? moved : still).push_back(row);
   }
   if (moved.empty() && still.empty()) return;
   std::stable_sort(moved.begin(), moved.end(), [](const PointShiftRow& a, const PointShiftRow& b) {
@@ -46,7 +46,7 @@ void PointSpeaker::say_shifts(say::Answer& answer) const {
     const PointShiftRow& row = moved[k];
     parts.push_back(
         fmt::format("{}{} with {}", signed_number(*row.shift, 2), unit(), say::level_phrase(row.choice, row.value)));
-    Clause part{.form = "differ", .measure = point_words(told_.front().name->kind).thing, .choice = row.choice};
+    Clause part{.form = "differ", .measure = point_words(told_.front().point().kind).thing, .choice = row.choice};
     part.who = row.value;
     part.methods = row.id;
     part.value = row.shift;
@@ -55,12 +55,12 @@ void PointSpeaker::say_shifts(say::Answer& answer) const {
     part.unit = unit_;
     said.clauses.push_back(part);
   }
-  const std::string thing = point_words(told_.front().name->kind).thing;
+  const std::string thing = point_words(told_.front().point().kind).thing;
   if (!parts.empty()) {
     said.text = fmt::format("The {} moves by {}", thing, and_list(parts));
     if (moved.size() > most_shifts) said.text += fmt::format(", by less in {} more cases", moved.size() - most_shifts);
   }
-  for (const PointOrderRow& row : orders_)
+  for (const PointOrderRow& row : of_.orders)
     if (row.name == name && row.refined == "contact.stiffness" && row.verdict == order_told && !parts.empty()) {
       said.text += fmt::format(" (order {} in 1/κ)", short_number(*row.order, 2));
       Clause order{.form = "order", .measure = "stiffness", .who = name, .methods = row.id};
@@ -92,13 +92,13 @@ void PointSpeaker::say_shifts(say::Answer& answer) const {
 
 void PointSpeaker::say_absent(say::Answer& answer) const {
   if (told_.empty()) return;
-  const std::string thing = point_words(told_.front().name->kind).thing;
+  const std::string thing = point_words(told_.front().point().kind).thing;
   Cases reached;
   Members absent;
   std::size_t shared = 0;
   std::optional<double> least;
   Sentence said;
-  for (const PointPresenceRow& row : point_presence_type().read(study_.results().derived)) {
+  for (const PointPresenceRow& row : of_.presence) {
     const CaseRecord* one = record(row.id);
     if (row.name != told_.front().name->text || !one || is_reference(*one) ||
         row.presence == word(PointPresence::not_reached))

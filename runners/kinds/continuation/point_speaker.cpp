@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"
@@ -23,7 +24,7 @@ constexpr std::size_t most_points = 4, most_unconfirmed = 4;
 
 /// Points of a known kind at a known place.
 bool tellable(const StudyPoint& one) {
-  return is_point_kind(one.kind) && !std::isnan(one.value);
+  return is_point_kind(one.kind) && !std::isnan(one.parameter);
 }
 
 }  // namespace
@@ -39,24 +40,23 @@ std::string point_value(double value, std::optional<double> half) {
   return text + " ± " + short_number(*half, fine ? 2 : 1);
 }
 
-PointSpeaker::PointSpeaker(const answers::Compared& study) : study_(study), points_(study) {
-  unit_ = report::shown_unit(report::swept_parameter(study.results()).unit);
-  limits_ = point_limits_type().read(study.results().derived);
-  orders_ = point_orders_type().read(study.results().derived);
-  if (!known()) return;
-  told_ = told_points(points_, limits_, orders_);
-}
+PointSpeaker::PointSpeaker(const answers::Compared& study, const PointAnalysis& of)
+    : study_(study),
+      of_(of),
+      points_(of.points),
+      told_(of.told),
+      unit_(report::shown_unit(report::swept_parameter(study.results()).unit)) {}
 
 std::string PointSpeaker::subject(const ToldPoint& told) const {
   // Where no orbit is symmetric the scene has no symmetry to lose.
   const bool symmetry = std::any_of(points_.names().begin(), points_.names().end(),
-                                    [](const PointName& one) { return one.symmetric.value_or(false); });
-  const PointName& name = *told.name;
+                                    [](const NamedPoint& one) { return one.point->symmetric.value_or(false); });
+  const StudyPoint& point = told.point();
   return fmt::format("the {}{}period-{} orbit", told.ends_stability ? "stable " : "",
-                     !symmetry || !name.symmetric ? ""
-                     : *name.symmetric            ? "symmetric "
-                                                  : "asymmetric ",
-                     name.period);
+                     !symmetry || !point.symmetric ? ""
+                     : *point.symmetric            ? "symmetric "
+                                                   : "asymmetric ",
+                     point.period);
 }
 
 const CaseRecord* PointSpeaker::record(const std::string& id) const {
@@ -79,11 +79,11 @@ std::string PointSpeaker::place_words(const ToldPoint& told, Sentence& said) con
   const PointLimitRow& limit = *told.limit;
   const bool refined = limit.low && limit.high;
   // Of one case its own interval is left.
-  const double own = told.point->half;
+  const double own = told.point().half;
   const auto half = refined   ? std::optional(0.5 * (*limit.high - *limit.low))
                     : own > 0 ? std::optional(own)
                               : std::nullopt;
-  const PointWords& words = point_words(told.name->kind);
+  const PointWords& words = point_words(told.point().kind);
   Clause where{.form = "value", .measure = words.thing, .who = told.name->text, .methods = points_.reference()->id};
   where.value = limit.limit;
   where.low = limit.low;
@@ -98,7 +98,7 @@ std::string PointSpeaker::place_words(const ToldPoint& told, Sentence& said) con
 std::string PointSpeaker::facts_words(const ToldPoint& told, Sentence& said) const {
   const std::string &name = told.name->text, &reference = points_.reference()->id;
   std::vector<std::string> orders;
-  for (const PointOrderRow& row : orders_) {
+  for (const PointOrderRow& row : of_.orders) {
     if (row.name != name || row.method != reference || row.verdict != order_told) continue;
     const auto axis = std::find_if(points_.axes().begin(), points_.axes().end(),
                                    [&](const RefinedAxis& one) { return one.column == row.refined; });
@@ -129,7 +129,7 @@ std::string PointSpeaker::facts_words(const ToldPoint& told, Sentence& said) con
 void PointSpeaker::say_points(say::Answer& answer) const {
   if (told_.empty()) return;
   const auto same_orbit = [](const ToldPoint& a, const ToldPoint& b) {
-    return a.name->period == b.name->period && a.name->symmetric == b.name->symmetric;
+    return a.point().period == b.point().period && a.point().symmetric == b.point().symmetric;
   };
   // The first point alone, with the method; then those of its orbit in one sentence, and other orbits in one each.
   const std::string method = points_.heads().size() > 1 ? "with " + study_.name(*points_.reference()) : std::string();
@@ -193,9 +193,9 @@ void PointSpeaker::say_unconfirmed(say::Answer& answer) const {
   for (const StudyPoint* point : all) {
     if (parts.size() == most_unconfirmed) break;
     const StudyPoint& one = *point;
-    parts.push_back(fmt::format("{} at {}", point_words(one.kind).thing, short_number(one.value, 6)));
+    parts.push_back(fmt::format("{} at {}", point_words(one.kind).thing, short_number(one.parameter, 6)));
     Clause part{.form = "value", .measure = point_words(one.kind).thing, .methods = points_.cases()[owner]->id};
-    part.value = one.value;
+    part.value = one.parameter;
     part.low = one.row.low;
     part.high = one.row.high;
     part.unit = unit_;
@@ -253,23 +253,21 @@ void PointSpeaker::say_ends(say::Answer& answer) const {
               {"closed", "closes", "close"},
               {"joined", "joins another branch", "join another branch"},
               {"asked", "stops at a point of stop_at", "stop at a point of stop_at"}};
-  int branches = 0, others = 0;
-  std::vector<SpecialRow> inside;
-  for (const CaseRecord* one : points_.cases()) {
-    bool here = false;
-    for (SpecialRow& row : special_points_type().read(one->tables)) {
-      if (row.kind != "end" || row.ended.empty() || row.ended == "missing") continue;
-      ++branches;
-      const auto way =
-          std::find_if(std::begin(ways), std::end(ways), [&](const Ways& known) { return row.ended == known.ended; });
-      if (way != std::end(ways))
-        ++way->count;
-      else if (one == points_.reference())
-        inside.push_back(std::move(row));
-      else
-        here = true;
-    }
-    others += here;
+  int branches = 0;
+  std::set<std::size_t> other_cases;
+  std::vector<const SpecialRow*> inside;
+  for (const StudyPoint& point : points_.points()) {
+    const SpecialRow& row = point.row;
+    if (row.kind != "end" || row.ended.empty() || row.ended == "missing") continue;
+    ++branches;
+    const auto way =
+        std::find_if(std::begin(ways), std::end(ways), [&](const Ways& known) { return row.ended == known.ended; });
+    if (way != std::end(ways))
+      ++way->count;
+    else if (point.owner == points_.root())
+      inside.push_back(&row);
+    else
+      other_cases.insert(point.owner);
   }
   if (branches == 0) return;
   std::vector<std::string> parts;
@@ -289,7 +287,7 @@ void PointSpeaker::say_ends(say::Answer& answer) const {
   answer.say(std::move(whole));
   constexpr std::size_t most_inside = 2;
   for (std::size_t k = 0; k < std::min(most_inside, inside.size()); ++k) {
-    const SpecialRow& row = inside[k];
+    const SpecialRow& row = *inside[k];
     Clause end{.form = "value", .measure = "end of a branch", .who = row.branch, .methods = points_.reference()->id};
     end.value = row.parameter;
     end.unit = unit_;
@@ -299,12 +297,13 @@ void PointSpeaker::say_ends(say::Answer& answer) const {
                end);
   }
   const std::size_t more = inside.size() - std::min(most_inside, inside.size());
+  const std::size_t others = other_cases.size();
   parts.clear();
   if (more > 0) parts.push_back(fmt::format("{} more branch{} of that case", more, more == 1 ? "" : "es"));
   if (others > 0) parts.push_back(fmt::format("branches of {} other case{}", others, others == 1 ? "" : "s"));
   if (parts.empty()) return;
   Clause rest{.form = "value", .measure = "branches", .status = "inside"};
-  rest.value = static_cast<double>(more) + others;
+  rest.value = static_cast<double>(more + others);
   rest.unit = "1";
   answer.say(
       fmt::format("Inside the range end {}{} (special_points.csv).", inside.empty() ? "" : "also ", and_list(parts)),
@@ -320,9 +319,9 @@ void PointSpeaker::say_nothing(say::Answer& answer) const {
              Clause{.form = "status", .status = "none"});
 }
 
-answers::Answer continuation_answer(const answers::Compared& study) {
+answers::Answer continuation_answer(const answers::Compared& study, const PointAnalysis& points) {
   answers::Answer answer;
-  const PointSpeaker speaker(study);
+  const PointSpeaker speaker(study, points);
   if (speaker.known()) {
     speaker.say_points(answer);
     speaker.say_unconfirmed(answer);

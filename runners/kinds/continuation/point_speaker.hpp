@@ -17,27 +17,13 @@ bool is_point_kind(const std::string& kind);
 /// Whether two points are of one kind and their intervals overlap.
 bool at_one_place(const StudyPoint& a, const StudyPoint& b);
 
-/// A point that an answer tells.
-struct ToldPoint {
-  const PointName* name = nullptr;
-  const PointLimitRow* limit = nullptr;  ///< of the reference's method
-  const StudyPoint* point = nullptr;     ///< of the reference case
-  bool ends_stability = false;           ///< stable orbits lie on one side of it alone
-};
-
-/// The named points of the reference's method at which stable orbits end, and its first contacts; all where none ends
-/// them. One of each kind stands before a second of any. A fold at a first contact is told as the contact, and what
-/// several branches have at one place once.
-std::vector<ToldPoint> told_points(const StudyPoints& study, const std::vector<PointLimitRow>& limits,
-                                   const std::vector<PointOrderRow>& orders);
-
 /// "0.1005650 ± 1.2e-6": to the first digit of u, to the second where that is a 1; four digits without u.
 std::string point_value(double value, std::optional<double> half);
 
-/// Sentences of a continuation study, made of the rows of its tables.
+/// Sentences of a continuation study.
 class PointSpeaker {
  public:
-  explicit PointSpeaker(const answers::Compared& study);
+  PointSpeaker(const answers::Compared& study, const PointAnalysis& of);
 
   /// Whether a case left branches.
   bool known() const { return points_.reference() != nullptr; }
@@ -47,9 +33,9 @@ class PointSpeaker {
   void say_shifts(answers::Answer& answer) const;
   void say_absent(answers::Answer& answer) const;
   void say_turns(answers::Answer& answer) const;
-  /// Why no branch began.
   /// How far branches went, and why those that end inside the range do.
   void say_ends(answers::Answer& answer) const;
+  /// Why no branch began.
   void say_nothing(answers::Answer& answer) const;
 
  private:
@@ -66,11 +52,10 @@ class PointSpeaker {
   const CaseRecord* record(const std::string& id) const;
 
   const answers::Compared& study_;
-  StudyPoints points_;
+  const PointAnalysis& of_;
+  const StudyPoints& points_;
+  const std::vector<ToldPoint>& told_;
   std::string unit_;
-  std::vector<PointLimitRow> limits_;
-  std::vector<PointOrderRow> orders_;
-  std::vector<ToldPoint> told_;
 };
 
 }  // namespace ricochet

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <tuple>
 
 #include "runners/store/record_values.hpp"
 
@@ -107,24 +106,27 @@ Table rows_of_cases(const StudyResults& results, const TableType<Record>& type, 
   return table;
 }
 
-/// Writes the names into the rows of all cases. Takes out folds without a name that steps may have invented: those
-/// whose parameter goes back by less than `least_fold`.
-void put_names(StudyResults& results, const StudyPoints& study) {
+/// special_points over all cases.
+std::vector<SpecialRow> special_rows(const StudyResults& results, const StudyPoints& study) {
   const TableType<SpecialRow> type = special_points_type();
-  Table* table = find_table(results.derived, type.name);
-  if (!table) return;
-  using Key = std::tuple<std::string, std::string, int>;
-  std::map<Key, std::string> names;
-  for (const StudyPoint& one : study.points())
-    if (one.name >= 0)
-      names[Key(study.cases()[one.owner]->id, one.row.branch, one.row.point)] =
-          study.names()[static_cast<std::size_t>(one.name)].text;
   const double least = study.least_fold().value_or(0);
-  type.rows.change(*table, [&](SpecialRow& row) {
-    if (const auto found = names.find(Key(row.id, row.branch, row.point)); found != names.end())
-      row.name = found->second;
-    return row.kind != "fold" || !row.name.empty() || row.prominence.value_or(least) >= least;
-  });
+  std::vector<SpecialRow> rows;
+  const auto add = [&](SpecialRow row, const CaseRecord& record, int name) {
+    row.id = record.id;
+    if (name >= 0) row.name = study.names()[static_cast<std::size_t>(name)].text;
+    if (row.kind != "fold" || !row.name.empty() || row.prominence.value_or(least) >= least)
+      rows.push_back(std::move(row));
+  };
+  auto point = study.points().begin();
+  for (const CaseRecord& record : results.cases) {
+    const auto first = point;
+    for (; point != study.points().end() && study.cases()[point->owner] == &record; ++point)
+      add(point->row, record, point->name);
+    // A case without a branch says why.
+    if (point == first)
+      for (SpecialRow& row : type.read(record.tables)) add(std::move(row), record, -1);
+  }
+  return rows;
 }
 
 std::vector<PointPresenceRow> presence_rows(const StudyPoints& study) {
@@ -161,7 +163,7 @@ std::vector<PointShiftRow> shift_rows(const StudyPoints& study) {
       if (!point || point->sharing > 1 || differs.size() != 1 || is_reference(*study.cases()[c])) continue;
       PointShiftRow row{study.cases()[c]->id, study.names()[name].text, differs.front(),
                         study.level(c, differs.front()), study.level(study.root(), differs.front())};
-      row.shift = point->value - standard->value;
+      row.shift = point->parameter - standard->parameter;
       row.low = *row.shift - point->half - standard->half;
       row.high = *row.shift + point->half + standard->half;
       rows.push_back(std::move(row));
@@ -178,18 +180,17 @@ std::optional<double> value_of_reference(const StudyPoints& study, const CaseRec
           return axis(of, place.first).text() != axis(one, place.first).text();
         }))
       continue;
-    if (const StudyPoint* point = study.find(c, name)) return point->value;
+    if (const StudyPoint* point = study.find(c, name)) return point->parameter;
   }
   return std::nullopt;
 }
 
-void convergence_rows(const StudyPoints& study, std::vector<PointOrderRow>& orders,
-                      std::vector<PointLimitRow>& limits) {
+void convergence_rows(const StudyPoints& study, const std::vector<std::vector<PointConvergence>>& convergence,
+                      std::vector<PointOrderRow>& orders, std::vector<PointLimitRow>& limits) {
   for (std::size_t name = 0; name < study.names().size(); ++name)
-    for (const std::size_t head : study.heads()) {
-      const std::string &id = study.cases()[head]->id, &text = study.names()[name].text;
-      if (is_reference(*study.cases()[head])) continue;
-      const PointConvergence found = study.convergence(head, static_cast<int>(name));
+    for (const PointConvergence& found : convergence[name]) {
+      const std::string &id = study.cases()[found.finest]->id, &text = study.names()[name].text;
+      if (is_reference(*study.cases()[found.finest])) continue;
       for (const PointConvergence::Along& one : found.along) {
         PointOrderRow row{study.cases()[one.finest]->id, text, id, study.axes()[one.axis].column};
         row.order = one.order.order;
@@ -202,7 +203,7 @@ void convergence_rows(const StudyPoints& study, std::vector<PointOrderRow>& orde
         orders.push_back(std::move(row));
       }
       if (!found.point) continue;
-      PointLimitRow row{id, text, found.point->value, found.value};
+      PointLimitRow row{id, text, found.point->parameter, found.value};
       if (found.half) {
         row.low = found.value - *found.half;
         row.high = found.value + *found.half;
@@ -211,7 +212,7 @@ void convergence_rows(const StudyPoints& study, std::vector<PointOrderRow>& orde
         const std::string words = study.axes()[one.axis].words;
         (words == "step" ? row.step_open : words == "mesh" ? row.mesh_open : row.law_open) = one.limit.open;
       }
-      row.reference = value_of_reference(study, *study.cases()[head], static_cast<int>(name));
+      row.reference = value_of_reference(study, *study.cases()[found.finest], static_cast<int>(name));
       if (row.reference) row.reference_gap = *row.limit - *row.reference;
       limits.push_back(std::move(row));
     }
@@ -219,20 +220,28 @@ void convergence_rows(const StudyPoints& study, std::vector<PointOrderRow>& orde
 
 }  // namespace
 
-void derive_points(StudyResults& results) {
-  const answers::Compared compared(results);
-  const StudyPoints study(compared);
-  if (study.cases().empty()) return;
+PointAnalysis::PointAnalysis(const answers::Compared& study)
+    : points(study), presence(presence_rows(points)), shifts(shift_rows(points)) {
+  for (std::size_t name = 0; name < points.names().size(); ++name) {
+    std::vector<PointConvergence>& own = convergence.emplace_back();
+    for (const std::size_t head : points.heads()) own.push_back(points.convergence(head, static_cast<int>(name)));
+  }
+  convergence_rows(points, convergence, orders, limits);
+  if (points.reference()) told = told_points(*this);
+}
+
+void PointAnalysis::append_tables(StudyResults& results) const {
   const SweptColumns swept = swept_columns(results);
-  put_names(results, study);
-  std::vector<PointOrderRow> orders;
-  std::vector<PointLimitRow> limits;
-  convergence_rows(study, orders, limits);
-  std::vector<Table> tables = {rows_of_cases(results, point_presence_type(swept), presence_rows(study)),
-                               rows_of_cases(results, point_shifts_type(swept), shift_rows(study)),
-                               rows_of_cases(results, point_orders_type(), orders),
-                               rows_of_cases(results, point_limits_type(swept), limits)};
-  for (Table& table : tables) results.derived.push_back(std::move(table));
+  std::vector<Table>& derived = results.derived;
+  const auto branches =
+      std::find_if(derived.begin(), derived.end(), [](const Table& table) { return table.name == branches_name; });
+  if (branches != derived.end())
+    derived.insert(branches + 1, rows_of_cases(results, special_points_type(swept), special_rows(results, points)));
+  if (points.cases().empty()) return;
+  derived.push_back(rows_of_cases(results, point_presence_type(swept), presence));
+  derived.push_back(rows_of_cases(results, point_shifts_type(swept), shifts));
+  derived.push_back(rows_of_cases(results, point_orders_type(), orders));
+  derived.push_back(rows_of_cases(results, point_limits_type(swept), limits));
 }
 
 }  // namespace ricochet

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "runners/kinds/continuation/study_points.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
@@ -45,8 +46,34 @@ struct PointLimitRow {
 };
 TableType<PointLimitRow> point_limits_type(const SweptColumns& swept = {});
 
-/// Gives the rows of `special_points` their names, and adds point_presence, point_shifts, point_orders and point_limits
-/// to the results. Nothing where no case left a branch.
-void derive_points(StudyResults& results);
+/// A point that an answer tells.
+struct ToldPoint {
+  const NamedPoint* name = nullptr;      ///< of a point of the reference case
+  const PointLimitRow* limit = nullptr;  ///< of the reference's method
+  bool ends_stability = false;           ///< stable orbits lie on one side of it alone
+  const StudyPoint& point() const { return *name->point; }
+};
+
+/// What the special points of a study come to over its cases. Empty where no case left a branch.
+struct PointAnalysis {
+  explicit PointAnalysis(const answers::Compared& study);
+  /// Appends point_presence, point_shifts, point_orders and point_limits, and puts special_points behind `branches`:
+  /// with names, and without folds that have none and that steps may have invented. Their parameter goes back by less
+  /// than StudyPoints::least_fold().
+  void append_tables(StudyResults& results) const;
+
+  StudyPoints points;
+  std::vector<std::vector<PointConvergence>> convergence;  ///< of each name, with the method of each head
+  std::vector<PointPresenceRow> presence;
+  std::vector<PointShiftRow> shifts;
+  std::vector<PointOrderRow> orders;
+  std::vector<PointLimitRow> limits;
+  /// The named points of the reference's method at which stable orbits end, and its first contacts; all where none ends
+  /// them. One of each kind stands before a second of any. A fold at a first contact is told as the contact, and what
+  /// several branches have at one place once.
+  std::vector<ToldPoint> told;
+};
+/// PointAnalysis::told, of all its other members.
+std::vector<ToldPoint> told_points(const PointAnalysis& of);
 
 }  // namespace ricochet

@@ -15,7 +15,7 @@ std::optional<double> StudyPoints::end_of(std::size_t owner, const std::string& 
 StudyPoints::FoldCounts StudyPoints::folds(std::size_t owner, std::size_t other) const {
   constexpr double same_end = 0.01;  // of the range
   FoldCounts out;
-  for (const TurnRow& row : turns_type().read(cases_[owner]->tables)) {
+  for (const TurnRow& row : turns_[owner]) {
     const auto own = end_of(owner, row.branch), theirs = end_of(other, row.branch);
     if (!own || !theirs || std::abs(*own - *theirs) > same_end * range_) continue;
     out.all[row.prominence] += row.folds;

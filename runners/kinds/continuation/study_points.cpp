@@ -61,22 +61,18 @@ StudyPoints::StudyPoints(const answers::Compared& study) : study_(study) {
   }
   if (cases_.empty()) return;
   find_root();
+  find_heads();
   std::vector<CasePoint> points;
   std::vector<std::size_t> place;
   for (std::size_t k = 0; k < points_.size(); ++k) {
     const StudyPoint& one = points_[k];
     if (!is_named_kind(one.kind) || !one.row.parameter) continue;
-    std::map<std::string, int> numbers;
-    for (const Branch& branch : branches_[one.owner]) numbers.emplace(branch.name, static_cast<int>(numbers.size()));
-    const Branch* own = branch(one.owner, one.row.branch);
-    const auto number = numbers.find(one.row.branch);
-    const std::string orbit = own ? fmt::format(" of period {} {}", own->period,
-                                                !own->symmetric   ? ""
-                                                : *own->symmetric ? "symmetric"
-                                                                  : "not symmetric")
-                                  : "";
-    points.push_back({one.owner, number == numbers.end() ? -1 : number->second, one.kind + orbit, one.value, one.half,
-                      one.row.tip_displacement.value_or(0), signed_arc(one.row), one.row.prominence.value_or(0)});
+    points.push_back(one);
+    if (one.branch >= 0)
+      points.back().kind += fmt::format(" of period {} {}", one.period,
+                                        !one.symmetric   ? ""
+                                        : *one.symmetric ? "symmetric"
+                                                         : "not symmetric");
     place.push_back(k);
   }
   const PointScales scales{range_, tips_ > 0 ? tips_ : 1, arcs_ > 0 ? arcs_ : 1};
@@ -113,24 +109,25 @@ void StudyPoints::read(const CaseRecord& record) {
   if (own.empty()) return;
   tips_ = std::max(tips_, high - low);
   cases_.push_back(&record);
-  branches_.push_back(std::move(own));
+  method_.push_back(study_.key(record, method_columns_));
   for (SpecialRow& row : special_points_type().read(record.tables)) {
-    StudyPoint one;
-    one.owner = owner;
-    one.kind = kind_of(row);
-    one.value = row.parameter.value_or(NAN);
+    const double at = row.parameter.value_or(NAN);
+    StudyPoint one{{owner, -1, kind_of(row), at, 0, row.tip_displacement.value_or(0), signed_arc(row),
+                    row.prominence.value_or(0)}};
     for (const auto& end : {row.low, row.high})
-      if (end) one.half = std::max(one.half, std::abs(*end - one.value));
-    if (row.low && row.high && *row.low <= one.value && one.value <= *row.high) one.half = 0.5 * (*row.high - *row.low);
+      if (end) one.half = std::max(one.half, std::abs(*end - at));
+    if (row.low && row.high && *row.low <= at && at <= *row.high) one.half = 0.5 * (*row.high - *row.low);
+    const auto branch = std::find_if(own.begin(), own.end(), [&](const Branch& of) { return of.name == row.branch; });
+    if (branch != own.end()) {
+      one.branch = static_cast<int>(branch - own.begin());
+      one.period = branch->period;
+      one.symmetric = branch->symmetric;
+    }
     one.row = std::move(row);
     points_.push_back(std::move(one));
   }
-}
-
-const StudyPoints::Branch* StudyPoints::branch(std::size_t owner, const std::string& name) const {
-  const auto& own = branches_[owner];
-  const auto found = std::find_if(own.begin(), own.end(), [&](const Branch& one) { return one.name == name; });
-  return found == own.end() ? nullptr : &*found;
+  branches_.push_back(std::move(own));
+  turns_.push_back(turns_type().read(record.tables));
 }
 
 bool StudyPoints::finer(std::size_t a, std::size_t b) const {
@@ -147,10 +144,9 @@ bool StudyPoints::finer(std::size_t a, std::size_t b) const {
 void StudyPoints::find_root() {
   std::vector<std::string> methods;
   const auto rank = [&](std::size_t c) {
-    const std::string own = method(c);
-    const auto found = std::find(methods.begin(), methods.end(), own);
+    const auto found = std::find(methods.begin(), methods.end(), method_[c]);
     if (found != methods.end()) return found - methods.begin();
-    methods.push_back(own);
+    methods.push_back(method_[c]);
     return static_cast<std::ptrdiff_t>(methods.size()) - 1;
   };
   for (std::size_t c = 0; c < cases_.size(); ++c) rank(c);
@@ -163,31 +159,27 @@ void StudyPoints::find_root() {
   }
 }
 
-std::vector<std::size_t> StudyPoints::heads() const {
-  std::vector<std::size_t> out;
+void StudyPoints::find_heads() {
   std::map<std::string, std::size_t> place;
   for (std::size_t c = 0; c < cases_.size(); ++c) {
-    const auto [at, fresh] = place.emplace(method(c), out.size());
+    const auto [at, fresh] = place.emplace(method_[c], heads_.size());
     if (fresh)
-      out.push_back(c);
-    else if (finer(c, out[at->second]))
-      out[at->second] = c;
+      heads_.push_back(c);
+    else if (finer(c, heads_[at->second]))
+      heads_[at->second] = c;
   }
-  const auto own = std::find_if(out.begin(), out.end(), [&](std::size_t c) { return method(c) == method(root_); });
-  if (own != out.end()) {
-    *own = root_;
-    std::rotate(out.begin(), own, own + 1);
-  }
-  return out;
+  const auto own =
+      std::find_if(heads_.begin(), heads_.end(), [&](std::size_t c) { return method_[c] == method_[root_]; });
+  *own = root_;
+  std::rotate(heads_.begin(), own, own + 1);
 }
 
 CaseLink StudyPoints::link_of(std::size_t c) const {
-  const std::vector<std::size_t> finest = heads();
   // Step, mesh, stiffness: the next finer case that is equal in all that comes after.
   for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
     std::optional<std::size_t> next;
     for (std::size_t other = 0; other < cases_.size(); ++other) {
-      if (other == c || method(other) != method(c)) continue;
+      if (other == c || method_[other] != method_[c]) continue;
       const auto own = size(c, axis), there = size(other, axis);
       if (!own || !there || *there >= *own) continue;
       bool equal = true;
@@ -215,8 +207,8 @@ CaseLink StudyPoints::link_of(std::size_t c) const {
     return count;
   };
   std::size_t best = root_;
-  for (const std::size_t head : finest)
-    if (method(head) != method(c) && choices(head, root_) < choices(c, root_) && choices(head, c) < choices(best, c))
+  for (const std::size_t head : heads_)
+    if (method_[head] != method_[c] && choices(head, root_) < choices(c, root_) && choices(head, c) < choices(best, c))
       best = head;
   return {best, "method", false};
 }
@@ -235,17 +227,17 @@ const StudyPoint* StudyPoints::find(std::size_t owner, int name) const {
 
 PointPresence StudyPoints::presence(std::size_t owner, int name, std::optional<BranchReach>* passed) const {
   const StudyPoint* point = find(owner, name);
-  const PointName& named = names_[static_cast<std::size_t>(name)];
+  const StudyPoint& named = *names_[static_cast<std::size_t>(name)].point;
   std::vector<BranchReach> reaches;
   for (const Branch& one : branches_[owner])
     if (one.period == named.period && one.symmetric == named.symmetric) reaches.push_back(one.reach);
-  return presence_of(named.value, passed_share * range_, point ? point->sharing : 0, reaches, passed);
+  return presence_of(named.parameter, passed_share * range_, point ? point->sharing : 0, reaches, passed);
 }
 
 std::vector<std::size_t> StudyPoints::along(std::size_t head, std::size_t axis) const {
   std::vector<std::size_t> out;
   for (std::size_t c = 0; c < cases_.size(); ++c) {
-    bool equal = method(c) == method(head) && size(c, axis);
+    bool equal = method_[c] == method_[head] && size(c, axis);
     for (std::size_t other = 0; other < axes_.size(); ++other)
       equal &= other == axis || size(c, other) == size(head, other);
     if (equal) out.push_back(c);
@@ -258,7 +250,7 @@ std::vector<PointLevel> StudyPoints::levels(std::size_t case_of_chain, std::size
   for (const std::size_t c : along(case_of_chain, axis)) {
     // Where other turns share its place it is not known which one it is.
     const StudyPoint* point = find(c, name);
-    if (point && point->sharing == 1) out.push_back({*size(c, axis), point->value, point->half});
+    if (point && point->sharing == 1) out.push_back({*size(c, axis), point->parameter, point->half});
   }
   return out;
 }
@@ -273,7 +265,7 @@ PointConvergence StudyPoints::convergence(std::size_t head, int name) const {
     std::vector<PointLevel> most = own;
     std::size_t finest = head;
     for (std::size_t c = 0; c < cases_.size(); ++c) {
-      if (method(c) != method(head) || !size(c, axis)) continue;
+      if (method_[c] != method_[head] || !size(c, axis)) continue;
       std::vector<PointLevel> other = levels(c, axis, name);
       if (other.size() < most.size() || (other.size() == most.size() && !finer(c, finest))) continue;
       most = std::move(other);
@@ -286,7 +278,7 @@ PointConvergence StudyPoints::convergence(std::size_t head, int name) const {
     out.along.push_back(std::move(one));
   }
   if (!out.point) return out;
-  out.value = out.point->value;
+  out.value = out.point->parameter;
   // What is left open adds up, whichever refinement leaves it.
   for (const PointConvergence::Along& one : out.along) {
     out.value += one.limit.correction;
@@ -317,32 +309,25 @@ std::string StudyPoints::level(std::size_t owner, const std::string& choice) con
 }
 
 void StudyPoints::give_names() {
-  std::vector<char> met(names_.size(), 0);
   const auto take = [&](const StudyPoint& one) {
-    if (one.name < 0 || met[static_cast<std::size_t>(one.name)]) return;
-    met[static_cast<std::size_t>(one.name)] = 1;
-    PointName& name = names_[static_cast<std::size_t>(one.name)];
-    name.kind = one.kind;
-    name.value = one.value;
-    name.owner = one.owner;
-    if (const Branch* own = branch(one.owner, one.row.branch)) {
-      name.period = own->period;
-      name.symmetric = own->symmetric;
-    }
+    if (one.name < 0) return;
+    const StudyPoint*& point = names_[static_cast<std::size_t>(one.name)].point;
+    if (!point) point = &one;
   };
   // The reference and the finest cases of other methods first.
-  for (const std::size_t head : heads())
+  for (const std::size_t head : heads_)
     for (const StudyPoint& one : points_)
       if (one.owner == head) take(one);
   for (const StudyPoint& one : points_) take(one);
   std::vector<double> limits;
   for (std::size_t k = 0; k < names_.size(); ++k) {
-    const PointConvergence one = convergence(names_[k].owner, static_cast<int>(k));
-    limits.push_back(one.point ? one.value : names_[k].value);
+    const PointConvergence one = convergence(names_[k].point->owner, static_cast<int>(k));
+    limits.push_back(one.point ? one.value : names_[k].point->parameter);
   }
   const auto text = [&](std::size_t k, int digits) {
-    const std::string period = names_[k].period > 1 ? fmt::format("period {} ", names_[k].period) : "";
-    return fmt::format("{}{} at {}", period, names_[k].kind, answers::short_number(limits[k], digits));
+    const StudyPoint& point = *names_[k].point;
+    const std::string period = point.period > 1 ? fmt::format("period {} ", point.period) : "";
+    return fmt::format("{}{} at {}", period, point.kind, answers::short_number(limits[k], digits));
   };
   constexpr int fewest = 4, most = 9;
   for (std::size_t k = 0; k < names_.size(); ++k) {

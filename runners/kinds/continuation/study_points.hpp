@@ -14,14 +14,14 @@
 /// The special points of a study over its cases: which are the same, and how they move as a case is refined.
 namespace ricochet {
 
-/// A special point of a case, and its name.
-struct StudyPoint {
-  std::size_t owner = 0;  ///< of StudyPoints::cases()
-  SpecialRow row;
-  std::string kind;            ///< that of the row; "first contact" where no contact was before or is after, "lift-off"
-  double value = 0, half = 0;  ///< the parameter, and half of its interval
-  int name = -1;               ///< of StudyPoints::names()
-  int sharing = 0;             ///< points of its kind at its place
+/// A special point of a case, and its name. Its owner is one of StudyPoints::cases(). Its kind is that of the row;
+/// "first contact" where no contact was before or is after, "lift-off".
+struct StudyPoint : CasePoint {
+  SpecialRow row = {};
+  int period = 1;  ///< of its orbit
+  std::optional<bool> symmetric = {};
+  int name = -1;    ///< of StudyPoints::names()
+  int sharing = 0;  ///< points of its kind at its place
 };
 
 /// A quantity that is refined: steps per period, elements or modes, stiffness of a contact law.
@@ -32,14 +32,10 @@ struct RefinedAxis {
   std::function<std::optional<double>(const CaseRecord&)> size;  ///< > 0, falls as the case becomes finer
 };
 
-/// A point that has a name: what kind of orbit it belongs to, and what it is called.
-struct PointName {
-  std::string text;  ///< "fold at 0.1006"
-  std::string kind;
-  int period = 1;
-  std::optional<bool> symmetric;
-  double value = 0;       ///< of the case nearest to the reference
-  std::size_t owner = 0;  ///< that case
+/// What a point is called that several cases have.
+struct NamedPoint {
+  std::string text;                   ///< "fold at 0.1006"
+  const StudyPoint* point = nullptr;  ///< that of the case nearest to the reference
 };
 
 /// Orders and limit of a named point with one method.
@@ -61,6 +57,7 @@ struct PointConvergence {
 class StudyPoints {
  public:
   explicit StudyPoints(const answers::Compared& study);
+  StudyPoints(const StudyPoints&) = delete;
 
   const answers::Compared& study() const { return study_; }
   /// Those that left branches.
@@ -70,7 +67,7 @@ class StudyPoints {
   std::size_t root() const { return root_; }
   /// In the order of cases, then of their rows.
   const std::vector<StudyPoint>& points() const { return points_; }
-  const std::vector<PointName>& names() const { return names_; }
+  const std::vector<NamedPoint>& names() const { return names_; }
   const std::vector<RefinedAxis>& axes() const { return axes_; }
   /// Length of the range that is followed, in the unit of the parameter.
   double range() const { return range_; }
@@ -79,7 +76,7 @@ class StudyPoints {
   const StudyPoint* find(std::size_t owner, int name) const;
   PointPresence presence(std::size_t owner, int name, std::optional<BranchReach>* passed) const;
   /// The finest case of each method, in the study's order; the method of the reference first.
-  std::vector<std::size_t> heads() const;
+  const std::vector<std::size_t>& heads() const { return heads_; }
   /// The cases of the head's method that differ from it along this axis alone, itself among them.
   std::vector<std::size_t> along(std::size_t head, std::size_t axis) const;
   PointConvergence convergence(std::size_t head, int name) const;
@@ -110,25 +107,27 @@ class StudyPoints {
   };
   void read(const CaseRecord& record);
   void find_root();
+  void find_heads();
   std::vector<CaseLink> links() const;
   CaseLink link_of(std::size_t c) const;
   void give_names();
-  std::string method(std::size_t owner) const { return study_.key(*cases_[owner], method_columns_); }
   std::vector<PointLevel> levels(std::size_t case_of_chain, std::size_t axis, int name) const;
   std::optional<double> size(std::size_t owner, std::size_t axis) const { return axes_[axis].size(*cases_[owner]); }
   /// Whether a is finer than b: in the mesh, then the stiffness, then the step.
   bool finer(std::size_t a, std::size_t b) const;
-  const Branch* branch(std::size_t owner, const std::string& name) const;
   std::optional<double> end_of(std::size_t owner, const std::string& branch) const;
 
   const answers::Compared& study_;
   std::vector<RefinedAxis> axes_;
   std::vector<std::string> method_columns_;
   Cases cases_;
+  std::vector<std::string> method_;            // of each case
   std::vector<std::vector<Branch>> branches_;  // of each case
+  std::vector<std::vector<TurnRow>> turns_;    // of each case
   std::vector<StudyPoint> points_;
-  std::vector<PointName> names_;
+  std::vector<NamedPoint> names_;
   std::map<std::pair<std::size_t, int>, std::size_t> place_;  // in points_: the first of a case with a name
+  std::vector<std::size_t> heads_;
   std::size_t root_ = 0;
   double range_ = 1, tips_ = 0, arcs_ = 0;
 };

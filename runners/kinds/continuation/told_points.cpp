@@ -58,7 +58,7 @@ std::size_t kind_rank(const std::string& kind) {
 
 bool at_one_place(const StudyPoint& a, const StudyPoint& b) {
   constexpr double round_off = 1e-9;
-  return a.kind == b.kind && std::abs(a.value - b.value) <= a.half + b.half + round_off * std::abs(b.value);
+  return a.kind == b.kind && std::abs(a.parameter - b.parameter) <= a.half + b.half + round_off * std::abs(b.parameter);
 }
 
 const PointWords& point_words(const std::string& kind) {
@@ -70,8 +70,8 @@ bool is_point_kind(const std::string& kind) {
   return kind_rank(kind) < std::size(point_kinds);
 }
 
-std::vector<ToldPoint> told_points(const StudyPoints& study, const std::vector<PointLimitRow>& limits,
-                                   const std::vector<PointOrderRow>& orders) {
+std::vector<ToldPoint> told_points(const PointAnalysis& of) {
+  const StudyPoints& study = of.points;
   const std::string& reference = study.reference()->id;
   // Changes of contact last; else where stability ends, orders, whether a reference has it, the kind, and how well it
   // is located.
@@ -82,28 +82,28 @@ std::vector<ToldPoint> told_points(const StudyPoints& study, const std::vector<P
     if (row.arc && row.stable) rows[row.branch].push_back(std::move(row));
   std::vector<double> contacts;
   for (const StudyPoint& one : study.points())
-    if (one.owner == study.root() && one.kind == "first contact") contacts.push_back(one.value);
+    if (one.owner == study.root() && one.kind == "first contact") contacts.push_back(one.parameter);
   for (std::size_t k = 0; k < study.names().size(); ++k) {
-    const PointName& name = study.names()[k];
-    const auto limit = std::find_if(limits.begin(), limits.end(), [&](const PointLimitRow& row) {
+    const NamedPoint& name = study.names()[k];
+    const auto limit = std::find_if(of.limits.begin(), of.limits.end(), [&](const PointLimitRow& row) {
       return row.name == name.text && row.id == reference;
     });
-    const StudyPoint* point = study.find(study.root(), static_cast<int>(k));
-    if (limit == limits.end() || !point) continue;
-    if (name.kind == "fold" && std::any_of(contacts.begin(), contacts.end(), [&](double contact) {
-          return std::abs(contact - point->value) <= point->half;
+    const StudyPoint& point = *name.point;
+    if (limit == of.limits.end() || point.owner != study.root()) continue;
+    if (point.kind == "fold" && std::any_of(contacts.begin(), contacts.end(), [&](double contact) {
+          return std::abs(contact - point.parameter) <= point.half;
         }))
       continue;
-    const bool ordered = std::any_of(orders.begin(), orders.end(), [&](const PointOrderRow& row) {
+    const bool ordered = std::any_of(of.orders.begin(), of.orders.end(), [&](const PointOrderRow& row) {
       return row.name == name.text && row.method == reference && row.verdict == order_told;
     });
     // An interval of a fiftieth of the range locates nothing.
     constexpr double wide_share = 0.02;
     const double width = limit->low && limit->high ? *limit->high - *limit->low : 0;
     const bool wide = width > wide_share * study.range();
-    const ToldPoint told{&name, &*limit, point, ends_stability(rows, point->row)};
-    ranked.push_back({{name.kind == "contact", !told.ends_stability, !ordered, !limit->reference, wide,
-                       kind_rank(name.kind), width, -point->row.prominence.value_or(0)},
+    const ToldPoint told{&name, &*limit, ends_stability(rows, point.row)};
+    ranked.push_back({{point.kind == "contact", !told.ends_stability, !ordered, !limit->reference, wide,
+                       kind_rank(point.kind), width, -point.row.prominence.value_or(0)},
                       told});
   }
   const auto by_rank = [](const auto& a, const auto& b) { return a.first < b.first; };
@@ -111,13 +111,13 @@ std::vector<ToldPoint> told_points(const StudyPoints& study, const std::vector<P
   // Where stability ends nowhere, every point is told.
   if (std::any_of(ranked.begin(), ranked.end(), [](const auto& one) { return one.second.ends_stability; }))
     std::erase_if(ranked, [](const auto& one) {
-      return one.second.name->kind == "contact" ||
-             (!one.second.ends_stability && !changes_motion(one.second.name->kind));
+      const std::string& kind = one.second.point().kind;
+      return kind == "contact" || (!one.second.ends_stability && !changes_motion(kind));
     });
   // Points of several branches at one place are one.
   std::vector<const StudyPoint*> kept;
   std::erase_if(ranked, [&](const auto& one) {
-    const StudyPoint& own = *one.second.point;
+    const StudyPoint& own = one.second.point();
     if (std::any_of(kept.begin(), kept.end(), [&](const StudyPoint* other) { return at_one_place(own, *other); }))
       return true;
     kept.push_back(&own);
@@ -125,7 +125,7 @@ std::vector<ToldPoint> told_points(const StudyPoints& study, const std::vector<P
   });
   std::map<std::string, int> met;
   std::vector<std::pair<int, ToldPoint>> turns;
-  for (const auto& [rank, told] : ranked) turns.emplace_back(met[told.name->kind]++, told);
+  for (const auto& [rank, told] : ranked) turns.emplace_back(met[told.point().kind]++, told);
   std::stable_sort(turns.begin(), turns.end(), by_rank);
   std::vector<ToldPoint> out;
   for (const auto& [turn, told] : turns) out.push_back(told);

@@ -102,10 +102,10 @@ TEST_CASE("another unit of a measure changes its numbers alone") {
   for (int draw = 0; draw < 30; ++draw) {
     const double a = uniform(random), b = uniform(random);
     const auto forms = [&](double unit) {
-      const Table answers = answers_table(full_factorial(
+      const Table answers = answers_table(answers::Compared(full_factorial(
           {{"mass", {"one", "other"}}, {"contact", {"hard", "soft"}}}, steps,
           [&](const auto& at, double step) { return unit * (1 + a * at[0] + b * at[1] * at[0] + 100 * step); },
-          "impulse"));
+          "impulse")));
       const TableReader rows(answers);
       std::string out;
       for (std::size_t row = 0; row < rows.size(); ++row)

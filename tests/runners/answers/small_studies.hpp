@@ -47,7 +47,7 @@ inline StudyResults full_factorial(const std::vector<Choice>& choices, const std
 }
 
 inline std::string sentences(const StudyResults& results) {
-  const Table answers = answers_table(results);
+  const Table answers = answers_table(answers::Compared(results));
   std::string all;
   const TableReader rows(answers);
   for (std::size_t row = 0; row < rows.size(); ++row) all += rows.text(row, "sentence") + "\n";

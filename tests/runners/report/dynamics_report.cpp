@@ -4,6 +4,7 @@
 #include <cstring>
 #include <set>
 
+#include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/basins/page/page.hpp"
 #include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
@@ -225,18 +226,17 @@ TEST_CASE("tables of attractors, agreement, shifts and changes", "[report]") {
 }
 
 TEST_CASE("images of basins hold every cell, and their difference counts those that moved", "[report]") {
-  const StudyResults results = synthetic::basins(40, 0.2);
-  const Basins basins = basins_of(results);
-  REQUIRE(basins.grids.size() == 2);
+  StudyResults results = synthetic::basins(40, 0.2);
+  const BasinAnalysis basins = analyse_basins(results);
+  REQUIRE(basins.images.size() == 2);
   REQUIRE(basins.labels.size() == 4);
   CHECK(basins.labels[0].name == "attractor 1 (periodic 1)");
   CHECK_FALSE(basins.labels[3].decided);
   CHECK(basins.xs.size() == 40);
   CHECK(basins.ys.size() == 39);
-  CHECK(basins.x.name == "factor of initial.displacement");
   size_t differ = 0, both = 0;
-  for (size_t i = 0; i < basins.grids[0].cells.size(); ++i) {
-    const auto a = basins.grids[0].cells[i], b = basins.grids[1].cells[i];
+  for (size_t i = 0; i < basins.images[0].cells.size(); ++i) {
+    const auto a = basins.images[0].cells[i], b = basins.images[1].cells[i];
     if (a == 3 || b == 3) continue;
     ++both;
     differ += a != b;
@@ -244,39 +244,45 @@ TEST_CASE("images of basins hold every cell, and their difference counts those t
   CHECK(differ > 0);
   const CaseView view(results);
   CurveData curves(1000);
-  const nlohmann::ordered_json data = basin_data(view, curves);
+  const nlohmann::ordered_json data = basin_data(view, basins, curves);
   CHECK(data["grids"] == nlohmann::ordered_json({"full", "poor"}));
-  const Table counts = basin_counts(view);
+  CHECK(data["x"][0] == "factor of initial.displacement");
+  const Table counts = basin_counts(basins);
   REQUIRE(counts.rows.size() == 2);
   CHECK(counts.rows[1][4] == differ);
   CHECK(counts.rows[1][7] == both);
-  CHECK(bytes_of(curves, "poor/cells:u8") == basins.grids[1].cells);
-  const std::string html = basins_html(view);
-  CHECK_THAT(html, Contains("a smooth boundary is not excluded") && Contains("33.3 %"));
-  // The same colours whatever the order of the cases; the raw cells where nothing was derived.
-  StudyResults turned = results;
+  CHECK(bytes_of(curves, "poor/cells:u8") == basins.images[1].cells);
+  // Differences, fractions and starts count the same cells.
+  REQUIRE(basins.differences.size() == 1);
+  CHECK(basins.differences[0].differ == static_cast<int>(differ));
+  CHECK(basins.starts.at("poor").decided == both);
+  size_t in_fractions = 0;
+  for (const FractionRow& row : basins.fractions)
+    if (row.id == "poor") in_fractions += static_cast<size_t>(row.cells);
+  CHECK(in_fractions == both);
+  const std::string html = basins_html(view, basins);
+  CHECK_THAT(html, Contains("periodic 3") && Contains(std::to_string(differ) + "</td>"));
+  // The same colours whatever the order of the cases; without attractors groups tell the cells apart.
+  StudyResults turned = synthetic::basins(40, 0.2);
   std::reverse(turned.cases.begin(), turned.cases.end());
-  for (size_t k = 0; k < 4; ++k) CHECK(basins_of(turned).labels[k].colour == basins.labels[k].colour);
-  turned.derived.clear();
-  CHECK(basins_of(turned).labels[0].name == "period 1");
+  const BasinAnalysis again = analyse_basins(turned);
+  for (size_t k = 0; k < 4; ++k) CHECK(again.labels[k].colour == basins.labels[k].colour);
+  for (CaseRecord& record : turned.cases) record.numbers.clear();
+  turned = synthetic::with_cells(std::move(turned), [](CellRow& cell, size_t) { cell.attractor.reset(); });
+  CHECK(analyse_basins(turned).labels[0].name == "period 1");
 }
 
 TEST_CASE("cells that begin beyond a stop have a colour of their own, and no share counts them", "[report]") {
-  StudyResults results = synthetic::basins(20);
-  Table& cells = results.derived[0];
-  const std::size_t of_a_case = cells.rows.size() / 2;
-  const auto set = [&](std::size_t row, const char* name, const Cell& value) {
-    cells.rows[row][*find_column(cells.columns, name)] = value;
-  };
   // The last column of the grid, in which nothing failed.
-  for (std::size_t row = 0; row < cells.rows.size(); ++row)
-    if (row % of_a_case % 20 == 19)
-      for (const auto& [name, value] : {std::pair("class", Cell("no start")),
-                                        {"status", Cell("no start")},
-                                        {"attractor", Cell()},
-                                        {"period", Cell()}})
-        set(row, name, value);
-  const Basins basins = basins_of(results);
+  StudyResults results = synthetic::with_cells(synthetic::basins(20), [](CellRow& cell, size_t row) {
+    if (row % 20 != 19) return;
+    cell.regime = no_start;
+    cell.status = no_start;
+    cell.attractor.reset();
+    cell.period.reset();
+  });
+  const std::size_t of_a_case = 20 * 19;
+  const BasinAnalysis basins = analyse_basins(results);
   REQUIRE(basins.labels.size() == 5);
   CHECK(basins.labels[4].name == "no start");
   CHECK_FALSE(basins.labels[4].start);
@@ -284,21 +290,24 @@ TEST_CASE("cells that begin beyond a stop have a colour of their own, and no sha
     CHECK(basins.labels[k].start);
     CHECK(basins.labels[k].colour != basins.labels[4].colour);
   }
-  CHECK(basins.grids[0].no_starts == 19);
-  const Table counts = basin_counts(CaseView(results));
+  CHECK(basins.images[0].no_starts == 19);
+  CHECK(basins.starts.at("full").no_starts == 19);
+  const Table counts = basin_counts(basins);
   const auto in = [&](const char* name) { return counts.rows[1][*find_column(counts.columns, name)]; };
   CHECK(in("no_starts") == 19);
   CHECK(in("undecided").whole().value() + in("decided").whole().value() == static_cast<long long>(of_a_case) - 19);
-  CHECK(basin_failures(CaseView(results)).rows.size() == 2);  // as before
+  CHECK(basin_failures(basins).rows.size() == 2);
 }
 
 TEST_CASE("cells that were not marched themselves are said", "[report]") {
-  StudyResults results = synthetic::basins(20);
-  Table& cells = results.derived[0];
-  cells.columns.push_back({"marched", "", ""});
-  for (size_t row = 0; row < cells.rows.size(); ++row) cells.rows[row].push_back(row % 4 == 0);
-  CHECK(basins_of(results).grids[0].filled == 285);  // three quarters of 20 × 19
-  CHECK(basin_counts(CaseView(results)).rows[0][3] == 285);
+  StudyResults results =
+      synthetic::with_cells(synthetic::basins(20), [](CellRow& cell, size_t row) { cell.marched = row % 4 == 0; });
+  const BasinAnalysis basins = analyse_basins(results);
+  // Three quarters of 20 × 19, but for those that failed.
+  const size_t failed = basins.images[0].reasons.at("the support passes the <stop>");
+  CHECK(failed == 2);
+  CHECK(basins.images[0].filled == 285 - 1);
+  CHECK(basin_counts(basins).rows[0][3] == 285 - 1);
 }
 
 TEST_CASE("cases that are still being worked on are said to be", "[report]") {

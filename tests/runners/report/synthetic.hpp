@@ -105,8 +105,8 @@ inline CaseRecord make_case(const std::string& mass, const std::string& velocity
 /// The tables that the answer of a study of trajectories speaks of, from the measures that its cases have now.
 inline void derive_energies(StudyResults& out) {
   out.derived = {energy_ends_table(out), energy_ledger_table(out)};
-  for (Table& table : evidence_tables(out)) out.derived.push_back(std::move(table));
-  out.derived.push_back(answers_table(out));
+  for (Table& table : evidence_tables(answers::Compared(out))) out.derived.push_back(std::move(table));
+  out.derived.push_back(answers_table(answers::Compared(out)));
 }
 
 /// Masses × time methods × steps, some refused, some diverged.

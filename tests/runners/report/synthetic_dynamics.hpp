@@ -1,6 +1,7 @@
 #pragma once
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -203,7 +204,8 @@ inline StudyResults dynamics(const DynamicsShape& shape = {}) {
 }
 
 /// A study of kind `basins`: the half-planes of x + y/2 against a wavy border, which the second case moves by `shift`.
-/// A third attractor is near the origin. A corner failed, and one row is not known yet.
+/// A third attractor is near the origin. A corner failed, and one row is not known yet. The attractor of number k has
+/// period k, and the largest basin but k − 1.
 inline StudyResults basins(int count = 40, double shift = 0.2) {
   StudyResults out;
   out.name = "basins";
@@ -213,48 +215,50 @@ inline StudyResults basins(int count = 40, double shift = 0.2) {
                {"scene", {{"initial", {{"displacement", "0.1*x"}, {"velocity", 0}}}}},
                {"axes", {{{"pointer", "/scene/initial/displacement"}}, {{"pointer", "/scene/initial/velocity"}}}}};
   out.columns = {"mass", "elements"};
-  const auto own_columns = named_columns({"x", "y", "class", "period", "attractor", "status", "reason"});
-  Table cells = table_of_cases(out, "cells", "", own_columns);
+  const TableType<CellRow> type = cells_type();
   for (const std::string mass : {"full", "poor"}) {
     CaseRecord record;
     record.id = mass;
     record.status = "done";
     record.axes = {{"mass", mass}, {"elements", 10}};
-    Table own{"cells", "", own_columns, {}};
-    for (int j = 0; j < count; ++j)
+    std::vector<CellRow> cells;
+    NumberTable points = cell_points_type().head();
+    std::set<int> met;
+    for (int j = 0; j < count - 1; ++j)
       for (int i = 0; i < count; ++i) {
         const double x = -1 + 2.0 * i / (count - 1), y = -2 + 4.0 * j / (count - 1);
-        if (j == count - 1) continue;
-        const bool corner = x < -0.9 && y < -1.8;
+        if (x < -0.9 && y < -1.8) {
+          cells.push_back({"", x, y, "failed", {}, {}, true, {}, "failed", "the support passes the <stop>"});
+          continue;
+        }
         const int attractor = x * x + y * y < 0.1                                                  ? 3
                               : x + 0.5 * y + 0.2 * std::sin(6 * y) > (mass == "poor" ? shift : 0) ? 2
                                                                                                    : 1;
-        const Cell number = corner ? Cell(nullptr) : Cell(attractor), period = corner ? Cell(nullptr) : Cell(attractor);
-        const std::string kind = corner ? "failed" : "periodic", status = corner ? "failed" : "done",
-                          reason = corner ? "the support passes the <stop>" : "";
-        own.rows.push_back({x, y, kind, period, nullptr, status, reason});
-        cells.rows.push_back({record.id, mass, 10, x, y, kind, period, number, status, reason});
+        // The section of the first cell of an end stands for all.
+        const auto cell = static_cast<double>(cells.size());
+        for (int k = 0; met.count(attractor) == 0 && k < attractor; ++k)
+          points.add({cell, static_cast<double>(k), 0.1 * attractor + k, 0.2 * k, -0.1 * attractor - k, -0.2 * k});
+        met.insert(attractor);
+        cells.push_back({"", x, y, "periodic", attractor, attractor, true, {}, "done", ""});
       }
-    record.tables = {std::move(own)};
+    record.tables = {type.with(cells)};
+    record.numbers = {std::move(points)};
     out.cases.push_back(std::move(record));
   }
   out.expected_cases = 2;
-  out.derived.push_back(std::move(cells));
-  Table attractors{"attractors", "", named_columns({"attractor", "label", "cases", "class", "period"}), {}};
-  Table fractions = table_of_cases(out, basin_fractions_type().head()),
-        uncertainty = table_of_cases(out, basin_uncertainty_type().head());
-  for (const int k : {1, 2, 3}) attractors.rows.push_back({k, "common to all", 2, "periodic", k});
-  for (const char* mass : {"full", "poor"}) {
-    for (const int k : {1, 2, 3})
-      fractions.rows.push_back({mass, mass, 10, k, "periodic", k, 100 * k, k / 6.0, k / 6.0 - 0.01, k / 6.0 + 0.01});
-    uncertainty.rows.push_back({mass, mass, 10, 0.12, 0.9, 0.8, 1.0});
-  }
-  out.derived.push_back(std::move(attractors));
-  out.derived.push_back(std::move(fractions));
-  out.derived.push_back(std::move(uncertainty));
-  out.derived.push_back(basin_differences_type().head());
-  out.derived.back().rows = {{"poor", "full", 1500, 150, 0.1}, {"full", "poor", 1500, 150, 0.1}};
   return out;
+}
+
+/// Changes the cells of every case: `change(row, number of the row)`.
+template <class Change>
+StudyResults with_cells(StudyResults results, const Change& change) {
+  const TableType<CellRow> type = cells_type();
+  for (CaseRecord& record : results.cases) {
+    std::vector<CellRow> cells = type.read(record.tables);
+    for (std::size_t k = 0; k < cells.size(); ++k) change(cells[k], k);
+    record.tables = {type.with(cells)};
+  }
+  return results;
 }
 
 }  // namespace ricochet::synthetic

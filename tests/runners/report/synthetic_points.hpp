@@ -150,7 +150,7 @@ inline CaseRecord points_case(const std::string& mass, double stiffness, int ele
     turns.push_back({record.id, "orbit-1+", prominence,
                      (folds ? 1 : 0) + static_cast<int>(prominence < 2e-4 ? invented * 1e-2 : 0)});
   }
-  record.tables = {branches_table(4, rows), special_points_type().with(points), turns_type().with(turns)};
+  record.tables = {branches_type(4).with(rows), special_points_type().with(points), turns_type().with(turns)};
   add_portraits(record, rows);
   return record;
 }

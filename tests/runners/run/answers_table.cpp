@@ -52,22 +52,24 @@ std::string form_of(const Table& answers) {
 }  // namespace
 
 TEST_CASE("methods that differ by less than 1 % do not, and what step still moves is said") {
-  const Table answers = answers_table(study([](int mass, int, double step) { return 0.4 + 0.002 * mass + step; }));
+  const Table answers =
+      answers_table(answers::Compared(study([](int mass, int, double step) { return 0.4 + 0.002 * mass + step; })));
   CHECK(form_of(answers) == "none");
   CHECK_THAT(said(answers),
              Catch::Contains("No difference: the energy left is 40.") && Catch::Contains("methods differ by 0.2 %"));
 }
 
 TEST_CASE("methods that differ are told apart by the choice that does it") {
-  const Table answers = answers_table(study([](int mass, int, double step) { return (mass ? 0.6 : 0.4) + step; }));
+  const Table answers =
+      answers_table(answers::Compared(study([](int mass, int, double step) { return (mass ? 0.6 : 0.4) + step; })));
   CHECK(form_of(answers) == "differ");
   CHECK_THAT(said(answers),
              Catch::Contains("None keeps it; the heavy mass comes nearest with 60.01 %; the light mass keeps 40.01 %"));
 }
 
 TEST_CASE("what the step moves more than methods do cannot be told") {
-  const Table answers =
-      answers_table(study([](int mass, int, double step) { return (mass ? 0.42 : 0.4) + 200 * std::sin(1e5 * step); }));
+  const Table answers = answers_table(answers::Compared(
+      study([](int mass, int, double step) { return (mass ? 0.42 : 0.4) + 200 * std::sin(1e5 * step); })));
   CHECK(form_of(answers) == "open");
   CHECK_THAT(said(answers), Catch::Contains("These steps cannot tell"));
 }
@@ -75,16 +77,17 @@ TEST_CASE("what the step moves more than methods do cannot be told") {
 TEST_CASE("with a compared choice that is spoken of first, paired over all others") {
   StudyResults results = study([](int mass, int law, double step) { return 0.4 + (mass && law ? 0.2 : 0) + step; });
   results.study = {{"compare", "mass"}};
-  CHECK_THAT(said(answers_table(results)),
+  CHECK_THAT(said(answers_table(answers::Compared(results))),
              Catch::StartsWith("The mass matrix matters with soft: it moves the energy left by 33 %") ||
                  Catch::StartsWith("The mass matrix matters with soft"));
   results = study([](int, int law, double step) { return 0.4 + 0.2 * law + step; });
   results.study = {{"compare", "mass"}};
-  CHECK_THAT(said(answers_table(results)), Catch::StartsWith("The mass matrix does not matter"));
+  CHECK_THAT(said(answers_table(answers::Compared(results))), Catch::StartsWith("The mass matrix does not matter"));
 }
 
 TEST_CASE("one step only is said, and no difference is told as if it were known") {
-  const Table answers = answers_table(study([](int mass, int, double) { return mass ? 0.6 : 0.4; }, {1e-4}));
+  const Table answers =
+      answers_table(answers::Compared(study([](int mass, int, double) { return mass ? 0.6 : 0.4; }, {1e-4})));
   CHECK_THAT(said(answers), Catch::Contains("the only step"));
 }
 
@@ -93,7 +96,7 @@ TEST_CASE("the order of cases leaves the answer as it is") {
       study([](int mass, int law, double step) { return 0.4 + 0.1 * mass + 0.03 * law + 50 * step * (1 + mass); });
   const auto numbers = [](const StudyResults& one) {
     std::vector<std::string> out;
-    const Table table = answers_table(one);
+    const Table table = answers_table(answers::Compared(one));
     const TableReader rows(table);
     for (std::size_t row = 0; row < rows.size(); ++row)
       out.push_back(rows.text(row, "form") + rows.text(row, "low") + rows.text(row, "high"));
@@ -114,7 +117,7 @@ TEST_CASE(
   for (int draw = 0; draw < 60; ++draw) {
     const StudyResults results =
         study([&](int, int, double) { return 0.5 + 0.1 * normal(random); }, {4e-4, 2e-4, 1e-4}, 1 + draw % 5);
-    const Table answers = answers_table(results);
+    const Table answers = answers_table(answers::Compared(results));
     const TableReader rows(answers);
     std::size_t sentences = 0;
     for (std::size_t row = 0; row < rows.size(); ++row) {
@@ -131,7 +134,7 @@ TEST_CASE("other names of methods change words alone") {
       study([](int mass, int law, double step) { return 0.4 + 0.1 * mass + 0.03 * law + 50 * step * (1 + mass); });
   const auto numbers = [](const StudyResults& one) {
     std::vector<std::string> out;
-    const Table table = answers_table(one);
+    const Table table = answers_table(answers::Compared(one));
     const TableReader rows(table);
     for (std::size_t row = 0; row < rows.size(); ++row)
       for (const char* column : {"form", "measure", "value", "low", "high", "u", "status", "methods"})
@@ -161,8 +164,8 @@ TEST_CASE("each number of a sentence stands in a table") {
           return 0.2 + 0.3 * a * mass + 0.1 * c * law + b * (1 + mass) * std::pow(1e3 * step, p);
         },
         {8e-4, 4e-4, 2e-4, 1e-4}, 1 + draw % 3);
-    std::vector<Table> tables = evidence_tables(results);
-    tables.push_back(answers_table(results));
+    std::vector<Table> tables = evidence_tables(answers::Compared(results));
+    tables.push_back(answers_table(answers::Compared(results)));
     std::vector<double> known;
     for (const Table& table : tables)
       for (const Row& row : table.rows)
@@ -196,7 +199,7 @@ TEST_CASE("removing the finest step never makes an answer surer") {
     const double a = uniform(random), b = uniform(random), p = 0.5 + 3 * uniform(random);
     const auto value = [&](int mass, int, double step) { return 0.5 + 0.1 * mass * a + b * std::pow(1e3 * step, p); };
     const auto uncertainty = [&](const std::vector<double>& steps) {
-      const std::vector<Table> tables = evidence_tables(study(value, steps, 1));
+      const std::vector<Table> tables = evidence_tables(answers::Compared(study(value, steps, 1)));
       double most = 0;
       const TableReader rows(tables.front());
       for (std::size_t row = 0; row < rows.size(); ++row)
@@ -235,8 +238,8 @@ TEST_CASE("two levels have no share, nor does what round-off explains") {
 
 TEST_CASE(
     "at the only step methods whose values chain into one another differ by what is measured, no finer step asked") {
-  const std::string text =
-      said(answers_table(study([](int mass, int law, double) { return 0.25 + 0.009 * law + 1e-4 * mass; }, {1e-4}, 3)));
+  const std::string text = said(answers_table(
+      answers::Compared(study([](int mass, int law, double) { return 0.25 + 0.009 * law + 1e-4 * mass; }, {1e-4}, 3))));
   INFO(text);
   CHECK_THAT(text, Catch::Contains(
                        "differs by 1.8 % between methods at h = 1e-4 s, the only step: it lies in 25.0 to 26.8 %") &&
@@ -246,45 +249,49 @@ TEST_CASE(
 
 TEST_CASE("cases that gave no result are told by what sets them apart, where all are done nothing is said of it") {
   StudyResults results = study([](int mass, int, double step) { return (mass ? 0.6 : 0.4) + step; });
-  CHECK(said(answers_table(results)).find("iverged") == std::string::npos);
+  CHECK(said(answers_table(answers::Compared(results))).find("iverged") == std::string::npos);
   for (CaseRecord& record : results.cases)
     if (record.axes[0].second == "heavy" && record.axes[1].second == "soft") record.status = "diverged";
-  CHECK_THAT(said(answers_table(results)), Catch::Contains("Diverged: 3 of 12 cases (the heavy mass with soft).\n"));
+  CHECK_THAT(said(answers_table(answers::Compared(results))),
+             Catch::Contains("Diverged: 3 of 12 cases (the heavy mass with soft).\n"));
   // Why, where cases share it; a sentence of one case among many is in reasons.csv.
   for (CaseRecord& record : results.cases)
     if (record.status == "diverged") {
       record.status = "refused";
       record.reason = "no impact measure";
     }
-  CHECK_THAT(said(answers_table(results)),
+  CHECK_THAT(said(answers_table(answers::Compared(results))),
              Catch::Contains("Not run: 3 of 12 cases (the heavy mass with soft): no impact measure.\n"));
   // Each reason with its own cases; reasons that differ in numbers alone are one.
   results.cases.back().reason = "no step";
-  CHECK_THAT(said(answers_table(results)),
+  CHECK_THAT(said(answers_table(answers::Compared(results))),
              Catch::Contains("Not run: 2 of 12 cases (the heavy mass with soft at h = ") &&
                  Catch::Contains(": no impact measure.\n") && Catch::Contains("Not run: 1 of 12 cases (") &&
                  Catch::Contains(": no step.\n"));
   int number = 0;
   for (CaseRecord& record : results.cases)
     if (record.status == "refused") record.reason = "step 0." + std::to_string(++number) + " is beyond 2";
-  CHECK_THAT(said(answers_table(results)),
+  CHECK_THAT(said(answers_table(answers::Compared(results))),
              Catch::Contains("Not run: 3 of 12 cases (the heavy mass with soft): step … is beyond 2.\n"));
   for (CaseRecord& record : results.cases)
     if (record.status == "refused") record.reason = "no impact measure";
   // A reference that refuses is named.
   for (CaseRecord& record : results.cases)
     record.notes = {"reference that does not apply: exact: the beam is held twice"};
-  CHECK_THAT(said(answers_table(results)),
+  CHECK_THAT(said(answers_table(answers::Compared(results))),
              Catch::Contains("The reference exact does not apply: the beam is held twice.\n"));
   results.cases.back().notes.clear();
-  CHECK_THAT(said(answers_table(results)), Catch::Contains("The reference exact does not apply to 11 of 12 cases: "));
+  CHECK_THAT(said(answers_table(answers::Compared(results))),
+             Catch::Contains("The reference exact does not apply to 11 of 12 cases: "));
   for (CaseRecord& record : results.cases) record.notes.clear();
   // Of several methods one alone.
   StudyResults one = study([](int, int, double step) { return 0.6 + step; }, {4e-4, 2e-4, 1e-4}, 1);
   for (CaseRecord& record : one.cases)
     if (record.axes[0].second == "light") record.status = "refused";
-  CHECK_THAT(said(answers_table(one)), Catch::StartsWith("Only the heavy mass runs: the energy left is 60.01 "));
+  CHECK_THAT(said(answers_table(answers::Compared(one))),
+             Catch::StartsWith("Only the heavy mass runs: the energy left is 60.01 "));
   // What becomes of cases, first.
   results.study = {{"observe", {"status", "energy_left"}}};
-  CHECK_THAT(said(answers_table(results)), Catch::StartsWith("Everything that applies runs: 9 of 12 cases"));
+  CHECK_THAT(said(answers_table(answers::Compared(results))),
+             Catch::StartsWith("Everything that applies runs: 9 of 12 cases"));
 }

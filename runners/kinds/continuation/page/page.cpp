@@ -15,13 +15,14 @@
 
 namespace ricochet::report {
 
-KindPage continuation_page() {
+KindPage continuation_page(std::shared_ptr<const PointAnalysis> points) {
   KindPage page;
   page.scripts = scripts({"branches", "branch_panel", "branch_figure", "special_points", "multipliers", "turns"});
   page.tables = {"special_points", "turns", "point_presence", "point_levels", "point_lines"};
-  page.derived = {point_levels, point_lines};
-  page.answer = points_html;
-  page.methods = point_methods_html;
+  page.derived = {[points](const CaseView&) { return point_levels(*points); },
+                  [points](const CaseView&) { return point_lines(*points); }};
+  page.answer = [points](const CaseView& view) { return points_html(view, *points); };
+  page.methods = [points](const CaseView& view) { return point_methods_html(view, *points); };
   page.data_key = "branches";
   page.data = branch_data;
   page.masses = false;
@@ -41,12 +42,9 @@ std::string order_text(const PointOrderRow& row) {
   return fmt::format("{} ± {}", number_text(*row.order, 2), number_text(0.5 * (*row.high - *row.low), 1));
 }
 
-/// What the tables of points hold of a study.
-struct PointRows {
-  explicit PointRows(const CaseView& view)
-      : limits(point_limits_type().read(view.results().derived)),
-        orders(point_orders_type().read(view.results().derived)),
-        presence(point_presence_type().read(view.results().derived)) {
+/// The cells of orders and of presence, of all points.
+struct PointCells {
+  explicit PointCells(const PointAnalysis& of) : orders(of.orders), presence(of.presence) {
     for (const PointOrderRow& row : orders)
       if (std::find(refined.begin(), refined.end(), row.refined) == refined.end()) refined.push_back(row.refined);
   }
@@ -75,9 +73,8 @@ struct PointRows {
     if (away > 0) out += fmt::format(", {} elsewhere", away);
     return out;
   }
-  std::vector<PointLimitRow> limits;
-  std::vector<PointOrderRow> orders;
-  std::vector<PointPresenceRow> presence;
+  const std::vector<PointOrderRow>& orders;
+  const std::vector<PointPresenceRow>& presence;
   std::vector<std::string> refined;
 };
 
@@ -86,33 +83,22 @@ const char* order_head(const std::string& refined) {
   return refined == "steps_per_period" ? "order in h" : refined == "contact.stiffness" ? "order in 1/κ" : "order in ℓ";
 }
 
-/// Places of names in a row in which those that the answer tells stand first.
-class ToldOrder {
- public:
-  ToldOrder(const StudyPoints& study, const PointRows& rows) {
-    if (study.cases().empty()) return;
-    for (const ToldPoint& one : told_points(study, rows.limits, rows.orders)) told_.push_back(one.name->text);
-  }
-  std::ptrdiff_t place(const std::string& name) const {
-    return std::find(told_.begin(), told_.end(), name) - told_.begin();
-  }
-
- private:
-  std::vector<std::string> told_;
-};
+/// The place of a name in a row in which those that the answer tells stand first.
+std::ptrdiff_t told_place(const PointAnalysis& of, const std::string& name) {
+  return std::find_if(of.told.begin(), of.told.end(), [&](const ToldPoint& one) { return one.name->text == name; }) -
+         of.told.begin();
+}
 
 }  // namespace
 
-std::string points_html(const CaseView& view) {
-  const PointRows rows(view);
+std::string points_html(const CaseView& view, const PointAnalysis& of) {
+  const PointCells rows(of);
   std::vector<HtmlTable::Head> columns = {{"point"}, {with_unit(swept_parameter(view.results())), true}};
   for (const std::string& one : rows.refined) columns.push_back({order_head(one), true});
   columns.push_back({"cases that have it", true, "Without: a branch passed the place. Elsewhere: none came there."});
   // What the answer tells; then what most is known of: orders, cases that have it; changes of contact last.
-  const answers::Compared compared(view.results());
-  const ToldOrder told_order(StudyPoints(compared), rows);
   std::vector<PointLimitRow> shown;
-  for (const PointLimitRow& row : rows.limits)
+  for (const PointLimitRow& row : of.limits)
     if (row.limit &&
         std::none_of(shown.begin(), shown.end(), [&](const PointLimitRow& before) { return before.name == row.name; }))
       shown.push_back(row);
@@ -121,7 +107,7 @@ std::string points_html(const CaseView& view) {
       return order.name == row.name && order.method == row.id && order.verdict == order_told;
     });
     const bool change = row.name.find("contact at") != std::string::npos && row.name.find("first") == std::string::npos;
-    return std::make_tuple(told_order.place(row.name), change, !told, -rows.found(row.name));
+    return std::make_tuple(told_place(of, row.name), change, !told, -rows.found(row.name));
   };
   std::stable_sort(shown.begin(), shown.end(),
                    [&](const PointLimitRow& a, const PointLimitRow& b) { return rank(a) < rank(b); });
@@ -141,8 +127,8 @@ std::string points_html(const CaseView& view) {
   return table.size() > 0 ? table.html() : "";
 }
 
-std::string point_methods_html(const CaseView& view) {
-  const PointRows rows(view);
+std::string point_methods_html(const CaseView& view, const PointAnalysis& of) {
+  const PointCells rows(of);
   std::vector<HtmlTable::Head> columns = {{"point"}, {"method"}, {with_unit(swept_parameter(view.results())), true}};
   for (const std::string& one : rows.refined) columns.push_back({order_head(one), true});
   for (const char* one : {"step leaves open", "mesh leaves open", "stiffness leaves open", "reference", "from it"})
@@ -151,7 +137,7 @@ std::string point_methods_html(const CaseView& view) {
       "Special points by method, at the limit of all refinements; ±: what these leave open and the interval of the "
       "finest point. Order: by differences of successive sizes.",
       columns);
-  for (const PointLimitRow& row : rows.limits) {
+  for (const PointLimitRow& row : of.limits) {
     const CaseRecord* record = view.find(row.id);
     if (!record || !row.limit) continue;
     table.row(row.name).text(view.label(*record, view.varying_without({"elements", "modes", "steps_per_period"})));
@@ -163,7 +149,7 @@ std::string point_methods_html(const CaseView& view) {
   return table.size() > 0 ? "<h3>Special points by method</h3>\n" + table.html() : "";
 }
 
-Table point_levels(const CaseView& view) {
+Table point_levels(const PointAnalysis& of) {
   Table out{"point_levels",
             "One row per point that has a name, refinement and case along it: how far the point is from its limit.",
             {{"name", "", "Name of the special point."},
@@ -176,23 +162,21 @@ Table point_levels(const CaseView& view) {
              {"half", "that of the parameter", "Half the width of the interval of the point."},
              {"presence", "", "found, many, absent or not reached."}},
             {}};
-  const answers::Compared compared(view.results());
-  const StudyPoints study(compared);
-  const ToldOrder told_order(study, PointRows(view));
+  const StudyPoints& study = of.points;
   std::vector<std::size_t> names(study.names().size());
   std::iota(names.begin(), names.end(), std::size_t{0});
   std::stable_sort(names.begin(), names.end(), [&](std::size_t a, std::size_t b) {
-    return told_order.place(study.names()[a].text) < told_order.place(study.names()[b].text);
+    return told_place(of, study.names()[a].text) < told_place(of, study.names()[b].text);
   });
   for (const std::size_t name : names)
-    for (const std::size_t head : study.heads()) {
+    for (const PointConvergence& found : of.convergence[name]) {
       const int number = static_cast<int>(name);
-      const PointConvergence found = study.convergence(head, number);
+      const std::size_t head = found.finest;
       const auto add = [&](std::size_t axis, std::size_t c, const StudyPoint* point, const PointLimit& limit) {
         Row row = {study.names()[name].text, study.axes()[axis].column, study.cases()[head]->id, study.cases()[c]->id,
                    Cell(study.axes()[axis].size(*study.cases()[c]))};
-        row.push_back(point ? Cell(point->value) : Cell());
-        row.push_back(point ? Cell(std::abs(point->value - limit.value)) : Cell());
+        row.push_back(point ? Cell(point->parameter) : Cell());
+        row.push_back(point ? Cell(std::abs(point->parameter - limit.value)) : Cell());
         row.push_back(point ? Cell(point->half) : Cell());
         row.push_back(word(study.presence(c, number, nullptr)));
         out.rows.push_back(std::move(row));
@@ -211,7 +195,7 @@ Table point_levels(const CaseView& view) {
   return out;
 }
 
-Table point_lines(const CaseView& view) {
+Table point_lines(const PointAnalysis& of) {
   Table out{"point_lines",
             "One row per point that has a name, refinement and method whose order is told: the fitted distance from "
             "the limit.",
@@ -224,11 +208,10 @@ Table point_lines(const CaseView& view) {
              {"distance_to", "that of the parameter", "Fitted distance at the largest size."},
              {"order", "1", "The order."}},
             {}};
-  const answers::Compared compared(view.results());
-  const StudyPoints study(compared);
+  const StudyPoints& study = of.points;
   for (std::size_t name = 0; name < study.names().size(); ++name)
-    for (const std::size_t head : study.heads())
-      for (const PointConvergence::Along& one : study.convergence(head, static_cast<int>(name)).along) {
+    for (const PointConvergence& found : of.convergence[name])
+      for (const PointConvergence::Along& one : found.along) {
         const PointLimit limit = study.limit(one, static_cast<int>(name));
         if (!one.order.told || limit.correction == 0) continue;
         double from = INFINITY, to = 0;
@@ -239,8 +222,8 @@ Table point_lines(const CaseView& view) {
             to = std::max(to, *size);
           }
         const double distance = std::abs(limit.correction);
-        out.rows.push_back({study.names()[name].text, study.axes()[one.axis].column, study.cases()[head]->id, from, to,
-                            distance, distance * std::pow(to / from, *one.order.order), *one.order.order});
+        out.rows.push_back({study.names()[name].text, study.axes()[one.axis].column, study.cases()[found.finest]->id,
+                            from, to, distance, distance * std::pow(to / from, *one.order.order), *one.order.order});
       }
   return out;
 }

@@ -1,6 +1,7 @@
 // What a study of basins answers: where starts end, which choice moves the border, what is undecided.
 #include <catch2/catch.hpp>
 
+#include "runners/kinds/basins/basin_analysis.hpp"
 #include "runners/kinds/basins/basins.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 
@@ -16,40 +17,41 @@ struct BasinCase {
   int undecided = 0;              ///< of 100 cells
 };
 
-/// Cases with what becomes of 100 starts each; `differ` gives the cells in which two of them differ.
-StudyResults basins_of(const std::vector<BasinCase>& cases, const std::vector<std::array<int, 3>>& differ) {
+/// Cases with what becomes of 100 starts each.
+struct Basins {
   StudyResults results;
-  results.kind = "basins";
-  results.columns = {"mass", "steps_per_period"};
-  Table fractions{"basin_fractions",
-                  "",
-                  named_columns({"case", "attractor", "class", "period", "cells", "fraction", "low", "high"}),
-                  {}};
-  Table differences{"basin_differences", "", named_columns({"case", "other_case", "cells", "differ", "share"}), {}};
-  Table cells{"cells", "", named_columns({"case", "class", "attractor", "status"}), {}};
+  BasinAnalysis analysis;
+};
+
+/// `differ` gives the cells in which two of them differ.
+Basins basins_of(const std::vector<BasinCase>& cases, const std::vector<std::array<int, 3>>& differ) {
+  Basins out;
+  out.results.kind = "basins";
+  out.results.columns = {"mass", "steps_per_period"};
   for (std::size_t c = 0; c < cases.size(); ++c) {
-    CaseRecord& record = results.cases.emplace_back();
+    CaseRecord& record = out.results.cases.emplace_back();
     record.id = "c" + std::to_string(c);
     record.status = "done";
     record.axes = {{"mass", cases[c].mass}, {"steps_per_period", cases[c].steps}};
     for (std::size_t k = 0; k < cases[c].fractions.size(); ++k) {
       const double share = cases[c].fractions[k];
-      fractions.rows.push_back({record.id, static_cast<int>(k) + 1, "periodic", static_cast<int>(k) + 1,
-                                static_cast<int>(100 * share), share, share - 0.02, share + 0.02});
+      const int number = static_cast<int>(k) + 1;
+      out.analysis.fractions.push_back(
+          {record.id, number, "periodic", number, static_cast<int>(100 * share), share, share - 0.02, share + 0.02});
     }
-    for (int k = 0; k < 100; ++k)
-      cells.rows.push_back({record.id, "periodic", k < cases[c].undecided ? Cell() : Cell(1), "done"});
+    const auto undecided = static_cast<std::size_t>(cases[c].undecided);
+    out.analysis.starts[record.id] = {100, 0, 100 - undecided, undecided};
   }
   for (const auto& [one, other, count] : differ)
-    differences.rows.push_back({"c" + std::to_string(one), "c" + std::to_string(other), 100, count, 0.01 * count});
-  results.derived = {std::move(fractions), std::move(differences), std::move(cells)};
-  return results;
+    out.analysis.differences.push_back(
+        {"c" + std::to_string(one), "c" + std::to_string(other), 100, count, 0.01 * count});
+  return out;
 }
 
-std::string basins_said(const StudyResults& results) {
+std::string basins_said(const Basins& basins) {
   std::string out;
-  const answers::Compared study(results);
-  for (const answers::Sentence& one : basins_answer(study).sentences) out += one.text + "\n";
+  for (const answers::Sentence& one : basins_answer(answers::Compared(basins.results), basins.analysis).sentences)
+    out += one.text + "\n";
   return out;
 }
 

@@ -134,7 +134,7 @@ TEST_CASE("names stand in special_points, of ends nowhere") {
 }
 
 TEST_CASE("the answer gives value, interval and order, and every number of it stands in answers") {
-  const StudyResults all = with_tables(synthetic::points());
+  const AnalysedResults all(synthetic::points());
   const auto said = sentences_of(all);
   REQUIRE(said.size() >= 4);
   CHECK_THAT(said[0],
@@ -189,7 +189,7 @@ StudyResults without_points(bool both) {
   for (std::size_t k = 0; k < (both ? 2 : 1); ++k) {
     std::vector<BranchRow> rows = branch_rows_in(*find_table(all.cases[k].tables, branches_name));
     for (BranchRow& row : rows) row.point.reset();
-    all.cases[k].tables = {branches_table(4, rows), special_points_type().with({}), turns_type().with({})};
+    all.cases[k].tables = {branches_type(4).with(rows), special_points_type().with({}), turns_type().with({})};
   }
   return with_tables(std::move(all));
 }
@@ -218,7 +218,7 @@ TEST_CASE("a study without orbits says why") {
   row.kind = "end";
   row.parameter = 0.08;
   row.note = "no orbit of period 1 within 30 iterations";
-  none.cases[0].tables = {branches_table(4, {}), special_points_type().with({row}), turns_type().with({})};
+  none.cases[0].tables = {branches_type(4).with({}), special_points_type().with({row}), turns_type().with({})};
   none = with_tables(std::move(none));
   CHECK(sentences_of(none) ==
         std::vector<std::string>{"No periodic orbit was found: no orbit of period 1 within 30 iterations."});

@@ -4,7 +4,6 @@
 
 #include "runners/answers/compared.hpp"
 #include "runners/kinds/continuation/point_speaker.hpp"
-#include "runners/kinds/kind.hpp"
 #include "runners/run/finish_run.hpp"
 #include "runners/table/table_reader.hpp"
 #include "tests/runners/report/synthetic_points.hpp"
@@ -15,11 +14,9 @@ namespace {
 
 std::vector<std::string> told_of(const StudyResults& all) {
   const answers::Compared compared(all);
-  const StudyPoints study(compared);
-  const auto limits = point_limits_type().read(all.derived);
+  const PointAnalysis points(compared);
   std::vector<std::string> out;
-  for (const ToldPoint& one : told_points(study, limits, point_orders_type().read(all.derived)))
-    out.push_back(one.name->kind);
+  for (const ToldPoint& one : points.told) out.push_back(one.point().kind);
   return out;
 }
 
@@ -34,7 +31,7 @@ StudyResults changed(const Change& change) {
     std::vector<SpecialRow> points = special_points_type().read(record.tables);
     const std::vector<TurnRow> turns = turns_type().read(record.tables);
     change(rows, points);
-    record.tables = {branches_table(4, rows), special_points_type().with(points), turns_type().with(turns)};
+    record.tables = {branches_type(4).with(rows), special_points_type().with(points), turns_type().with(turns)};
   }
   return with_tables(std::move(all));
 }

@@ -5,6 +5,7 @@
 
 #include "runners/kinds/basins/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
+#include "runners/run/analysed_results.hpp"
 #include "tests/runners/report/browser/browser.hpp"
 #include "tests/runners/report/synthetic_dynamics.hpp"
 
@@ -213,10 +214,9 @@ TEST_CASE("a diagram draws every orbit, and a click on a point opens its own", "
 
 TEST_CASE("images of basins draw every cell and their differences, and a click opens a cell", "[report][browser]") {
   if (left_out()) return;
-  const StudyResults results = synthetic::basins(40, 0.2);
-  StudyResults filled = synthetic::basins(20);
-  filled.derived[0].columns.push_back({"marched", "", ""});
-  for (size_t row = 0; row < filled.derived[0].rows.size(); ++row) filled.derived[0].rows[row].push_back(row % 4 == 0);
+  const StudyResults results = with_tables(synthetic::basins(40, 0.2));
+  const StudyResults filled = with_tables(
+      synthetic::with_cells(synthetic::basins(20), [](CellRow& cell, size_t row) { cell.marched = row % 4 == 0; }));
   std::vector<Page> pages = {page_of("basins", results), page_of("filled", filled)};
   pages[1].controls = false;
   const browser::Json said = read_back("basins", pages);
@@ -226,12 +226,13 @@ TEST_CASE("images of basins draw every cell and their differences, and a click o
   REQUIRE(basins.at("charts").size() == 2);
   CHECK(basins.at("views") == browser::Json({"basins", "difference"}));
   // One series per end that a case has, in the colour of the legend.
-  const report::Basins grids = report::basins_of(results);
+  StudyResults own = results;
+  const BasinAnalysis grids = analyse_basins(own);
   for (size_t c = 0; c < 2; ++c) {
     const browser::Json& series = basins.at("charts")[c].at("views")[0].at("series");
     size_t drawn = 0;
     for (size_t k = 0; k < grids.labels.size(); ++k) {
-      if (std::find(grids.grids[c].cells.begin(), grids.grids[c].cells.end(), k) == grids.grids[c].cells.end())
+      if (std::find(grids.images[c].cells.begin(), grids.images[c].cells.end(), k) == grids.images[c].cells.end())
         continue;
       REQUIRE(drawn < series.size());
       CHECK(series[drawn].at("name") == grids.labels[k].name);
@@ -239,7 +240,7 @@ TEST_CASE("images of basins draw every cell and their differences, and a click o
     }
     CHECK(series.size() == drawn);
   }
-  const auto counts = report::basin_counts(report::CaseView(results)).rows[1];
+  const auto counts = report::basin_counts(grids).rows[1];
   CHECK(says(basins.at("charts")[1].at("views")[1].at("notes"),
              counts[4].text() + " of " + counts[7].text() + " cells that both decide differ"));
   CHECK(says(basins.at("charts")[0].at("views")[0].at("notes"), "the support passes the <stop>"));

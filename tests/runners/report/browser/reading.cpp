@@ -13,7 +13,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const char* const kinds[] = {"trajectory", "convergence", "work-precision", "stability", "bifurcation", "basins"};
+const char* const read_kinds[] = {"trajectory", "convergence", "work-precision", "stability", "bifurcation", "basins"};
 
 // Expressions that the page answers.
 const char* const page_width = "document.documentElement.scrollWidth";
@@ -40,7 +40,7 @@ TEST_CASE("on a phone nothing is wider than the screen, and a swipe over a chart
           "[report][browser]") {
   if (left_out()) return;
   browser::Json steps = browser::Json::array();
-  for (const std::string kind : kinds) {
+  for (const std::string kind : read_kinds) {
     steps.push_back({{"name", kind},
                      {"page", report_of("studies", kind)},
                      {"width", 420},
@@ -51,7 +51,7 @@ TEST_CASE("on a phone nothing is wider than the screen, and a swipe over a chart
                      {"evaluate", {page_width, "scrollY", beyond_edge}}});
   }
   const browser::Json said = driven("reading-phone", steps);
-  for (const std::string kind : kinds) {
+  for (const std::string kind : read_kinds) {
     INFO(kind);
     const browser::Json& values = said.at(kind).at("values");
     CHECK(values.at(0) == 420);
@@ -148,14 +148,14 @@ TEST_CASE("a dark screen is dark, and its words and charts stand out", "[report]
   })())js";
   browser::Json steps = browser::Json::array();
   // The screen turns light while the page is read, which carries what is drawn along.
-  for (const std::string kind : kinds)
+  for (const std::string kind : read_kinds)
     steps.push_back({{"name", kind},
                      {"page", report_of("studies", kind)},
                      {"dark", true},
                      {"evaluate", {least_contrast, paper, chart}},
                      {"turn", {least_contrast, paper, chart}}});
   const browser::Json said = driven("reading-dark", steps);
-  for (const std::string kind : kinds)
+  for (const std::string kind : read_kinds)
     for (const bool dark : {true, false}) {
       const browser::Json& values = said.at(kind).at(dark ? "values" : "turned");
       INFO(kind << " " << dark << " " << values);
@@ -261,7 +261,7 @@ TEST_CASE("a printed report has a summary on its first page, numbered pages, and
   if (left_out()) return;
   std::filesystem::create_directories(file_of(""));
   browser::Json steps = browser::Json::array();
-  for (const std::string kind : kinds)
+  for (const std::string kind : read_kinds)
     steps.push_back({{"name", kind},
                      {"page", report_of("studies", kind)},
                      {"evaluate",
@@ -273,7 +273,7 @@ TEST_CASE("a printed report has a summary on its first page, numbered pages, and
                      {"pdf", file_of(kind + ".pdf")}});
   const browser::Json answers = driven("reading-print", steps);
   const auto flat = [](std::string text) { return std::regex_replace(text, std::regex("[\\s-]+"), ""); };
-  for (const std::string kind : kinds) {
+  for (const std::string kind : read_kinds) {
     INFO(kind);
     const browser::Json& values = answers.at(kind).at("values");
     const std::string pdf = "'" + file_of(kind + ".pdf") + "'";
@@ -335,7 +335,7 @@ TEST_CASE("a report is worked by keys, and says in words what its charts show", 
        {"before", {"document.querySelector('#figure-final-energy-step .chart').focus()", show_chart}},
        {"keys", {"Enter", "Enter"}},
        {"evaluate", {"document.querySelectorAll('.chart-data').length"}}}};
-  for (const std::string kind : kinds)
+  for (const std::string kind : read_kinds)
     steps.push_back({{"name", kind}, {"page", report_of("studies", kind)}, {"evaluate", {until_chart}}});
   const browser::Json said = driven("reading-keys", steps);
   CHECK_THAT(said.at("skip").at("values").at(0).get<std::string>(), Contains("Skip to the answer"));
@@ -352,7 +352,7 @@ TEST_CASE("a report is worked by keys, and says in words what its charts show", 
   CHECK_THAT(label, Contains("across step h from "));
   CHECK_THAT(label, Contains("upwards E(T) / E_in from "));
   CHECK(said.at("again").at("values").at(0) == 0);
-  for (const std::string kind : kinds) {
+  for (const std::string kind : read_kinds) {
     INFO(kind);
     const browser::Json& page = said.at(kind).at("values").at(0);
     CHECK(page.at(0).get<int>() > 0);

@@ -173,12 +173,13 @@ void check_bifurcation(const Ran& ran, const browser::Json& page) {
 }
 
 void check_basins(const Ran& ran, const browser::Json& page) {
-  const report::Basins grids = report::basins_of(ran.results);
+  StudyResults results = ran.results;
+  const BasinAnalysis grids = analyse_basins(results);
   const browser::Json& basins = figure(page, "basins");
-  REQUIRE(basins.at("charts").size() == grids.grids.size());
-  for (size_t c = 0; c < grids.grids.size(); ++c) {
-    std::set<int> labels(grids.grids[c].cells.begin(), grids.grids[c].cells.end());
-    labels.erase(report::BasinGrid::absent);
+  REQUIRE(basins.at("charts").size() == grids.images.size());
+  for (size_t c = 0; c < grids.images.size(); ++c) {
+    std::set<int> labels(grids.images[c].cells.begin(), grids.images[c].cells.end());
+    labels.erase(report::BasinImage::absent);
     CHECK(basins.at("charts")[c].at("views")[0].at("series").size() == labels.size());
     // Each image spans the frame.
     const browser::Json& view = basins.at("charts")[c].at("views")[0];
