@@ -41,47 +41,78 @@ struct CellValue<std::optional<Value>> {
   static std::optional<std::optional<Value>> of(const Cell& cell) { return CellValue<Value>::of(cell); }
 };
 
+/// How a value of one type becomes a cell and back. What a cell does not hold stays as it was.
+struct CellForm {
+  Cell (*write)(const void* value);
+  void (*read)(void* value, const Cell& cell);
+};
+template <class Value>
+inline constexpr CellForm cell_form = {[](const void* value) { return Cell(*static_cast<const Value*>(value)); },
+                                       [](void* value, const Cell& cell) {
+                                         if (auto held = CellValue<Value>::of(cell))
+                                           *static_cast<Value*>(value) = std::move(*held);
+                                       }};
+
+/// The columns of a table, and where in a record each finds its value, whatever the type of the record is.
+class RowFields {
+ public:
+  const std::vector<Column>& columns() const { return columns_; }
+
+ protected:
+  struct Field {
+    const CellForm* form = nullptr;  ///< of the value at `offset`; null: the record is written and read as a whole
+    std::size_t offset = 0;
+    std::function<Cell(const void* record)> write = {};
+    std::function<void(void* record, const Cell& cell)> read = {};
+  };
+  /// The columns that a table has, with their places in its rows.
+  using Places = std::vector<std::pair<std::size_t, const Field*>>;
+
+  void add(Column column, Field field);
+  void add_in_front(std::string name, Field field) { in_front_.emplace_back(std::move(name), std::move(field)); }
+  Row row_of(const void* record) const;
+  Places find(const Table& table) const;
+  static void read(const Row& row, const Places& places, void* record);
+
+ private:
+  std::vector<Column> columns_;
+  std::vector<Field> fields_;
+  std::vector<std::pair<std::string, Field>> in_front_;
+};
+
 /// The columns of a table, each with the member of `Record` that it shows. The one declaration writes rows and reads
 /// them back. Members are double, whole numbers, bool, std::string, an optional of one, or Cell.
 template <class Record>
-class RowType {
+class RowType : public RowFields {
  public:
-  using Write = std::function<Cell(const Record&)>;
-  using Read = std::function<void(Record&, const Cell&)>;
-
-  RowType& add(Column column, Write write, Read read) {
-    columns_.push_back(std::move(column));
-    fields_.push_back({std::move(write), std::move(read)});
-    return *this;
-  }
   template <class Value, class Owner>
   RowType& add(Column column, Value Owner::*member) {
-    return add(
-        std::move(column), [member](const Record& record) { return Cell(record.*member); },
-        [member](Record& record, const Cell& cell) {
-          if (auto value = CellValue<Value>::of(cell)) record.*member = std::move(*value);
-        });
+    RowFields::add(std::move(column), {&cell_form<Value>, offset_of(member)});
+    return *this;
+  }
+  /// `write(const Record&)` gives the cell, `read(Record&, const Cell&)` takes it.
+  template <class Write, class Read>
+  RowType& add(Column column, Write write, Read read) {
+    RowFields::add(std::move(column),
+                   {nullptr, 0, [write](const void* record) { return write(*static_cast<const Record*>(record)); },
+                    read_of(std::move(read))});
+    return *this;
   }
 
   /// The column `case` in front of rows that speak of one case: read alone, as add_row() writes it with the axes.
   template <class Owner>
   RowType& of_case(std::string Owner::*id) {
-    return in_front(case_name, [id](Record& record, const Cell& cell) { record.*id = cell.text(); });
+    add_in_front(case_name, {&cell_form<std::string>, offset_of(id)});
+    return *this;
   }
   /// Another column that is read alone.
+  template <class Read>
   RowType& in_front(std::string name, Read read) {
-    in_front_.emplace_back(std::move(name), std::move(read));
+    add_in_front(std::move(name), {nullptr, 0, {}, read_of(std::move(read))});
     return *this;
   }
 
-  const std::vector<Column>& columns() const { return columns_; }
-
-  Row row(const Record& record) const {
-    Row row;
-    row.reserve(fields_.size());
-    for (const Field& field : fields_) row.push_back(field.write(record));
-    return row;
-  }
+  Row row(const Record& record) const { return row_of(&record); }
 
   /// All rows of a table. A column that the table lacks leaves its member as a new record has it.
   std::vector<Record> read(const Table& table) const {
@@ -93,42 +124,25 @@ class RowType {
   /// Calls `use(row, Record&&)` with one row after the other: a table may have a million.
   template <class Use>
   void each(const Table& table, Use use) const {
-    std::vector<std::pair<std::size_t, const Read*>> found;
-    for (const auto& [name, read] : in_front_)
-      if (const auto place = find_column(table.columns, name)) found.emplace_back(*place, &read);
-    for (std::size_t k = 0; k < fields_.size(); ++k)
-      if (const auto place = find_column(table.columns, columns_[k].name)) found.emplace_back(*place, &fields_[k].read);
+    const Places places = find(table);
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
       Record record;
-      for (const auto& [place, read] : found) (*read)(record, table.rows[r].at(place));
+      RowFields::read(table.rows[r], places, &record);
       use(r, std::move(record));
     }
   }
-  /// Changes rows in place: `use(Record&)` says whether a row stays. Cells of members that it leaves keep what they
-  /// hold.
-  template <class Use>
-  void change(Table& table, Use use) const {
-    std::vector<Row> kept;
-    each(table, [&](std::size_t r, Record&& record) {
-      const Row before = row(record);
-      if (!use(record)) return;
-      const Row after = row(record);
-      for (std::size_t k = 0; k < columns_.size(); ++k)
-        if (!(after[k] == before[k]))
-          if (const auto place = find_column(table.columns, columns_[k].name)) table.rows[r].at(*place) = after[k];
-      kept.push_back(std::move(table.rows[r]));
-    });
-    table.rows = std::move(kept);
-  }
 
  private:
-  struct Field {
-    Write write;
-    Read read;
-  };
-  std::vector<Column> columns_;
-  std::vector<Field> fields_;
-  std::vector<std::pair<std::string, Read>> in_front_;
+  template <class Value, class Owner>
+  static std::size_t offset_of(Value Owner::*member) {
+    static const Record record{};
+    return static_cast<std::size_t>(reinterpret_cast<const char*>(&(record.*member)) -
+                                    reinterpret_cast<const char*>(&record));
+  }
+  template <class Read>
+  static std::function<void(void*, const Cell&)> read_of(Read read) {
+    return [read](void* record, const Cell& cell) { read(*static_cast<Record*>(record), cell); };
+  }
 };
 
 /// A table whose rows are of one type: NAME.csv, and what a row stands for, one sentence.

@@ -53,19 +53,3 @@ TEST_CASE("row type: columns are found by name, whatever stands between them, an
   table.columns[5].name = "another";
   CHECK_FALSE(type.rows.read(table)[1].limit.has_value());
 }
-
-TEST_CASE("row type: a change writes the members that it sets and leaves all other cells") {
-  const TableType<Measured> type = measured_type();
-  Table table = of_cases();
-  type.rows.change(table, [](Measured& row) {
-    if (row.id == "b") row.name = "second";
-    return true;
-  });
-  Table wanted = of_cases();
-  wanted.rows[1][2] = "second";
-  // The value of b is absent: a number that nobody set is not written.
-  CHECK(table.rows == wanted.rows);
-  type.rows.change(table, [](const Measured& row) { return row.id != "a"; });
-  REQUIRE(table.rows.size() == 1);
-  CHECK(table.rows[0] == wanted.rows[1]);
-}
