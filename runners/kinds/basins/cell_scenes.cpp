@@ -76,7 +76,8 @@ constexpr const char* ends_mark = "ends of cells 4";
 
 template <class Archive>
 void serialize(Archive& archive, CellEnd& end) {
-  archive(end.motion, end.period, end.periods, end.status, end.reason, end.lost, end.section, end.displacements);
+  auto& [motion, period, periods, status, reason, lost, section, displacements] = end;
+  archive(motion, period, periods, status, reason, lost, section, displacements);
 }
 
 CellEnd cell_end(const Orbit& orbit) {

@@ -354,8 +354,8 @@ void serialize(Archive& archive, ContactEvent& event) {
 
 template <class Archive>
 void serialize(Archive& archive, SampledMotion& motion) {
-  archive(motion.tip, motion.tip_velocity, motion.energy, motion.impulse, motion.displacement, motion.strain,
-          motion.velocity, motion.events);
+  auto& [tip, tip_velocity, energy, impulse, displacement, strain, velocity, events] = motion;
+  archive(tip, tip_velocity, energy, impulse, displacement, strain, velocity, events);
 }
 
 template <class Archive>

@@ -48,9 +48,10 @@ void serialize(Archive& archive, CornerRoots& roots) {
 
 template <class Archive>
 void serialize(Archive& archive, BranchCorner& corner) {
-  archive(corner.parameter, corner.arc, corner.tip, corner.way, corner.runs, corner.held, corner.shortest, corner.raw,
-          corner.smooth, corner.leading, corner.change, corner.residual, corner.rebounds, corner.placed,
-          corner.slowest);
+  auto& [parameter, arc, tip, way, runs, held, shortest, raw, smooth, leading, change, residual, rebounds, placed,
+         slowest] = corner;
+  archive(parameter, arc, tip, way, runs, held, shortest, raw, smooth, leading, change, residual, rebounds, placed,
+          slowest);
 }
 
 template <class Archive>
@@ -60,13 +61,14 @@ void serialize(Archive& archive, MarkedOrbit& mark) {
 
 template <class Archive>
 void serialize(Archive& archive, BranchTrace& trace) {
-  archive(trace.corners, trace.states, trace.stride, trace.marks, trace.ties, trace.rebounds, trace.ends, trace.end);
+  auto& [corners, states, stride, marks, ties, rebounds, ends, end] = trace;
+  archive(corners, states, stride, marks, ties, rebounds, ends, end);
 }
 
 template <class Archive>
 void serialize(Archive& archive, BranchState& state) {
-  archive(state.x, state.parameter, state.sets, state.along, state.parameter_along, state.change, state.arc,
-          state.pieces, state.step, state.orientation);
+  auto& [x, parameter, sets, along, parameter_along, change, arc, pieces, step, orientation] = state;
+  archive(x, parameter, sets, along, parameter_along, change, arc, pieces, step, orientation);
 }
 
 template <class Archive>

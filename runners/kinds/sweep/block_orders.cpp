@@ -32,8 +32,8 @@ void serialize(Archive& archive, SceneVariant& variant) {
 
 template <class Archive>
 void serialize(Archive& archive, SectionPlan& plan) {
-  archive(plan.pulsation, plan.steps_per_period, plan.strobe, plan.transient, plan.at_most, plan.keep, plan.section,
-          plan.tolerance, plan.scale);
+  auto& [pulsation, steps_per_period, strobe, transient, at_most, keep, section, tolerance, scale] = plan;
+  archive(pulsation, steps_per_period, strobe, transient, at_most, keep, section, tolerance, scale);
 }
 
 template <class Archive>
@@ -43,8 +43,8 @@ void serialize(Archive& archive, OrderedOrbit& orbit) {
 
 template <class Archive>
 void serialize(Archive& archive, BlockOrder& order) {
-  archive(order.scenes, order.section, order.lanes, order.leave, order.ends_only, order.interval, order.orbits,
-          order.marched, order.exponents, order.rounds, order.sawtooth);
+  auto& [scenes, section, lanes, leave, ends_only, interval, orbits, marched, exponents, rounds, sawtooth] = order;
+  archive(scenes, section, lanes, leave, ends_only, interval, orbits, marched, exponents, rounds, sawtooth);
 }
 
 template <class Archive>

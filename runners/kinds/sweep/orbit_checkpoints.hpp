@@ -27,7 +27,8 @@ void serialize(Archive& archive, SectionPoint& point) {
   archive(point.displacement, point.velocity, point.opposite_displacement, point.opposite_velocity);
 }
 
-// Of what orbits and exponents consist, for those who write them as bytes.
+// Of what orbits and exponents consist, for those who write them as bytes. Large ones name all members in their order,
+// so that a new one is not forgotten: it does not compile.
 
 template <class Archive>
 void serialize(Archive& archive, LaneState& state) {
@@ -71,11 +72,12 @@ void serialize(Archive& archive, RegimeVerdict& verdict) {
 
 template <class Archive>
 void serialize(Archive& archive, Orbit& orbit) {
-  archive(orbit.task, orbit.stage, orbit.transient_periods, orbit.kept_periods, orbit.settled, orbit.end,
-          orbit.end_words, orbit.stopped_period, orbit.settling, orbit.readings, orbit.strobed, orbit.points,
-          orbit.impacts, orbit.impact_counts, orbit.contact_steps, orbit.most_on_a_side, orbit.closed, orbit.pushed,
-          orbit.arrived, orbit.rests, orbit.lasting, orbit.rebounds, orbit.rebounds_so_far, orbit.brief, orbit.verdict,
-          orbit.entry, orbit.now);
+  auto& [task, stage, transient_periods, kept_periods, settled, end, end_words, stopped_period, settling, readings,
+         strobed, points, impacts, impact_counts, contact_steps, most_on_a_side, closed, pushed, arrived, rests,
+         lasting, rebounds, rebounds_so_far, brief, verdict, lane, entry, now] = orbit;
+  archive(task, stage, transient_periods, kept_periods, settled, end, end_words, stopped_period, settling, readings,
+          strobed, points, impacts, impact_counts, contact_steps, most_on_a_side, closed, pushed, arrived, rests,
+          lasting, rebounds, rebounds_so_far, brief, verdict, entry, now);
 }
 
 template <class Archive>
@@ -90,8 +92,8 @@ void serialize(Archive& archive, Interval& interval) {
 
 template <class Archive>
 void serialize(Archive& archive, OrbitExponents& exponents) {
-  archive(exponents.values, exponents.twin, exponents.method, exponents.blind, exponents.saturated,
-          exponents.superstable, exponents.outlived, exponents.untold);
+  auto& [values, twin, method, blind, saturated, superstable, outlived, untold] = exponents;
+  archive(values, twin, method, blind, saturated, superstable, outlived, untold);
 }
 
 /// What an interrupted set of orbits had marched, in a checkpoint store. Parts with finished orbits are written once;

@@ -262,14 +262,11 @@ TEST_CASE("images of basins hold every cell, and their difference counts those t
   CHECK(in_fractions == both);
   const std::string html = basins_html(view, basins);
   CHECK_THAT(html, Contains("periodic 3") && Contains(std::to_string(differ) + "</td>"));
-  // The same colours whatever the order of the cases; without attractors groups tell the cells apart.
+  // The same colours whatever the order of the cases.
   StudyResults turned = synthetic::basins(40, 0.2);
   std::reverse(turned.cases.begin(), turned.cases.end());
   const BasinAnalysis again = analyse_basins(turned);
   for (size_t k = 0; k < 4; ++k) CHECK(again.labels[k].colour == basins.labels[k].colour);
-  for (CaseRecord& record : turned.cases) record.numbers.clear();
-  turned = synthetic::with_cells(std::move(turned), [](CellRow& cell, size_t) { cell.attractor.reset(); });
-  CHECK(analyse_basins(turned).labels[0].name == "period 1");
 }
 
 TEST_CASE("cells that begin beyond a stop have a colour of their own, and no share counts them", "[report]") {
@@ -303,11 +300,8 @@ TEST_CASE("cells that were not marched themselves are said", "[report]") {
   StudyResults results =
       synthetic::with_cells(synthetic::basins(20), [](CellRow& cell, size_t row) { cell.marched = row % 4 == 0; });
   const BasinAnalysis basins = analyse_basins(results);
-  // Three quarters of 20 × 19, but for those that failed.
-  const size_t failed = basins.images[0].reasons.at("the support passes the <stop>");
-  CHECK(failed == 2);
-  CHECK(basins.images[0].filled == 285 - 1);
-  CHECK(basin_counts(basins).rows[0][3] == 285 - 1);
+  CHECK(basins.images[0].filled == 285);  // three quarters of 20 × 19
+  CHECK(basin_counts(basins).rows[0][3] == 285);
 }
 
 TEST_CASE("cases that are still being worked on are said to be", "[report]") {

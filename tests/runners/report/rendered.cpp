@@ -1,19 +1,40 @@
 #include "tests/runners/report/rendered.hpp"
 
+#include "runners/kinds/kind.hpp"
 #include "runners/report/report.hpp"
-#include "runners/run/analysed_results.hpp"
 
 namespace ricochet::synthetic {
+namespace {
 
-StudyResults with_page_tables(StudyResults results) {
-  const AnalysedResults own(results);
-  for (Table& table : report::page_tables(results, own.analysis.page)) results.derived.push_back(std::move(table));
+/// What the kind makes of the cases of results, whatever their tables say.
+struct OwnAnalysis {
+  explicit OwnAnalysis(const StudyResults& results) : own(results), study(own) {
+    own.derived.clear();
+    // Sections are long, and only basins are told by them on their page.
+    if (own.kind != "basins")
+      for (CaseRecord& record : own.cases) record.numbers.clear();
+    analysis = find_kind(own.kind)->analysis(own, study);
+  }
+  StudyResults own;
+  answers::Compared study;
+  Analysis analysis;
+};
+
+StudyResults with_tables_of(const report::KindPage& page, StudyResults results) {
+  for (Table& table : report::page_tables(results, page)) results.derived.push_back(std::move(table));
   return results;
 }
 
+}  // namespace
+
+StudyResults with_page_tables(StudyResults results) {
+  const OwnAnalysis own(results);
+  return with_tables_of(own.analysis.page, std::move(results));
+}
+
 std::string rendered(const StudyResults& results, std::string_view library, std::string_view version) {
-  const AnalysedResults own(results);
-  return report::render_page(with_page_tables(results), own.analysis.page, library, version);
+  const OwnAnalysis own(results);
+  return report::render_page(with_tables_of(own.analysis.page, results), own.analysis.page, library, version);
 }
 
 }  // namespace ricochet::synthetic
