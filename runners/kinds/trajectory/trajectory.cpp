@@ -25,8 +25,9 @@
 namespace ricochet {
 namespace {
 
-std::vector<MeasureInfo> trajectory_measures() {
-  using Of = MeasureInfo::Of;
+using Of = MeasureInfo::Of;
+
+std::vector<MeasureInfo> energy_measures() {
   return {
       {"scheme_energy_start", "J", "The scheme's own discrete energy after its start rule, where it declares one.",
        Of::motion, true, "energy_brought_in"},
@@ -80,6 +81,11 @@ std::vector<MeasureInfo> trajectory_measures() {
        "Energy of the initial state in the kernel of a singular mass, which no inertia holds. It is lost or left "
        "ringing at any step, and 0 after projection.",
        Of::motion, true, "energy_brought_in"},
+  };
+}
+
+std::vector<MeasureInfo> contact_measures() {
+  return {
       {"deepest_penetration", "m", "Largest distance by which a contact point passed its stop.", Of::motion, false,
        "largest_tip_displacement"},
       {"impacts", "1",
@@ -117,6 +123,12 @@ std::vector<MeasureInfo> trajectory_measures() {
        "velocity).",
        Of::motion, true},
       {"law_iterations", "1", "Most iterations that one solve of the contact law took."},
+  };
+}
+
+/// What law and scheme took, and the motion and the march as a whole.
+std::vector<MeasureInfo> run_measures() {
+  return {
       {"dissipated_by_law", "J",
        "Energy that a compliant law itself took out over the run, by the power that it reports. It is the share of a "
        "damper in what is dissipated at contact.",
@@ -140,6 +152,13 @@ std::vector<MeasureInfo> trajectory_measures() {
        "Processor time of the marching, the audit of energies and contact included, divided by the number of steps.",
        Of::computation},
   };
+}
+
+std::vector<MeasureInfo> trajectory_measures() {
+  std::vector<MeasureInfo> all = energy_measures();
+  for (const std::vector<MeasureInfo>& more : {contact_measures(), run_measures()})
+    all.insert(all.end(), more.begin(), more.end());
+  return all;
 }
 
 /// How answers speak of them.
