@@ -12,6 +12,7 @@
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/store/rows_of_cases.hpp"
 
 namespace ricochet::dynamics {
 namespace {
@@ -280,16 +281,6 @@ class BasinCases {
     return attractors_type(swept_).with(rows);
   }
 
-  template <class Record>
-  Table table_of(const TableType<Record>& type, const std::vector<Record>& rows) const {
-    Table table = table_of_cases(results_, type.head());
-    std::size_t k = 0;
-    for (const Image& image : images_)
-      for (; k < rows.size() && rows[k].id == image.record->id; ++k)
-        add_row(table, place_of(results_, *image.record), type.rows.row(rows[k]));
-    return table;
-  }
-
  private:
   std::vector<FractionRow> fractions() const {
     std::vector<FractionRow> rows;
@@ -361,9 +352,9 @@ BasinAnalysis analyse_basins(StudyResults& results) {
   BasinAnalysis out = cases.analysis();
   results.derived.push_back(cases.cells());
   results.derived.push_back(cases.attractors());
-  results.derived.push_back(cases.table_of(basin_fractions_type(), out.fractions));
+  results.derived.push_back(rows_of_cases(results, basin_fractions_type(), out.fractions));
   results.derived.push_back(basin_differences_type().with(out.differences));
-  results.derived.push_back(cases.table_of(basin_uncertainty_type(), out.uncertainty));
+  results.derived.push_back(rows_of_cases(results, basin_uncertainty_type(), out.uncertainty));
   return out;
 }
 

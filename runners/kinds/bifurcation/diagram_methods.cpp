@@ -23,17 +23,17 @@ constexpr std::size_t most_listed = 5;
 
 }  // namespace
 
-void DiagramSpeaker::find_reference() {
-  for (const DistanceRow& row : distances_type().read(results_.derived))
+void DiagramSpeaker::find_reference(const std::vector<DistanceRow>& distances) {
+  for (const DistanceRow& row : distances)
     if (const auto found = by_id_.find(row.reference); found != by_id_.end()) reference_ = found->second;
   if (reference_) return;
   for (const CaseRecord& record : results_.cases)
     if (record.status == "done" && (!reference_ || steps(record) > steps(*reference_))) reference_ = &record;
 }
 
-void DiagramSpeaker::compare() {
+void DiagramSpeaker::compare(const std::vector<DistanceRow>& of_orbits) {
   std::map<std::string, std::vector<double>> distances;
-  for (const DistanceRow& row : distances_type().read(results_.derived))
+  for (const DistanceRow& row : of_orbits)
     if (row.wasserstein) distances[row.id].push_back(*row.wasserstein);
   int all = 0;
   const std::vector<AgreementRow> rows = agreement_type().read(results_.derived);

@@ -44,11 +44,10 @@ std::string DiagramSpeaker::runs_text(const std::vector<MotionRun>& runs) const 
 /// Over how much of the range the motion is the same whatever the numerics, which it is there, and what decides
 /// elsewhere.
 void DiagramSpeaker::say_robust(say::Answer& answer) const {
-  const std::vector<VerdictRow> rows = verdicts_type().read(results_.derived);
-  if (rows.empty() || others_.empty()) return;
+  if (verdicts_.empty() || others_.empty()) return;
   double robust = 0, open = 0, total = 0;
   InOrderMet<std::string, double> deciding;
-  for (const VerdictRow& row : rows) {
+  for (const VerdictRow& row : verdicts_) {
     const double width = row.to - row.from;
     total += width;
     if (row.verdict == "robust")
@@ -71,7 +70,7 @@ void DiagramSpeaker::say_robust(say::Answer& answer) const {
   std::vector<MotionRun> shown;
   bool goes_on = false;
   for (const MotionRun& value : values_) {
-    const bool agreed = std::any_of(rows.begin(), rows.end(), [&](const VerdictRow& row) {
+    const bool agreed = std::any_of(verdicts_.begin(), verdicts_.end(), [&](const VerdictRow& row) {
       return row.verdict == "robust" && row.from <= value.from && value.from <= row.to;
     });
     if (agreed && goes_on && shown.back().motion == value.motion)
@@ -131,9 +130,8 @@ void DiagramSpeaker::say_motions(say::Answer& answer) const {
 void DiagramSpeaker::say_changes(say::Answer& answer) const {
   std::vector<ChangeRow> changes = changes_of(*reference_);
   // Where methods differ in them they are no property of the motion.
-  const std::vector<VerdictRow> verdicts = verdicts_type().read(results_.derived);
   const auto robust_at = [&](double value) {
-    return verdicts.empty() || std::any_of(verdicts.begin(), verdicts.end(), [&](const VerdictRow& row) {
+    return verdicts_.empty() || std::any_of(verdicts_.begin(), verdicts_.end(), [&](const VerdictRow& row) {
              return row.verdict == "robust" && row.from <= value && value <= row.to;
            });
   };

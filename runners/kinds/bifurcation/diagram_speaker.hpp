@@ -36,11 +36,13 @@ struct MotionRun {
 
 class DiagramSpeaker {
  public:
-  explicit DiagramSpeaker(const answers::Compared& study) : study_(study), results_(study.results()) {
+  explicit DiagramSpeaker(const answers::Compared& study)
+      : study_(study), results_(study.results()), verdicts_(verdicts_type().read(results_.derived)) {
     for (const CaseRecord& record : results_.cases) by_id_[record.id] = &record;
-    find_reference();
+    const std::vector<DistanceRow> distances = distances_type().read(results_.derived);
+    find_reference(distances);
     if (!reference_) return;
-    compare();
+    compare(distances);
     read_motions();
   }
 
@@ -55,15 +57,15 @@ class DiagramSpeaker {
   void say_speeds(answers::Answer& answer) const;
   /// Whether every interval is the same in all cases, so that the robust part is all of the diagram.
   bool all_robust() const {
-    const std::vector<VerdictRow> rows = verdicts_type().read(results_.derived);
-    return !others_.empty() && !rows.empty() &&
-           std::all_of(rows.begin(), rows.end(), [](const VerdictRow& row) { return row.verdict == "robust"; });
+    return !others_.empty() && !verdicts_.empty() &&
+           std::all_of(verdicts_.begin(), verdicts_.end(),
+                       [](const VerdictRow& row) { return row.verdict == "robust"; });
   }
   bool known() const { return reference_ != nullptr; }
 
  private:
-  void find_reference();
-  void compare();
+  void find_reference(const std::vector<DistanceRow>& distances);
+  void compare(const std::vector<DistanceRow>& of_orbits);
   void read_motions();
   double steps(const CaseRecord& record) const { return axis(record, "steps_per_period").number().value_or(0); }
   bool own_method(const CaseRecord& record) const { return study_.key(record) == study_.key(*reference_); }
@@ -81,6 +83,7 @@ class DiagramSpeaker {
 
   const answers::Compared& study_;
   const StudyResults& results_;
+  std::vector<VerdictRow> verdicts_;
   std::map<std::string, const CaseRecord*> by_id_;
   const CaseRecord* reference_ = nullptr;
   std::vector<Likeness> others_;

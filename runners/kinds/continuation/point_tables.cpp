@@ -4,6 +4,7 @@
 #include <map>
 
 #include "runners/store/record_values.hpp"
+#include "runners/store/rows_of_cases.hpp"
 
 namespace ricochet {
 namespace {
@@ -96,15 +97,6 @@ TableType<PointLimitRow> point_limits_type(const SweptColumns& swept) {
 }
 
 namespace {
-
-template <class Record>
-Table rows_of_cases(const StudyResults& results, const TableType<Record>& type, const std::vector<Record>& records) {
-  std::map<std::string, const CaseRecord*> by_id;
-  for (const CaseRecord& record : results.cases) by_id.emplace(record.id, &record);
-  Table table = table_of_cases(results, type.head());
-  for (const Record& one : records) add_row(table, place_of(results, *by_id.at(one.id)), type.rows.row(one));
-  return table;
-}
 
 /// special_points over all cases.
 std::vector<SpecialRow> special_rows(const StudyResults& results, const StudyPoints& study) {

@@ -7,6 +7,7 @@
 
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/store/rows_of_cases.hpp"
 
 namespace ricochet {
 namespace {
@@ -54,7 +55,7 @@ void derive_dynamics(StudyResults& results) {
                                shifts_table(study)};
   tables.push_back(verdict_shares_table(*find_table(tables, "verdicts"), study.swept));
   for (Table table :
-       {class_counts_table(results), grazing_ranges_table(results, study.swept), numerical_viscosity_table(results)})
+       {class_counts_table(study), grazing_ranges_table(results, study.swept), numerical_viscosity_table(study)})
     tables.push_back(std::move(table));
   for (Table& table : tables) results.derived.push_back(std::move(table));
 }
@@ -103,10 +104,10 @@ Table agreement_table(const StudyDiagram& study) {
 
 Table shifts_table(const StudyDiagram& study) {
   const Diagram& diagram = study.diagram;
-  const TableType<ShiftRow> type = shifts_type(study.swept);
-  Table table = table_of_cases(*study.results, type.head());
+  std::vector<ShiftRow> rows;
+  const auto table = [&] { return rows_of_cases(*study.results, shifts_type(study.swept), rows); };
   const auto reference = reference_case(diagram);
-  if (!reference) return table;
+  if (!reference) return table();
   const CaseRecord& standard = study.record(*reference);
   const std::vector<DiagramChange> expected = known_changes(standard);
   const double reach = kReach * (diagram.values.back() - diagram.values.front());
@@ -126,7 +127,7 @@ Table shifts_table(const StudyDiagram& study) {
         row.high = found->high - standing->low;
       }
       row.found = both;
-      add_row(table, place_of(*study.results, study.record(c)), type.rows.row(row));
+      rows.push_back(std::move(row));
     };
     for (std::size_t k = 0; k < expected.size(); ++k) {
       if (match[k] >= 0) used[static_cast<std::size_t>(match[k])] = 1;
@@ -135,7 +136,7 @@ Table shifts_table(const StudyDiagram& study) {
     for (std::size_t k = 0; k < here.size(); ++k)
       if (!used[k]) add(here[k], nullptr, &here[k]);
   }
-  return table;
+  return table();
 }
 
 namespace {
@@ -143,7 +144,7 @@ namespace {
 constexpr double kNothing = 1e-12;
 
 void add_distances(const StudyDiagram& study, const ValueSections& sections, int value, std::size_t reference,
-                   const TableType<DistanceRow>& type, Table& table) {
+                   std::vector<DistanceRow>& rows) {
   const Diagram& diagram = study.diagram;
   for (int s = 0; s < diagram.start_count(); ++s) {
     const DiagramRun* one = diagram.run(reference, value, s);
@@ -168,7 +169,7 @@ void add_distances(const StudyDiagram& study, const ValueSections& sections, int
         if (null.wasserstein > kNothing) row.ratio = *row.wasserstein / null.wasserstein;
         row.formula = compared_exactly(a, b) ? "exact" : "sliced";
       }
-      add_row(table, place_of(*study.results, study.record(c)), type.rows.row(row));
+      rows.push_back(std::move(row));
     }
   }
 }
@@ -182,15 +183,14 @@ std::optional<bool> symmetric(const AttractorExtent& extent) {
 }  // namespace
 
 Table find_attractors(StudyDiagram& study) {
-  const TableType<DistanceRow> type = distances_type(study.swept);
-  Table distances = table_of_cases(*study.results, type.head());
+  std::vector<DistanceRow> distances;
   const auto reference = reference_case(study.diagram);
   ricochet::find_attractors(
       study.diagram, [&](std::size_t c, const DiagramRun& run) { return settled_section(study, c, run); },
       [&](int value, const ValueSections& sections) {
-        if (reference) add_distances(study, sections, value, *reference, type, distances);
+        if (reference) add_distances(study, sections, value, *reference, distances);
       });
-  return distances;
+  return rows_of_cases(*study.results, distances_type(study.swept), distances);
 }
 
 Table attractors_table(const StudyDiagram& study) {

@@ -56,6 +56,7 @@ struct DiagramSource {
   const CaseRecord* record = nullptr;
   const Table* table = nullptr;
   SectionIndex sections;
+  std::vector<OrbitRow> orbits = {};   ///< rows of the table
   std::vector<std::size_t> rows = {};  ///< of the runs, in the table
 };
 
@@ -108,6 +109,10 @@ Table attractors_table(const StudyDiagram& study);
 Table verdicts_table(const StudyDiagram& study);
 Table agreement_table(const StudyDiagram& study);
 Table shifts_table(const StudyDiagram& study);
+/// class_counts: for each case and class, the orbits that have it.
+Table class_counts_table(const StudyDiagram& study);
+/// numerical_viscosity: for each case, what its scheme adds to the viscosity of the scene.
+Table numerical_viscosity_table(const StudyDiagram& study);
 
 /// "signorini with 0.5": the levels of a case on the chosen axes.
 std::string level_name(const std::vector<ChoiceAxis>& axes, const std::vector<std::size_t>& chosen, std::size_t c);

@@ -24,9 +24,9 @@ int start_in(std::vector<DiagramStart>& starts, const std::string& name) {
 }
 
 void read_runs(StudyDiagram& study, DiagramSource& source, DiagramCase& owner) {
-  const std::vector<OrbitRow> orbits = orbits_in(*source.table);
-  for (std::size_t r = 0; r < orbits.size(); ++r) {
-    const OrbitRow& orbit = orbits[r];
+  source.orbits = orbits_in(*source.table);
+  for (std::size_t r = 0; r < source.orbits.size(); ++r) {
+    const OrbitRow& orbit = source.orbits[r];
     if (std::isnan(orbit.parameter)) continue;
     DiagramRun run;
     run.parameter = orbit.parameter;

@@ -6,6 +6,7 @@
 #include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/store/rows_of_cases.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet {
@@ -71,21 +72,18 @@ TableType<ClassCount> class_counts_type() {
   return {"class_counts", "One class of motion in one case: how many of its orbits have it.", rows};
 }
 
-Table class_counts_table(const StudyResults& results) {
-  const TableType<ClassCount> type = class_counts_type();
-  Table table = table_of_cases(results, type.head());
-  for (const CaseRecord& record : results.cases) {
-    const std::vector<OrbitRow> orbits = orbits_of(record);
+Table dynamics::class_counts_table(const StudyDiagram& study) {
+  std::vector<ClassCount> rows;
+  for (const DiagramSource& source : study.sources) {
     std::vector<std::pair<std::pair<std::string, std::optional<int>>, int>> counts;  // by class and period
-    for (const OrbitRow& orbit : orbits)
+    for (const OrbitRow& orbit : source.orbits)
       ++in_order_met(counts, orbit.done() ? std::pair(orbit.regime, orbit.period)
                                           : std::pair(std::string("failed"), std::optional<int>()));
     for (const auto& [motion, count] : counts)
-      add_row(table, place_of(results, record),
-              type.rows.row({record.id, motion.first, motion.second, count,
-                             static_cast<double>(count) / static_cast<double>(orbits.size())}));
+      rows.push_back({source.record->id, motion.first, motion.second, count,
+                      static_cast<double>(count) / static_cast<double>(source.orbits.size())});
   }
-  return table;
+  return rows_of_cases(*study.results, class_counts_type(), rows);
 }
 
 TableType<GrazingRange> grazing_ranges_type(const SweptColumns& swept) {
@@ -137,19 +135,18 @@ TableType<NumericalViscosity> numerical_viscosity_type() {
   return {"numerical_viscosity", "One case: the stiffness viscosity that its scheme adds to that of the scene.", rows};
 }
 
-Table numerical_viscosity_table(const StudyResults& results) {
-  const TableType<NumericalViscosity> type = numerical_viscosity_type();
-  Table table = table_of_cases(results, type.head());
-  for (const CaseRecord& record : results.cases) {
+Table dynamics::numerical_viscosity_table(const StudyDiagram& study) {
+  std::vector<NumericalViscosity> rows;
+  for (const DiagramSource& source : study.sources) {
     Bounds numerical, physical;
     double share = 0;
     bool undamped = false;
-    for (const OrbitRow& orbit : orbits_of(record)) {
+    for (const OrbitRow& orbit : source.orbits) {
       const auto added = orbit.alpha_equivalent;
       if (!added) continue;
       numerical.include(*added);
       const auto alpha =
-          std::isnan(orbit.parameter) ? std::nullopt : dynamics::viscosity_of(results, record, orbit.parameter);
+          std::isnan(orbit.parameter) ? std::nullopt : viscosity_of(*study.results, *source.record, orbit.parameter);
       if (!alpha) continue;
       physical.include(*alpha);
       if (*alpha > 0)
@@ -159,14 +156,14 @@ Table numerical_viscosity_table(const StudyResults& results) {
     }
     if (!numerical.low) continue;
     const bool compared = physical.low && !undamped;
-    NumericalViscosity row{record.id, numerical.low, numerical.high, physical.low, physical.high, {}, {}};
+    NumericalViscosity& row = rows.emplace_back();
+    row = {source.record->id, numerical.low, numerical.high, physical.low, physical.high, {}, {}};
     if (compared) {
       row.share = share;
       row.small = share <= small_viscosity;
     }
-    add_row(table, place_of(results, record), type.rows.row(row));
   }
-  return table;
+  return rows_of_cases(*study.results, numerical_viscosity_type(), rows);
 }
 
 }  // namespace ricochet

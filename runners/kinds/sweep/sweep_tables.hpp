@@ -212,8 +212,6 @@ struct ClassCount {
   double share = 0;
 };
 TableType<ClassCount> class_counts_type();
-/// class_counts: for each case and class, the orbits that have it.
-Table class_counts_table(const StudyResults& results);
 
 /// One row of `grazing_ranges`.
 struct GrazingRange {
@@ -233,7 +231,5 @@ struct NumericalViscosity {
   std::optional<bool> small;
 };
 TableType<NumericalViscosity> numerical_viscosity_type();
-/// numerical_viscosity: for each case, what its scheme adds to the viscosity of the scene.
-Table numerical_viscosity_table(const StudyResults& results);
 
 }  // namespace ricochet

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/store/record_values.hpp"
 
@@ -180,7 +181,8 @@ inline void derive_synthetic(StudyResults& out) {
       {0.092, 0.1, "undecided", "", "Between 0.092 and 0.1 3 values are undecided."}};
   Table shares_of_range = verdict_shares_table(out.derived.back(), {});
   out.derived.push_back(std::move(shares_of_range));
-  for (Table made : {class_counts_table(out), grazing_ranges_table(out, {}), numerical_viscosity_table(out)})
+  const dynamics::StudyDiagram study = dynamics::read_diagram(out);
+  for (Table made : {class_counts_table(study), grazing_ranges_table(out, {}), numerical_viscosity_table(study)})
     out.derived.push_back(std::move(made));
 }
 
