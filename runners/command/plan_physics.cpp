@@ -8,6 +8,7 @@
 
 #include "runners/command/subcommand.hpp"
 #include "runners/march/load_changes.hpp"
+#include "runners/report/scene_sketch.hpp"
 #include "runners/run/plan_cases.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/table/in_order_met.hpp"
@@ -99,56 +100,41 @@ const StudyCase& representative(const Group& group) {
   return *found->study_case;
 }
 
-std::string place_text(const Json& whole) {
-  Json place = whole;
-  std::string body;
-  if (place.contains("body")) {
-    body = place["body"].get<std::string>();
-    place.erase("body");
-    if (place.empty()) return body;
-    return body + " " + place_text(place);
-  }
-  if (place.contains("x"))
-    return fmt::format("x = {:.6g} m{}", place["x"].get<double>(),
-                       place.contains("component")   ? " along " + place["component"].get<std::string>()
-                       : place.contains("direction") ? " along " + place["direction"].dump()
-                                                     : "");
-  if (place.contains("node") && place.size() == 1) return place["node"].get<std::string>();
-  if (place.contains("component"))
-    return place["node"].get<std::string>() + " " + place["component"].get<std::string>();
-  if (place.contains("point")) return place["point"].get<std::string>();
-  return place.dump();
+using Numbers = std::vector<report::SceneNumber>;
+
+constexpr std::size_t most_entries = 12;
+const std::vector<std::string> structure_places = {"/scene/structure/", "/scene/bodies/"};
+
+/// What a scene says at the pointers that begin so: alone, or the entries of lists.
+Numbers said_at(const Numbers& scene, const std::vector<std::string>& pointers, bool entries) {
+  Numbers out;
+  for (const report::SceneNumber& one : scene)
+    if (one.entry == entries && std::any_of(pointers.begin(), pointers.end(), [&](const std::string& pointer) {
+          return one.pointer.starts_with(pointer);
+        }))
+      out.push_back(one);
+  return out;
 }
 
-/// Name, place and bounds of each stop that has a name, and how stiff the structure is there (N/m).
-std::string stops_text(const Json& scene, const std::vector<double>& stiffness) {
-  constexpr std::size_t most_stops = 12;
-  const Json& stops = scene.at("stops");
-  if (!stops.is_array()) return "";
+/// What a clearance is to laws, which its entry does not say.
+std::string clearance_text(const Json& clearance) {
+  const int sides = clearance["sides"].get<int>();
+  return fmt::format(
+      ": the circle for compliant laws; for rigid ones {} sides, whose corners lie {:.2g} m ({:.2g} %) further", sides,
+      polygon_error(clearance["radius"].get<double>(), sides), 100 * polygon_error(1, sides));
+}
+
+/// Each stop that has a name, and how stiff the structure is there (N/m).
+std::string stops_text(const Json& stops, const Numbers& said, const std::vector<double>& stiffness) {
   std::string text;
   std::size_t row = 0;
-  for (std::size_t i = 0; i < std::min(most_stops, stops.size()); ++i) {
-    const Json& stop = stops[i];
-    text += fmt::format("    stop {}: {}{}", stop["name"].get<std::string>(), place_text(stop["at"]),
-                        stop["to"].is_null() ? "" : " less " + place_text(stop["to"]));
-    for (const char* side : {"lower", "upper"})
-      if (!stop[side].is_null()) text += fmt::format(", {} {:.6g} m", side, stop[side].get<double>());
-    for (const auto& [key, unit] : {std::pair("stiffness", "N/m"), {"damping", "N s/m"}, {"restitution", ""}})
-      if (const Json own = stop.value(key, Json()); !own.is_null())
-        text += fmt::format(", {} {:.4g}{}{}", key, own.get<double>(), *unit == '\0' ? "" : " ", unit);
+  for (std::size_t i = 0; i < std::min(most_entries, said.size()); ++i) {
+    text += fmt::format("    {}: {}", said[i].symbol, said[i].text);
     std::size_t rows = 1;
-    if (stop.contains("clearance")) {
-      const Json& clearance = stop["clearance"];
+    if (const Json clearance = stops[i].value("clearance", Json()); !clearance.is_null()) {
       const int sides = clearance["sides"].get<int>();
       rows = static_cast<std::size_t>(sides % 2 == 0 ? sides / 2 : sides);
-      const double radius = clearance["radius"].get<double>();
-      const auto offset = clearance.value("offset", std::vector<double>{0, 0});
-      text += fmt::format(", within {:.6g} m", radius);
-      if (offset[0] != 0 || offset[1] != 0) text += fmt::format(" of ({:.6g}, {:.6g}) m", offset[0], offset[1]);
-      text += fmt::format(
-          ": the circle for compliant laws; for rigid ones {} sides, whose corners lie {:.2g} m ({:.2g} "
-          "%) further",
-          sides, polygon_error(radius, sides), 100 * polygon_error(1, sides));
+      text += clearance_text(clearance);
     }
     if (row < stiffness.size() && std::isfinite(stiffness[row])) {
       const auto [softest, stiffest] = std::minmax_element(stiffness.begin() + static_cast<std::ptrdiff_t>(row),
@@ -159,7 +145,7 @@ std::string stops_text(const Json& scene, const std::vector<double>& stiffness) 
     row += rows;
     text += "\n";
   }
-  if (stops.size() > most_stops) text += fmt::format("    and {} more stops\n", stops.size() - most_stops);
+  if (said.size() > most_entries) text += fmt::format("    and {} more stops\n", said.size() - most_entries);
   return text;
 }
 
@@ -204,14 +190,22 @@ std::string structure_text(const Group& group, const StudyCase& one, const std::
   const auto answer = structure_physics(one.scene, one.elements, *mass);
   const auto* physics = std::get_if<StructurePhysics>(&answer);
   if (!physics) return "";
-  std::string text = "  " + physics->structure + ":";
+  const Numbers scene = report::scene_numbers({{"scene", one.scene_json}});
+  Numbers values = said_at(scene, structure_places, false);
+  // The first says what kind it is.
+  std::erase_if(values, [](const report::SceneNumber& number) { return number.symbol.empty(); });
   for (const PhysicalNumber& number : physics->numbers)
-    text += fmt::format("{} {} {:.4g}{}{}", &number == physics->numbers.data() ? "" : ",", number.symbol, number.value,
-                        *number.unit == '\0' ? "" : " ", number.unit);
+    values.push_back(
+        {number.symbol, fmt::format("{:.4g}{}{}", number.value, *number.unit == '\0' ? "" : " ", number.unit), ""});
+  std::string text = "  " + physics->structure + ":" + (values.empty() ? "" : " " + report::in_a_line(values));
   text += std::holds_alternative<OscillatorSpec>(one.scene.structure) ? "\n"
           : std::holds_alternative<AssembledSpec>(one.scene.structure)
               ? fmt::format("; modes with mass {}\n", one.mass.name)
               : fmt::format("; modes with mass {} on {} elements\n", one.mass.name, physics->elements);
+  const Numbers parts = said_at(scene, structure_places, true);
+  for (std::size_t i = 0; i < std::min(most_entries, parts.size()); ++i)
+    text += fmt::format("    {}: {}\n", parts[i].symbol, parts[i].text);
+  if (parts.size() > most_entries) text += fmt::format("    and {} more parts\n", parts.size() - most_entries);
   for (const std::string& line : physics->details) text += "    " + line + "\n";
   text += left_out_text(*physics, one.scene_json, stiffest_spring(group, registry));
   if (physics->pulsations.empty())
@@ -219,7 +213,8 @@ std::string structure_text(const Group& group, const StudyCase& one, const std::
   else
     text += modes_text(*physics, steps);
   for (const std::string& line : coarse_tables(one.scene, physics->pulsations)) text += "    " + line + "\n";
-  return text + stops_text(one.scene_json, physics->point_stiffness);
+  return text +
+         stops_text(one.scene_json.at("stops"), said_at(scene, {"/scene/stops/"}, true), physics->point_stiffness);
 }
 
 }  // namespace

@@ -67,19 +67,6 @@ std::string mark_of(const Json& support, double x, double y, double side) {
   return spring_mark(x, y, number_of(support, "stiffness") > 0, number_of(support, "rotation") > 0);
 }
 
-std::string mark_words(const Json& support) {
-  std::string text = fmt::format("{} {} at {} m", support.value("name", ""), support.value("type", ""),
-                                 number_text(number_of(support, "x"), shown_digits));
-  for (const auto& [key, unit] : {std::pair("stiffness", "N/m"), {"rotation", "N m/rad"}})
-    if (const double value = number_of(support, key); value > 0)
-      text += fmt::format(", {} {}", number_text(value, shown_digits), unit);
-  return text;
-}
-
-std::string semicolon_list(const std::vector<std::string>& texts) {
-  return fmt::format("{}", fmt::join(texts, "; "));
-}
-
 }  // namespace
 
 HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& frame, Labels& label) {
@@ -120,20 +107,6 @@ HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& fra
                        "middle", 1);
   }
   return out;
-}
-
-std::vector<std::pair<std::string, std::string>> held_beam_words(const SceneValues& scene) {
-  std::vector<std::string> supports, sections, masses;
-  for (const Json& support : objects_at(scene, "/scene/structure/supports")) supports.push_back(mark_words(support));
-  for (const Json& part : objects_at(scene, "/scene/structure/sections"))
-    sections.push_back(fmt::format("{} to {} m", part.contains("section") ? part["section"].value("type", "") : "",
-                                   number_text(number_of(part, "to"), shown_digits)));
-  for (const Json& mass : objects_at(scene, "/scene/structure/masses"))
-    masses.push_back(fmt::format("{} kg at {} m", number_text(number_of(mass, "mass"), shown_digits),
-                                 number_text(number_of(mass, "x"), shown_digits)));
-  return {{"supports", semicolon_list(supports)},
-          {"sections", semicolon_list(sections)},
-          {"masses", semicolon_list(masses)}};
 }
 
 }  // namespace ricochet::report

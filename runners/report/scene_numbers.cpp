@@ -1,175 +1,126 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ricochet/contract/errors.hpp>
 
 #include "runners/report/html.hpp"
 #include "runners/report/scene_sketch.hpp"
-#include "runners/report/sketch_pieces.hpp"
+#include "runners/study/check_object.hpp"
+#include "runners/study/declared_keys.hpp"
 
 namespace ricochet::report {
 namespace {
 
-/// A history: its formula, its file, its amplitude and pulsation (of a displacement), or its spectrum.
-std::string history_words(const nlohmann::ordered_json& given) {
-  if (given.is_string()) return given.get<std::string>();
-  if (!given.is_object()) return given.dump();
-  for (const char* key : {"file", "formula"})
-    if (given.contains(key)) return history_words(given[key]);
-  if (given.contains("amplitude"))
-    return fmt::format("{} m sin({} rad/s t + {})", given["amplitude"].dump(), given["pulsation"].dump(),
-                       given["phase"].dump());
-  if (!given.contains("psd")) return given.dump();
-  const auto& psd = given["psd"];
-  return fmt::format("random, one-sided density {} N²/Hz from {} to {} Hz", history_words(psd),
-                     number_text(number_at(psd, "from").value_or(0)), number_text(number_at(psd, "to").value_or(0)));
-}
+using Numbers = std::vector<SceneNumber>;
 
-/// Motions of supports: which supports, what is given, and where it stands.
-std::vector<std::string> motion_words(const SceneValues& scene) {
-  std::vector<std::string> words;
-  const auto* motions = scene.at("/scene/motions");
-  if (!motions || !motions->is_array()) return words;
-  for (const auto& motion : *motions) {
-    const bool accelerates = motion.contains("acceleration");
-    const auto& given = motion[accelerates ? "acceleration" : "displacement"];
-    std::string who;
-    for (const auto& name : motion["supports"]) who += (who.empty() ? "" : ", ") + name.get<std::string>();
-    words.push_back(fmt::format("{} of {}: {}", accelerates ? "acceleration" : "displacement",
-                                who == "all" ? "all supports" : who, history_words(given)));
+constexpr const char* name_key = "name";
+
+/// Goes through what the form declares and says what stands there.
+class SceneSpeaker {
+ public:
+  explicit SceneSpeaker(const Json& study) : study_(study), scene_(study) {}
+
+  /// What one key says, where it says something.
+  void add(const Field& field, const std::string& symbol, const std::string& pointer, Numbers& out) const {
+    if (const std::string text = text_of(field, pointer); !text.empty()) out.push_back({symbol, text, pointer});
   }
-  return words;
-}
 
-/// Loads in words, a line for each term.
-std::vector<std::string> load_words(const SceneValues& scene) {
-  const auto* load = scene.at("/scene/load");
-  if (!load || !load->is_array()) return {scene.text("/scene/load", "")};
-  std::vector<std::string> words;
-  for (const auto& term : *load) {
-    if (!term.is_object()) return {scene.text("/scene/load", "")};
-    if (term.contains("force")) {
-      const auto place = term.contains("at") ? term["at"] : nlohmann::ordered_json();
-      const std::string where = place.is_number()   ? "x = " + place.dump() + " m"
-                                : place.is_object() ? place_words(place)
-                                                    : "";
-      words.push_back(fmt::format("F(t){} = {}", where.empty() ? "" : " at " + where, history_words(term["force"])));
-    } else {
-      const std::string body = term.value("body", "");
-      words.push_back(fmt::format("{} times {}{}", term.contains("shape") ? history_words(term["shape"]) : "f(x)",
-                                  term.contains("time") ? history_words(term["time"]) : "g(t)",
-                                  body.empty() ? "" : " along " + body));
+  /// The keys of an object. `of`: " of rod" where several bodies have such an object.
+  Numbers object(const ObjectForm& form, const Json& value, const std::string& pointer,
+                 const std::string& of = "") const {
+    Numbers out;
+    std::vector<const Field*> fields;
+    try {
+      fields = fields_of(form, value, pointer);
+    } catch (const InputError&) {
+      return out;  // of another format
+    }
+    if (!form.at_rest.empty() && scene_.text(pointer_to(pointer, form.at_rest), "").empty()) return out;
+    for (const Field* field : fields) {
+      const std::string here = pointer_to(pointer, field->key()), symbol = symbol_of(*field) + of;
+      if (field->key() == name_key) continue;  // stands before the object
+      const auto found = value.find(field->key());
+      const auto objects = found == value.end() ? std::vector<StandingObject>() : objects_at(*field, *found);
+      if (objects.empty()) add(*field, symbol, here, out);
+      for (const StandingObject& one : objects) add_object(*field, one, symbol, here, out);
+    }
+    if (const auto section = SceneValues(study_, pointer).section())
+      for (const auto& [symbol, text] :
+           {std::pair("EI", number_text(section->EI) + " N m²"), {"ρS", number_text(section->rhoS) + " kg/m"}})
+        if (std::none_of(out.begin(), out.end(), [&, which = symbol](const auto& one) { return one.symbol == which; }))
+          out.push_back({symbol, text, pointer + "/section"});
+    return out;
+  }
+
+ private:
+  static std::string symbol_of(const Field& field) { return field.symbol.value_or(in_words(field.key())); }
+
+  void add_object(const Field& field, const StandingObject& one, const std::string& symbol, const std::string& pointer,
+                  Numbers& out) const {
+    const std::string here = one.step.empty() ? pointer : pointer_to(pointer, one.step);
+    const bool by_body = field.form == Field::Form::object && !field.given.empty() && !one.step.empty();
+    Numbers held = object(*one.form, *one.value, here, by_body ? " of " + one.step : "");
+    const bool entry = !one.step.empty() && !by_body;
+    // The symbol of what may be one object or a list is that of the list's entries.
+    if (!entry && (!field.symbol || !field.listed.empty())) {
+      out.insert(out.end(), held.begin(), held.end());
+    } else if (entry) {
+      const std::string name = one.value->is_object() ? one.value->value(name_key, "") : "";
+      const std::string& called = field.form == Field::Form::bodies ? one.step : name;
+      out.push_back({symbol + (called.empty() ? "" : " " + called), in_a_line(held), here, true});
+    } else if (!held.empty()) {
+      out.push_back({symbol, held.size() == 1 ? in_a_line(held) : "(" + in_a_line(held) + ")", here});
     }
   }
-  return words;
-}
 
-struct Structure {
-  const char* name;
-  std::vector<std::tuple<const char*, const char*, const char*>> numbers;  ///< symbol, key, unit
-};
-
-const std::vector<Structure>& structures() {
-  static const std::vector<Structure> all = {
-      {"beam",
-       {{"L", "length", "m"},
-        {"E", "young", "Pa"},
-        {"ρ", "density", "kg/m³"},
-        {"added mass", "added_mass", "kg/m"},
-        {"tension", "tension", "N"},
-        {"foundation", "foundation", "N/m²"},
-        {"α (damping, of K)", "damping/stiffness", "s"},
-        {"η (damping, of M)", "damping/mass", "1/s"},
-        {"damping ratio", "damping/ratio", ""}}},
-      {"oscillator",
-       {{"m", "mass", "kg"},
-        {"k", "stiffness", "N/m"},
-        {"c", "damping", "N s/m"},
-        {"F", "force/amplitude", "N"},
-        {"ω of F", "force/pulsation", "rad/s"},
-        {"ψ", "force/phase", "rad"}}},
-      {"bar",
-       {{"L", "length", "m"},
-        {"EA", "EA", "N"},
-        {"ρA", "rhoA", "kg/m"},
-        {"α (damping, of K)", "damping/stiffness", "s"},
-        {"η (damping, of M)", "damping/mass", "1/s"}}},
-      {"modal", {{"modes", "modes", ""}, {"shapes", "shapes", ""}, {"residual", "residual", ""}}},
-      {"assembled",
-       {{"K", "stiffness", ""},
-        {"M", "mass", ""},
-        {"α (damping, of K)", "damping/stiffness", "s"},
-        {"η (damping, of M)", "damping/mass", "1/s"},
-        {"damping ratio", "damping/ratio", ""},
-        {"C", "damping/file", ""}}}};
-  return all;
-}
-
-const Structure* structure_of(const SceneValues& scene) {
-  const auto found = std::find_if(structures().begin(), structures().end(), [&](const Structure& one) {
-    return one.name == scene.word("/scene/structure/type");
-  });
-  return found == structures().end() ? nullptr : &*found;
-}
-
-std::vector<std::pair<std::string, std::string>> structure_numbers(const SceneValues& scene) {
-  std::vector<std::pair<std::string, std::string>> out;
-  const auto add = [&](const std::string& symbol, const std::string& text) {
-    if (!text.empty()) out.emplace_back(symbol, text);
-  };
-  const Structure* structure = structure_of(scene);
-  if (!structure) return out;
-  for (const auto& [symbol, key, unit] : structure->numbers)
-    add(symbol, scene.text(std::string("/scene/structure/") + key, unit));
-  if (const auto section = scene.section()) {
-    add("EI", number_text(section->EI, 4) + " N m²");
-    add("ρS", number_text(section->rhoS, 4) + " kg/m");
+  /// "" for what is not there, null or at its default.
+  std::string text_of(const Field& field, const std::string& pointer) const {
+    using Form = Field::Form;
+    const std::string unit = field.spec.unit == "1" ? "" : field.spec.unit;
+    const Json* value = scene_.at(pointer);
+    if (field.form == Form::place && value && value->is_object()) {
+      const std::string x = pointer + "/x";
+      return scene_.swept(x).empty() ? place_words(*value) : "x = " + scene_.said(x, unit);
+    }
+    // Where stops act is told of all.
+    const bool at_default = value && field.fallback && is_same(*value, *field.fallback) && field.form != Form::places;
+    if (at_default && scene_.swept(pointer).empty()) return "";
+    if (field.form == Form::named && value && value->is_object()) {
+      std::vector<std::string> words;
+      for (const auto& [name, text] : value->items())
+        words.push_back(name + " " + (text.is_string() ? text.get<std::string>() : text.dump()));
+      return fmt::format("{}", fmt::join(words, ", "));
+    }
+    const std::string text = scene_.said(pointer, unit, field.axis && field.form != Form::places);
+    return field.form == Form::place && !text.empty() ? "x = " + text : text;
   }
-  for (const auto& [symbol, text] : held_beam_words(scene)) add(symbol, text);
-  return out;
-}
+
+  /// A formula may be a number, one name a list.
+  static bool is_same(const Json& value, const Json& fallback) {
+    if (value.is_array() && value.size() == 1 && !fallback.is_array()) return is_same(value.front(), fallback);
+    return value == fallback || (value == 0 && fallback == "0");
+  }
+
+  const Json& study_;
+  SceneValues scene_;
+};
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> scene_numbers(const nlohmann::ordered_json& study) {
-  const SceneValues scene(study);
-  std::vector<std::pair<std::string, std::string>> out;
-  const auto add = [&](const std::string& symbol, const std::string& text) {
-    if (!text.empty()) out.emplace_back(symbol, text);
-  };
-  const auto bodies = scene.bodies();
-  for (const auto& [name, body] : bodies) {
-    const auto said = structure_numbers(body);
-    if (name.empty()) out = said;
-    if (name.empty() || said.empty()) continue;
-    std::string words = body.word("/scene/structure/type");
-    for (const auto& [symbol, text] : said) words += ", " + symbol + " " + text;
-    add("body " + name, words);
-  }
-  if (out.empty()) return out;
-  for (const auto& [symbol, key] : {std::pair("lower stop", "lower"), {"upper stop", "upper"}}) {
-    const std::string pointer = std::string("/scene/stops/") + key;
-    const auto* stop = scene.at(pointer);
-    // A stop at rest is one all the same.
-    add(symbol,
-        stop && scene.text(pointer, "m").empty() ? "0 m" : scene.text(pointer, stop && stop->is_string() ? "" : "m"));
-  }
-  for (const auto& [name, text] : scene.named_stops()) add("stop " + name, text);
-  const auto* at = scene.at("/scene/stops/at");
-  if (at) add("stops at", at->is_string() ? at->get<std::string>() : scene.text("/scene/stops/at", "m"));
-  add("A₀ (clamp)", scene.text("/scene/support/amplitude", "m"));
-  if (!scene.text("/scene/support/amplitude", "").empty())
-    add("ω (clamp)", scene.text("/scene/support/pulsation", "rad/s"));
-  for (const std::string& words : motion_words(scene)) add("motion", words);
-  for (const std::string& words : load_words(scene)) add("load", words);
-  add("u(x, 0)", scene.text("/scene/initial/displacement", ""));
-  add("u_t(x, 0)", scene.text("/scene/initial/velocity", ""));
-  if (const auto* initial = scene.at("/scene/initial"))
-    for (const auto& [name, one] : initial->items())
-      if (one.is_object()) {
-        add("u(x, 0) of " + name, scene.text("/scene/initial/" + name + "/displacement", ""));
-        add("u_t(x, 0) of " + name, scene.text("/scene/initial/" + name + "/velocity", ""));
-      }
-  add("duration", scene.text("/duration", "s"));
+std::string in_a_line(const std::vector<SceneNumber>& numbers) {
+  std::vector<std::string> words;
+  for (const SceneNumber& one : numbers)
+    words.push_back(one.symbol + (one.symbol.empty() ? "" : one.entry ? ": " : " ") + one.text);
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::vector<SceneNumber> scene_numbers(const nlohmann::ordered_json& study) {
+  const SceneSpeaker speaker(study);
+  Numbers out;
+  if (const auto scene = study.find("scene"); scene != study.end())
+    out = speaker.object(scene_form(), *scene, "/scene");
+  if (const Field* duration = declared_at("/duration", study))
+    speaker.add(*duration, duration->key(), "/duration", out);
   return out;
 }
 

@@ -352,9 +352,7 @@ class SceneDrawing {
 }  // namespace
 
 std::string scene_svg(const nlohmann::ordered_json& study) {
-  std::string said = "Sketch of the scene: " + SceneValues(study).word("/scene/structure/type");
-  for (const auto& [symbol, text] : scene_numbers(study)) said += ", " + symbol + " " + text;
-  return SceneDrawing(study).svg(said);
+  return SceneDrawing(study).svg("Sketch of the scene: " + in_a_line(scene_numbers(study)));
 }
 
 }  // namespace ricochet::report

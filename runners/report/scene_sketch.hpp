@@ -12,8 +12,19 @@ namespace ricochet::report {
 /// takes its colours from the page; "" for a study without a scene.
 std::string scene_svg(const nlohmann::ordered_json& study);
 
-/// Its numbers, SI: {"L", "1.501 m"}, {"EI", "33.8 N m²"}, … What the study varies is said as "from … to … (8 values)".
-std::vector<std::pair<std::string, std::string>> scene_numbers(const nlohmann::ordered_json& study);
+/// A key of a scene with its value, as the study format declares it: {"L", "1.501 m"}. What the study varies is said as
+/// "from … to … (8 values)".
+struct SceneNumber {
+  std::string symbol;   ///< "" where the value says what it is
+  std::string text;     ///< SI
+  std::string pointer;  ///< into the study
+  bool entry = false;   ///< one of a list or a body, with all that it holds: "stop wall"
+};
+/// All that a scene says, in the order of the format. Left out are keys at their defaults, motions and forces without
+/// amplitude, and what this program cannot read. Of a beam EI and ρS stand there too.
+std::vector<SceneNumber> scene_numbers(const nlohmann::ordered_json& study);
+/// Symbols and texts in a line: "L 1.501 m, E 2e11 Pa".
+std::string in_a_line(const std::vector<SceneNumber>& numbers);
 
 /// A number, the first of a list; nothing for what is none.
 std::optional<double> first_number(const nlohmann::ordered_json* value);
@@ -40,6 +51,10 @@ class SceneValues {
   std::optional<double> number(const std::string& pointer) const;
   /// It with its unit; of several "from … to … (8 values)"; "" for nothing and for a lone 0.
   std::string text(const std::string& pointer, const std::string& unit) const;
+  /// The same, and a 0 is one. A list is said in full unless its values vary: 0.5, 1 and 2 m.
+  std::string said(const std::string& pointer, const std::string& unit, bool varies = true) const;
+  /// The values that a sweep gives to this place.
+  std::vector<double> swept(const std::string& pointer) const;
 
   /// A stop: its places as a study writes them, and how far it lies from rest.
   struct Stop {
@@ -49,8 +64,6 @@ class SceneValues {
   };
   /// The stops, of a list all; else at most twelve places of a structure this long; none where there is no contact.
   std::vector<Stop> stops(double length) const;
-  /// Name of each stop that has one, and its place and bounds in words.
-  std::vector<std::pair<std::string, std::string>> named_stops() const;
   /// EI (N m²) and ρS (kg/m) of a beam; nothing where its section varies or is none.
   struct Section {
     double EI, rhoS;
@@ -60,8 +73,6 @@ class SceneValues {
  private:
   /// Where a pointer leads in the study.
   std::string real(const std::string& pointer) const;
-  /// The values that a sweep gives to this place.
-  std::vector<double> swept(const std::string& pointer) const;
 
   const nlohmann::ordered_json& study_;
   std::string structure_;

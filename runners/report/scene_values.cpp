@@ -2,17 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/scene.hpp>
 
 #include "runners/report/html.hpp"
 #include "runners/report/scene_sketch.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet::report {
 namespace {
 
 using SceneJson = nlohmann::ordered_json;
 
-constexpr std::size_t most_stops = 12;
+constexpr std::size_t most_stops = 12, most_ends = 2, most_listed = 6;
 constexpr int scene_digits = 4;
 
 /// A stop's formula at x; nothing where there is no stop or no formula that can be read.
@@ -54,7 +56,10 @@ std::string place_words(const SceneJson& one) {
   if (one.contains("point")) add("point " + one.value("point", ""));
   if (one.contains("component")) add((one.contains("x") ? "along " : "") + one.value("component", ""));
   if (one.contains("direction")) add("along " + one["direction"].dump());
-  return where.empty() ? "dofs" : where;
+  for (const SceneJson& dof : one.value("dofs", SceneJson::array()))
+    add(fmt::format("{}{} × dof {}", where.empty() ? "" : "+ ",
+                    number_text(number_at(dof, "weight").value_or(1), scene_digits), dof.value("dof", 0)));
+  return where;
 }
 
 std::string SceneValues::real(const std::string& pointer) const {
@@ -105,56 +110,40 @@ std::vector<double> SceneValues::swept(const std::string& pointer) const {
 }
 
 std::string SceneValues::text(const std::string& pointer, const std::string& unit) const {
+  const SceneJson* value = at(pointer);
+  const bool nothing = value && (*value == 0 || *value == "0");
+  return nothing && swept(pointer).empty() ? "" : said(pointer, unit);
+}
+
+std::string SceneValues::said(const std::string& pointer, const std::string& unit, bool varies) const {
   if (const std::vector<double> values = swept(pointer); !values.empty()) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     return "from " + number_text(*low, scene_digits) + " to " + with(number_text(*high, scene_digits), unit) +
            ", swept";
   }
   const SceneJson* value = at(pointer);
-  if (!value) return "";
-  if (value->is_number())
-    return value->get<double>() == 0 ? "" : with(number_text(value->get<double>(), scene_digits), unit);
-  if (value->is_string()) return value->get<std::string>() == "0" ? "" : value->get<std::string>();
-  if (!value->is_array() || value->empty()) return "";
+  if (!value || value->is_object()) return "";
+  const auto all = value->is_array() ? value->get<std::vector<SceneJson>>() : std::vector<SceneJson>{*value};
   std::vector<double> numbers;
-  for (const SceneJson& one : *value)
-    if (one.is_number()) numbers.push_back(one.get<double>());
-  if (numbers.size() != value->size()) return count_text(value->size(), "value", "values");
-  if (numbers.size() == 1) return with(number_text(numbers.front(), scene_digits), unit);
-  const auto [low, high] = std::minmax_element(numbers.begin(), numbers.end());
-  if (numbers.size() == 2)
-    return number_text(numbers[0], scene_digits) + " and " + with(number_text(numbers[1], scene_digits), unit);
-  return fmt::format("from {} to {} ({} values)", number_text(*low, scene_digits),
-                     with(number_text(*high, scene_digits), unit), numbers.size());
-}
-
-std::vector<std::pair<std::string, std::string>> SceneValues::named_stops() const {
-  std::vector<std::pair<std::string, std::string>> out;
-  const SceneJson* list = at("/scene/stops");
-  if (!list || !list->is_array()) return out;
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    const SceneJson& stop = (*list)[i];
-    const std::string here = "/scene/stops/" + std::to_string(i);
-    std::string words = place_words(stop.at("at"));
-    if (stop.contains("to") && !stop["to"].is_null()) words += " less " + place_words(stop["to"]);
-    const auto add = [&](const char* name, const std::string& key, const char* unit) {
-      const SceneJson* value = at(here + key);
-      if (!value) return;
-      const std::string said = text(here + key, unit);
-      words += fmt::format(", {} {}", name, !said.empty() ? said : with("0", unit));
-    };
-    add("lower", "/lower", "m");
-    add("upper", "/upper", "m");
-    add("within", "/clearance/radius", "m");
-    add("sides", "/clearance/sides", "");
-    add("stiffness", "/stiffness", "N/m");
-    add("damping", "/damping", "N s/m");
-    add("restitution", "/restitution", "");
-    if (const SceneJson* by = at(here + "/moves_with"); by && !(by->is_string() && by->get<std::string>().empty()))
-      words += by->is_string() ? ", moves with " + by->get<std::string>() : ", moves by itself";
-    out.emplace_back(stop.value("name", ""), words);
+  std::vector<std::string> words;
+  for (const SceneJson& one : all) {
+    const auto number = one.is_string() ? number_in(one.get<std::string>()) : first_number(&one);
+    if (number) numbers.push_back(*number);
+    words.push_back(number            ? number_text(*number, scene_digits)
+                    : one.is_string() ? one.get<std::string>()
+                                      : one.dump());
   }
-  return out;
+  const bool numeric = numbers.size() == all.size();
+  if (words.empty()) return "none";
+  if (numeric && all.size() > (varies ? most_ends : most_listed)) {
+    const auto [low, high] = std::minmax_element(numbers.begin(), numbers.end());
+    return fmt::format("from {} to {} ({} values)", number_text(*low, scene_digits),
+                       with(number_text(*high, scene_digits), unit), numbers.size());
+  }
+  if (all.size() > most_listed) return count_text(all.size(), "value", "values");
+  const std::string last = words.back();
+  words.pop_back();
+  return fmt::format("{}{}{}", fmt::join(words, ", "), words.empty() ? "" : " and ", with(last, numeric ? unit : ""));
 }
 
 std::vector<SceneValues::Stop> SceneValues::stops(double length) const {
@@ -221,9 +210,13 @@ std::optional<SceneValues::Section> SceneValues::section() const {
   }
   const SceneJson *young = at("/scene/structure/young"), *density = at("/scene/structure/density");
   if ((young && young->is_array()) || (density && density->is_array())) return std::nullopt;
-  const SectionProperties found =
-      section_properties(section, first_number(young).value_or(0), first_number(density).value_or(0));
-  return found.EI > 0 && found.rhoS > 0 ? std::optional(Section{found.EI, found.rhoS}) : std::nullopt;
+  try {
+    const SectionProperties found =
+        section_properties(section, first_number(young).value_or(0), first_number(density).value_or(0));
+    return found.EI > 0 && found.rhoS > 0 ? std::optional(Section{found.EI, found.rhoS}) : std::nullopt;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace ricochet::report

@@ -52,9 +52,6 @@ struct HeldBeam {
 };
 HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& frame, Labels& label);
 
-/// Supports, sections and masses in words: name and text, for the table beside the drawing.
-std::vector<std::pair<std::string, std::string>> held_beam_words(const SceneValues& scene);
-
 /// A place of a drawing, pixels, and where its displacement points; `front` and `back`: how far what moves reaches that
 /// way, and the other. A circle round it has the axes `ring`.
 struct Spot {

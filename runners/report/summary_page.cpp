@@ -147,21 +147,27 @@ Fill limits_fill(const StudyResults& results) {
   return out;
 }
 
-/// What the sketch does not say: a paragraph for the structure, or each body, for stops, loads and all else.
+/// What the sketch does not say: a paragraph for each body, for stops, loads, what else is a list, and for all else.
 Fill numbers_fill(const StudyResults& results) {
   Fill out{Fill::type::list};
-  std::string kind, paragraph;
+  std::string part, paragraph;
   const auto end = [&] {
     if (!paragraph.empty()) out << line_fill(paragraph);
     paragraph.clear();
   };
-  for (const auto& [symbol, text] : scene_numbers(results.study)) {
-    std::string first = symbol.substr(0, symbol.find(' '));
-    const bool own = first == "body" || first == "stop" || first == "load" || first == "motion";
-    if (!own) first.clear();
-    if (first != kind || first == "body") end();
-    kind = first;
-    paragraph += (paragraph.empty() ? "" : " · ") + symbol + (own ? ": " : " = ") + text;
+  for (const SceneNumber& one : scene_numbers(results.study)) {
+    std::string of;
+    if (one.entry && !one.pointer.starts_with("/scene/structure/")) {
+      of = one.pointer;
+      if (!of.starts_with("/scene/bodies/")) of.resize(of.rfind('/'));
+    }
+    if (of != part) end();
+    part = of;
+    paragraph += (paragraph.empty() ? "" : " · ") + one.symbol +
+                 (one.symbol.empty() ? ""
+                  : one.entry        ? ": "
+                                     : " = ") +
+                 one.text;
   }
   end();
   return out;

@@ -1,17 +1,12 @@
 #include "runners/study/axis_meaning.hpp"
 
 #include <algorithm>
-#include <ricochet/contract/errors.hpp>
 
-#include "runners/study/check_object.hpp"
-#include "runners/study/fields.hpp"
+#include "runners/study/declared_keys.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {
 namespace {
-
-// How the column of a clearance's sides ends.
-constexpr const char* sides_of_clearance = ".clearance.sides";
 
 const std::vector<std::string> method_roles = {"mass", "contact", "time"};
 
@@ -25,37 +20,13 @@ std::vector<std::string> split(const std::string& column) {
   return parts;
 }
 
-// The declaration of the key at the end of `path`; nothing where the format has none.
-std::optional<ParameterSpec> spec_at(const ObjectForm& form, const Json& value, const std::vector<std::string>& path,
-                                     std::size_t depth = 0) {
-  if (depth == path.size() || !value.is_object()) return std::nullopt;
-  for (const Field* field : fields_of(form, value, "")) {
-    if (field->key() != path[depth]) continue;
-    if (depth + 1 == path.size()) return field->spec;
-    const auto found = value.find(field->key());
-    if (field->form == Field::Form::object && found != value.end())
-      return spec_at(field->nested.front(), *found, path, depth + 1);
-    return std::nullopt;
-  }
-  return std::nullopt;
-}
-
-std::optional<ParameterSpec> spec_of(const std::vector<std::string>& path, const Json& resolved) {
-  std::vector<std::string> whole = path;
-  if (path.front() == residual_axis)
-    whole = {"mesh", "residual"};
-  else if (path.front() == "elements" || path.front() == "modes")
-    whole.insert(whole.begin(), "mesh");
-  else if (path.size() == 1 && std::find(method_roles.begin(), method_roles.end(), path.front()) != method_roles.end())
-    whole.insert(whole.begin(), "methods");
-  else if (path.front() != "step" && path.front() != "steps_per_period" && path.front() != "march")
-    whole.insert(whole.begin(), "scene");
-  try {
-    return spec_at(study_form(), resolved, whole);
-  } catch (const InputError&) {
-    // No study of this format: nothing is known of its axes.
-    return std::nullopt;
-  }
+// Where the study format has the key that a column is of.
+std::string pointer_of(const std::string& column) {
+  std::string pointer = "/" + (column == residual_axis ? std::string("residual") : column);
+  std::replace(pointer.begin(), pointer.end(), '.', '/');
+  if (column == residual_axis || column == "elements" || column == "modes") return "/mesh" + pointer;
+  if (std::find(method_roles.begin(), method_roles.end(), column) != method_roles.end()) return "/methods" + pointer;
+  return column == "step" || column == "steps_per_period" || column == "march" ? pointer : "/scene" + pointer;
 }
 
 // Words and truth values have none.
@@ -108,44 +79,8 @@ std::string spoken_choice(const std::string& column) {
     return axis_role(one) == axis_role(other) ? spoken_choice(axis_role(one)) + " with its parameters"
                                               : spoken_choice(one) + " together with " + spoken_choice(other);
   }
-  if (column == "mass") return "the mass matrix";
-  if (column == "contact") return "the contact law";
-  if (column == "time") return "the time scheme";
-  if (column == "step") return "the step";
-  if (column == "elements") return "the mesh";
-  if (column == "modes") return "the number of modes";
-  if (column == residual_axis) return "the residual of the modes";
-  if (column == "steps_per_period") return "the number of steps per period";
-  if (column.ends_with(sides_of_clearance)) return "the number of sides";
-  static const std::pair<const char*, const char*> scene[] = {
-      {"structure.damping.stiffness", "the viscosity α"},
-      {"structure.damping.mass", "the damping η"},
-      {"structure.damping", "the damping"},
-      {"structure.stiffness", "the stiffness of the structure"},
-      {"structure.mass", "the mass of the oscillator"},
-      {"structure.force.amplitude", "the amplitude of the force"},
-      {"structure.force.pulsation", "the pulsation of the force"},
-      {"structure.EA", "the axial stiffness EA"},
-      {"structure.rhoA", "the mass per length ρA"},
-      {"structure.length", "the length"},
-      {"structure.folder", "the files of the structure"},
-      {"structure.tension", "the tension"},
-      {"structure.added_mass", "the added mass"},
-      {"structure.foundation", "the foundation"},
-      {"structure.section.EI", "the bending stiffness EI"},
-      {"structure.section.rhoS", "the mass per length ρS"},
-      {"stops.lower", "the lower stop"},
-      {"stops.upper", "the upper stop"},
-      {"stops.at", "where stops act"},
-      {"support.amplitude", "the amplitude of the support"},
-      {"support.pulsation", "the pulsation of the support"},
-      {"initial.displacement", "the initial displacement"},
-      {"initial.velocity", "the initial velocity"},
-      {"initial.projection", "the projection of the initial state"},
-  };
-  for (const auto& [name, said] : scene)
-    if (column == name) return said;
-  return column;
+  const std::string words = words_at(pointer_of(column));
+  return words.empty() ? column : words;
 }
 
 std::string axis_role(const std::string& column) {
@@ -154,13 +89,12 @@ std::string axis_role(const std::string& column) {
 }
 
 Column axis_meaning(const std::string& column, const Json& resolved) {
-  if (column.ends_with(sides_of_clearance)) return {column, "1", "Sides of the polygon of a clearance."};
-  const std::vector<std::string> path = split(column);
-  if (const auto spec = spec_of(path, resolved))
-    return {column, spec->type == ParameterSpec::Type::real ? spec->unit : unit_of(*spec), spec->text};
-  if (axis_role(column) != column)
+  if (const Field* field = declared_at(pointer_of(column), resolved))
+    return {column, field->spec.type == ParameterSpec::Type::real ? field->spec.unit : unit_of(field->spec),
+            field->spec.text};
+  if (const std::string role = axis_role(column); role != column)
     return {column, "",
-            "Parameter " + column.substr(path.front().size() + 1) + " of the method in the column " + path.front() +
+            "Parameter " + column.substr(role.size() + 1) + " of the method in the column " + role +
                 "; \"ricochet describe\" says what it is."};
   return {column, "", "A value of the scene that differs between the cases."};
 }

@@ -111,8 +111,9 @@ Json check_words(const Field& field, const Json& value, const std::string& point
     const std::string here = list ? pointer_to(pointer, i) : pointer;
     const Json& one = list ? value[i] : value;
     if ((names && !one.is_string()) || (list && one.is_null()))
-      throw InputError(here, (names ? std::string("expected a name") : "expected one of " + quoted_list(field.spec.words)) +
-                                 ", found " + quote(one));
+      throw InputError(here,
+                       (names ? std::string("expected a name") : "expected one of " + quoted_list(field.spec.words)) +
+                           ", found " + quote(one));
     result.push_back(names || is_of_each(field, one, here) ? one : check_scalar(field, one, here));
     for (std::size_t j = 0; j < i; ++j)
       if (result[j] == result[i]) throw InputError(here, "repeats " + quote(result[i]));
@@ -260,6 +261,9 @@ std::vector<std::string> keys_of(const std::vector<Field>& fields) {
   return keys;
 }
 
+// No key of a study: the program writes beside the name of a file what it holds.
+constexpr const char* written_digest = "digest";
+
 // The one of the ways whose keys the object has.
 const ObjectForm& find_way(const ObjectForm& form, const Json& object, const std::string& pointer) {
   std::string expected;
@@ -272,7 +276,7 @@ const ObjectForm& find_way(const ObjectForm& form, const Json& object, const std
     expected += (expected.empty() ? "" : ", or ") + quoted_list(keys);
   }
   for (const auto& [key, ignored] : object.items())
-    if (std::find(all.begin(), all.end(), key) == all.end())
+    if (key != written_digest && std::find(all.begin(), all.end(), key) == all.end())
       throw InputError(pointer_to(pointer, key), "unknown key \"" + shortened(key) + "\"" + did_you_mean(key, all) +
                                                      " (keys here: " + quoted_list(all) + ")");
   for (const ObjectForm& way : form.ways)

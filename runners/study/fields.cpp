@@ -1,5 +1,16 @@
 #include "runners/study/fields.hpp"
 
+namespace ricochet {
+
+Field Field::as(std::string with_symbol, std::string with_words) const {
+  Field field = *this;
+  field.symbol = std::move(with_symbol);
+  field.words = std::move(with_words);
+  return field;
+}
+
+}  // namespace ricochet
+
 namespace ricochet::keys {
 
 Field real(const char* key, const char* unit, const Range& range, std::optional<double> fallback, const char* text) {
@@ -73,12 +84,13 @@ Field methods(const char* key, Role role, const char* text) {
 
 Field place(const char* key, std::optional<Json> fallback, const char* text) {
   Field field = of_form(Field::Form::place, key, std::move(fallback), text);
+  field.spec.unit = "m";  // of a place along the structure
   field.nullable = field.fallback.has_value();
   return field;
 }
 
 Field step() {
-  return real("step", "s", positive, std::nullopt, "Time step h.");
+  return real("step", "s", positive, std::nullopt, "Time step h.").as("h", "the step");
 }
 
 Field duration() {
@@ -119,7 +131,7 @@ Field steps_per_period() {
   Field field = integer("steps_per_period", {8, 100000000, false, false}, std::nullopt,
                         "Steps per forcing period: h = 2π/(ω·steps_per_period).");
   field.axis = true;
-  return field;
+  return field.as("steps per period", "the number of steps per period");
 }
 
 }  // namespace ricochet::keys

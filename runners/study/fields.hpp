@@ -24,6 +24,7 @@ struct ObjectForm {
   std::string discriminator;
   std::vector<Variant> variants;
   std::vector<ObjectForm> ways = {};
+  std::string at_rest = "";  ///< the key, an amplitude, without which (0) the others mean nothing
 };
 
 /// One key of an object.
@@ -65,9 +66,15 @@ struct Field {
   bool repeats = false;                   ///< of Form::numbers: one number may stand several times
   bool quiet = false;  ///< absent or its default, it is not written out: older studies keep their identity
   std::string unless;  ///< another key of the object in whose presence this one is not given
+  /// What stands beside its value where a scene is said ("E", "lower stop"): absent, the key in words; "", nothing. An
+  /// object that has one is said as one value, of a list each entry is; any other as the keys that it holds.
+  std::optional<std::string> symbol = {};
+  std::string words = {};  ///< what a sentence calls it, "the length"; "" of what no sentence speaks of
 
   const std::string& key() const { return spec.key; }
   bool required() const { return !fallback; }
+  /// The field with its symbol and its words.
+  Field as(std::string with_symbol, std::string with_words = "") const;
 };
 
 struct Variant {

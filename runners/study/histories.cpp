@@ -25,8 +25,8 @@ std::vector<Field> table_fields(const char* unit, std::vector<std::string> betwe
   const std::string first = between.front();
   return {of_form(Field::Form::text, "file", std::nullopt, "CSV with a header, in the folder of the study."),
           of_form(Field::Form::text, "time", Json("t"), "Column of the instants, in s."),
-          of_form(Field::Form::text, "value", std::nullopt, value.c_str()),
-          real("factor", "1", any, 1.0, "What the values are multiplied by."),
+          of_form(Field::Form::text, "value", std::nullopt, value.c_str()).as("column"),
+          real("factor", "1", any, 1.0, "What the values are multiplied by.").as("factor", "the factor of a table"),
           word("interpolation", std::move(between), first, "Between entries: straight, a natural spline, or steps."),
           word("before", beyond, "error", "Before the first entry."),
           word("after", beyond, "error", "After the last entry."),
@@ -47,9 +47,10 @@ ObjectForm sampled(const char* unit) {
 
 ObjectForm harmonic() {
   ObjectForm keys;
-  keys.fields = {single(real("amplitude", "m", any, std::nullopt, "A of A sin(ωt + ψ).")),
-                 single(real("pulsation", "rad/s", positive, std::nullopt, "ω.")),
-                 single(real("phase", "rad", any, 0.0, "ψ."))};
+  keys.fields = {
+      single(real("amplitude", "m", any, std::nullopt, "A of A sin(ωt + ψ).").as("A", "the amplitude of a motion")),
+      single(real("pulsation", "rad/s", positive, std::nullopt, "ω.").as("ω", "the pulsation of a motion")),
+      single(real("phase", "rad", any, 0.0, "ψ.").as("ψ", "the phase of a motion"))};
   return keys;
 }
 
@@ -185,13 +186,16 @@ ObjectForm load_history(const char* unit) {
   table.fields = table_fields(unit, {"linear", "cubic", "step"}, {"error", "zero", "hold"});
   ObjectForm spectrum;
   const std::string density = std::string("One-sided S(f), (") + unit + ")²/Hz, f in Hz.";
-  spectrum.fields = {of_form(Field::Form::formula, "formula", std::nullopt, density.c_str()),
-                     single(real("from", "Hz", non_negative, std::nullopt, "Where the first band begins.")),
-                     single(real("to", "Hz", positive, std::nullopt, "Where the last band ends.")),
-                     integer("lines", {1, 1000000, false, false}, std::nullopt, "Equal bands, a cosine in each.")};
+  spectrum.fields = {
+      of_form(Field::Form::formula, "formula", std::nullopt, density.c_str())
+          .as(std::string("S(f) in ") + (std::string(unit) == "1" ? "1/Hz" : std::string(unit) + "²/Hz")),
+      single(real("from", "Hz", non_negative, std::nullopt, "Where the first band begins.")),
+      single(real("to", "Hz", positive, std::nullopt, "Where the last band ends.")),
+      integer("lines", {1, 1000000, false, false}, std::nullopt, "Equal bands, a cosine in each.")};
   spectrum.fields.front().variables = "f";
   ObjectForm random;
-  random.fields = {object("psd", std::nullopt, "Random with this spectrum and the scene's seed.", spectrum)};
+  random.fields = {
+      object("psd", std::nullopt, "Random with this spectrum and the scene's seed.", spectrum).as("random")};
   ObjectForm either;
   either.ways = {table, random};
   return either;
@@ -212,11 +216,13 @@ ObjectForm motion_form() {
   displacement.fields = table_fields("m", {"cubic"}, {"error", "hold"});
   ObjectForm by_acceleration;
   by_acceleration.fields = {history("acceleration", "m/s²", "φ''(t), straight between entries, integrated exactly.",
-                                    {acceleration, sampled("m/s²")}),
-                            object("start", Json::object(), "φ and φ' at t = 0.", start_form())};
+                                    {acceleration, sampled("m/s²")})
+                                .as("acceleration"),
+                            object("start", Json::object(), "φ and φ' at t = 0.", start_form()).as("start")};
   ObjectForm by_displacement;
   by_displacement.fields = {history("displacement", "m", "φ(t), a natural spline through the entries, or harmonic.",
-                                    {displacement, sampled("m"), harmonic()})};
+                                    {displacement, sampled("m"), harmonic()})
+                                .as("displacement")};
   Field supports =
       of_form(Field::Form::words, "supports", Json("all"), "Names of the supports that move so, or \"all\".");
   supports.spec.type = ParameterSpec::Type::word;

@@ -21,17 +21,22 @@ namespace {
 // What a structure begins with, whatever stands around it.
 std::vector<Field> state_fields() {
   std::vector<Field> fields = {formula("displacement", "m", "x", false, Json("0"),
-                                       "Absolute displacement u(x,0); beyond a stop under compliant laws only."),
-                               formula("velocity", "m/s", "x", false, Json("0"), "Absolute velocity u_t(x,0).")};
+                                       "Absolute displacement u(x,0); beyond a stop under compliant laws only.")
+                                   .as("u(x, 0)", "the initial displacement"),
+                               formula("velocity", "m/s", "x", false, Json("0"), "Absolute velocity u_t(x,0).")
+                                   .as("u_t(x, 0)", "the initial velocity")};
   return fields;
 }
 
 std::vector<Field> file_fields() {
   std::vector<Field> fields = {
       quiet(of_form(Field::Form::text, "file", Json(""),
-                    "CSV of an assembled structure: dof, or node and component; displacement, velocity.")),
-      quiet(real("displacement_factor", "1", any, 1.0, "What the displacements of the file are multiplied by.")),
-      quiet(real("velocity_factor", "1", any, 1.0, "What its velocities are multiplied by."))};
+                    "CSV of an assembled structure: dof, or node and component; displacement, velocity.")
+                .as("initial state")),
+      quiet(real("displacement_factor", "1", any, 1.0, "What the displacements of the file are multiplied by.")
+                .as("factor of displacements", "the factor of initial displacements")),
+      quiet(real("velocity_factor", "1", any, 1.0, "What its velocities are multiplied by.")
+                .as("factor of velocities", "the factor of initial velocities"))};
   for (Field& field : initial_across_keys()) fields.push_back(std::move(field));
   return fields;
 }
@@ -75,12 +80,14 @@ Field initial_key() {
   keys.fields = state_fields();
   keys.fields.push_back(
       word("projection", {"none", "constraint", "least-squares"}, "none",
-           "\"constraint\": on Zᵀ(Kq − F) = 0, Z the kernel of a singular mass; \"least-squares\": on `mesh.modes`."));
+           "\"constraint\": on Zᵀ(Kq − F) = 0, Z the kernel of a singular mass; \"least-squares\": on `mesh.modes`.")
+          .as("projection", "the projection of the initial state"));
   keys.fields.back().axis = true;
   std::vector<Field> more = file_fields();
   keys.fields.push_back(std::move(more.front()));
   Field rest = quiet(of_form(Field::Form::scalar, "equilibrium", Json(false),
-                             "Whether it begins at rest under F(0) and its stops: K q = F(0) + Hᵀp."));
+                             "Whether it begins at rest under F(0) and its stops: K q = F(0) + Hᵀp.")
+                         .as("at rest under F(0)"));
   rest.spec.type = ParameterSpec::Type::boolean;
   keys.fields.push_back(std::move(rest));
   for (std::size_t i = 1; i < more.size(); ++i) keys.fields.push_back(std::move(more[i]));
@@ -154,11 +161,11 @@ bool shows(const Json& point, const char* field) {
 Field points_key() {
   ObjectForm point;
   point.fields = {of_form(Field::Form::text, "name", std::nullopt, "Letters, digits, '-' and '_'; each once."),
-                  place("at", std::nullopt, "Place whose displacement is shown."),
+                  place("at", std::nullopt, "Place whose displacement is shown.").as(""),
                   quiet(optional(word("frame", {"absolute", "supports"}, std::nullopt,
                                       "What it counts from; absent: as `frame` of the scene."))),
                   fields_of_point()};
-  return quiet(objects("points", "Places whose motion is shown; the first is where the tip is.", point));
+  return quiet(objects("points", "Places whose motion is shown; the first is where the tip is.", point).as("point"));
 }
 
 std::vector<Field> observed_of_stops() {
@@ -174,7 +181,8 @@ std::vector<Field> observed_of_stops() {
       of_form(Field::Form::text, "component", std::nullopt, "Component along it, at the nodes of the stop.")};
   ObjectForm tangent;
   tangent.ways = {radius, direction, component};
-  return {quiet(object("tangent", Json(nullptr), "Motion along the surface, for wear; absent: none.", tangent))};
+  return {quiet(
+      object("tangent", Json(nullptr), "Motion along the surface, for wear; absent: none.", tangent).as("tangent"))};
 }
 
 Place read_place(const Json& json) {
@@ -206,9 +214,12 @@ std::vector<Field> parameters_of_stops() {
     field.axis = true;
     return field;
   };
-  return {own("stiffness", "N/m", positive, "Its own stiffness, in the place of the contact law's; absent: the law's."),
-          own("damping", "N s/m", non_negative, "Its own viscosity, in the place of the contact law's."),
-          own("restitution", "1", {0, 1, false, false}, "Its own restitution, in the place of the time scheme's.")};
+  return {own("stiffness", "N/m", positive, "Its own stiffness, in the place of the contact law's; absent: the law's.")
+              .as("stiffness", "the stop's own stiffness"),
+          own("damping", "N s/m", non_negative, "Its own viscosity, in the place of the contact law's.")
+              .as("damping", "the stop's own damping"),
+          own("restitution", "1", {0, 1, false, false}, "Its own restitution, in the place of the time scheme's.")
+              .as("restitution", "the stop's own restitution")};
 }
 
 StopParameters read_own(const Json& stop) {
@@ -248,11 +259,13 @@ const std::vector<std::string> both_components = {plane_components.begin(), plan
 }  // namespace
 
 Field planes_key() {
-  return quiet(integer("planes", {1, 2, false, false}, 1, "2: it bends along z as well, w_y and w_z at each node."));
+  return quiet(integer("planes", {1, 2, false, false}, 1, "2: it bends along z as well, w_y and w_z at each node.")
+                   .as("planes"));
 }
 
 Field EI_z_key() {
-  return quiet(single(real("EI_z", "N m²", positive, 0.0, "Along z, of a beam of `planes` 2; absent: EI.")));
+  return quiet(single(real("EI_z", "N m²", positive, 0.0, "Along z, of a beam of `planes` 2; absent: EI.")
+                          .as("EI along z", "the bending stiffness EI along z")));
 }
 
 Field components_of_support() {
@@ -267,8 +280,10 @@ Field component_key(const char* text) {
 }
 
 std::vector<Field> initial_across_keys() {
-  return {quiet(formula("displacement_z", "m", "x", false, Json("0"), "u_z(x,0) of a beam of `planes` 2.")),
-          quiet(formula("velocity_z", "m/s", "x", false, Json("0"), "Its rate."))};
+  return {quiet(formula("displacement_z", "m", "x", false, Json("0"), "u_z(x,0) of a beam of `planes` 2.")
+                    .as("u_z(x, 0)", "the initial displacement along z")),
+          quiet(formula("velocity_z", "m/s", "x", false, Json("0"), "Its rate.")
+                    .as("u_z,t(x, 0)", "the initial velocity along z"))};
 }
 
 Field clearance_key() {
@@ -276,14 +291,16 @@ Field clearance_key() {
                              "The two displacements in its plane, at its place.");
   components.spec.type = ParameterSpec::Type::word;
   Field sides = integer("sides", {3, 720, false, false}, 16,
-                        "Sides of the polygon that rigid laws meet; compliant laws meet the circle itself.");
+                        "Sides of the polygon that rigid laws meet; compliant laws meet the circle itself.")
+                    .as("sides", "the number of sides");
   sides.axis = true;
   Field offset = of_form(Field::Form::numbers, "offset", Json::array({0.0, 0.0}),
                          "Where the centre is, from where the place has no displacement: along both components.");
   offset.spec.unit = "m";
   offset.repeats = true;
   ObjectForm keys;
-  keys.fields = {single(real("radius", "m", positive, std::nullopt, "How far the place may move from the axis.")),
+  keys.fields = {single(real("radius", "m", positive, std::nullopt, "How far the place may move from the axis.")
+                            .as("within", "the radius of a clearance")),
                  std::move(sides), quiet(std::move(offset)), std::move(components)};
   return quiet(object("clearance", Json(nullptr), "A circle round the place, in the place of bounds.", keys));
 }

@@ -25,24 +25,30 @@ using namespace keys;
 
 ObjectForm section() {
   ObjectForm keys;
-  keys.fields = {word("type", {"tube", "circle", "rectangle", "given"}, std::nullopt, "Shape of the cross-section.")};
+  keys.fields = {word("type", {"tube", "circle", "rectangle", "given"}, std::nullopt, "Shape of the cross-section.")
+                     .as("section", "the cross-section")};
   keys.discriminator = "/type";
   keys.variants = {
       {{"tube"},
-       {{real("outer_diameter", "m", positive, std::nullopt,
-              "Outer diameter D; I = π(D⁴ − d⁴)/64 with d = D − 2·wall."),
-         real("wall", "m", positive, std::nullopt, "Wall thickness, at most half of the outer diameter.")},
+       {{real("outer_diameter", "m", positive, std::nullopt, "Outer diameter D; I = π(D⁴ − d⁴)/64 with d = D − 2·wall.")
+             .as("D", "the outer diameter"),
+         real("wall", "m", positive, std::nullopt, "Wall thickness, at most half of the outer diameter.")
+             .as("wall", "the wall thickness")},
         "",
         {}}},
-      {{"circle"}, {{real("diameter", "m", positive, std::nullopt, "Diameter D; I = πD⁴/64.")}, "", {}}},
+      {{"circle"},
+       {{real("diameter", "m", positive, std::nullopt, "Diameter D; I = πD⁴/64.").as("D", "the diameter")}, "", {}}},
       {{"rectangle"},
-       {{real("width", "m", positive, std::nullopt, "Width b, along the axis of bending; I = b h³/12."),
-         real("height", "m", positive, std::nullopt, "Height h, across which the section bends.")},
+       {{real("width", "m", positive, std::nullopt, "Width b, along the axis of bending; I = b h³/12.")
+             .as("b", "the width"),
+         real("height", "m", positive, std::nullopt, "Height h, across which the section bends.")
+             .as("height", "the height")},
         "",
         {}}},
       {{"given"},
-       {{real("EI", "N m²", positive, std::nullopt, "Bending stiffness."),
-         real("rhoS", "kg/m", positive, std::nullopt, "Mass per length."), EI_z_key()},
+       {{real("EI", "N m²", positive, std::nullopt, "Bending stiffness.").as("EI", "the bending stiffness EI"),
+         real("rhoS", "kg/m", positive, std::nullopt, "Mass per length.").as("ρS", "the mass per length ρS"),
+         EI_z_key()},
         "",
         {}}},
   };
@@ -51,7 +57,7 @@ ObjectForm section() {
 
 ObjectForm with_file(ObjectForm damping) {
   damping.fields.push_back(
-      quiet(of_form(Field::Form::text, "file", Json(""), "C, Matrix Market, all dofs of the table, alone.")));
+      quiet(of_form(Field::Form::text, "file", Json(""), "C, Matrix Market, all dofs of the table, alone.").as("C")));
   return damping;
 }
 
@@ -61,14 +67,16 @@ ObjectForm assembled(const ObjectForm& damping) {
   };
   ObjectForm keys;
   keys.fields = {
-      of_form(Field::Form::text, "folder", Json(""), "Folder of the files, in that of the study."),
-      file("stiffness", "K, Matrix Market, all dofs of the table."),
-      file("mass", "M, Matrix Market, all dofs of the table."),
+      of_form(Field::Form::text, "folder", Json(""), "Folder of the files, in that of the study.")
+          .as("folder", "the files of the structure"),
+      file("stiffness", "K, Matrix Market, all dofs of the table.").as("K"),
+      file("mass", "M, Matrix Market, all dofs of the table.").as("M"),
       file("dofs", "CSV with the columns dof,node,component,x,y,z,held."),
       quiet(
           of_form(Field::Form::named, "influence", Json::object(),
                   "Supports whose dofs the matrices have lost, each with its CSV dof,value: how the dofs follow it.")),
-      single(real("length_unit", "m", positive, 1.0, "Unit of length of the files; 0.001: mm, t, s.")),
+      single(real("length_unit", "m", positive, 1.0, "Unit of length of the files; 0.001: mm, t, s.")
+                 .as("unit of length", "the unit of length")),
       object("damping", Json::object(), "Viscous damping C = αK + ηM, ratios, or C itself.", with_file(damping)),
       place("tip", Json(nullptr), "Displacement that is shown; null: the first stop's, else the first load's.")};
   keys.fields.front().axis = true;
@@ -94,29 +102,34 @@ ObjectForm modal() {
 
 ObjectForm beam_support() {
   ObjectForm keys;
-  keys.fields = {of_form(Field::Form::text, "name", std::nullopt, "Its name, for motions and tables."),
-                 real("x", "m", non_negative, std::nullopt, "Where it holds the beam, 0 to L."),
-                 word("type", {"clamped", "pinned", "sliding", "elastic"}, std::nullopt,
-                      "What it holds: w and w', w, w', or the ground end of springs."),
-                 components_of_support()};
+  keys.fields = {
+      of_form(Field::Form::text, "name", std::nullopt, "Its name, for motions and tables."),
+      real("x", "m", non_negative, std::nullopt, "Where it holds the beam, 0 to L.").as("at", "the place of a support"),
+      word("type", {"clamped", "pinned", "sliding", "elastic"}, std::nullopt,
+           "What it holds: w and w', w, w', or the ground end of springs.")
+          .as(""),
+      components_of_support()};
   keys.discriminator = "/type";
-  keys.variants = {{{"clamped", "pinned", "sliding"}, {}},
-                   {{"elastic"},
-                    {{real("stiffness", "N/m", non_negative, 0.0, "Spring against w."),
-                      real("rotation", "N m/rad", non_negative, 0.0, "Spring against w'.")},
-                     "",
-                     {}}}};
+  keys.variants = {
+      {{"clamped", "pinned", "sliding"}, {}},
+      {{"elastic"},
+       {{real("stiffness", "N/m", non_negative, 0.0, "Spring against w.").as("stiffness", "the stiffness of a support"),
+         real("rotation", "N m/rad", non_negative, 0.0, "Spring against w'.")
+             .as("rotation", "the stiffness of a support against rotation")},
+        "",
+        {}}}};
   return keys;
 }
 
 ObjectForm beam_part() {
   ObjectForm keys;
-  keys.fields = {real("to", "m", positive, std::nullopt, "Where it ends; it begins where the one before ends."),
+  keys.fields = {real("to", "m", positive, std::nullopt, "Where it ends; it begins where the one before ends.")
+                     .as("to", "the end of a section"),
                  object("section", std::nullopt, "Its cross-section.", section())};
   keys.discriminator = "/section/type";
   keys.variants = {{{"tube", "circle", "rectangle"},
-                    {{real("young", "Pa", positive, std::nullopt, "Young's modulus E."),
-                      real("density", "kg/m³", positive, std::nullopt, "Density ρ.")},
+                    {{real("young", "Pa", positive, std::nullopt, "Young's modulus E.").as("E", "Young's modulus"),
+                      real("density", "kg/m³", positive, std::nullopt, "Density ρ.").as("ρ", "the density")},
                      "",
                      {}}},
                    {{"given"}, {}}};
@@ -125,18 +138,22 @@ ObjectForm beam_part() {
 
 ObjectForm beam_mass() {
   ObjectForm keys;
-  keys.fields = {real("x", "m", non_negative, std::nullopt, "Where it sits, 0 to L."),
-                 real("mass", "kg", non_negative, 0.0, "Its mass."),
-                 real("inertia", "kg m²", non_negative, 0.0, "Its inertia against rotation.")};
+  keys.fields = {real("x", "m", non_negative, std::nullopt, "Where it sits, 0 to L.").as("at", "the place of a mass"),
+                 real("mass", "kg", non_negative, 0.0, "Its mass.").as("", "the point mass"),
+                 real("inertia", "kg m²", non_negative, 0.0, "Its inertia against rotation.")
+                     .as("inertia", "the inertia of a point mass")};
   return keys;
 }
 
 ObjectForm beam_shear() {
   ObjectForm keys;
   keys.fields = {
-      real("poisson", "1", {-1, 0.5, true, false}, std::nullopt, "Poisson's ratio ν: G = E/(2(1 + ν))."),
-      keys::optional(real("factor", "1", positive, std::nullopt, "k of kGA; null: Cowper's, from the section and ν.")),
-      of_form(Field::Form::scalar, "rotary", Json(false), "Whether cross-sections have inertia against rotation.")};
+      real("poisson", "1", {-1, 0.5, true, false}, std::nullopt, "Poisson's ratio ν: G = E/(2(1 + ν)).")
+          .as("ν", "Poisson's ratio"),
+      keys::optional(real("factor", "1", positive, std::nullopt, "k of kGA; null: Cowper's, from the section and ν.")
+                         .as("k of kGA", "the factor of shear")),
+      of_form(Field::Form::scalar, "rotary", Json(false), "Whether cross-sections have inertia against rotation.")
+          .as("rotary inertia")};
   keys.fields.back().spec.type = ParameterSpec::Type::boolean;
   return keys;
 }
@@ -144,13 +161,17 @@ ObjectForm beam_shear() {
 /// Absent in studies of a clamped beam of one section, whose text they leave as it is.
 std::vector<Field> beam_extras() {
   return {
-      quiet(objects("supports", "What holds the beam; absent: a clamp at 0. An end without one is free.",
-                    beam_support())),
-      quiet(objects("sections", "Sections from 0 upwards, the last one to L, in the place of `section`.", beam_part())),
-      quiet(real("added_mass", "kg/m", non_negative, 0.0, "Mass per length that moves with it, as of a fluid.")),
-      quiet(real("tension", "N", any, 0.0, "Axial force T; below 0 it compresses.")),
-      quiet(real("foundation", "N/m²", non_negative, 0.0, "Elastic foundation k_f, which moves with the supports.")),
-      quiet(objects("masses", "Point masses on the beam.", beam_mass())),
+      quiet(
+          objects("supports", "What holds the beam; absent: a clamp at 0. An end without one is free.", beam_support())
+              .as("support")),
+      quiet(objects("sections", "Sections from 0 upwards, the last one to L, in the place of `section`.", beam_part())
+                .as("section")),
+      quiet(real("added_mass", "kg/m", non_negative, 0.0, "Mass per length that moves with it, as of a fluid.")
+                .as("added mass", "the added mass")),
+      quiet(real("tension", "N", any, 0.0, "Axial force T; below 0 it compresses.").as("tension", "the tension")),
+      quiet(real("foundation", "N/m²", non_negative, 0.0, "Elastic foundation k_f, which moves with the supports.")
+                .as("foundation", "the foundation")),
+      quiet(objects("masses", "Point masses on the beam.", beam_mass()).as("mass")),
       quiet(object("shear", Json(nullptr), "Deformation in shear; absent: Euler–Bernoulli.", beam_shear())),
       planes_key()};
 }
@@ -159,17 +180,21 @@ std::vector<Field> beam_extras() {
 ObjectForm damping_form() {
   const Range ratio{-1, 1, true, true};
   Field ratios = of_form(Field::Form::numbers, "ratios", Json(nullptr),
-                         "ζ_k of the modes, slowest elastic one first, in the place of α and η.");
+                         "ζ_k of the modes, slowest elastic one first, in the place of α and η.")
+                     .as("damping ratios");
   ratios.spec.range = ratio;
   ratios.spec.unit = "1";
   ratios.repeats = true;
-  Field all = real("ratio", "1", ratio, std::nullopt, "ζ of every mode, in the place of α and η.");
+  Field all = real("ratio", "1", ratio, std::nullopt, "ζ of every mode, in the place of α and η.")
+                  .as("damping ratio", "the damping ratio");
   all.fallback = Json(nullptr);
   ObjectForm damping;
-  damping.fields = {real("stiffness", "s", non_negative, 0.0, "α of C = αK + ηM."),
-                    real("mass", "1/s", non_negative, 0.0, "η of C = αK + ηM."), quiet(std::move(all)),
-                    quiet(std::move(ratios)),
-                    quiet(real("beyond", "1", ratio, 0.0, "ζ of the modes after those of `ratios`."))};
+  damping.fields = {
+      real("stiffness", "s", non_negative, 0.0, "α of C = αK + ηM.").as("α (damping, of K)", "the viscosity α"),
+      real("mass", "1/s", non_negative, 0.0, "η of C = αK + ηM.").as("η (damping, of M)", "the damping η"),
+      quiet(std::move(all)), quiet(std::move(ratios)),
+      quiet(real("beyond", "1", ratio, 0.0, "ζ of the modes after those of `ratios`.")
+                .as("damping ratio beyond these", "the damping ratio of the other modes"))};
   return damping;
 }
 
@@ -177,36 +202,41 @@ ObjectForm structure() {
   const ObjectForm damping = damping_form();
   ObjectForm beam;
   beam.fields = {
-      real("length", "m", positive, std::nullopt, "Length L; clamped at x = 0, free at x = L, unless `supports` say."),
+      real("length", "m", positive, std::nullopt, "Length L; clamped at x = 0, free at x = L, unless `supports` say.")
+          .as("L", "the length"),
       object("section", std::nullopt, "Cross-section: EI and ρS follow from it.", section()),
       object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping)};
   beam.fields[1].unless = "sections";
   for (Field& extra : beam_extras()) beam.fields.push_back(std::move(extra));
   beam.discriminator = "/section/type";
   beam.variants = {{{"tube", "circle", "rectangle"},
-                    {{real("young", "Pa", positive, std::nullopt, "Young's modulus E."),
-                      real("density", "kg/m³", positive, std::nullopt, "Density ρ.")},
+                    {{real("young", "Pa", positive, std::nullopt, "Young's modulus E.").as("E", "Young's modulus"),
+                      real("density", "kg/m³", positive, std::nullopt, "Density ρ.").as("ρ", "the density")},
                      "",
                      {}}},
                    {{"given"}, {}}};
   ObjectForm force;
-  force.fields = {real("amplitude", "N", any, 0.0, "F of the force F cos(ωt + ψ)."),
-                  real("pulsation", "rad/s", non_negative, 0.0, "ω of the force."),
-                  real("phase", "rad", any, 0.0, "ψ of the force.")};
+  force.fields = {
+      real("amplitude", "N", any, 0.0, "F of the force F cos(ωt + ψ).").as("F", "the amplitude of the force"),
+      real("pulsation", "rad/s", non_negative, 0.0, "ω of the force.").as("ω of F", "the pulsation of the force"),
+      real("phase", "rad", any, 0.0, "ψ of the force.").as("ψ", "the phase of the force")};
+  force.at_rest = "amplitude";
   ObjectForm oscillator;
-  oscillator.fields = {real("mass", "kg", positive, std::nullopt, "Mass m."),
-                       real("stiffness", "N/m", non_negative, std::nullopt, "Stiffness k; 0: a free mass."),
-                       real("damping", "N s/m", non_negative, 0.0, "Damping c."),
+  oscillator.fields = {real("mass", "kg", positive, std::nullopt, "Mass m.").as("m", "the mass of the oscillator"),
+                       real("stiffness", "N/m", non_negative, std::nullopt, "Stiffness k; 0: a free mass.")
+                           .as("k", "the stiffness of the structure"),
+                       real("damping", "N s/m", non_negative, 0.0, "Damping c.").as("c", "the damping"),
                        object("force", Json::object(), "Harmonic force on the mass; absent: none.", force)};
   ObjectForm bar;
-  bar.fields = {real("length", "m", positive, std::nullopt, "Length L."),
-                real("EA", "N", positive, std::nullopt, "Stiffness EA."),
-                real("rhoA", "kg/m", positive, std::nullopt, "Mass per length ρA."),
-                word("fixed", {"right", "left", "none"}, std::nullopt,
-                     "The end that is held; the tip is the free one, or x = 0."),
-                object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping)};
+  bar.fields = {
+      real("length", "m", positive, std::nullopt, "Length L.").as("L", "the length"),
+      real("EA", "N", positive, std::nullopt, "Stiffness EA.").as("EA", "the axial stiffness EA"),
+      real("rhoA", "kg/m", positive, std::nullopt, "Mass per length ρA.").as("ρA", "the mass per length ρA"),
+      word("fixed", {"right", "left", "none"}, std::nullopt, "The end that is held; the tip is the free one, or x = 0.")
+          .as("held end", "the end that is held"),
+      object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping)};
   ObjectForm keys;
-  keys.fields = {word("type", {"beam", "oscillator", "bar", "assembled", "modal"}, std::nullopt, "What moves.")};
+  keys.fields = {word("type", {"beam", "oscillator", "bar", "assembled", "modal"}, std::nullopt, "What moves.").as("")};
   keys.discriminator = "/type";
   keys.variants = {{{"beam"}, beam},
                    {{"oscillator"}, oscillator},
@@ -218,16 +248,19 @@ ObjectForm structure() {
 
 Field moves_with() {
   return quiet(
-      of_form(Field::Form::text, "moves_with", Json(""), "The support that carries it, or \"all\"; absent: none."));
+      of_form(Field::Form::text, "moves_with", Json(""), "The support that carries it, or \"all\"; absent: none.")
+          .as("moves with"));
 }
 
 ObjectForm named_stop() {
   ObjectForm keys;
   keys.fields = {of_form(Field::Form::text, "name", std::nullopt, "Letters, digits, '-' and '_'; each once."),
-                 place("at", std::nullopt, "Place whose displacement u(at) − u(to) the stop bounds."),
-                 place("to", Json(nullptr), "The other place; null: the ground."),
-                 optional(real("lower", "m", any, std::nullopt, "Lower bound; null: none.")),
-                 optional(real("upper", "m", any, std::nullopt, "Upper bound; null: none.")),
+                 place("at", std::nullopt, "Place whose displacement u(at) − u(to) the stop bounds.").as(""),
+                 place("to", Json(nullptr), "The other place; null: the ground.").as("less"),
+                 optional(real("lower", "m", any, std::nullopt, "Lower bound; null: none."))
+                     .as("lower", "the lower bound of a stop"),
+                 optional(real("upper", "m", any, std::nullopt, "Upper bound; null: none."))
+                     .as("upper", "the upper bound of a stop"),
                  moves_with()};
   keys.fields[3].axis = keys.fields[4].axis = true;
   keys.fields.back().given.push_back(stop_motion_form());
@@ -242,7 +275,8 @@ ObjectForm named_stop() {
 
 Field bodies() {
   Field field = of_form(Field::Form::bodies, "bodies", Json::object(),
-                        "Structures by name that meet at stops, in the place of `structure`.");
+                        "Structures by name that meet at stops, in the place of `structure`.")
+                    .as("body");
   field.nested.push_back(structure());
   return quiet(std::move(field));
 }
@@ -250,51 +284,67 @@ Field bodies() {
 ObjectForm scene() {
   ObjectForm stops;
   stops.fields = {formula("lower", "m", "x", true, Json(nullptr),
-                          "Lower stop g1(x) ≤ u; null: absent. Above the upper one under compliant laws only."),
-                  formula("upper", "m", "x", true, Json(nullptr), "Upper stop u ≤ g2(x); null: absent."),
+                          "Lower stop g1(x) ≤ u; null: absent. Above the upper one under compliant laws only.")
+                      .as("lower stop", "the lower stop"),
+                  formula("upper", "m", "x", true, Json(nullptr), "Upper stop u ≤ g2(x); null: absent.")
+                      .as("upper stop", "the upper stop"),
                   of_form(Field::Form::places, "at", Json("nodes"),
-                          "Where stops act: \"nodes\", \"tip\" or a list of positions x in ]0, L].")};
+                          "Where stops act: \"nodes\", \"tip\" or a list of positions x in ]0, L].")
+                      .as("stops at", "where stops act")};
+  stops.fields.back().spec.unit = "m";
   stops.fields.back().axis = true;
   stops.fields.push_back(moves_with());
 
   ObjectForm support;
-  support.fields = {real("amplitude", "m", any, std::nullopt, "A0 of the motion of the supports."),
-                    real("pulsation", "rad/s", non_negative, std::nullopt, "ω of the motion of the supports."),
-                    real("phase", "rad", any, 0.0, "ψ of the motion of the supports.")};
+  support.fields = {
+      real("amplitude", "m", any, std::nullopt, "A0 of the motion of the supports.")
+          .as("A₀ (clamp)", "the amplitude of the support"),
+      real("pulsation", "rad/s", non_negative, std::nullopt, "ω of the motion of the supports.")
+          .as("ω (clamp)", "the pulsation of the support"),
+      real("phase", "rad", any, 0.0, "ψ of the motion of the supports.").as("ψ (clamp)", "the phase of the support")};
+
+  support.at_rest = "amplitude";
 
   ObjectForm point;
-  point.fields = {place("at", Json(nullptr), "Where the force acts: x in m, or a place; an oscillator needs none."),
-                  single(formula("force", "N", "t", false, std::nullopt, "Force F(t); or a table, or a spectrum."))};
+  point.fields = {
+      place("at", Json(nullptr), "Where the force acts: x in m, or a place; an oscillator needs none."),
+      single(formula("force", "N", "t", false, std::nullopt, "Force F(t); or a table, or a spectrum.").as("F(t)"))};
   point.fields.back().given.push_back(load_history("N"));
   point.fields.front().plain = true;
   ObjectForm spread;
-  spread.fields = {single(formula("shape", "N/m", "x", false, std::nullopt, "f(x) of a load f(x) g(t).")),
-                   single(formula("time", "1", "t", false, std::nullopt, "g(t); or a table, or a spectrum."))};
+  spread.fields = {
+      single(formula("shape", "N/m", "x", false, std::nullopt, "f(x) of a load f(x) g(t).").as("f(x)")),
+      single(formula("time", "1", "t", false, std::nullopt, "g(t); or a table, or a spectrum.").as("g(t)"))};
   spread.fields.back().given.push_back(load_history("1"));
   spread.fields.push_back(
       quiet(of_form(Field::Form::text, "body", Json(""), "Of several bodies, the one it is along.")));
   spread.fields.push_back(component_key("What it pushes along, of a beam of `planes` 2."));
-  Field load = formula("load", "N/m", "xt", false, Json("0"), "Load f(x,t), or a list of forces and of shapes.");
+  Field load = formula("load", "N/m", "xt", false, Json("0"), "Load f(x,t), or a list of forces and of shapes.")
+                   .as("load", "the load");
   load.nested.emplace_back();
   load.nested.back().ways = {point, spread};
 
-  Field seed = integer("seed", {0, 9007199254740992.0, false, false}, 0, "Of random loads: another one, other phases.");
+  Field seed = integer("seed", {0, 9007199254740992.0, false, false}, 0, "Of random loads: another one, other phases.")
+                   .as("seed", "the seed of random loads");
   seed.axis = true;
 
   ObjectForm keys;
-  keys.fields = {object("structure", std::nullopt, "The structure.", structure()),
-                 bodies(),
-                 object("stops", Json::object(),
-                        "Two rigid stops g1(x) ≤ u ≤ g2(x), or a list of stops that have names; absent: none.", stops),
-                 object("support", Json{{"amplitude", 0.0}, {"pulsation", 0.0}, {"phase", 0.0}},
-                        "Motion of all supports together, φ(t) = A0 sin(ωt + ψ); absent: at rest.", support),
-                 std::move(load),
-                 initial_key(),
-                 quiet(objects("motions", "Motions of supports by tables, in the place of `support`.", motion_form())),
-                 quiet(word("frame", {"absolute", "supports"}, "absolute",
-                            "What the initial state and the displacements shown count from, with `motions`.")),
-                 quiet(seed),
-                 points_key()};
+  keys.fields = {
+      object("structure", std::nullopt, "The structure.", structure()),
+      bodies(),
+      object("stops", Json::object(),
+             "Two rigid stops g1(x) ≤ u ≤ g2(x), or a list of stops that have names; absent: none.", stops)
+          .as("stop"),
+      object("support", Json{{"amplitude", 0.0}, {"pulsation", 0.0}, {"phase", 0.0}},
+             "Motion of all supports together, φ(t) = A0 sin(ωt + ψ); absent: at rest.", support),
+      std::move(load),
+      initial_key(),
+      quiet(
+          objects("motions", "Motions of supports by tables, in the place of `support`.", motion_form()).as("motion")),
+      quiet(word("frame", {"absolute", "supports"}, "absolute",
+                 "What the initial state and the displacements shown count from, with `motions`.")),
+      quiet(seed),
+      points_key()};
   keys.fields[0].unless = "bodies";
   keys.fields[2].listed.push_back(named_stop());
   return keys;
@@ -309,20 +359,23 @@ std::vector<std::string> kind_names() {
 ObjectForm study() {
   ObjectForm mesh;
   Field modes = integer("modes", {1, 100000, false, false}, std::nullopt,
-                        "March the N slowest modes of the structure in the place of its dofs; null: all dofs.");
+                        "March the N slowest modes of the structure in the place of its dofs; null: all dofs.")
+                    .as("modes", "the number of modes");
   modes.fallback = Json(nullptr);
   modes.axis = modes.nullable = modes.per_body = true;
   Field residual = word("residual", {"stops", "none"}, "stops",
-                        "With `modes`: whether the static shapes of the stops stand beside them.");
+                        "With `modes`: whether the static shapes of the stops stand beside them.")
+                       .as("residual", "the residual of the modes");
   residual.axis = true;
-  mesh.fields = {integer("elements", {1, 100000, false, false}, 1, "Number of equal elements of a beam or a bar."),
+  mesh.fields = {integer("elements", {1, 100000, false, false}, 1, "Number of equal elements of a beam or a bar.")
+                     .as("elements", "the mesh"),
                  quiet(std::move(modes)), quiet(std::move(residual))};
   mesh.fields.front().axis = mesh.fields.front().per_body = true;
 
   ObjectForm chosen;
-  chosen.fields = {methods("mass", Role::mass, "How velocities are discretised."),
-                   methods("contact", Role::contact, "The contact law."),
-                   methods("time", Role::time, "The time scheme.")};
+  chosen.fields = {methods("mass", Role::mass, "How velocities are discretised.").as("mass", "the mass matrix"),
+                   methods("contact", Role::contact, "The contact law.").as("contact law", "the contact law"),
+                   methods("time", Role::time, "The time scheme.").as("time scheme", "the time scheme")};
 
   Field outside =
       of_form(Field::Form::scalar, "outside", Json(false), "Whether files may lie outside the study's folder.");

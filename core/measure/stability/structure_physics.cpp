@@ -86,27 +86,16 @@ constexpr int most_elements = 120;
 // Of matrices that are given, whose mesh nobody coarsens: a dense problem of a few seconds.
 constexpr int most_given_dofs = 1000;
 
+// What follows from a structure and is not said of it.
 struct Numbers {
   std::vector<PhysicalNumber> operator()(const BeamSpec& beam) const {
     std::vector<PhysicalNumber> numbers;
-    if (beam.sections.empty()) {
-      const SectionProperties section = section_properties(beam.section, beam.young, beam.density);
-      numbers = {{"EI", section.EI, "N m²"}, {"ρS", section.rhoS, "kg/m"}};
-      const double EI_z = uniform_parts(in_plane(beam, 1)).front().section.EI;
-      if (beam.planes == 2 && EI_z != section.EI) numbers.push_back({"EI along z", EI_z, "N m²"});
-    }
-    numbers.push_back({"length", beam.length, "m"});
-    if (beam.added_mass != 0) numbers.push_back({"added mass", beam.added_mass, "kg/m"});
-    if (beam.tension != 0) numbers.push_back({"tension", beam.tension, "N"});
-    if (beam.foundation != 0) numbers.push_back({"foundation", beam.foundation, "N/m²"});
-    if (beam.shear) numbers.push_back({"kGA", uniform_parts(beam).front().kGA, "N"});
+    const UniformPart first = uniform_parts(beam).front();
+    if (beam.sections.empty() && beam.planes == 2 && beam.section.EI_z == 0)
+      if (const double EI_z = uniform_parts(in_plane(beam, 1)).front().section.EI; EI_z != first.section.EI)
+        numbers.push_back({"EI along z", EI_z, "N m²"});
+    if (beam.shear) numbers.push_back({"kGA", first.kGA, "N"});
     return numbers;
-  }
-  std::vector<PhysicalNumber> operator()(const OscillatorSpec& oscillator) const {
-    return {{"k", oscillator.stiffness, "N/m"}, {"m", oscillator.mass, "kg"}};
-  }
-  std::vector<PhysicalNumber> operator()(const BarSpec& bar) const {
-    return {{"EA", bar.EA, "N"}, {"ρA", bar.rhoA, "kg/m"}, {"length", bar.length, "m"}};
   }
   std::vector<PhysicalNumber> operator()(const AssembledSpec& spec) const {
     if (const std::optional<ModalPart>& modes = spec.structure->modes)
@@ -116,19 +105,11 @@ struct Numbers {
             {"held dofs", static_cast<double>(spec.structure->held_dofs), ""},
             {"half-bandwidth", static_cast<double>(spec.structure->half_width), ""}};
   }
+  template <class Other>
+  std::vector<PhysicalNumber> operator()(const Other&) const {
+    return {};
+  }
 };
-
-std::string support_text(const BeamSupport& support) {
-  constexpr const char* types[] = {"clamped", "pinned", "sliding", "elastic"};
-  std::string text =
-      fmt::format("{} {} at {:.6g} m", support.name, types[static_cast<std::size_t>(support.type)], support.x);
-  if (!support.in_plane[0] || !support.in_plane[1]) text += support.in_plane[0] ? " along uy" : " along uz";
-  if (support.type != BeamSupport::Type::elastic) return text;
-  std::vector<std::string> springs;
-  if (support.stiffness > 0) springs.push_back(fmt::format("{:.4g} N/m", support.stiffness));
-  if (support.rotation > 0) springs.push_back(fmt::format("{:.4g} N m/rad", support.rotation));
-  return fmt::format("{} ({})", text, fmt::join(springs, ", "));
-}
 
 struct Details {
   int elements = 0, dofs = 0;
@@ -137,25 +118,12 @@ struct Details {
     const std::vector<BeamInterval> intervals = beam_intervals(beam, elements);
     if (!beam.supports && intervals.size() == 1 && beam.planes == 1) return {};
     std::vector<std::string> lines, parts;
-    for (const BeamSupport& support : supports_of(beam)) parts.push_back(support_text(support));
     int rigid = 0;
     for (int plane = 0; plane < beam.planes; ++plane) {
       const RigidFreedom freedom = rigid_freedom(in_plane(beam, plane));
       rigid += (freedom.translates ? 1 : 0) + (freedom.turns ? 1 : 0);
     }
-    lines.push_back(fmt::format("supports: {}{}", parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", ")),
-                                rigid == 0 ? "" : fmt::format("; {} rigid motion{}", rigid, rigid == 1 ? "" : "s")));
-    double from = 0;
-    if (!beam.sections.empty())
-      for (const UniformPart& part : uniform_parts(beam)) {
-        lines.push_back(fmt::format("from {:.6g} to {:.6g} m: EI {:.4g} N m², ρS {:.4g} kg/m", from, part.to,
-                                    part.section.EI, part.section.rhoS));
-        from = part.to;
-      }
-    for (const BeamMass& mass : beam.masses)
-      lines.push_back(
-          fmt::format("at {:.6g} m: mass {:.4g} kg, inertia {:.4g} kg m²", mass.x, mass.mass, mass.inertia));
-    parts.clear();
+    if (rigid > 0) lines.push_back(fmt::format("{} rigid motion{}", rigid, rigid == 1 ? "" : "s"));
     int count = 0;
     for (const BeamInterval& interval : intervals) {
       parts.push_back(
@@ -278,8 +246,6 @@ std::variant<StructurePhysics, Refusal> structure_physics(const SceneSpec& scene
     for (std::string& line : basis_lines(problem)) out.details.push_back(std::move(line));
     out.left_out.assign(problem.basis->left_out.begin(), problem.basis->left_out.end());
   }
-  if (out.damping.stiffness != 0) out.numbers.push_back({"α", out.damping.stiffness, "s"});
-  if (out.damping.mass != 0) out.numbers.push_back({"η", out.damping.mass, "1/s"});
   out.point_stiffness = point_stiffness(problem);
   if (auto sums = static_modes_text(scene, problem)) out.details.push_back(*std::move(sums));
   if (problem.space.given && problem.dofs() > most_given_dofs) return out;

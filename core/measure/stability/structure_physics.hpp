@@ -53,12 +53,12 @@ struct PhysicalNumber {
 
 struct StructurePhysics {
   std::string structure;                ///< "beam", "oscillator", "bar"
-  std::vector<PhysicalNumber> numbers;  ///< EI, ρS, L; k, m; EA, ρA, L; α, η where not zero
+  std::vector<PhysicalNumber> numbers;  ///< what follows from it: kGA, dofs, rigid motions
   int elements = 0;                     ///< of the mesh whose modes these are
   std::vector<double> pulsations;  ///< ω_i of M φ ω² = K φ, open, slowest first, rad/s; Ker M has no part in them
   Damping damping;                 ///< α, η
-  /// Of a beam with breaks, supports or two planes, lines on what holds it, its parts and masses, its mesh and its
-  /// dofs. Of given matrices, their supports. Then lines on a basis of modes, and one on what static modes sum to.
+  /// Of a beam with breaks, supports or two planes, lines on its rigid motions, its mesh and its dofs. Of given
+  /// matrices, their supports. Then lines on a basis of modes, and one on what static modes sum to.
   std::vector<std::string> details;
   /// 1/(h K⁻¹ hᵀ) of each contact point, N/m: the force that moves it by 1 m at rest. Empty where K has no inverse, or
   /// where there are many points.

@@ -15,6 +15,7 @@
 #include "runners/store/record_values.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/study/check_object.hpp"
+#include "runners/study/declared_keys.hpp"
 #include "runners/study/read_scene.hpp"
 #include "runners/study/scene_keys.hpp"
 
@@ -29,8 +30,7 @@ struct Scalar {
   const Field* field = nullptr;
 };
 
-void collect(const ObjectForm& form, Json value, const std::string& pointer, std::vector<Scalar>& scalars) {
-  if (value.is_object()) value.erase("digest");  // no key of a study: what its files hold
+void collect(const ObjectForm& form, const Json& value, const std::string& pointer, std::vector<Scalar>& scalars) {
   for (const Field* field : fields_of(form, value, pointer)) {
     const std::string here = pointer_to(pointer, field->key());
     const auto found = value.find(field->key());
@@ -41,27 +41,12 @@ void collect(const ObjectForm& form, Json value, const std::string& pointer, std
       if (number && field->quiet && field->fallback && !field->fallback->is_null()) scalars.push_back({here, field});
       continue;
     }
-    if (field->form == Field::Form::object && found->is_array())
-      for (std::size_t i = 0; i < found->size(); ++i)
-        collect(field->listed.front(), (*found)[i], pointer_to(here, i), scalars);
-    else if (field->form == Field::Form::object && !field->given.empty() && by_body(*found))
-      for (const auto& [name, one] : found->items())
-        collect(field->given.front(), one, pointer_to(here, name), scalars);
-    else if (field->form != Field::Form::object && found->is_object() && !field->given.empty())
-      collect(field->given.front(), *found, here, scalars);
-    else if (field->form == Field::Form::object)
-      collect(field->nested.front(), *found, here, scalars);
-    else if (field->form == Field::Form::place && found->contains("x"))
+    const std::vector<StandingObject> objects = objects_at(*field, *found);
+    for (const StandingObject& one : objects)
+      collect(*one.form, *one.value, one.step.empty() ? here : pointer_to(here, one.step), scalars);
+    if (!objects.empty()) continue;
+    if (field->form == Field::Form::place && found->contains("x"))
       scalars.push_back({pointer_to(here, "x"), field});
-    else if (field->form == Field::Form::objects && found->is_array())
-      for (std::size_t i = 0; i < found->size(); ++i)
-        collect(field->nested.front(), (*found)[i], pointer_to(here, i), scalars);
-    else if (field->form == Field::Form::bodies)
-      for (const auto& [name, body] : found->items())
-        collect(field->nested.front(), body, pointer_to(here, name), scalars);
-    else if (is_object_list(*field, *found))
-      for (std::size_t i = 0; i < found->size(); ++i)
-        collect(field->nested.front(), (*found)[i], pointer_to(here, i), scalars);
     else if (number || (field->form == Field::Form::place && found->is_number()))
       scalars.push_back({here, field});
     else if (field->form == Field::Form::places && found->is_array())
@@ -70,15 +55,9 @@ void collect(const ObjectForm& form, Json value, const std::string& pointer, std
   }
 }
 
-const Field& scene_field() {
-  for (const Field& field : study_form().fields)
-    if (field.key() == "scene") return field;
-  throw std::logic_error("the study form has no scene");
-}
-
 std::vector<Scalar> scalars_of(const Json& scene) {
   std::vector<Scalar> scalars;
-  collect(scene_field().nested.front(), scene, "/scene", scalars);
+  collect(scene_form(), scene, "/scene", scalars);
   return scalars;
 }
 
@@ -254,13 +233,8 @@ std::optional<SweptAxis> swept_axis(const StudyResults& results, const nlohmann:
   try {
     const nlohmann::ordered_json::json_pointer place(pointer);
     out.factor = pointer.starts_with("/scene/") && results.study.contains(place) && results.study.at(place).is_string();
-    // In a list of the scene no axis has a name.
-    if (out.axis.unit.empty() && pointer.starts_with("/scene/"))
-      for (const Scalar& one : scalars_of(results.study.at("scene")))
-        if (one.pointer == pointer) out.axis = {out.axis.name, one.field->spec.unit, one.field->spec.text};
   } catch (const nlohmann::ordered_json::exception&) {
     return std::nullopt;
-  } catch (const InputError&) {  // a scene of another format
   }
   return out;
 }

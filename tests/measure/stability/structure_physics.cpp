@@ -27,9 +27,14 @@ TEST_CASE("physics: a beam in two planes has the frequencies of each plane") {
   const StructurePhysics physics = physics_of(scene, 10);
   // ω grows with √EI.
   CHECK(physics.pulsations[1] == Approx(2 * physics.pulsations[0]).epsilon(1e-9));
-  CHECK(physics.numbers[2].value == 4);
-  REQUIRE(physics.details.size() >= 3);
-  CHECK_THAT(physics.details[2], Catch::Contains("dofs: 40, held 4; two planes"));
+  REQUIRE(physics.details.size() >= 2);
+  CHECK_THAT(physics.details[1], Catch::Contains("dofs: 40, held 4; two planes"));
+  beam.section = {.type = Section::Type::rectangle, .width = 2, .height = 1};
+  beam.young = beam.density = 12;
+  scene.structure = beam;
+  const std::vector<PhysicalNumber> numbers = physics_of(scene, 10).numbers;
+  REQUIRE(numbers.size() == 1);
+  CHECK(numbers[0].value == Approx(8));  // E h b³/12
 }
 
 TEST_CASE("physics: the frequencies of a cantilever are β²√(EI/ρSL⁴), whatever the mass matrix") {
@@ -47,8 +52,6 @@ TEST_CASE("physics: the frequencies of a cantilever are β²√(EI/ρSL⁴), wha
     INFO(mass);
     const StructurePhysics physics = physics_of(scene, 40, mass);
     CHECK(physics.structure == "beam");
-    CHECK(physics.numbers[0].value == section.EI);
-    CHECK(physics.numbers[1].value == section.rhoS);
     const double roots[] = {1.8751040687, 4.6940911330, 7.8547574382};  // of cos β cosh β = −1
     for (std::size_t i = 0; i < 3; ++i) {
       const double omega = physics.pulsations[i];
@@ -70,16 +73,14 @@ TEST_CASE("physics: a beam on supports of its own says what holds it, its mesh a
   SceneSpec scene;
   scene.structure = beam;
   CHECK(physics_of(scene, 12).details ==
-        std::vector<std::string>{"supports: a pinned at 0 m, b pinned at 1 m, c elastic at 3 m (1000 N/m, 5 N m/rad)",
-                                 "at 2 m: mass 0.5 kg, inertia 0 kg m²",
-                                 "elements: 4 from 0 to 1 m, 4 from 1 to 2 m, 4 from 2 to 3 m", "dofs: 24, held 2",
+        std::vector<std::string>{"elements: 4 from 0 to 1 m, 4 from 1 to 2 m, 4 from 2 to 3 m", "dofs: 24, held 2",
                                  "static modes of the supports sum to 1: moved together they carry every point along"});
   // Held nowhere, it translates and turns.
   beam.supports->clear();
   beam.masses.clear();
   scene.structure = beam;
   const StructurePhysics free = physics_of(scene, 12);
-  CHECK(free.details.front() == "supports: none; 2 rigid motions");
+  CHECK(free.details.front() == "2 rigid motions");
   CHECK(free.pulsations[1] == 0);
   CHECK(free.pulsations[2] == Approx(std::pow(4.730040745 / 3, 2)).epsilon(1e-4));  // (kℓ)⁴/1440 of 12 elements
   beam.supports.reset();
