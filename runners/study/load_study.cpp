@@ -10,17 +10,15 @@
 #include "runners/json/json_text.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/study/body_keys.hpp"
+#include "runners/study/case_axes.hpp"
 #include "runners/study/check_object.hpp"
 #include "runners/study/histories.hpp"
-#include "runners/study/product.hpp"
 #include "runners/study/read_scene.hpp"
 #include "runners/study/scene_keys.hpp"
 #include "runners/study/study_kind.hpp"
 
 namespace ricochet {
 namespace {
-
-using Axes = std::vector<std::pair<std::string, Json>>;
 
 /// Refuses a comparison of what has one level, or of what the study does not have.
 void check_compare(const Study& study) {
@@ -59,13 +57,6 @@ void check_compare(const Study& study) {
 
 // More steps than any machine marches: beyond, the ratio is a slip of units.
 constexpr double most_steps = 1e12;
-
-// One scene of the cross product of the scene's lists.
-struct SceneOption {
-  SceneSpec scene;
-  Json json;
-  Axes axes;
-};
 
 void check_name(const std::string& name) {
   const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; };
@@ -136,25 +127,23 @@ std::string column_of(const std::string& scene_pointer) {
   return column;
 }
 
-// Of each contact law, whether it may push back what lies beyond a stop. One of somebody else is not asked here: where
-// it does not, the rows of its cases say so.
-std::vector<bool> start_beyond(const std::vector<MethodOption>& contacts, const Catalogue& catalogue,
-                               const Registry& registry) {
+// Asks each contact law whether it may push back what lies beyond a stop. One of somebody else is not asked here: where
+// it does not, the rows of its cases say so. Returns whether some law does.
+bool ask_beyond(std::vector<MethodOption>& contacts, const Catalogue& catalogue, const Registry& registry) {
   constexpr double barely = 1e-12;  // m
-  std::vector<bool> out;
-  for (const MethodOption& option : contacts) {
+  for (MethodOption& option : contacts) {
     const MethodChoice& choice = option.choice;
-    out.push_back(true);
+    option.starts_beyond = true;
     if (const std::string file = registry.file(Role::contact, choice.name); !file.empty() && catalogue.foreign(file))
       continue;
     try {
       const auto law = registry.contact(choice.name)->make(choice.parameters);
       const ForceBeyond beyond = force_beyond(*law, choice.parameters);
-      out.back() = beyond && beyond(barely);
+      option.starts_beyond = beyond && beyond(barely);
     } catch (...) {  // told in its rows
     }
   }
-  return out;
+  return std::any_of(contacts.begin(), contacts.end(), [](const MethodOption& one) { return one.starts_beyond; });
 }
 
 // Reads and checks every scene that is marched; an offending value that came from a list is named with its place in the
@@ -221,147 +210,108 @@ void refuse_repeated(const std::vector<MethodOption>& options, Role role) {
   }
 }
 
-void add_columns(const Axes& axes, std::vector<std::string>& columns) {
-  for (const auto& [name, ignored] : axes)
-    if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
+// The methods of a study by role, which are then written out in it.
+std::vector<MethodOptions> read_roles(Json& given, Catalogue& catalogue, Registry& registry,
+                                      const std::filesystem::path& folder) {
+  std::vector<MethodOptions> methods;
+  for (const Role role : {Role::mass, Role::contact, Role::time}) {
+    const std::string key = role_name(role);
+    methods.push_back(read_methods(role, given[key], "/methods/" + key, catalogue, registry, folder));
+    refuse_repeated(methods.back().options, role);
+    given[key] = methods.back().resolved;
+  }
+  return methods;
+}
+
+// What a key of the study gives an axis, and whether it does: a kind may lack the key.
+template <class Value>
+std::vector<Value> values_of(const Json& resolved, const char* key, Value without) {
+  return resolved.contains(key) ? one_or_each<Value>(resolved[key]) : std::vector<Value>{without};
+}
+
+// The study with every default, by its form alone.
+Study begin_study(const Json& given, std::vector<Axis>& lists) {
+  Study study;
+  study.resolved = check_object(study_form(), given, "", lists);
+  require_mesh(given);
+  study.name = study.resolved["name"].get<std::string>();
+  study.question = cut_short(study.resolved["question"].get<std::string>());
+  study.kind = study.resolved["kind"].get<std::string>();
+  check_name(study.name);
+  std::erase_if(lists, [](const Axis& axis) { return !axis.pointer.starts_with("/scene/"); });
+  return study;
+}
+
+void check_kind(const StudyKind& kind, const Json& resolved) {
+  if (kind.check) kind.check(resolved);
+  if (!kind.shows_points && resolved["scene"].contains("points"))
+    throw InputError("/scene/points", "a study of kind " + kind.name + " shows no points; expected kind trajectory");
 }
 
 }  // namespace
 
 Study parse_study(const std::string& text, Catalogue& catalogue, Registry& registry,
                   const std::filesystem::path& folder) {
-  std::vector<Axis> axes;
-  Study study;
+  std::vector<Axis> lists;
   const Json given = parse_json(text);
-  study.resolved = check_object(study_form(), given, "", axes);
-  require_mesh(given);
+  Study study = begin_study(given, lists);
   Json& resolved = study.resolved;
-  study.name = resolved["name"].get<std::string>();
-  study.question = cut_short(resolved["question"].get<std::string>());
-  study.kind = resolved["kind"].get<std::string>();
-  check_name(study.name);
-  // A kind without a step of its own goes through a range of them within each case (stability), or counts steps per
-  // forcing period.
   const StudyKind& kind = *find_study_kind(study.kind);
-  const bool stepped = resolved.contains("step"), by_period = resolved.contains("steps_per_period");
-  const auto given_duration = resolved.find("duration");
-  const auto duration =
-      given_duration == resolved.end() || given_duration->is_null() ? 0.0 : given_duration->get<double>();
-  const auto samples = resolved.value("samples", 0);
-  if (stepped) check_steps(resolved["step"], duration);
-  const std::vector<double> steps = stepped ? one_or_each<double>(resolved["step"]) : std::vector<double>{0.0};
-  const std::vector<int> per_period = by_period ? one_or_each<int>(resolved["steps_per_period"]) : std::vector<int>{0};
+  StudyCase common;
+  if (const auto duration = resolved.find("duration"); duration != resolved.end() && !duration->is_null())
+    common.duration = duration->get<double>();
+  common.samples = resolved.value("samples", 0);
+  if (resolved.contains("step")) check_steps(resolved["step"], common.duration);
   // A kind without the key marches every step.
-  const std::vector<std::string> marches =
-      resolved.contains("march") ? one_or_each<std::string>(resolved["march"]) : std::vector<std::string>{"every-step"};
+  const auto marches = values_of<std::string>(resolved, "march", "every-step");
   // One that is not given is none of the study's axes, and none of the study as it is kept.
-  const bool ways = given.contains("march");
-  if (!ways) resolved.erase("march");
-  if (!given.contains("compare")) resolved.erase("compare");
-  const auto files = std::make_shared<StudyFiles>(folder, resolved["files"], resolved.value("outside", false));
+  for (const char* key : {"march", "compare"})
+    if (!given.contains(key)) resolved.erase(key);
+  common.files = std::make_shared<StudyFiles>(folder, resolved["files"], resolved.value("outside", false));
   resolved.erase("files");
-  if (kind.check) kind.check(resolved);
-  if (!kind.shows_points && resolved["scene"].contains("points"))
-    throw InputError("/scene/points", "a study of kind " + kind.name + " shows no points; expected kind trajectory");
+  check_kind(kind, resolved);
   const std::vector<MeshChoice> meshes = meshes_of(resolved["mesh"], resolved["scene"]);
-
-  std::vector<MethodOptions> methods;
-  for (const Role role : {Role::mass, Role::contact, Role::time}) {
-    const std::string key = role_name(role);
-    methods.push_back(read_methods(role, resolved["methods"][key], "/methods/" + key, catalogue, registry, folder));
-    refuse_repeated(methods.back().options, role);
-    resolved["methods"][key] = methods.back().resolved;
-  }
+  auto methods = read_roles(resolved["methods"], catalogue, registry, folder);
   std::vector<MethodChoice> references;
   if (resolved.contains("reference"))
     references = read_references(resolved["reference"], "/reference", catalogue, registry);
-  const Json settings = kind.settings(resolved);
-  const auto &masses = methods[0].options, &contacts = methods[1].options, &times = methods[2].options;
-
-  axes.erase(
-      std::remove_if(axes.begin(), axes.end(), [](const Axis& axis) { return !axis.pointer.starts_with("/scene/"); }),
-      axes.end());
-  Product everything;
-  for (const Axis& axis : axes) everything.add(axis.values.size());
-  for (const std::size_t size :
-       {masses.size(), contacts.size(), times.size(), meshes.size(), steps.size(), per_period.size(), marches.size()})
-    everything.add(size);
-  everything.refuse_above(largest_study, "");
-
+  if (!kind.add_references) common.references = references;
+  common.settings = kind.settings(resolved);
   const bool modal = has_structure(resolved["scene"], {"modal"}) && !resolved["scene"].contains("bodies");
   const std::vector<std::optional<BasisSpec>> bases = bases_of(resolved["mesh"], resolved["scene"], modal);
-  everything.add(bases.size());
+
+  // Beside the scenes. A kind without a step goes through a range of them within each case (stability), or counts steps
+  // per forcing period.
+  std::vector<CaseAxis> axes = {
+      method_axis(methods[0].options, &StudyCase::mass),
+      method_axis(methods[1].options, &StudyCase::contact),
+      method_axis(methods[2].options, &StudyCase::time),
+      mesh_axis(meshes, *common.files),
+      plain_axis("step", resolved.contains("step"), values_of(resolved, "step", 0.0), &StudyCase::step),
+      plain_axis("steps_per_period", resolved.contains("steps_per_period"), values_of(resolved, "steps_per_period", 0),
+                 &StudyCase::steps_per_period),
+      plain_axis("march", resolved.contains("march"), marches, &StudyCase::march),
+      basis_axis(bases, resolved["mesh"], modal)};
+  Product everything;
+  for (const Axis& list : lists) everything.add(list.values.size());
+  for (const CaseAxis& axis : axes) everything.add(axis.levels.size());
   everything.refuse_above(largest_study, "");
+
   const auto fewer = [](const MeshChoice& a, const MeshChoice& b) { return a.elements < b.elements; };
   const MeshChoice &finest = *std::max_element(meshes.begin(), meshes.end(), fewer),
                    &coarse = *std::min_element(meshes.begin(), meshes.end(), fewer);
-  const std::vector<bool> beyond = start_beyond(contacts, catalogue, registry);
   const std::vector<SceneOption> scenes = expand_scenes(
-      resolved["scene"], axes, finest, std::find(beyond.begin(), beyond.end(), true) != beyond.end(), kind, settings,
-      *files, duration, std::find(bases.begin(), bases.end(), std::nullopt) != bases.end());
+      resolved["scene"], lists, finest, ask_beyond(methods[1].options, catalogue, registry), kind, common.settings,
+      *common.files, common.duration, std::find(bases.begin(), bases.end(), std::nullopt) != bases.end());
   for (const SceneOption& one : scenes) check_bases(bases, resolved["mesh"], one.scene.structure, coarse.elements);
-  if (Json said = files->said(); !said.is_null())
+  if (Json said = common.files->said(); !said.is_null())
     resolved["files"] = with_layout(std::move(said), scenes.front().scene);
   if (kind.check_methods)
-    kind.check_methods(resolved, settings, registry, everything.count(),
+    kind.check_methods(resolved, common.settings, registry, everything.count(),
                        make_space(scenes.front().scene.structure, coarse.elements).dofs);
 
-  for (const MethodOptions& role : methods)
-    for (const MethodOption& option : role.options) add_columns(option.axes, study.columns);
-  add_columns({{"elements", nullptr}}, study.columns);
-  for (const auto& [key, column] : {std::pair("modes", "modes"), {"residual", residual_axis}})
-    if (resolved["mesh"].contains(key)) add_columns({{column, nullptr}}, study.columns);
-  if (stepped) add_columns({{"step", nullptr}}, study.columns);
-  if (by_period) add_columns({{"steps_per_period", nullptr}}, study.columns);
-  if (ways) add_columns({{"march", nullptr}}, study.columns);
-  add_columns(scenes.front().axes, study.columns);
-
-  CaseIds ids;
-  Product product;
-  for (const std::size_t size : {scenes.size(), masses.size(), contacts.size(), times.size(), meshes.size(),
-                                 steps.size(), per_period.size(), marches.size(), bases.size()})
-    product.add(size);
-  for (; !product.ended(); product.next()) {
-    StudyCase one;
-    const SceneOption& scene = scenes[product[0]];
-    one.scene = scene.scene;
-    one.scene_json = scene.json;
-    one.mass = masses[product[1]].choice;
-    one.contact = contacts[product[2]].choice;
-    one.starts_beyond = beyond[product[2]];
-    one.time = times[product[3]].choice;
-    for (const MethodOption* option : {&masses[product[1]], &contacts[product[2]], &times[product[3]]})
-      one.axes.insert(one.axes.end(), option->axes.begin(), option->axes.end());
-    one.elements = meshes[product[4]].elements;
-    if (const Json& mesh = meshes[product[4]].of_bodies; mesh.is_object())
-      one.scene = read_scene(one.scene_json = with_meshes(one.scene_json, mesh), files.get());
-    one.scene = on_mesh(std::move(one.scene), one.elements);
-    one.step = steps[product[5]];
-    one.axes.emplace_back("elements", one.elements);
-    if (const std::optional<BasisSpec>& basis = bases[product[8]]; bases.size() > 1 || basis) {
-      one.scene.basis = basis;
-      const Json residual = !basis && !modal ? Json(nullptr) : Json(!basis || basis->residual ? "stops" : "none");
-      if (resolved["mesh"].contains("modes"))
-        one.axes.emplace_back("modes", basis && basis->modes > 0 ? Json(basis->modes) : Json(nullptr));
-      if (resolved["mesh"].contains("residual")) one.axes.emplace_back(residual_axis, residual);
-      if (basis) one.scene_json["basis"] = {{"modes", basis->modes}, {"residual", residual}};
-      if (basis && !basis->of_bodies.empty()) one.scene_json["basis"]["of_bodies"] = basis->of_bodies;
-    }
-    if (stepped) one.axes.emplace_back("step", one.step);
-    one.steps_per_period = per_period[product[6]];
-    if (by_period) one.axes.emplace_back("steps_per_period", one.steps_per_period);
-    one.march = marches[product[7]];
-    if (ways) one.axes.emplace_back("march", one.march);
-    one.axes.insert(one.axes.end(), scene.axes.begin(), scene.axes.end());
-    one.duration = duration;
-    one.samples = samples;
-    if (!kind.add_references) one.references = references;
-    one.settings = settings;
-    one.files = files;
-    if (kind.complete) kind.complete(settings, registry, one);
-    one.id = ids.next(one, study.kind);
-    study.cases.push_back(std::move(one));
-  }
+  axes.insert(axes.begin(), scene_axis(scenes));
+  add_cases(axes, common, kind, registry, study);
   apply_excludes(resolved["exclude"], study);
   if (kind.add_references) kind.add_references(references, study);
   if (kind.check_cases) kind.check_cases(study);

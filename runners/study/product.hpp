@@ -71,6 +71,7 @@ struct MethodOption {
   MethodChoice choice;
   std::vector<std::pair<std::string, Json>> axes;  ///< "time": name, then "time.beta": value, …, in the plugin's order
   std::vector<std::string> places;                 ///< JSON pointers that chose it: the entry, then list elements
+  bool starts_beyond = false;                      ///< of a contact law: whether it pushes back what lies beyond a stop
 };
 
 struct MethodOptions {
