@@ -22,17 +22,24 @@
 namespace ricochet {
 namespace {
 
-std::vector<Subcommand> all_commands() {
-  using Args = Arguments;
-  constexpr int most_jobs = 4096, most_samples = 1000000000, most_snapshots = 2000;
-  constexpr int most_workers = 1000000, most_nodes = 100000;
-  const Option plugin{"plugin", "FILE", "also use this library, or plan in JSON (repeatable)", &Args::plugins};
+using Args = Arguments;
+using Commands = std::vector<Subcommand>;
+
+constexpr int most_jobs = 4096, most_samples = 1000000000, most_snapshots = 2000;
+constexpr int most_workers = 1000000, most_nodes = 100000;
+
+Option plugin_option() {
+  return {"plugin", "FILE", "also use this library, or plan in JSON (repeatable)", &Args::plugins};
+}
+
+// Commands of studies: run them, see what they would do.
+Commands study_commands() {
+  const Option plugin = plugin_option();
   const Option out{"out", "DIR", "results folder (default: results/NAME)", &Args::out};
   const Option jobs{"jobs", "N", "worker processes (default: one for each processor that it may use)",
                     Option::Count{&Args::jobs, most_jobs}};
   const Option fresh{"fresh", "", "forget earlier results in the folder", &Args::fresh};
   const Option table{"table", "", "print a line for every case", &Args::table};
-  const Option table_of_all{"table", "", "print all of it as CSV", &Args::table};
   const Option in_line{"inline", "",
                        "run in this process alone, without workers: for a debugger. This is the default where all "
                        "cases take less than a second and every plugin is Ricochet's own",
@@ -54,41 +61,6 @@ std::vector<Subcommand> all_commands() {
                     &Args::time};
   const Option cpus{"cpus", "N", "processors of each machine (default: all, no other job beside)",
                     Option::Count{&Args::cpus, most_jobs}};
-  const Option index{"out", "FILE",
-                     "the page that lists several folders (default: index.html in the folder that holds them all); "
-                     "NAME.md: questions and answers in Markdown",
-                     &Args::out};
-  const Option merged{"out", "DIR",
-                      "the folder that is made, whole or not at all: a new or an empty one (required). Folders that "
-                      "one run would not have left are refused: of another study, program, plugin or arithmetic, or "
-                      "under way. Different results of the same case are refused too",
-                      &Args::out};
-  const Option to{"to", "CSVDIR", "folder that receives the tables (required)", &Args::to};
-  const Option curves{"curves", "",
-                      fmt::format("all curves in one curves.csv, with the case before each sample, in place of a file "
-                                  "for each case. With more than {} cases there are no such files",
-                                  kMostCurveFiles),
-                      &Args::curves};
-  const Option parameter{"parameter", "VALUE", "value of a bifurcation study's parameter", &Args::parameter};
-  const Option start{"start", "NAME", "start of the orbit, as in values.csv", &Args::start};
-  const Option cell{"cell", "X,Y", "cell of a study of basins, as in cells.csv", &Args::cell};
-  const Option branch{"branch", "NAME", "branch of a continuation study, as in branches.csv", &Args::branch};
-  const Option arc{"arc", "S", "length of the branch up to the orbit, m: any, not only those of rows", &Args::arc};
-  const Option film{
-      "snapshots", "N",
-      "also keep N instants of an orbit of a branch beside its case: the next report shows them as a film",
-      Option::Count{&Args::snapshots, most_snapshots}};
-  const Option period_file{"out", "FILE", "its period as CSV (default: DIR/points/CASE_BRANCH_ARC.csv)", &Args::out};
-  const Option periods{"periods", "N", "forcing periods that are marched (default: 8)",
-                       Option::Count{&Args::periods, most_samples}};
-  const Option samples_of_period{"samples", "N", "samples per period (default: 200)",
-                                 Option::Count{&Args::samples, most_samples}};
-  const Option samples{"samples", "N", "print the curve instead, at N samples, as CSV",
-                       Option::Count{&Args::samples, most_samples}};
-  const Option snapshots{"snapshots", "N",
-                         "keep N instants of the motion beside the case instead: the next report shows them as a film",
-                         Option::Count{&Args::snapshots, most_snapshots}};
-  const Option study{"study", "", "print the study of this case alone instead, to be run", &Args::study};
   return {
       {"run",
        "STUDY.json [--part K/N] [--out DIR] [--jobs N] [--fresh] [--table] [--inline|--isolate]",
@@ -118,6 +90,13 @@ std::vector<Subcommand> all_commands() {
        1,
        {out, nodes, time, cpus, plugin},
        command_slurm},
+  };
+}
+
+// Commands of methods.
+Commands method_commands() {
+  const Option plugin = plugin_option();
+  return {
       {"list", "[mass|contact|time|reference]", "List the methods found.", 0, 1, {plugin}, command_list},
       {"describe",
        "NAME|PLAN.json",
@@ -141,6 +120,29 @@ std::vector<Subcommand> all_commands() {
        1,
        {plugin},
        command_check},
+  };
+}
+
+// Commands of results folders.
+Commands result_commands() {
+  const Option plugin = plugin_option();
+  const Option table_of_all{"table", "", "print all of it as CSV", &Args::table};
+  const Option index{"out", "FILE",
+                     "the page that lists several folders (default: index.html in the folder that holds them all); "
+                     "NAME.md: questions and answers in Markdown",
+                     &Args::out};
+  const Option merged{"out", "DIR",
+                      "the folder that is made, whole or not at all: a new or an empty one (required). Folders that "
+                      "one run would not have left are refused: of another study, program, plugin or arithmetic, or "
+                      "under way. Different results of the same case are refused too",
+                      &Args::out};
+  const Option to{"to", "CSVDIR", "folder that receives the tables (required)", &Args::to};
+  const Option curves{"curves", "",
+                      fmt::format("all curves in one curves.csv, with the case before each sample, in place of a file "
+                                  "for each case. With more than {} cases there are no such files",
+                                  kMostCurveFiles),
+                      &Args::curves};
+  return {
       {"report",
        "DIR… [--out FILE]",
        "Rebuild the report and the tables of a results folder; of several, also a page that lists them.",
@@ -176,6 +178,33 @@ std::vector<Subcommand> all_commands() {
        1000,
        {},
        command_league},
+  };
+}
+
+// Commands of one case or orbit.
+Commands case_commands() {
+  const Option plugin = plugin_option();
+  const Option parameter{"parameter", "VALUE", "value of a bifurcation study's parameter", &Args::parameter};
+  const Option start{"start", "NAME", "start of the orbit, as in values.csv", &Args::start};
+  const Option cell{"cell", "X,Y", "cell of a study of basins, as in cells.csv", &Args::cell};
+  const Option branch{"branch", "NAME", "branch of a continuation study, as in branches.csv", &Args::branch};
+  const Option arc{"arc", "S", "length of the branch up to the orbit, m: any, not only those of rows", &Args::arc};
+  const Option film{
+      "snapshots", "N",
+      "also keep N instants of an orbit of a branch beside its case: the next report shows them as a film",
+      Option::Count{&Args::snapshots, most_snapshots}};
+  const Option period_file{"out", "FILE", "its period as CSV (default: DIR/points/CASE_BRANCH_ARC.csv)", &Args::out};
+  const Option periods{"periods", "N", "forcing periods that are marched (default: 8)",
+                       Option::Count{&Args::periods, most_samples}};
+  const Option samples_of_period{"samples", "N", "samples per period (default: 200)",
+                                 Option::Count{&Args::samples, most_samples}};
+  const Option samples{"samples", "N", "print the curve instead, at N samples, as CSV",
+                       Option::Count{&Args::samples, most_samples}};
+  const Option snapshots{"snapshots", "N",
+                         "keep N instants of the motion beside the case instead: the next report shows them as a film",
+                         Option::Count{&Args::snapshots, most_snapshots}};
+  const Option study{"study", "", "print the study of this case alone instead, to be run", &Args::study};
+  return {
       {"point",
        "DIR CASE (--parameter VALUE --start NAME | --cell X,Y | --branch NAME --arc S)",
        "March one orbit of a bifurcation study, or one cell of basins, again and print it as CSV; solve one orbit of a "
@@ -191,6 +220,13 @@ std::vector<Subcommand> all_commands() {
        2,
        {samples, snapshots, study, plugin},
        command_case},
+  };
+}
+
+// Commands of the program itself.
+Commands program_commands() {
+  const Option plugin = plugin_option();
+  return {
       {"schema",
        "",
        "Print a JSON Schema of studies, with the parameters of every method found.",
@@ -206,6 +242,13 @@ std::vector<Subcommand> all_commands() {
        {plugin},
        command_doctor},
   };
+}
+
+std::vector<Subcommand> all_commands() {
+  Commands all;
+  for (const auto& some : {study_commands(), method_commands(), result_commands(), case_commands(), program_commands()})
+    all.insert(all.end(), some.begin(), some.end());
+  return all;
 }
 
 std::string overview() {
