@@ -23,7 +23,9 @@ std::vector<std::string> without(std::vector<std::string> columns, const std::st
 }
 
 const Column error_column{"error", "", "Which error: a quantity of the motion and how its difference is measured."};
-const Column value_column{"value", "that of the error", "The error of the case against its reference."};
+Column value_column(const std::string& unit) {
+  return {"value", unit, "The error of the case against its reference."};
+}
 
 double size_of(const CaseRecord& record, const std::string& refined) {
   const double value = axis(record, refined).number().value();
@@ -77,12 +79,21 @@ std::vector<std::string> errors_of(const StudyResults& results) {
   return errors.get<std::vector<std::string>>();
 }
 
-TableType<ErrorRow> errors_type() {
+std::string error_unit(const StudyResults& results) {
+  std::set<std::string> units;
+  for (const std::string& name : errors_of(results)) {
+    const MeasureInfo* info = measure_info("error." + name);
+    units.insert(info ? info->unit : of_each_error);
+  }
+  return units.size() == 1 ? *units.begin() : of_each_error;
+}
+
+TableType<ErrorRow> errors_type(const std::string& unit) {
   RowType<ErrorRow> rows;
   rows.of_case(&ErrorRow::id)
       .add(error_column, &ErrorRow::error)
-      .add(value_column, &ErrorRow::value)
-      .add({"floor", "that of the error",
+      .add(value_column(unit), &ErrorRow::value)
+      .add({"floor", unit,
             "What the reference itself may be wrong by: below it the error says nothing, and below four of it no "
             "order."},
            &ErrorRow::floor);
@@ -90,7 +101,7 @@ TableType<ErrorRow> errors_type() {
 }
 
 Table errors_table(const StudyResults& results) {
-  const TableType<ErrorRow> type = errors_type();
+  const TableType<ErrorRow> type = errors_type(error_unit(results));
   Table table = table_of_cases(results, type.head());
   for (const CaseRecord& record : results.cases)
     for (const std::string& name : errors_of(results))
@@ -193,11 +204,11 @@ Table orders_table(const StudyResults& results) {
   return table;
 }
 
-TableType<WorkRow> work_precision_type() {
+TableType<WorkRow> work_precision_type(const std::string& unit) {
   RowType<WorkRow> rows;
   rows.of_case(&WorkRow::id)
       .add(error_column, &WorkRow::error)
-      .add(value_column, &WorkRow::value)
+      .add(value_column(unit), &WorkRow::value)
       .add({"run_seconds", "s", "Processor time of the marching alone, nothing observed: median of the repeats."},
            &WorkRow::run_seconds)
       .add({"low", "s", "The fastest repeat."}, &WorkRow::low)
@@ -209,7 +220,7 @@ TableType<WorkRow> work_precision_type() {
 
 Table work_precision_table(const StudyResults& results) {
   const std::vector<std::string> methods = without(results.columns, "step");
-  const TableType<WorkRow> type = work_precision_type();
+  const TableType<WorkRow> type = work_precision_type(error_unit(results));
   Table table{type.name, type.text, {case_column()}, {}};
   table.columns = joined(std::move(table.columns), axis_columns(results, methods));
   table.columns = joined(std::move(table.columns), axis_columns(results, {"step"}));
@@ -281,7 +292,7 @@ bool is_scene(const std::string& column) {
   return !is_method(column) && column != "elements" && column != "step";
 }
 
-TableType<TargetRow> precision_targets_type() {
+TableType<TargetRow> precision_targets_type(const std::string& unit) {
   RowType<TargetRow> rows;
   const auto add = [&](Column column, TargetCase TargetRow::*which, auto TargetCase::*member) {
     using Value = std::remove_reference_t<decltype(std::declval<TargetCase>().*member)>;
@@ -294,7 +305,7 @@ TableType<TargetRow> precision_targets_type() {
   rows.in_front(case_name, [](TargetRow& row, const Cell& cell) { row.first.id = cell.text(); });
   rows.add({"error", "", "Which error: a quantity of the motion and how its difference is measured."},
            &TargetRow::error);
-  rows.add({"at_most", "that of the error", "The error to be reached."}, &TargetRow::at_most);
+  rows.add({"at_most", unit, "The error to be reached."}, &TargetRow::at_most);
   add({"seconds", "s", "Processor time of the case: median of the repeats."}, &TargetRow::first, &TargetCase::seconds);
   add({"low", "s", "Its fastest repeat."}, &TargetRow::first, &TargetCase::low);
   add({"high", "s", "Its slowest repeat."}, &TargetRow::first, &TargetCase::high);
@@ -317,7 +328,7 @@ TableType<TargetRow> precision_targets_type() {
 
 Table precision_targets_table(const StudyResults& results) {
   const std::vector<std::string> scene = columns_that(results, is_scene), method = columns_that(results, is_method);
-  const TableType<TargetRow> type = precision_targets_type();
+  const TableType<TargetRow> type = precision_targets_type(error_unit(results));
   Table table{type.name, type.text, {{case_name, "", "The case that gets there in the least time."}}, {}};
   table.columns = joined(joined(std::move(table.columns), axis_columns(results, scene)), type.rows.columns());
   const std::vector<Cases> scenes = groups_of(all_cases(results), scene);

@@ -7,12 +7,17 @@ namespace ricochet {
 /// The errors that a study asks for, in its order.
 std::vector<std::string> errors_of(const StudyResults& results);
 
+/// Errors have units of their own.
+inline constexpr char of_each_error[] = "that of the error";
+/// The unit that all errors of a study have; of_each_error where they differ.
+std::string error_unit(const StudyResults& results);
+
 /// One row of `errors`.
 struct ErrorRow {
   std::string id, error;
   std::optional<double> value, floor;
 };
-TableType<ErrorRow> errors_type();
+TableType<ErrorRow> errors_type(const std::string& unit = of_each_error);
 /// errors: one row per case and error, with the floor below which it says nothing.
 Table errors_table(const StudyResults& results);
 
@@ -34,7 +39,7 @@ struct WorkRow {
   long long steps = 0;
   std::string status;
 };
-TableType<WorkRow> work_precision_type();
+TableType<WorkRow> work_precision_type(const std::string& unit = of_each_error);
 /// work_precision: one row per case and error, with the processor time it took.
 Table work_precision_table(const StudyResults& results);
 
@@ -57,7 +62,7 @@ struct TargetRow {
   std::optional<bool> overlap;
   std::optional<double> share;
 };
-TableType<TargetRow> precision_targets_type();
+TableType<TargetRow> precision_targets_type(const std::string& unit = of_each_error);
 /// precision_targets: for each error, scene and power of ten, the cheapest method that gets there with a step that was
 /// run, and the runner-up. From the power that the worst case misses (or the first that some case reaches) to the last
 /// that one does. What an error is known to is its value, or the floor of its reference if that is larger.

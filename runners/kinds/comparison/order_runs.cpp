@@ -65,7 +65,7 @@ Table order_runs_table(const Compared& study) {
         {"most", "1", "Largest local slope of the run."},
         {"from", "", "The coarsest size of the run: s, or 1 over the elements."},
         {"to", "", "Its finest size."},
-        {"stops_at", "that of the error", "The smallest error, where the fall ends."},
+        {"stops_at", error_unit(results), "The smallest error, where the fall ends."},
         {"left", "1", "That error over what a motion at rest would err by."},
         {"declared", "1", "The order in the step that the scheme declares; none where it declares none."}})
     table.columns.push_back(column);

@@ -6,6 +6,7 @@
 #include <ricochet/measure/statistics/quantiles.hpp>
 
 #include "runners/kinds/sweep/page/orbits.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/report/case_view.hpp"
 
 namespace ricochet::report {
@@ -95,7 +96,7 @@ Table distance_medians(const CaseView& view) {
             "One row per case, kind of distance and value of the parameter. Rows without a case are the null level.",
             {{"case", "", "Identity of the case: its row in cases.csv; nothing for the null level."},
              {"kind", "", "wasserstein or hausdorff."},
-             {"parameter", "that of the parameter", "Value of the swept parameter."},
+             {"parameter", swept_columns(view.results()).parameter.unit, "Value of the swept parameter."},
              {"median", "1", "Median distance over the starts."}},
             {}};
   DistanceTable distances = read_distances(view.results());

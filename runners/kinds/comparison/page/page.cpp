@@ -85,14 +85,14 @@ Table order_lines(const CaseView& view) {
             {},
             {}};
   for (const Column& column : axis_columns(view.results(), orders.axes())) out.columns.push_back(column);
-  for (Column column :
-       std::initializer_list<Column>{{"refined", "", "step or elements: what the line runs along."},
-                                     {"error", "", "Name of the error."},
-                                     {"order", "1", "The fitted power p."},
-                                     {"from", "that of what is refined", "First abscissa of the line."},
-                                     {"to", "that of what is refined", "Last abscissa of the line."},
-                                     {"error_from", "that of the error", "Height of the line at its first abscissa."},
-                                     {"error_to", "that of the error", "Height of the line at its last abscissa."}})
+  for (Column column : std::initializer_list<Column>{
+           {"refined", "", "step or elements: what the line runs along."},
+           {"error", "", "Name of the error."},
+           {"order", "1", "The fitted power p."},
+           {"from", "that of what is refined", "First abscissa of the line."},
+           {"to", "that of what is refined", "Last abscissa of the line."},
+           {"error_from", error_unit(view.results()), "Height of the line at its first abscissa."},
+           {"error_to", error_unit(view.results()), "Height of the line at its last abscissa."}})
     out.columns.push_back(std::move(column));
   for (const std::string refined : {"step", "elements"}) {
     std::vector<std::string> method = view.varying();

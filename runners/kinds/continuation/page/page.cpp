@@ -11,6 +11,7 @@
 #include "runners/kinds/continuation/point_speaker.hpp"
 #include "runners/kinds/continuation/point_tables.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/report/html.hpp"
 
 namespace ricochet::report {
@@ -150,6 +151,7 @@ std::string point_methods_html(const CaseView& view, const PointAnalysis& of) {
 }
 
 Table point_levels(const PointAnalysis& of) {
+  const std::string unit = swept_columns(of.points.study().results()).parameter.unit;
   Table out{"point_levels",
             "One row per point that has a name, refinement and case along it: how far the point is from its limit.",
             {{"name", "", "Name of the special point."},
@@ -157,9 +159,9 @@ Table point_levels(const PointAnalysis& of) {
              {"method", "", "The finest case of the method."},
              {"case", "", "Identity of the case: its row in cases.csv."},
              {"size", "1", "The step as a share of the period, one over the elements, or the compliance."},
-             {"value", "that of the parameter", "Parameter at the point; nothing where the case lacks it."},
-             {"distance", "that of the parameter", "Its distance from the limit along the refinement."},
-             {"half", "that of the parameter", "Half the width of the interval of the point."},
+             {"value", unit, "Parameter at the point; nothing where the case lacks it."},
+             {"distance", unit, "Its distance from the limit along the refinement."},
+             {"half", unit, "Half the width of the interval of the point."},
              {"presence", "", "found, many, absent or not reached."}},
             {}};
   const StudyPoints& study = of.points;
@@ -196,6 +198,7 @@ Table point_levels(const PointAnalysis& of) {
 }
 
 Table point_lines(const PointAnalysis& of) {
+  const std::string unit = swept_columns(of.points.study().results()).parameter.unit;
   Table out{"point_lines",
             "One row per point that has a name, refinement and method whose order is told: the fitted distance from "
             "the limit.",
@@ -204,8 +207,8 @@ Table point_lines(const PointAnalysis& of) {
              {"method", "", "The finest case of the method."},
              {"from", "1", "Smallest size."},
              {"to", "1", "Largest size."},
-             {"distance_from", "that of the parameter", "Fitted distance at the smallest size."},
-             {"distance_to", "that of the parameter", "Fitted distance at the largest size."},
+             {"distance_from", unit, "Fitted distance at the smallest size."},
+             {"distance_to", unit, "Fitted distance at the largest size."},
              {"order", "1", "The order."}},
             {}};
   const StudyPoints& study = of.points;

@@ -153,23 +153,23 @@ struct SceneFronts {
 }  // namespace
 
 Table work_points(const CaseView& view) {
-  Table out{
-      "work_points",
-      "One row per case and error: a point of work against precision.",
-      {{"case", "", "Identity of the case: its row in cases.csv."},
-       {"error", "", "Name of the error."},
-       {"value", "that of the error", "The error; nothing where the case has none."},
-       {"floor", "that of the error", "Errors below it are not told apart: what the reference itself is uncertain by."},
-       {"seconds", "s", "Processor time of marching, the median over the repeats."},
-       {"low", "s", "The fastest repeat."},
-       {"high", "s", "The slowest repeat."},
-       {"steps", "1", "Time steps marched."},
-       {"microseconds", "µs", "Processor time per step."},
-       {"on_front", "", "Whether no case of the scene is both faster and more precise."},
-       {"near_front", "", "Whether its spread reaches the front."},
-       {"on_front_of_steps", "", "Whether no case of the scene has fewer steps and a smaller error."},
-       {"none", "", "Why there is no point."}},
-      {}};
+  Table out{"work_points",
+            "One row per case and error: a point of work against precision.",
+            {{"case", "", "Identity of the case: its row in cases.csv."},
+             {"error", "", "Name of the error."},
+             {"value", error_unit(view.results()), "The error; nothing where the case has none."},
+             {"floor", error_unit(view.results()),
+              "Errors below it are not told apart: what the reference itself is uncertain by."},
+             {"seconds", "s", "Processor time of marching, the median over the repeats."},
+             {"low", "s", "The fastest repeat."},
+             {"high", "s", "The slowest repeat."},
+             {"steps", "1", "Time steps marched."},
+             {"microseconds", "µs", "Processor time per step."},
+             {"on_front", "", "Whether no case of the scene is both faster and more precise."},
+             {"near_front", "", "Whether its spread reaches the front."},
+             {"on_front_of_steps", "", "Whether no case of the scene has fewer steps and a smaller error."},
+             {"none", "", "Why there is no point."}},
+            {}};
   const WorkPrecision work(view);
   if (work.empty()) return out;
   const auto scenes = view.group(view.all(), scene_columns(view));
