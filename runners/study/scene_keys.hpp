@@ -13,6 +13,9 @@ namespace ricochet {
 
 class StudyFiles;
 
+/// The keys of a structure, alone or a body: beam, oscillator, bar, matrices or modes of files.
+ObjectForm structure_form();
+
 // How a scene begins: formulas, a file, or an object of these by body.
 
 /// `initial` of a scene.

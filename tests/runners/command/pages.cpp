@@ -174,7 +174,7 @@ TEST_CASE("pages: the scripts of own structures write what the studies beside th
   CHECK(std::system(modes.c_str()) == 0);
   CHECK_THAT(read_text(folder / "modes.txt"), Catch::Contains("modes 2, residual shapes 2") &&
                                                   Catch::Contains("16.8 Hz") &&
-                                                  Catch::Contains("stop end: N10, lower -0.001 m"));
+                                                  Catch::Contains("stop end: point N10, lower −0.001 m"));
 }
 
 TEST_CASE("pages: the README is short, its study is one, and what it points at is there") {
