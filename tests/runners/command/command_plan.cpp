@@ -97,7 +97,7 @@ TEST_CASE("A plan says the physics: a slip of units is seen") {
   here.write("spring.json", study.dump(1));
   // π√(m/(k + κ)) = 0.03126 s, in steps of 1e-4 s.
   CHECK_THAT(here.run("plan spring.json").out,
-             Contains("k 1e+04 N/m") && Contains("half a period lasts 31 ms: 313 steps") && Contains("; a bounce "));
+             Contains("k 1e4 N/m") && Contains("half a period lasts 31 ms: 313 steps") && Contains("; a bounce "));
 }
 
 TEST_CASE("Where every case is refused nothing runs, which is no success") {
