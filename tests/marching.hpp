@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "tests/places.hpp"
 #include "tests/scene/working_set.hpp"
 
 /// \file
@@ -32,7 +33,7 @@ inline Registry& registry() {
       for (std::string part; std::getline(parts, part, ':');)
         if (!part.empty()) folders.emplace_back(part);
     }
-    return Catalogue(RICOCHET_PLUGIN_DIR, folders, {});
+    return Catalogue(tests::places().plugins, folders, {});
   }();
   static Registry all = [] {
     Registry opened;

@@ -6,6 +6,8 @@
 #include <iostream>
 #include <sstream>
 
+#include "tests/places.hpp"
+
 namespace fs = std::filesystem;
 using namespace ricochet::tests;
 
@@ -16,10 +18,10 @@ int main(int argc, char** argv) {
                  "FOLDER/STUDY receives the results of studies that are not there yet\n";
     return 2;
   }
-  const fs::path root = RICOCHET_SOURCE_DIR;
+  const fs::path root = places().source;
   const TablesOf tables = tables_in(argv[2], [&](const std::string& study) {
     std::cerr << "running " << study << "\n";
-    const std::string command = "'" RICOCHET_COMMAND "' run '" + (root / "studies" / (study + ".json")).string() +
+    const std::string command = "'" + places().command + "' run '" + (root / "studies" / (study + ".json")).string() +
                                 "' --out '" + (fs::path(argv[2]) / study).string() + "' >/dev/null 2>&1";
     // Some cases may have failed: the page says how many.
     if (std::system(command.c_str()) < 0) throw std::runtime_error("cannot run " + command);

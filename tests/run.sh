@@ -22,6 +22,10 @@ fetch_charts
 install_missing node=nodejs
 npm_packages "$root/tests/runners/study/validator" ajv || give_up "npm could not fetch ajv, which the tests of the schema need"
 
+# A compiler cache, where there is one, finds again what did not change, in another folder, too.
+if command -v ccache >/dev/null 2>&1; then
+  set -- "-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_BASEDIR=$root;CCACHE_NOHASHDIR=1;CCACHE_SLOPPINESS=pch_defines,time_macros;ccache" "$@"
+fi
 cmake --preset release -DRICOCHET_TESTS=ON -DRICOCHET_MPI=$mpi "$@"
 cmake --build --preset release --target tests
 # Another compiler knows other warnings.

@@ -34,6 +34,7 @@
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/store.hpp"
 #include "runners/study/load_study.hpp"
+#include "tests/places.hpp"
 
 namespace {
 
@@ -157,7 +158,7 @@ std::string grid(int side, double from) {
 
 /// The coordinator, its store, its tables and its report, on `side`² cells that nobody marches.
 void coordinator(int side, double from, const fs::path& folder) {
-  Catalogue catalogue(fs::path(RICOCHET_PLUGIN_DIR), {}, {});
+  Catalogue catalogue(fs::path(tests::places().plugins), {}, {});
   Registry registry;
   const Study study = parse_study(grid(side, from), catalogue, registry);
   Echo echo(study.cases.front(), registry);
@@ -206,8 +207,8 @@ void coordinator(int side, double from, const fs::path& folder) {
 double run_seconds(const std::string& study, const fs::path& folder, const std::string& options) {
   fs::remove_all(folder);
   const auto begin = Clock::now();
-  const std::string command =
-      fmt::format("'{}' run '{}' --out '{}' {} > /dev/null 2>&1", RICOCHET_COMMAND, study, folder.string(), options);
+  const std::string command = fmt::format("'{}' run '{}' --out '{}' {} > /dev/null 2>&1", tests::places().command,
+                                          study, folder.string(), options);
   const int code = std::system(command.c_str());
   if (code != 0) std::cerr << fmt::format("{}: exit code {}\n", command, code);
   return seconds_since(begin);
@@ -217,7 +218,7 @@ double run_seconds(const std::string& study, const fs::path& folder, const std::
 
 int main(int argc, char** argv) {
   const int side = argc > 1 ? std::atoi(argv[1]) : 300, rounds = argc > 2 ? std::atoi(argv[2]) : 3;
-  const std::string study = argc > 3 ? argv[3] : RICOCHET_SOURCE_DIR "/studies/bifurcation-beta-quick.json";
+  const std::string study = argc > 3 ? argv[3] : tests::places().source + "/studies/bifurcation-beta-quick.json";
   const fs::path scratch = fs::temp_directory_path() / fmt::format("bench-scale-{}", ::getpid());
   fs::create_directories(scratch);
   for (const double from : {-0.75, -1.0})

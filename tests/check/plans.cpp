@@ -7,6 +7,7 @@
 #include "runners/check/checks.hpp"
 #include "runners/plan_files/plan_file.hpp"
 #include "tests/check/sound_schemes.hpp"
+#include "tests/places.hpp"
 
 using namespace ricochet;
 using namespace ricochet::testing;
@@ -16,7 +17,7 @@ using checking::Finding;
 
 namespace {
 
-const std::filesystem::path plans = RICOCHET_SOURCE_DIR "/tests/plugins/plan_files";
+const std::filesystem::path plans = tests::places().source + "/tests/plugins/plan_files";
 
 Json plan_called(const char* name) {
   return read_plan_file(plans / (std::string(name) + ".json")).plan;
@@ -46,7 +47,7 @@ struct Case {
 
 // The example of the page about plans, as it stands there.
 Json example_of_the_page() {
-  std::ifstream stream(RICOCHET_SOURCE_DIR "/plugins/plan-files.md");
+  std::ifstream stream(tests::places().source + "/plugins/plan-files.md");
   const std::string page(std::istreambuf_iterator<char>(stream), {}), fence = "```";
   const std::size_t begin = page.find(fence + "json\n") + fence.size() + 5;
   return Json::parse(page.substr(begin, page.find(fence, begin) - begin));

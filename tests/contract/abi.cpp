@@ -3,6 +3,8 @@
 #include <ricochet/loader/catalogue.hpp>
 #include <string>
 
+#include "tests/places.hpp"
+
 using namespace ricochet;
 using Catch::Matchers::StartsWith;
 
@@ -22,7 +24,7 @@ std::string mismatch(const std::string& tag) {
 Layout own_layout() {
   const std::string prefix = "ricochet_layout__";
   Layout layout;
-  for (const auto& symbol : exported_symbols(std::string(RICOCHET_PLUGIN_DIR) + "/time.so", prefix))
+  for (const auto& symbol : exported_symbols(tests::places().plugins + "/time.so", prefix))
     layout[symbol.name.substr(prefix.size())] = symbol.size;
   return layout;
 }

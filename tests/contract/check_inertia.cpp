@@ -4,6 +4,8 @@
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 
+#include "tests/places.hpp"
+
 using namespace ricochet;
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
@@ -126,7 +128,7 @@ TEST_CASE("an inverse is symmetric, positive definite, of all dofs, and has no k
 
 TEST_CASE("the masses of this tree pass on meshes coarse and fine") {
   const int elements = GENERATE(1, 2, 3, 50, 500);
-  Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  Catalogue catalogue(tests::places().plugins, {}, {});
   Registry registry;
   catalogue.open_all(registry);
   REQUIRE(registry.names(Role::mass).size() >= 4);

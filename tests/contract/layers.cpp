@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "tests/places.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
@@ -15,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path root = RICOCHET_SOURCE_DIR;
+const fs::path root = tests::places().source;
 
 struct Source {
   std::string name;  ///< from the root
@@ -121,7 +122,7 @@ bool has_word(const std::string& text, const std::string& word) {
 }
 
 std::set<std::string> method_names() {
-  const Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  const Catalogue catalogue(tests::places().plugins, {}, {});
   std::set<std::string> names;
   for (const Provided& method : catalogue.provided()) names.insert(method.name);
   return names;

@@ -11,6 +11,7 @@
 #include <ricochet/scene/supports.hpp>
 
 #include "tests/marching.hpp"
+#include "tests/places.hpp"
 #include "tests/scene/structure/beam_files.hpp"
 
 using namespace ricochet;
@@ -203,7 +204,7 @@ TEST_CASE("a bar that falls on a spring moves as in code_aster (SDNL32)") {
 }
 
 TEST_CASE("a tube on four plates under El Centro follows its modes") {
-  std::ifstream file(std::string(RICOCHET_SOURCE_DIR) + "/../shared/data/elcentro.csv");
+  std::ifstream file(tests::places().source + "/../shared/data/elcentro.csv");
   if (!file) {
     WARN("the accelerogram is not beside the project: nothing is compared");
     return;

@@ -7,6 +7,7 @@
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/loader/float_control.hpp>
 
+#include "tests/places.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path installed = RICOCHET_PLUGIN_DIR;
+const fs::path installed = tests::places().plugins;
 
 fs::path link(const ScratchFolder& here, const std::string& plugin, const std::string& name) {
   fs::create_directories((here / name).parent_path());
@@ -168,7 +169,7 @@ TEST_CASE("a library that switches denormal numbers off as it is loaded does so 
   const KeepFloatControl test;
   set_float_control(float_control() & ~flushing_bits());
   const std::uint64_t before = float_control();
-  Catalogue catalogue(RICOCHET_TEST_LIBRARIES, {}, {});
+  Catalogue catalogue(tests::places().libraries, {}, {});
   Registry registry;
   CHECK(catalogue.require(Role::time, "flushing", registry));
   CHECK(catalogue.opened().size() == 1);
@@ -205,7 +206,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path library = fs::path(RICOCHET_PLUGIN_DIR) / "reference.so";
+const fs::path library = fs::path(tests::places().plugins) / "reference.so";
 
 }  // namespace
 

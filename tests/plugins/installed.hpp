@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/places.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 namespace fs = std::filesystem;
@@ -46,7 +47,10 @@ class Prefix {
   }
 
  protected:
-  Prefix() { step("'" RICOCHET_CMAKE "' --install '" RICOCHET_BINARY_DIR "' --prefix prefix"); }
+  Prefix() {
+    step("'" + ricochet::tests::places().cmake + "' --install '" + ricochet::tests::places().build +
+         "' --prefix prefix");
+  }
   void step(const std::string& line) const {
     const Outcome outcome = shell(here_.path(), line);
     INFO(line << "\n" << outcome.out << outcome.err);
@@ -67,14 +71,14 @@ class Installed : public Prefix {
 
  private:
   Installed() {
-    fs::copy(std::string(RICOCHET_SOURCE_DIR) + "/tests/plugins/out_of_tree", here_ / "project");
+    fs::copy(ricochet::tests::places().source + "/tests/plugins/out_of_tree", here_ / "project");
     fs::copy(example("time") / "leap-frog.cpp", here_ / "project/time-leap-frog.cpp");
-    step("'" RICOCHET_CMAKE "' -S project -B build -G '" RICOCHET_GENERATOR
+    step("'" + ricochet::tests::places().cmake + "' -S project -B build -G '" + ricochet::tests::places().generator +
          "' -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1"
-         " -DCMAKE_CXX_COMPILER='" RICOCHET_CXX_COMPILER "' -DCMAKE_CXX_FLAGS='" RICOCHET_CXX_FLAGS
-         "' -DCMAKE_PREFIX_PATH='" +
-         prefix().string() + "' -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF");
-    step("'" RICOCHET_CMAKE "' --build build");
+         " -DCMAKE_CXX_COMPILER='" +
+         ricochet::tests::places().compiler + "' -DCMAKE_CXX_FLAGS='" + ricochet::tests::places().flags +
+         "' -DCMAKE_PREFIX_PATH='" + prefix().string() + "' -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF");
+    step("'" + ricochet::tests::places().cmake + "' --build build");
   }
 };
 

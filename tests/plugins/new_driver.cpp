@@ -5,9 +5,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tests/places.hpp"
 #include "tests/plugins/installed.hpp"
 
 using Catch::Matchers::Contains;
+using ricochet::tests::places;
 
 namespace {
 
@@ -22,10 +24,9 @@ std::vector<std::string> commands_of(const std::string& text) {
 
 /// Runs a printed command as a person would whose tools are those of this build.
 Outcome obey(const fs::path& folder, const std::string& command) {
-  const std::string tools = fs::path(RICOCHET_CMAKE).parent_path().string();
-  return shell(folder, "export PATH='" + tools +
-                           "':\"$PATH\" CXX='" RICOCHET_CXX_COMPILER "' CXXFLAGS='" RICOCHET_CXX_FLAGS
-                           "' CMAKE_GENERATOR='" RICOCHET_GENERATOR "' RICOCHET_PLUGIN_PATH=; " +
+  const std::string tools = fs::path(places().cmake).parent_path().string();
+  return shell(folder, "export PATH='" + tools + "':\"$PATH\" CXX='" + places().compiler + "' CXXFLAGS='" +
+                           places().flags + "' CMAKE_GENERATOR='" + places().generator + "' RICOCHET_PLUGIN_PATH=; " +
                            command);
 }
 
@@ -194,12 +195,12 @@ TEST_CASE("a method that cannot be made is told, and nothing is written") {
 
 TEST_CASE("a folder made by the program of a build tree finds that tree") {
   const ScratchFolder here;
-  const Outcome told = shell(here.path(), "'" RICOCHET_COMMAND "' new mass mine");
+  const Outcome told = shell(here.path(), "'" + places().command + "' new mass mine");
   INFO(told.out << told.err);
   REQUIRE(told.code == 0);
   const Outcome configured = obey(here.path(), "cmake -S mine -B mine/build -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF");
   INFO(configured.out << configured.err);
   CHECK(configured.code == 0);
   const Outcome target = shell(here.path(), "grep Ricochet_DIR mine/build/CMakeCache.txt");
-  CHECK_THAT(target.out, Contains(RICOCHET_BINARY_DIR));
+  CHECK_THAT(target.out, Contains(places().build));
 }

@@ -6,10 +6,12 @@
 #include <ricochet/contract/abi.hpp>
 #include <ricochet/contract/step_plan.hpp>
 
+#include "tests/places.hpp"
 #include "tests/plugins/installed.hpp"
 
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
+using ricochet::tests::places;
 
 namespace {
 
@@ -37,7 +39,7 @@ const std::map<std::string, std::string> broken = {
 using Json = nlohmann::ordered_json;
 
 std::string study_with(const Json& time, const Json& mass = {"consistent", "singular"}) {
-  Json study = Json::parse(read_text(fs::path(RICOCHET_SOURCE_DIR) / "plugins/examples/time/study.json"));
+  Json study = Json::parse(read_text(fs::path(places().source) / "plugins/examples/time/study.json"));
   study["methods"]["time"] = time;
   study["methods"]["mass"] = mass;
   study["methods"]["contact"] = "signorini";
@@ -310,8 +312,8 @@ TEST_CASE("plugins built outside of the tree against the installed package") {
   }
 
   SECTION("a compiler that is told too little says first what is missing") {
-    const std::string compile = "'" RICOCHET_CXX_COMPILER "' -fsyntax-only -I'" +
-                                (installed.prefix() / "include").string() + "' -I'" RICOCHET_EIGEN "' '" +
+    const std::string compile = "'" + places().compiler + "' -fsyntax-only -I'" +
+                                (installed.prefix() / "include").string() + "' -I'" + places().eigen + "' '" +
                                 (installed.folder() / "project/time-plain.cpp").string() + "' ";
     const auto first_error = [](const Outcome& outcome) {
       const std::size_t at = outcome.err.find("error: ");

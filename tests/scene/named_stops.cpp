@@ -1,6 +1,7 @@
 // Stops that have names: rows of places, and what a list of them may not be.
 #include <ricochet/scene/named_stops.hpp>
 
+#include "tests/places.hpp"
 #include "tests/refusals.hpp"
 #include "tests/scene/structure/beam_files.hpp"
 #include "tests/scene/working_set.hpp"
@@ -90,7 +91,7 @@ namespace {
 
 /// What a law sees of stops, or why it does not.
 SemiDiscreteOrRefusal seen(const SceneSpec& scene, const char* law_name) {
-  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static Catalogue catalogue(tests::places().plugins, {}, {});
   static Registry registry;
   REQUIRE(catalogue.require(Role::contact, law_name, registry));
   const auto* entry = registry.contact(law_name);

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "tests/eigen.hpp"
+#include "tests/places.hpp"
 #include "tests/refusals.hpp"
 
 /// \file
@@ -75,7 +76,7 @@ inline SceneSpec thrown_bar(double later = 0) {
 
 /// A mass plugin, its library opened as a study would; word parameters as given, the others at their defaults.
 inline std::unique_ptr<MassStrategy> mass(const std::string& name, std::map<std::string, ParameterValue> values = {}) {
-  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static Catalogue catalogue(tests::places().plugins, {}, {});
   static Registry registry;
   REQUIRE(catalogue.require(Role::mass, name, registry));
   const auto* entry = registry.mass(name);

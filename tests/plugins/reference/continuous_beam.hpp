@@ -5,6 +5,8 @@
 #include <numbers>
 #include <ricochet/loader/catalogue.hpp>
 
+#include "tests/places.hpp"
+
 /// \file
 /// The continuous steel tube of the studies, shaken at its clamp between stops at its tip, and its event-driven map.
 namespace ricochet::testing {
@@ -33,7 +35,7 @@ inline ReferenceProblem continuous_beam(double amplitude) {
 }
 
 inline std::unique_ptr<ReferenceSolver> beam_solver(int modes) {
-  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static Catalogue catalogue(tests::places().plugins, {}, {});
   static Registry registry;
   REQUIRE(catalogue.require(Role::reference, "event-driven", registry));
   const auto* entry = registry.reference("event-driven");

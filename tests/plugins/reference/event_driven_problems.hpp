@@ -8,6 +8,8 @@
 #include <numbers>
 #include <ricochet/loader/catalogue.hpp>
 
+#include "tests/places.hpp"
+
 using namespace ricochet;
 
 namespace event_driven_tests {
@@ -17,7 +19,7 @@ inline constexpr double length = 1.501;
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 inline std::unique_ptr<ReferenceSolver> solver(std::map<std::string, ParameterValue> values = {}) {
-  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static Catalogue catalogue(tests::places().plugins, {}, {});
   static Registry registry;
   REQUIRE(catalogue.require(Role::reference, "event-driven", registry));
   const auto* entry = registry.reference("event-driven");

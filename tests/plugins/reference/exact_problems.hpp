@@ -6,12 +6,14 @@
 #include <cmath>
 #include <ricochet/loader/catalogue.hpp>
 
+#include "tests/places.hpp"
+
 using namespace ricochet;
 
 namespace exact_tests {
 
 inline const ReferenceSolver& exact() {
-  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static Catalogue catalogue(tests::places().plugins, {}, {});
   static Registry registry;
   static const std::unique_ptr<ReferenceSolver> solver = [] {
     REQUIRE(catalogue.require(Role::reference, "exact", registry));

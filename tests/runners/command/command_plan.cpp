@@ -8,7 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/places.hpp"
 #include "tests/runners/command/spoken_command.hpp"
+
+using ricochet::tests::places;
 
 namespace command_tests {
 
@@ -218,7 +221,7 @@ TEST_CASE("The schema is JSON and knows the parameters of the plugins found") {
 TEST_CASE("Output that cannot be written is told") {
   if (!fs::exists("/dev/full")) return;
   const Folder here;
-  const int status = std::system("'" RICOCHET_COMMAND "' schema >/dev/full 2>/dev/null");
+  const int status = std::system(("'" + places().command + "' schema >/dev/full 2>/dev/null").c_str());
   CHECK((WIFEXITED(status) && WEXITSTATUS(status) != 0));
 }
 

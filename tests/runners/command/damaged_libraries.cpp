@@ -8,9 +8,11 @@
 #include <map>
 #include <random>
 
+#include "tests/places.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using Catch::Matchers::Contains;
+using ricochet::tests::places;
 
 namespace {
 
@@ -79,7 +81,7 @@ std::string verdict(const std::string& out) {
 }  // namespace
 
 TEST_CASE("damaged libraries: each is told, or serves, and nothing else comes of it") {
-  const std::string whole = read_text(RICOCHET_UNRULY "/contact-unruly.so");
+  const std::string whole = read_text(places().unruly + "/contact-unruly.so");
   REQUIRE(whole.size() > 10000);
   const ScratchFolder here;
   std::filesystem::create_directory(here / "plugins");
@@ -87,7 +89,7 @@ TEST_CASE("damaged libraries: each is told, or serves, and nothing else comes of
                     err = (here / "err").string();
   // What it takes from a damaged library to be waited for ends after 10 s of loading and 3 s of its destructors.
   const std::string line = "ulimit -c 0; RICOCHET_PLUGIN_PATH='" + (here / "plugins").string() +
-                           "' timeout -s KILL 300 '" RICOCHET_COMMAND "' list contact >'" + out + "' 2>'" + err +
+                           "' timeout -s KILL 300 '" + places().command + "' list contact >'" + out + "' 2>'" + err +
                            "' </dev/null";
   Damage damage(whole);
   std::map<std::string, int> met;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runners/command/subcommand.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/command/page_figures.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
@@ -15,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path root = RICOCHET_SOURCE_DIR;
+const fs::path root = tests::places().source;
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
@@ -115,7 +116,7 @@ TEST_CASE("pages: the tutorial does what it says, line by line") {
       std::vector<std::string> expected;
       while (i < block.lines.size() && !block.lines[i].starts_with("$ ")) expected.push_back(block.lines[i++]);
       const std::string line = "cd '" + folder.path().string() + "' && PATH=\"" +
-                               fs::path(RICOCHET_COMMAND).parent_path().string() +
+                               fs::path(tests::places().command).parent_path().string() +
                                ":$PATH\" RICOCHET_PLUGIN_PATH= && " + command + " >.out 2>.err </dev/null";
       const int status = std::system(line.c_str());
       const std::string output = read_text(folder.path() / ".out");
@@ -163,14 +164,15 @@ TEST_CASE("pages: the scripts of own structures write what the studies beside th
   }
   write_text(folder / "chain.py", script);
   write_text(folder / "chain.json", study);
-  const std::string line = "cd '" + folder.path().string() + "' && " + python +
-                           " chain.py && RICOCHET_PLUGIN_PATH= '" RICOCHET_COMMAND "' plan chain.json >plan.txt 2>&1";
+  const std::string line = "cd '" + folder.path().string() + "' && " + python + " chain.py && RICOCHET_PLUGIN_PATH= '" +
+                           tests::places().command + "' plan chain.json >plan.txt 2>&1";
   CHECK(std::system(line.c_str()) == 0);
   // Ten masses of 2 kg on springs of 1e6 N/m, one end held: ω_k = 2 √(k/m) sin((2k − 1)π/42).
   CHECK_THAT(read_text(folder / "plan.txt"), Catch::Contains("free dofs 10, held dofs 1") &&
                                                  Catch::Contains("stop end: N10 ux") && Catch::Contains("16.8 Hz"));
   const std::string modes = "cd '" + folder.path().string() + "' && " + python +
-                            " modes.py && RICOCHET_PLUGIN_PATH= '" RICOCHET_COMMAND "' plan modes.json >modes.txt 2>&1";
+                            " modes.py && RICOCHET_PLUGIN_PATH= '" + tests::places().command +
+                            "' plan modes.json >modes.txt 2>&1";
   CHECK(std::system(modes.c_str()) == 0);
   CHECK_THAT(read_text(folder / "modes.txt"), Catch::Contains("modes 2, residual shapes 2") &&
                                                   Catch::Contains("16.8 Hz") &&
@@ -205,7 +207,7 @@ TEST_CASE("pages: the README is short, its study is one, and what it points at i
     std::string text;
     for (const std::string& line : block.lines) text += line + "\n";
     write_text(folder.path() / "study.json", text);
-    const std::string line = "RICOCHET_PLUGIN_PATH= '" RICOCHET_COMMAND "' plan '" +
+    const std::string line = "RICOCHET_PLUGIN_PATH= '" + tests::places().command + "' plan '" +
                              (folder.path() / "study.json").string() + "' >/dev/null 2>&1";
     CHECK(std::system(line.c_str()) == 0);
   }
@@ -266,7 +268,7 @@ TEST_CASE("pages: what studies found is what they find") {
                                        "family-laws", "extreme-sections", "published-sdnd101"};
   const ScratchFolder folder;
   const tests::TablesOf tables = tests::tables_in(folder.path(), [&](const std::string& study) {
-    const std::string line = "RICOCHET_PLUGIN_PATH= '" RICOCHET_COMMAND "' run '" +
+    const std::string line = "RICOCHET_PLUGIN_PATH= '" + tests::places().command + "' run '" +
                              (root / "studies" / (study + ".json")).string() + "' --out '" +
                              (folder.path() / study).string() + "' >/dev/null 2>&1";
     CHECK(std::system(line.c_str()) == 0);

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "tests/places.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 /// What a command of a shell ended with and wrote.
@@ -15,9 +16,9 @@ struct Said {
 /// Runs the program in a folder with the plugins of the tree; `words` is a piece of shell, which may write its output
 /// elsewhere.
 inline Said say(const ScratchFolder& here, const std::string& words) {
-  const std::string line = "cd '" + here.path().string() +
-                           "' && RICOCHET_PLUGIN_PATH='" RICOCHET_PLUGIN_DIR "' '" RICOCHET_COMMAND "' " + words +
-                           " 2>.err </dev/null";
+  const std::string line = "cd '" + here.path().string() + "' && RICOCHET_PLUGIN_PATH='" +
+                           ricochet::tests::places().plugins + "' '" + ricochet::tests::places().command + "' " +
+                           words + " 2>.err </dev/null";
   const bool redirected = words.find('>') != std::string::npos;
   const int status = std::system((redirected ? line : line + " >.out").c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, redirected ? "" : read_text(here / ".out"),

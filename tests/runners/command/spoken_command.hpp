@@ -12,6 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/places.hpp"
+
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 namespace fs = std::filesystem;
@@ -51,9 +53,9 @@ class Folder {
   }
   /// Runs the command here; `words` is a piece of shell.
   Outcome run(const std::string& words, const std::string& environment = "") const {
-    const std::string line = "cd '" + path_.string() + "' && RICOCHET_PLUGIN_PATH= " + environment +
-                             " '" RICOCHET_COMMAND "' " + words + " >'" + (path_ / ".out").string() + "' 2>'" +
-                             (path_ / ".err").string() + "' </dev/null";
+    const std::string line = "cd '" + path_.string() + "' && RICOCHET_PLUGIN_PATH= " + environment + " '" +
+                             ricochet::tests::places().command + "' " + words + " >'" + (path_ / ".out").string() +
+                             "' 2>'" + (path_ / ".err").string() + "' </dev/null";
     const int status = std::system(line.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(path_ / ".out"), read(path_ / ".err")};
   }

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "tests/places.hpp"
 #include "tests/runners/command/said.hpp"
 #include "tests/runners/same_tables.hpp"
 #include "tests/runners/scratch_folder.hpp"
@@ -20,11 +21,12 @@
 
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
+using ricochet::tests::places;
 namespace fs = std::filesystem;
 
 namespace {
 
-const std::string library = RICOCHET_UNRULY "/contact-unruly.so";
+const std::string library = places().unruly + "/contact-unruly.so";
 
 Said in_shell(const ScratchFolder& here, const std::string& line) {
   const std::string out = (here / ".out").string(), err = (here / ".err").string();
@@ -36,7 +38,7 @@ Said in_shell(const ScratchFolder& here, const std::string& line) {
 /// The command in a folder, with the unruly library beside its own.
 Said unruly(const ScratchFolder& here, const std::string& words, const std::string& does = "") {
   const Variable wish("RICOCHET_TEST_UNRULY", does), left("RICOCHET_TEST_LEFT", (here / "left").string());
-  return in_shell(here, "RICOCHET_PLUGIN_PATH='" RICOCHET_UNRULY "' '" RICOCHET_COMMAND "' " + words);
+  return in_shell(here, "RICOCHET_PLUGIN_PATH='" + places().unruly + "' '" + places().command + "' " + words);
 }
 
 /// Two cases of the unruly law and two of another one, of some 100 steps each.
@@ -75,8 +77,9 @@ void check_rows(const ScratchFolder& here, const std::string& status, const std:
 }  // namespace
 
 TEST_CASE("unruly: what a library prints is on stderr, and what a command prints alone on stdout") {
-  const std::string words = GENERATE("list", "schema", "describe unruly", "doctor", "run small.json --table --fresh",
-                                     "plan small.json --cases", "check " RICOCHET_UNRULY "/contact-unruly.so");
+  const std::string words =
+      GENERATE(as<std::string>{}, "list", "schema", "describe unruly", "doctor", "run small.json --table --fresh",
+               "plan small.json --cases", "check " + places().unruly + "/contact-unruly.so");
   const std::string moment = GENERATE("load", "register", "end");
   CAPTURE(words, moment);
   const ScratchFolder here;
@@ -193,8 +196,8 @@ TEST_CASE("unruly: a law that takes all memory is failed with memory as the caus
   const ScratchFolder here;
   write_text(here / "small.json", small_study().dump());
   const Variable does("RICOCHET_TEST_UNRULY", std::string("solve leak"));
-  const Said ran = in_shell(here, "ulimit -v 1000000; RICOCHET_PLUGIN_PATH='" RICOCHET_UNRULY "' '" RICOCHET_COMMAND
-                                  "' run small.json --jobs 2 --out out");
+  const Said ran = in_shell(here, "ulimit -v 1000000; RICOCHET_PLUGIN_PATH='" + places().unruly + "' '" +
+                                      places().command + "' run small.json --jobs 2 --out out");
   INFO(ran.out << ran.err);
   CHECK(ran.code == 3);
   check_rows(here, "failed",
@@ -210,9 +213,8 @@ TEST_CASE("a run with little memory ends, and says so where it is not enough") {
   CAPTURE(kilobytes, cut);
   const ScratchFolder here;
   write_text(here / "small.json", (cut ? quick_studies::study_of("bifurcation") : small_study("signorini")).dump());
-  const Said ran =
-      in_shell(here, "ulimit -v " + std::to_string(kilobytes) +
-                         "; RICOCHET_PLUGIN_PATH= '" RICOCHET_COMMAND "' run small.json --isolate --jobs 2");
+  const Said ran = in_shell(here, "ulimit -v " + std::to_string(kilobytes) + "; RICOCHET_PLUGIN_PATH= '" +
+                                      places().command + "' run small.json --isolate --jobs 2");
   INFO(ran.out << ran.err);
   // Below what the program itself needs the loader of the system ends it.
   CHECK((ran.code == 0 || ran.code == 3 || ran.code == 5 || ran.code == 127));
@@ -267,9 +269,9 @@ TEST_CASE("unruly: a point or a case is marched in a child as well") {
 }
 
 TEST_CASE("an output that cannot be written is exit code 5, whatever the command") {
-  const std::string words =
-      GENERATE("list", "schema", "doctor", "describe signorini", "help", "--version", "run small.json --fresh",
-               "run small.json --fresh --table", "plan small.json", "report out", "status out");
+  const std::string words = GENERATE(as<std::string>{}, "list", "schema", "doctor", "describe signorini", "help",
+                                     "--version", "run small.json --fresh", "run small.json --fresh --table",
+                                     "plan small.json", "report out", "status out");
   const std::string where = GENERATE(">/dev/full", ">&-");
   CAPTURE(words, where);
   const ScratchFolder here;

@@ -5,6 +5,7 @@
 
 #include "runners/study/load_study.hpp"
 #include "tests/marching.hpp"
+#include "tests/places.hpp"
 
 using namespace ricochet;
 using namespace ricochet::testing;
@@ -46,7 +47,7 @@ using namespace ricochet;
 namespace {
 
 bool said_marginal(const std::string& mass, const std::string& time, double viscosity) {
-  Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  Catalogue catalogue(tests::places().plugins, {}, {});
   Registry registry;
   Json study = Json::parse(R"({
     "name": "marginal", "kind": "trajectory",

@@ -11,9 +11,9 @@
 #include <iostream>
 #include <sstream>
 
-#ifndef RICOCHET_RANKS
-#define RICOCHET_RANKS ""
-#endif
+#include "tests/places.hpp"
+
+using ricochet::tests::places;
 
 namespace launch {
 namespace {
@@ -45,7 +45,7 @@ int Ended::told(const std::string& word) const {
 }
 
 bool without_mpi() {
-  if (std::string(RICOCHET_RANKS).empty()) return skip("this build has no ricochet-mpi (-DRICOCHET_MPI=ON)");
+  if (std::string(places().ranks).empty()) return skip("this build has no ricochet-mpi (-DRICOCHET_MPI=ON)");
   if (!there("mpirun")) return skip("there is no mpirun here (tests/run.sh installs openmpi-bin)");
   return false;
 }
@@ -64,11 +64,11 @@ std::string run_words(const ScratchFolder& scratch, const quick_studies::Json& s
 }
 
 std::string program(const std::string& words) {
-  return "'" RICOCHET_COMMAND "' " + words;
+  return "'" + places().command + "' " + words;
 }
 
 std::string ranks_program() {
-  return RICOCHET_RANKS;
+  return places().ranks;
 }
 
 std::string mpirun(const std::string& words) {
@@ -76,7 +76,7 @@ std::string mpirun(const std::string& words) {
 }
 
 std::string ranks(int count, const std::string& words, const std::string& launcher) {
-  return mpirun(launcher + " -n " + std::to_string(count) + " '" RICOCHET_RANKS "' " + words);
+  return mpirun(launcher + " -n " + std::to_string(count) + " '" + places().ranks + "' " + words);
 }
 
 UnderWay::UnderWay(const ScratchFolder& scratch, const std::string& line) : scratch_(scratch) {

@@ -8,10 +8,12 @@
 #include <filesystem>
 
 #include "runners/march/study_identity.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/mpi/launch.hpp"
 #include "tests/runners/same_tables.hpp"
 #include "tests/runners/workers/linger.hpp"
 
+using ricochet::tests::places;
 using namespace launch;
 using Catch::Contains;
 using quick_studies::Json;
@@ -75,7 +77,7 @@ TEST_CASE(
     "ranks: orbits whose plugin ends their process are failed rows, with exit code 3, as in workers of one machine") {
   if (without_mpi()) return;
   const ScratchFolder scratch;
-  const std::string plugin = " --plugin '" RICOCHET_STUMBLING "'";
+  const std::string plugin = " --plugin '" + places().stumbling + "'";
   const Json study = stumbling("segv", 7e-3);
   const Ended one = to_its_end(scratch, program(run_words(scratch, study, "workers") + " --isolate" + plugin));
   const Ended three = to_its_end(scratch, ranks(3, run_words(scratch, study, "ranks") + plugin));
@@ -122,7 +124,7 @@ TEST_CASE("ranks: one beside which the program is missing, or is another build, 
   CHECK(missing.told("rank 1 on ") == 1);
   CHECK_THAT(missing.messages, Contains((scratch / "ricochet").string() + ": cannot be read"));
   // Another build: the same program, and a byte behind its end.
-  fs::copy_file(RICOCHET_COMMAND, scratch / "ricochet");
+  fs::copy_file(places().command, scratch / "ricochet");
   write_text(scratch / "ricochet", read_text(scratch / "ricochet") + "x");
   const Ended another = to_its_end(scratch, line + second);
   INFO(another.messages);

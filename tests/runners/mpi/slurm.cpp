@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <functional>
 
+#include "tests/places.hpp"
 #include "tests/runners/mpi/cluster.hpp"
 #include "tests/runners/same_tables.hpp"
 #include "tests/runners/workers/linger.hpp"
 
+using ricochet::tests::places;
 using namespace launch;
 using Catch::Contains;
 using lingering::comes_true;
@@ -126,7 +128,7 @@ TEST_CASE("slurm: a job whose ranks were never started has not ended well, whate
   const Ended never = to_its_end(scratch, line);
   CHECK(never.code == 1);
   CHECK(never.out == "requeue 4711\n");
-  stand_in("srun", "'" RICOCHET_COMMAND "' " + run_words(scratch, study_of("trajectory"), "out"));
+  stand_in("srun", "'" + places().command + "' " + run_words(scratch, study_of("trajectory"), "out"));
   // The second time there is nothing left to run.
   for (int time = 0; time < 2; ++time) {
     const Ended ran = to_its_end(scratch, line);

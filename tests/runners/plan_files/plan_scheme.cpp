@@ -1,22 +1,22 @@
 // A scheme without C++. What a plan says in formulas is the step that a plugin writes in numbers. Whatever is wrong
 // with it is told with its place.
-#include "runners/plan_files/plan_file.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <ricochet/loader/catalogue.hpp>
 #include <thread>
 
 #include "runners/json/json_text.hpp"
-#include "tests/runners/scratch_folder.hpp"
+#include "runners/plan_files/plan_file.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/plan_files/step_numbers.hpp"
+#include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
 using namespace ricochet::tests;
 
 namespace {
 
-const std::filesystem::path plans = std::filesystem::path(RICOCHET_SOURCE_DIR) / "tests/plugins/plan_files";
+const std::filesystem::path plans = std::filesystem::path(places().source) / "tests/plugins/plan_files";
 
 Parameters complete(const PluginManual& manual, const std::map<std::string, double>& values) {
   Parameters result;
@@ -44,7 +44,7 @@ PlanOrRefusal plan_of(const Registry& registry, const std::string& name, const s
 }
 
 Registry plugins() {
-  Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  Catalogue catalogue(places().plugins, {}, {});
   Registry registry;
   catalogue.open_all(registry);
   return registry;

@@ -6,6 +6,7 @@
 
 #include "runners/run/run_study.hpp"
 #include "runners/study/load_study.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
@@ -31,13 +32,13 @@ std::vector<Json::json_pointer> numbers_of(const Json& study) {
 }  // namespace
 
 TEST_CASE("absurd numbers: every case of a study with one is planned, refused, or an error of the input") {
-  Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  Catalogue catalogue(tests::places().plugins, {}, {});
   Registry registry;
   int planned = 0, refused_input = 0;
   for (const char* name : {"quick", "orders-linear", "orders-bar", "orders-oscillator", "restitution", "stability-map",
                            "contact-laws", "energy-damped", "extreme-sections", "bifurcation-reference-tip-quick",
                            "bifurcation-penalty-quick", "basins-quick"}) {
-    const Json shipped = Json::parse(read_text(std::string(RICOCHET_SOURCE_DIR) + "/studies/" + name + ".json"));
+    const Json shipped = Json::parse(read_text(tests::places().source + "/studies/" + name + ".json"));
     for (const Json::json_pointer& pointer : numbers_of(shipped))
       for (const double absurd : {1e-300, 1e300, std::numeric_limits<double>::denorm_min(),
                                   std::numeric_limits<double>::max(), 1e-20, 1e20}) {
@@ -65,9 +66,9 @@ TEST_CASE("absurd numbers: every case of a study with one is planned, refused, o
 
 TEST_CASE(
     "absurd numbers: a length that leaves an element no stiffness is told where it stands, before anything runs") {
-  Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  Catalogue catalogue(tests::places().plugins, {}, {});
   Registry registry;
-  Json text = Json::parse(read_text(std::string(RICOCHET_SOURCE_DIR) + "/studies/orders-linear.json"));
+  Json text = Json::parse(read_text(tests::places().source + "/studies/orders-linear.json"));
   for (const double length : {1e-300, 1e300}) {
     text["scene"]["structure"]["length"] = length;
     try {

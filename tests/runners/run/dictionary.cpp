@@ -7,6 +7,7 @@
 #include "runners/run/run_study.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/study/load_study.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
@@ -116,7 +117,7 @@ TEST_CASE("every column of every table that a study of any kind writes is in its
   const ScratchFolder folder;
   for (const Kind& kind : kinds) {
     INFO(kind.name);
-    static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+    static Catalogue catalogue(tests::places().plugins, {}, {});
     Registry registry;
     const std::string text =
         std::string("{\"name\": \"one\", \"kind\": \"") + kind.name + "\"," + kind.body + kind.keys + "}";

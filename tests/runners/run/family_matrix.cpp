@@ -6,23 +6,24 @@
 
 #include "runners/run/run_study.hpp"
 #include "runners/study/load_study.hpp"
+#include "tests/places.hpp"
 #include "tests/refusals.hpp"
 
 using namespace ricochet;
 
 namespace {
 
-const std::string file = RICOCHET_SOURCE_DIR "/studies/family-matrix.json";
+const std::string file = tests::places().source + "/studies/family-matrix.json";
 
 }  // namespace
 
 TEST_CASE("family-matrix: every scheme, law and mass of this tree stands in it") {
-  Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  Catalogue catalogue(tests::places().plugins, {}, {});
   Registry named;
   const Study study = load_study(file, catalogue, named);
   std::set<std::string> found;
   for (const StudyCase& one : study.cases) found.insert({one.mass.name, one.contact.name, one.time.name});
-  Catalogue all(RICOCHET_PLUGIN_DIR, {}, {});
+  Catalogue all(tests::places().plugins, {}, {});
   Registry registry;
   all.open_all(registry);
   for (const Role role : {Role::mass, Role::contact, Role::time})
@@ -33,7 +34,7 @@ TEST_CASE("family-matrix: every scheme, law and mass of this tree stands in it")
 }
 
 TEST_CASE("family-matrix: what is not planned is refused with a cause and a remedy") {
-  Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  Catalogue catalogue(tests::places().plugins, {}, {});
   Registry registry;
   const Study study = load_study(file, catalogue, registry);
   std::set<std::string> refusals;

@@ -9,6 +9,7 @@
 #include "runners/kinds/kind.hpp"
 #include "runners/run/plan_cases.hpp"
 #include "runners/study/load_study.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/run/fake_study.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
@@ -30,7 +31,7 @@ Json swinging_beam(const std::string& kind) {
 }
 
 struct Planned {
-  Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
+  Catalogue catalogue{tests::places().plugins, {}, {}};
   Registry registry;
   Study study;
   std::vector<PlannedCase> cases;

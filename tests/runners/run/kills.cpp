@@ -11,12 +11,14 @@
 #include <filesystem>
 #include <random>
 
+#include "tests/places.hpp"
 #include "tests/runners/same_tables.hpp"
 #include "tests/runners/scratch_folder.hpp"
 #include "tests/runners/workers/quick_studies.hpp"
 
 using quick_studies::Json;
 using quick_studies::study_of;
+using ricochet::tests::places;
 namespace fs = std::filesystem;
 
 namespace {
@@ -44,10 +46,8 @@ Json continuation() {
 pid_t start(const ScratchFolder& here, const std::string& out) {
   const pid_t process = ::fork();
   if (process != 0) return process;
-  const std::string line = "cd '" + here.path().string() +
-                           "' && RICOCHET_PLUGIN_PATH= exec '" RICOCHET_COMMAND
-                           "' run study.json --isolate --jobs 2 --out " +
-                           out + " >said 2>told </dev/null";
+  const std::string line = "cd '" + here.path().string() + "' && RICOCHET_PLUGIN_PATH= exec '" + places().command +
+                           "' run study.json --isolate --jobs 2 --out " + out + " >said 2>told </dev/null";
   ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
   ::_exit(127);
 }

@@ -7,6 +7,7 @@
 
 #include "runners/study/case_id.hpp"
 #include "runners/study/fields.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/study/study_fixture.hpp"
 
 using namespace ricochet;
@@ -310,10 +311,10 @@ TEST_CASE("Too many combinations are refused with their number, before they are 
 
 TEST_CASE("Every shipped study parses with the plugins of this build") {
   int count = 0;
-  for (const auto& item : std::filesystem::directory_iterator(RICOCHET_SOURCE_DIR "/studies")) {
+  for (const auto& item : std::filesystem::directory_iterator(places().source + "/studies")) {
     if (item.path().extension() != ".json") continue;
     INFO(item.path().string());
-    Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+    Catalogue catalogue(places().plugins, {}, {});
     Registry registry;
     const Study study = load_study(item.path(), catalogue, registry);
     CHECK(study.name == item.path().stem().string());

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "runners/study/load_study.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/study/study_fixture.hpp"
 
 using namespace ricochet;
@@ -16,7 +17,7 @@ namespace {
 /// What a validator of JSON Schema (ajv, by validator/validate.js) says of each value: null where it accepts it, else
 /// its first error.
 std::vector<Json> said_of(const Registry& registry, const std::vector<Json>& values) {
-  const std::filesystem::path here = std::filesystem::path(RICOCHET_BINARY_DIR) / "tests/validator";
+  const std::filesystem::path here = std::filesystem::path(places().build) / "tests/validator";
   std::filesystem::create_directories(here);
   // One file for each process, as tests run beside each other.
   const std::string asked = (here / (std::to_string(::getpid()) + ".asked")).string(), answered = asked + ".answered";
@@ -26,7 +27,7 @@ std::vector<Json> said_of(const Registry& registry, const std::vector<Json>& val
     for (const Json& value : values) file << value.dump() << "\n";
   }
   const std::string command =
-      "node '" RICOCHET_SOURCE_DIR "/tests/runners/study/validator/validate.js' <'" + asked + "' >'" + answered + "'";
+      "node '" + places().source + "/tests/runners/study/validator/validate.js' <'" + asked + "' >'" + answered + "'";
   INFO(command << ": needs node, and ajv from npm, which tests/run.sh installs");
   REQUIRE(std::system(command.c_str()) == 0);
   std::vector<Json> answers;
@@ -53,12 +54,12 @@ void agree(const Registry& registry, const std::vector<Json>& good, const std::v
 }  // namespace
 
 TEST_CASE("The schema accepts every shipped study, as written and as resolved") {
-  Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  Catalogue catalogue(places().plugins, {}, {});
   Registry registry;
   catalogue.open_all(registry);
   std::vector<Json> studies;
   std::vector<std::string> names;
-  for (const auto& item : std::filesystem::directory_iterator(RICOCHET_SOURCE_DIR "/studies")) {
+  for (const auto& item : std::filesystem::directory_iterator(places().source + "/studies")) {
     if (item.path().extension() != ".json") continue;
     std::ifstream stream(item.path());
     studies.push_back(Json::parse(stream));
@@ -164,7 +165,7 @@ TEST_CASE("The schema and the reader take remarks and $schema, at any level") {
 TEST_CASE("The schema accepts plans, by file and as they are written") {
   for (const char* name : {"newmark.json", "bathe.json", "moreau-jean.json", "kane.json"}) {
     INFO(name);
-    std::ifstream stream(std::string(RICOCHET_SOURCE_DIR "/tests/plugins/plan_files/") + name);
+    std::ifstream stream(std::string(places().source + "/tests/plugins/plan_files/") + name);
     Json plan = Json::parse(stream);
     std::vector<Json> studies = {
         with("/methods/time", {{"name", "plan"}, {"plan", plan}}),

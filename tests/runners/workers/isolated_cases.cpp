@@ -14,11 +14,13 @@
 #include <sstream>
 
 #include "runners/store/atomic_file.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/same_tables.hpp"
 #include "tests/runners/scratch_folder.hpp"
 #include "tests/runners/workers/linger.hpp"
 #include "tests/runners/workers/quick_studies.hpp"
 
+using ricochet::tests::places;
 using namespace quick_studies;
 using namespace same_tables;
 using Catch::Contains;
@@ -41,7 +43,7 @@ struct Ended {
 std::string command_line(const ScratchFolder& scratch, const Json& study, const std::string& out,
                          const std::string& options) {
   write_text(scratch / (out + ".json"), study.dump());
-  return "'" RICOCHET_COMMAND "' run '" + (scratch / (out + ".json")).string() + "' --jobs 2 --out '" +
+  return "'" + places().command + "' run '" + (scratch / (out + ".json")).string() + "' --jobs 2 --out '" +
          (scratch / out).string() + "' " + options + " >'" + (scratch / "said").string() + "' 2>'" +
          (scratch / "told").string() + "' </dev/null";
 }
@@ -82,7 +84,7 @@ TEST_CASE("workers: an orbit that ends its process twice is a failed row with th
   // The sanitizer's own memory goes beyond any limit: workers have none under it.
   if (how == "greedy" && sanitized) return;
   const ScratchFolder scratch;
-  const std::string options = "--isolate --plugin '" RICOCHET_STUMBLING "'";
+  const std::string options = "--isolate --plugin '" + places().stumbling + "'";
   const Ended sound = run(scratch, stumbling("none", 7e-3), "sound", options);
   INFO(sound.messages);
   REQUIRE(sound.code == 0);
@@ -120,7 +122,7 @@ TEST_CASE("workers: a case that ends its process twice is failed, and the others
   study["methods"]["mass"] = "consistent";
   study["methods"]["contact"] = Json::parse(R"(["signorini", {"name": "stumbles", "beyond": 0}])");
   study["methods"]["contact"][1]["how"] = how;
-  const Ended first = run(scratch, study, "out", "--plugin '" RICOCHET_STUMBLING "'");
+  const Ended first = run(scratch, study, "out", "--plugin '" + places().stumbling + "'");
   INFO(first.messages << first.out);
   CHECK(first.code == 3);
   const Rows rows = rows_of(scratch / "out/cases.csv");
@@ -132,7 +134,7 @@ TEST_CASE("workers: a case that ends its process twice is failed, and the others
       CHECK_THAT(row.at("reason"),
                  Contains("plugin contact 'stumbles'") && Contains("solve(): its process was ended twice by " + cause));
   }
-  const Ended second = run(scratch, study, "out", "--plugin '" RICOCHET_STUMBLING "'");
+  const Ended second = run(scratch, study, "out", "--plugin '" + places().stumbling + "'");
   CHECK(second.code == 3);
   CHECK_THAT(second.messages, Contains("0 to run"));
 }
@@ -145,7 +147,7 @@ TEST_CASE("workers: of hundreds of small cases, which travel together, those tha
   study["scene"]["structure"]["stiffness"] = {10, 11, 12};
   for (int i = 1; i <= 100; ++i) study["scene"]["initial"]["velocity"].push_back(0.05 * i);
   study["methods"]["contact"]["beyond"] = 4.9;  // at velocity level: m/s
-  const std::string options = "--plugin '" RICOCHET_STUMBLING "'";
+  const std::string options = "--plugin '" + places().stumbling + "'";
   const Ended here = run(scratch, study, "here", "--inline " + options);
   INFO(here.messages);
   REQUIRE(here.code == 0);
@@ -177,7 +179,7 @@ TEST_CASE("workers: a call that never returns costs its case the budget") {
   // The first touch never returns: what comes before it is a small part of the budget on any machine.
   Json study = stumbling("sleep", 0);
   study["budget"] = 1;
-  const Ended ended = run(scratch, study, "out", "--isolate --plugin '" RICOCHET_STUMBLING "'");
+  const Ended ended = run(scratch, study, "out", "--isolate --plugin '" + places().stumbling + "'");
   INFO(ended.messages);
   CHECK(ended.code == 3);
   const Rows rows = rows_of(scratch / "out/cases.csv");
@@ -244,7 +246,7 @@ TEST_CASE("workers: a call that never returns is told by case, plugin and functi
   Json study = study_of("trajectory");
   study["methods"]["mass"] = "consistent";
   study["methods"]["contact"] = Json::parse(R"(["signorini", {"name": "stumbles", "how": "sleep", "beyond": 0}])");
-  Running running(scratch, study, "out", "--plugin '" RICOCHET_STUMBLING "'");
+  Running running(scratch, study, "out", "--plugin '" + places().stumbling + "'");
   const auto told = [&] { return read_text(scratch / "told"); };
   lingering::comes_true([&] { return told().find("solve() has not returned for") != std::string::npos; });
   CHECK_THAT(told(), Contains("waiting for case") && Contains("plugin contact 'stumbles'"));

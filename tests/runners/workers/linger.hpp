@@ -7,6 +7,7 @@
 
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/read_store.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/scratch_folder.hpp"
 #include "tests/runners/variable.hpp"
 #include "tests/runners/workers/quick_studies.hpp"
@@ -26,7 +27,7 @@ inline quick_studies::Json study() {
   return study;
 }
 
-constexpr const char* plugin = " --plugin '" RICOCHET_STUMBLING "'";
+inline const std::string plugin = " --plugin '" + ricochet::tests::places().stumbling + "'";
 
 /// Processes that are started while it lives linger until it is let go.
 class Held {

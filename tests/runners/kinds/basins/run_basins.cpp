@@ -9,6 +9,7 @@
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"
 #include "runners/table/text.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/kinds/sweep/block_threads.hpp"
 
 using namespace ricochet;
@@ -40,7 +41,7 @@ Json grid_study(int columns, int rows, bool refine) {
 }
 
 struct Opened {
-  Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
+  Catalogue catalogue{tests::places().plugins, {}, {}};
   Registry registry;
   Study study;
   explicit Opened(const Json& text) : study(parse_study(text.dump(1), catalogue, registry)) {}

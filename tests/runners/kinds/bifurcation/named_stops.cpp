@@ -1,6 +1,7 @@
 // Stops that have names, and matrices that are given, in sweeps.
 #include "runners/kinds/sweep/forcing.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/kinds/sweep/sweep_case.hpp"
 #include "tests/runners/scratch_folder.hpp"
 #include "tests/scene/structure/beam_files.hpp"
@@ -44,7 +45,7 @@ TEST_CASE("bifurcation: a mass given by its matrices is the oscillator, whose ba
     "dofs": "dofs.csv", "damping": {"stiffness": 2e-3}})");
   given["scene"]["stops"] = Json::parse(R"([{"name": "wall", "at": {"node": "A", "component": "ux"}, "upper": 0.05}])");
   const auto speeds = [&](const Json& text) {
-    Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+    Catalogue catalogue(tests::places().plugins, {}, {});
     Registry registry;
     const Study study = parse_study(text.dump(1), catalogue, registry, folder.path());
     const std::atomic<bool> stop = false;

@@ -16,6 +16,7 @@
 #include "runners/store/store.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"
+#include "tests/places.hpp"
 #include "tests/refusals.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
@@ -40,7 +41,7 @@ Json oscillator(const std::string& kind) {
 
 struct Run {
   ScratchFolder folder;
-  Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
+  Catalogue catalogue{tests::places().plugins, {}, {}};
   Registry registry;
   int go(const Json& text) {
     const Study study = parse_study(text.dump(), catalogue, registry);
@@ -289,7 +290,7 @@ TEST_CASE("effects stand beside the cases wherever two choices of three levels v
 }
 
 TEST_CASE("a third party's scheme and law are known by what they declare, not by what they call it") {
-  Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
+  Catalogue catalogue{tests::places().plugins, {}, {}};
   Registry registry;
   catalogue.open_all(registry);
   // Moreau–Jean and the penalty under other names, with other keys.

@@ -8,6 +8,7 @@
 #include "runners/kinds/continuation/continuation.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/run/study_cases.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/kinds/continuation/tube_study.hpp"
 #include "tests/runners/kinds/sweep/sweep_case.hpp"
 #include "tests/runners/scratch_folder.hpp"
@@ -36,7 +37,7 @@ struct RunResults {
   StudyResults results;
 
   explicit RunResults(const Json& text) : opened(opened_continuation(text)), results(results_header(opened.study)) {
-    ::setenv("RICOCHET_PLUGIN_PATH", RICOCHET_PLUGIN_DIR, 1);
+    ::setenv("RICOCHET_PLUGIN_PATH", tests::places().plugins.c_str(), 1);
     const std::atomic<bool> stop{false};
     results.cases = {run_continuation(opened.study.cases.front(), *opened.registry, {}, stop)};
   }

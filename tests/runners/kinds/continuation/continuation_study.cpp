@@ -5,6 +5,7 @@
 
 #include "runners/kinds/stored_study.hpp"
 #include "runners/run/run_study.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/kinds/continuation/tube_study.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
@@ -206,7 +207,7 @@ void march_tube(const std::filesystem::path& folder, const Json& change = Json::
   study["keep"] = 16;
   study["exponents"] = 0;
   study.merge_patch(change);
-  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static Catalogue catalogue(tests::places().plugins, {}, {});
   Registry registry;
   run_study(parse_study(study.dump(), catalogue, registry), catalogue, registry, {folder, 1, false});
 }

@@ -9,6 +9,7 @@
 #include "runners/store/record_values.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"
+#include "tests/places.hpp"
 #include "tests/refusals.hpp"
 
 /// \file
@@ -42,7 +43,7 @@ struct OpenedContinuation {
 };
 
 inline OpenedContinuation opened_continuation(const Json& text) {
-  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static Catalogue catalogue(tests::places().plugins, {}, {});
   static Registry registry;
   OpenedContinuation opened;
   opened.study = parse_study(text.dump(1), catalogue, registry);

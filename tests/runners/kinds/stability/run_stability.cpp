@@ -7,6 +7,7 @@
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"
 #include "runners/table/text.hpp"
+#include "tests/places.hpp"
 
 using namespace ricochet;
 using Catch::Matchers::Contains;
@@ -65,7 +66,7 @@ struct Result {
 };
 
 Registry& opened(const Json& text, Study& study) {
-  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static Catalogue catalogue(tests::places().plugins, {}, {});
   static Registry registry;
   study = parse_study(text.dump(1), catalogue, registry);
   return registry;

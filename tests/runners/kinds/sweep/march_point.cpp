@@ -7,6 +7,7 @@
 #include "runners/kinds/bifurcation/bifurcation.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/study/load_study.hpp"
+#include "tests/places.hpp"
 
 using namespace ricochet;
 
@@ -32,7 +33,7 @@ Json diagram() {
 }  // namespace
 
 TEST_CASE("A point is marched bitwise equal to those of its diagram") {
-  Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  Catalogue catalogue(tests::places().plugins, {}, {});
   Registry registry;
   const Study study = parse_study(diagram().dump(1), catalogue, registry);
   const StudyCase& one = study.cases.front();

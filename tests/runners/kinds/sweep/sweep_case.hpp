@@ -10,6 +10,7 @@
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"
 #include "runners/table/text.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/kinds/sweep/block_threads.hpp"
 
 /// \file
@@ -67,7 +68,7 @@ struct OpenedSweep {
 };
 
 inline OpenedSweep opened_sweep(const Json& text) {
-  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static Catalogue catalogue(tests::places().plugins, {}, {});
   static Registry registry;
   OpenedSweep opened;
   opened.study = parse_study(text.dump(1), catalogue, registry);

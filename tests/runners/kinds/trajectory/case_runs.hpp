@@ -5,6 +5,7 @@
 
 #include "runners/kinds/trajectory/trajectory.hpp"
 #include "runners/study/load_study.hpp"
+#include "tests/places.hpp"
 #include "tests/refusals.hpp"
 
 namespace ricochet::testing {
@@ -29,7 +30,7 @@ class CaseRuns {
 
  private:
   std::filesystem::path folder_;
-  Catalogue catalogue_{RICOCHET_PLUGIN_DIR, {}, {}};
+  Catalogue catalogue_{tests::places().plugins, {}, {}};
   Registry registry_;
   const std::atomic<bool> stop_ = false;
 };

@@ -12,6 +12,7 @@
 #include "runners/store/record_values.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"
+#include "tests/places.hpp"
 
 using namespace ricochet;
 
@@ -35,7 +36,7 @@ Json tube_study() {
 }
 
 StudyResults results_of(const Json& text) {
-  static Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
+  static Catalogue catalogue{tests::places().plugins, {}, {}};
   static Registry registry;
   StudyResults results;
   const Study study = parse_study(text.dump(1), catalogue, registry);
@@ -158,7 +159,7 @@ TEST_CASE("a study that compares lists its impacts too, and one without contact 
               "stops": {"lower": 0, "at": "tip"}, "initial": {"displacement": 0.1, "velocity": 0}},
     "methods": {"mass": "consistent", "contact": "signorini", "time": {"name": "moreau-jean", "restitution": 0.8}},
     "step": [1e-3], "duration": 0.9, "reference": "exact", "errors": ["tip-linf"]})");
-  Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
+  Catalogue catalogue{tests::places().plugins, {}, {}};
   Registry registry;
   const Study study = parse_study(text.dump(1), catalogue, registry);
   CaseRunner runner = find_kind("convergence")->start({study, registry, {}});

@@ -3,6 +3,7 @@
 
 #include "runners/store/record_values.hpp"
 #include "runners/store/snapshots.hpp"
+#include "tests/places.hpp"
 #include "tests/runners/kinds/trajectory/case_runs.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
@@ -34,7 +35,7 @@ void write_two_masses(const ScratchFolder& folder, const std::string& places) {
 }
 
 CaseRecord run_in(const Json& text, const ScratchFolder& folder) {
-  Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  Catalogue catalogue(tests::places().plugins, {}, {});
   Registry registry;
   const std::atomic<bool> stop = false;
   return run_case(parse_study(text.dump(1), catalogue, registry, folder.path()).cases.front(), registry, stop);

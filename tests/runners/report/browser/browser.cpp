@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/places.hpp"
 #include "tests/runners/report/browser/driven.hpp"
 #include "tests/runners/report/rendered.hpp"
 
@@ -13,7 +14,7 @@ namespace ricochet::browser {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path source = RICOCHET_SOURCE_DIR "/tests/runners/report/browser";
+const fs::path source = tests::places().source + "/tests/runners/report/browser";
 
 std::string content(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -21,7 +22,7 @@ std::string content(const fs::path& path) {
 }
 
 std::string chart_library_file() {
-  const std::string text = content(RICOCHET_SOURCE_DIR "/runners/report/node_modules/echarts/dist/echarts.min.js");
+  const std::string text = content(tests::places().source + "/runners/report/node_modules/echarts/dist/echarts.min.js");
   INFO("`npm ci` in runners/report brings the chart library (tests/run.sh does it)");
   REQUIRE(!text.empty());
   return text;
@@ -53,7 +54,7 @@ bool left_out() {
 }
 
 Json read_back(const std::string& folder, const std::vector<Page>& pages) {
-  const fs::path here = fs::path(RICOCHET_BINARY_DIR) / "browser" / folder;
+  const fs::path here = fs::path(tests::places().build) / "browser" / folder;
   fs::remove_all(here);
   fs::create_directories(here);
   Json steps = Json::array(), out;

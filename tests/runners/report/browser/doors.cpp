@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "tests/places.hpp"
 #include "tests/runners/report/browser/browser.hpp"
 #include "tests/runners/report/browser/driven.hpp"
 #include "tests/runners/scratch_folder.hpp"
@@ -17,14 +18,14 @@ namespace fs = std::filesystem;
 
 /// The study of a trajectory as the command reports it when something is different in it.
 Page reported(const std::string& name, const browser::Json& change) {
-  const fs::path folder = fs::path(RICOCHET_BINARY_DIR) / "browser" / "doors" / name;
+  const fs::path folder = fs::path(tests::places().build) / "browser" / "doors" / name;
   fs::remove_all(folder);
   fs::create_directories(folder);
   browser::Json study =
-      browser::Json::parse(read_text(RICOCHET_SOURCE_DIR "/tests/runners/report/studies/trajectory.json"));
+      browser::Json::parse(read_text(tests::places().source + "/tests/runners/report/studies/trajectory.json"));
   study.merge_patch(change);
   write_text(folder / "study.json", study.dump(1));
-  const std::string command = RICOCHET_COMMAND " run '" + (folder / "study.json").string() + "' --out '" +
+  const std::string command = tests::places().command + " run '" + (folder / "study.json").string() + "' --out '" +
                               (folder / "there").string() + "' >'" + (folder / "said.txt").string() + "' 2>&1";
   INFO(command);
   REQUIRE(std::system(command.c_str()) != -1);
@@ -35,7 +36,7 @@ Page reported(const std::string& name, const browser::Json& change) {
 /// Two masses on springs that files describe, let go against a stop, as the command reports them. `place`: x,y,z of the
 /// second one, where the stop is.
 Page reported_files(const std::string& name, const std::string& place) {
-  const fs::path folder = fs::path(RICOCHET_BINARY_DIR) / "browser" / "doors" / name;
+  const fs::path folder = fs::path(tests::places().build) / "browser" / "doors" / name;
   fs::remove_all(folder);
   fs::create_directories(folder);
   const std::string head = "%%MatrixMarket matrix array real symmetric\n2 2\n";
@@ -52,7 +53,7 @@ Page reported_files(const std::string& name, const std::string& place) {
     "methods": {"mass": "consistent", "contact": ["signorini", {"name": "penalty", "stiffness": 100}],
                 "time": "newmark-dumont-paoli"},
     "step": 1e-3, "duration": 8, "samples": 160, "snapshots": 80})json");
-  const std::string command = RICOCHET_COMMAND " run '" + (folder / "study.json").string() + "' --out '" +
+  const std::string command = tests::places().command + " run '" + (folder / "study.json").string() + "' --out '" +
                               (folder / "there").string() + "' >'" + (folder / "said.txt").string() + "' 2>&1";
   INFO(command);
   REQUIRE(std::system(command.c_str()) != -1);

@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/places.hpp"
+
 namespace ricochet::browser {
 
 namespace fs = std::filesystem;
@@ -19,8 +21,8 @@ namespace {
 
 /// When the newest of what makes a report was built or written: the command, its methods, the study.
 fs::file_time_type newest_source(const fs::path& study) {
-  auto newest = std::max(fs::last_write_time(study), fs::last_write_time(RICOCHET_COMMAND));
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(RICOCHET_BINARY_DIR) / "lib"))
+  auto newest = std::max(fs::last_write_time(study), fs::last_write_time(tests::places().command));
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(tests::places().build) / "lib"))
     if (entry.is_regular_file()) newest = std::max(newest, entry.last_write_time());
   return newest;
 }
@@ -43,8 +45,8 @@ class Lock {
 }  // namespace
 
 std::string report_of(const std::string& folder, const std::string& kind) {
-  const fs::path out = fs::path(RICOCHET_BINARY_DIR) / "browser" / folder / kind, report = out / "report.html";
-  const fs::path study = RICOCHET_SOURCE_DIR "/tests/runners/report/studies/" + kind + ".json";
+  const fs::path out = fs::path(tests::places().build) / "browser" / folder / kind, report = out / "report.html";
+  const fs::path study = tests::places().source + "/tests/runners/report/studies/" + kind + ".json";
   fs::create_directories(out.parent_path());
   const Lock lock(out.string() + ".lock");
   const fs::path whole = out.string() + ".whole";  // written after a run that was not stopped
@@ -52,7 +54,7 @@ std::string report_of(const std::string& folder, const std::string& kind) {
     return report.string();
   fs::remove(whole);
   fs::remove_all(out);
-  const std::string command = std::string(RICOCHET_COMMAND) + " run '" + study.string() + "' --out '" + out.string() +
+  const std::string command = tests::places().command + " run '" + study.string() + "' --out '" + out.string() +
                               "' >'" + out.string() + ".txt' 2>&1";
   INFO(command);
   REQUIRE(std::system(command.c_str()) != -1);
@@ -62,12 +64,13 @@ std::string report_of(const std::string& folder, const std::string& kind) {
 }
 
 nlohmann::json driven(const std::string& folder, const nlohmann::json& steps) {
-  const fs::path here = fs::path(RICOCHET_BINARY_DIR) / "browser" / folder;
+  const fs::path here = fs::path(tests::places().build) / "browser" / folder;
   fs::create_directories(here);
   fs::remove(here / "answers.json");
   std::ofstream(here / "steps.json") << steps;
-  const std::string command = "timeout 1500 node '" RICOCHET_SOURCE_DIR "/tests/runners/report/browser/drive.js' '" +
-                              (here / "steps.json").string() + "' '" + (here / "answers.json").string() + "'";
+  const std::string command = "timeout 1500 node '" + tests::places().source +
+                              "/tests/runners/report/browser/drive.js' '" + (here / "steps.json").string() + "' '" +
+                              (here / "answers.json").string() + "'";
   INFO(command);
   REQUIRE(std::system(command.c_str()) == 0);
   std::ifstream file(here / "answers.json");

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/places.hpp"
 #include "tests/runners/report/browser/browser.hpp"
 #include "tests/runners/report/browser/driven.hpp"
 #include "tests/runners/report/synthetic.hpp"
@@ -56,7 +57,7 @@ TEST_CASE(
   if (left_out()) return;
   namespace fs = std::filesystem;
   const StudyResults results = thousand();
-  const fs::path folder = fs::path(RICOCHET_BINARY_DIR) / "browser" / "many-read", page = folder / "many.html";
+  const fs::path folder = fs::path(tests::places().build) / "browser" / "many-read", page = folder / "many.html";
   fs::create_directories(folder);
   std::ofstream(page, std::ios::binary) << page_of("many", results).html;
   const std::string here =

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <regex>
 
+#include "tests/places.hpp"
 #include "tests/runners/report/browser/browser.hpp"
 #include "tests/runners/report/browser/driven.hpp"
 
@@ -31,7 +32,7 @@ const char* const show_chart =
     "requestAnimationFrame(look); })(); })";
 
 std::string file_of(const std::string& name) {
-  return (std::filesystem::path(RICOCHET_BINARY_DIR) / "browser" / "reading-print" / name).string();
+  return (std::filesystem::path(tests::places().build) / "browser" / "reading-print" / name).string();
 }
 
 }  // namespace
@@ -205,8 +206,8 @@ TEST_CASE("a list of studies is read on a phone, one after the other", "[report]
   std::string folders;
   for (const char* kind : {"film", "stability"})
     folders += " '" + std::filesystem::path(report_of("index", kind)).parent_path().string() + "'";
-  const std::string file = (std::filesystem::path(RICOCHET_BINARY_DIR) / "browser" / "index" / "index.html").string();
-  words_of(std::string(RICOCHET_COMMAND) + " report" + folders + " --out '" + file + "'");
+  const std::string file = (std::filesystem::path(tests::places().build) / "browser" / "index" / "index.html").string();
+  words_of(tests::places().command + " report" + folders + " --out '" + file + "'");
   const char* const cells =
       "[...document.querySelectorAll('.studies tbody :is(th, td)')].map((cell) => "
       "cell.getBoundingClientRect()).map((box) => box.width > 200 && box.right <= innerWidth)";
