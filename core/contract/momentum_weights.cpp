@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -140,13 +140,12 @@ class FreeStepMap {
 
  private:
   void find_momentum() {
-    const Eigen::JacobiSVD<MatrixXd> change(balanced_ - MatrixXd::Identity(slots_, slots_),
-                                            Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const SquareSvd change(balanced_ - MatrixXd::Identity(slots_, slots_), Eigen::ComputeFullU | Eigen::ComputeFullV);
     const VectorXd& sizes = change.singularValues();
     const Index kept = (sizes.array() <= singular * std::max(1.0, sizes[0])).count();
     if (kept == 0) return;
     const MatrixXd left = change.matrixU().rightCols(kept), right = change.matrixV().rightCols(kept);
-    const Eigen::JacobiSVD<MatrixXd> meet(left.transpose() * right, Eigen::ComputeFullU);
+    const SquareSvd meet(left.transpose() * right, Eigen::ComputeFullU);
     // Two chains of Jordan: then more than one motion goes on.
     if (kept > 1 && !(meet.singularValues()[kept - 2] > singular)) return;
     const VectorXd found = left * meet.matrixU().col(kept - 1);
@@ -154,6 +153,8 @@ class FreeStepMap {
     if (!(std::abs(speed) > singular * moving_.norm())) return;
     momentum_ = (found / speed).cwiseQuotient(units_).transpose();
   }
+
+  using SquareSvd = Eigen::JacobiSVD<MatrixXd, Eigen::NoQRPreconditioner>;  // without what only other shapes need
 
   Index slots_;
   SlotMap step_;

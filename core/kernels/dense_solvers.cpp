@@ -90,6 +90,10 @@ std::optional<Eigen::VectorXcd> regular_solve(const Eigen::MatrixXcd& A, const E
   return fully_pivoted(A, b);
 }
 
+Eigen::VectorXd least_squares(const MatrixXd& A, const Eigen::VectorXd& b) {
+  return A.colPivHouseholderQr().solve(b);
+}
+
 MatrixXd least_norm_solve(const MatrixXd& A, const MatrixXd& B) {
   return A.completeOrthogonalDecomposition().solve(B);
 }

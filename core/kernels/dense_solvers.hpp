@@ -53,6 +53,8 @@ std::optional<Eigen::VectorXcd> regular_solve(const Eigen::MatrixXcd& A, const E
 /// A⁻¹ b, fully pivoted; where A has not full rank, one that solves best what can be solved.
 Eigen::VectorXd pivoted_solve(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 Eigen::VectorXcd pivoted_solve(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b);
+/// The x that solves A x = b best, by QR with pivoted columns; A has full rank.
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 /// The least X that solves A X = B best, whatever the rank of A.
 Eigen::MatrixXd least_norm_solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 

@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/contract/reference.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/bodies.hpp>
@@ -232,7 +233,7 @@ Eigen::MatrixXd marched_mass(const Inertia& inertia) {
   if (inertia.assembled()) return Eigen::MatrixXd(inertia.mass);
   const MassFactors factors = mass_factors(inertia);
   const Eigen::MatrixXd B = factors.coupling, C = factors.velocity_mass;
-  return B.transpose() * C.llt().solve(B);
+  return B.transpose() * definite_solve(C, B);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "runners/command/command.hpp"
+#include "runners/command/examples.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/plan_files/plan_file.hpp"
 

@@ -6,10 +6,8 @@
 #include <optional>
 #include <ricochet/contract/parameters.hpp>
 #include <ricochet/loader/catalogue.hpp>
-#include <span>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -166,11 +164,5 @@ bool describe_word(const std::string& name, std::ostream& out);
 std::vector<std::string> words_of_studies();
 /// The measures and the errors.
 std::vector<std::string> words_of_results();
-
-/// A file of plugins/examples/ROLE, carried inside the program (see examples.cmake).
-struct ExampleFile {
-  std::string_view role, name, text;
-};
-std::span<const ExampleFile> example_files();
 
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-#include "runners/run/environment.hpp"
+#include "runners/run/build_facts.hpp"
 
 #ifndef RICOCHET_VERSION
 #define RICOCHET_VERSION "unknown"

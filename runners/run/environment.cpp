@@ -17,6 +17,7 @@
 #endif
 
 #include "runners/march/study_identity.hpp"
+#include "runners/run/build_facts.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/folder_lock.hpp"
 #include "runners/workers/allowed_processors.hpp"

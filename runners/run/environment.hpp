@@ -12,10 +12,4 @@ namespace ricochet {
 /// started (UTC).
 Environment describe_environment(const std::vector<std::filesystem::path>& plugin_libraries);
 
-/// How this program was built; the words that CMake gave, "unknown" where it was built without.
-struct BuildFacts {
-  std::string version, commit, type, flags;
-};
-BuildFacts build_facts();
-
 }  // namespace ricochet

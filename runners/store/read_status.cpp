@@ -19,7 +19,7 @@ RunStatus read_status(const std::filesystem::path& folder) {
         database, "SELECT key, value FROM study WHERE key NOT IN ('resolved', 'columns', 'axes', 'method_words')");
     while (study.executeStep()) {
       const std::string key = study.getColumn(0).getString();
-      const auto value = nlohmann::json::parse(study.getColumn(1).getString());
+      const auto value = nlohmann::ordered_json::parse(study.getColumn(1).getString());
       if (key == "name") status.name = value.get<std::string>();
       if (key == "question") status.question = value.get<std::string>();
       if (key == "kind") status.kind = value.get<std::string>();

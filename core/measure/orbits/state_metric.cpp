@@ -1,7 +1,8 @@
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <ricochet/engine/stage_state.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/measure/orbits/set_steps.hpp>
 #include <ricochet/measure/orbits/state_metric.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
@@ -116,7 +117,7 @@ StateMetric::StateMetric(const Program& program, int state_size, const ArcUnits&
     parts.emplace_back(position, velocity / largest);
     normal += parts.back() * parts.back().transpose();
   }
-  const Eigen::Matrix2d inverse = normal.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::Matrix2d inverse = least_norm_solve(normal, Eigen::Matrix2d::Identity());
   displacement_ = velocity_ = MatrixXd::Zero(readings.rows(), state_size);
   for (std::size_t j = 0; j < initial.size(); ++j) {
     const Eigen::Vector2d share = inverse * parts[j];

@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <cmath>
 #include <cstring>
 #include <list>
 #include <mutex>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
 #include <ricochet/scene/basis/modal_basis.hpp>
@@ -157,7 +158,7 @@ VectorXd in_basis(const ModalBasis& basis, const SparseMatrix& mass, const Spars
 }
 
 VectorXd in_basis_by_least_squares(const ModalBasis& basis, const VectorXd& displacement) {
-  return basis.shapes.colPivHouseholderQr().solve(displacement);
+  return least_squares(basis.shapes, displacement);
 }
 
 namespace {
