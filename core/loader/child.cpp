@@ -80,12 +80,7 @@ void start_anew(int message, int said) {
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  const int nowhere = ::open("/dev/null", O_RDONLY);
-  // Out of the way of the numbers that they get.
-  constexpr int aside = 10;
-  message = ::fcntl(message, F_DUPFD, aside);
-  said = ::fcntl(said, F_DUPFD, aside);
-  ::dup2(nowhere, STDIN_FILENO);
+  ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
   for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(said, stream);
   ::dup2(message, message_end);
   ::close_range(message_end + 1, ~0U, 0);
@@ -230,14 +225,22 @@ SharedNote new_note() {
   return {new (memory) CallNote, [](CallNote* note) { ::munmap(note, sizeof *note); }};
 }
 
+[[noreturn]] void no_pipe() {
+  throw std::system_error(errno, std::generic_category(), "no pipe to a child process can be had");
+}
+
 struct Pipe {
   int read = -1, write = -1;
   Pipe() {
     int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0)
-      throw std::system_error(errno, std::generic_category(), "no pipe to a child process can be had");
+    if (::pipe2(ends, O_CLOEXEC) != 0) no_pipe();
     read = ends[0];
-    write = ends[1];
+    // The child's own numbers are below.
+    write = duplicated_from(message_end + 1, ends[1]);
+    if (write < 0) {
+      ::close(read);
+      no_pipe();
+    }
   }
   ~Pipe() {
     if (write >= 0) ::close(write);
@@ -271,7 +274,7 @@ void judge(const Watch& watch, ChildOutcome& outcome, const CallNote& note) {
 
 }  // namespace
 
-std::uint64_t limit_address_space(double bytes) {
+std::uint64_t limit_address_space([[maybe_unused]] double bytes) {
   rlimit limit{};
   ::getrlimit(RLIMIT_AS, &limit);
 #ifndef RICOCHET_SANITIZED
@@ -282,6 +285,14 @@ std::uint64_t limit_address_space(double bytes) {
   }
 #endif
   return limit.rlim_cur;
+}
+
+int duplicated_from(int least, int descriptor) {
+  const int number = ::fcntl(descriptor, F_DUPFD_CLOEXEC, least);
+  const int error = errno;
+  ::close(descriptor);
+  errno = error;
+  return number;
 }
 
 std::string signal_in_words(int signal) {

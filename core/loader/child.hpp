@@ -67,6 +67,10 @@ class ForeignCode {
 /// take. With a sanitizer, which takes far more of it than it uses, nothing is limited.
 std::uint64_t limit_address_space(double bytes);
 
+/// The file of a descriptor under another number, at least `least`; the descriptor is closed. -1 with errno where no
+/// number is free. Both close on exec.
+int duplicated_from(int least, int descriptor);
+
 /// "signal 11 (segmentation fault)".
 std::string signal_in_words(int signal);
 /// "2 GiB", "117 MiB".

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <new>
+#include <ricochet/loader/child.hpp>
 
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
@@ -28,7 +29,8 @@ CallNote* mapped(int descriptor) {
 
 }  // namespace
 
-NoteFile::NoteFile() : descriptor_(::memfd_create("ricochet-note", MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
+NoteFile::NoteFile(int least) : descriptor_(::memfd_create("ricochet-note", MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
+  if (descriptor_ >= 0) descriptor_ = duplicated_from(least, descriptor_);
   if (descriptor_ < 0) fail();
   if (::ftruncate(descriptor_, sizeof(CallNote)) == 0 &&
       ::fcntl(descriptor_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) == 0)

@@ -11,8 +11,8 @@ namespace ricochet {
 /// A CallNote in memory that another process maps by its descriptor. Neither can make it smaller.
 class NoteFile {
  public:
-  /// Throws RunError where there is no memory for it.
-  NoteFile();
+  /// `least`: the least number that its descriptor has. Throws RunError where there is no memory or number for it.
+  explicit NoteFile(int least = 0);
   ~NoteFile();
   NoteFile(const NoteFile&) = delete;
   NoteFile& operator=(const NoteFile&) = delete;

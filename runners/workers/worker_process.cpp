@@ -104,21 +104,18 @@ WorkerProcess::WorkerProcess() {
   std::array<int, 2> sockets{}, errors{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0) fail("socketpair");
   channel_ = std::make_unique<Channel>(sockets[0]);
+  // The worker's own numbers are below those of what it gets.
+  const int its_channel = duplicated_from(kWorkerNote + 1, sockets[1]);
+  if (its_channel < 0) fail("socketpair");
   if (::pipe2(errors.data(), O_CLOEXEC) != 0) {
-    ::close(sockets[1]);
+    ::close(its_channel);
     fail("pipe");
   }
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
-  // Their numbers may be those that the worker expects: moved out of the way first.
-  constexpr int aside = 100;
-  ::posix_spawn_file_actions_adddup2(&actions, sockets[1], aside);
-  ::posix_spawn_file_actions_adddup2(&actions, note_.descriptor(), aside + 1);
   ::posix_spawn_file_actions_adddup2(&actions, errors[1], STDERR_FILENO);
-  ::posix_spawn_file_actions_adddup2(&actions, aside, kWorkerChannel);
-  ::posix_spawn_file_actions_adddup2(&actions, aside + 1, kWorkerNote);
-  ::posix_spawn_file_actions_addclose(&actions, aside);
-  ::posix_spawn_file_actions_addclose(&actions, aside + 1);
+  ::posix_spawn_file_actions_adddup2(&actions, its_channel, kWorkerChannel);
+  ::posix_spawn_file_actions_adddup2(&actions, note_.descriptor(), kWorkerNote);
   ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   // A worker has nothing to say on stdout; what a plugin prints there joins its stderr.
   ::posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
@@ -139,7 +136,7 @@ WorkerProcess::WorkerProcess() {
       ::posix_spawn(&pid_, worker_program().c_str(), &actions, &attributes, arguments.data(), environment.data());
   ::posix_spawn_file_actions_destroy(&actions);
   ::posix_spawnattr_destroy(&attributes);
-  ::close(sockets[1]);
+  ::close(its_channel);
   ::close(errors[1]);
   if (error != 0) {
     ::close(errors[0]);

@@ -29,6 +29,9 @@ inline constexpr std::array<int, 4> signals_of_coordinator = {SIGINT, SIGTERM, S
 /// These, as a set.
 sigset_t coordinator_signals();
 
+/// Descriptors that a worker is born with.
+inline constexpr int kWorkerChannel = 3, kWorkerNote = 4;
+
 /// `ricochet worker` as a child of this process: the same program, with a channel to it. What it writes to stderr goes
 /// on to this process's, and its end is kept.
 class WorkerProcess : public Worker {
@@ -52,7 +55,7 @@ class WorkerProcess : public Worker {
 
   pid_t pid_ = -1;
   std::unique_ptr<Channel> channel_;
-  const NoteFile note_;
+  const NoteFile note_{kWorkerNote + 1};
   std::thread listener_;
   std::mutex mutex_;
   std::string last_lines_;
@@ -86,9 +89,6 @@ class LocalHost : public WorkerHost {
   const int width_;
   const double memory_;
 };
-
-/// Descriptors that a worker is born with.
-inline constexpr int kWorkerChannel = 3, kWorkerNote = 4;
 
 /// The life of a worker. It opens the study that it is sent. Then it does what it is asked to, case by case, until the
 /// other end of its channel closes. What cases keep and look for is the coordinator's. Returns its exit code; ends the
