@@ -93,6 +93,9 @@ std::vector<Subject<Interface>> subjects_of(const Entry<Interface>& entry) {
   return subjects;
 }
 
+/// A failure with the sentences of one in `before` says whose they are.
+void name_equal_failure(const std::vector<CheckResult>& before, CheckResult& result);
+
 /// A check of one kind of method.
 template <class Interface>
 struct Check {
@@ -100,7 +103,8 @@ struct Check {
   Verdict (*of)(const Subject<Interface>& subject);
 };
 
-/// Runs all checks of a kind, each over all parameter values. One that does not come to an end is the last.
+/// Runs all checks of a kind, each over all parameter values. One that does not come to an end is the last. A failure
+/// with the words of an earlier one names that check alone.
 template <class Interface>
 std::vector<CheckResult> run_checks(const std::vector<Check<Interface>>& checks, const Entry<Interface>& entry,
                                     const Isolation& isolation) {
@@ -111,7 +115,9 @@ std::vector<CheckResult> run_checks(const std::vector<Check<Interface>>& checks,
     for (const Subject<Interface>& subject : subjects)
       trials.push_back({subject.set.text, [&check, &subject] { return check.of(subject); }});
     bool hangs = false;
-    results.push_back(run_check(check.name, trials, isolation, &hangs));
+    CheckResult result = run_check(check.name, trials, isolation, &hangs);
+    name_equal_failure(results, result);
+    results.push_back(std::move(result));
     if (hangs) break;
   }
   return results;

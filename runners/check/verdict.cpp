@@ -115,6 +115,15 @@ CheckResult run_check(const std::string& name, const std::vector<Trial>& trials,
   return result;
 }
 
+void name_equal_failure(const std::vector<CheckResult>& before, CheckResult& result) {
+  if (result.finding != Finding::fails) return;
+  for (const CheckResult& one : before)
+    if (one.finding == Finding::fails && one.sentences == result.sentences) {
+      result.sentences = {fmt::format("as in the check \"{}\"", one.check)};
+      return;
+    }
+}
+
 namespace {
 
 using Type = ParameterSpec::Type;

@@ -279,14 +279,14 @@ std::vector<Role> roles_asked(const Arguments& arguments) {
 
 }  // namespace
 
-Role role_called(const std::string& word) {
-  std::vector<std::string> names;
+Role role_called(const std::string& word, std::vector<std::string> others) {
+  std::vector<std::string> names = std::move(others);
   for (const Role role : all_roles) {
     if (word == role_name(role)) return role;
     names.emplace_back(role_name(role));
   }
-  throw UsageError("there is no role \"" + word + "\"" + did_you_mean(word, names) + " (roles: " + quoted_list(names) +
-                   ")");
+  throw UsageError("there is no role \"" + word + "\"" + did_you_mean(word, names) +
+                   " (expected: " + quoted_list(names) + ")");
 }
 
 int command_list(const Arguments& arguments, std::ostream& out) {

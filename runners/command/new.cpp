@@ -158,7 +158,7 @@ std::string called(const fs::path& program) {
 int command_new(const Arguments& arguments, std::ostream& out) {
   const std::string& word = arguments.operands[0];
   const bool plan = word == plan_word;
-  const Wish wish{word, plan ? Role::time : role_called(word), arguments.operands[1],
+  const Wish wish{word, plan ? Role::time : role_called(word, {plan_word}), arguments.operands[1],
                   fs::read_symlink("/proc/self/exe")};
   check_name(wish, arguments);
   const Example example = example_of(wish.word);
