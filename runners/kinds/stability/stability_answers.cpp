@@ -311,7 +311,7 @@ void StepLimits::say_marches(say::Answer& answer) const {
   one.unit = "limits";
   one.status = agree == both ? "confirmed" : "confirmed in part";
   if (agree == both) {
-    answer.say(fmt::format("Marching confirms all {} limits, to {}.", both, percent(worst)), one);
+    answer.say(fmt::format("Marching confirms all {} predicted limits, to {}.", both, percent(worst)), one);
     return;
   }
   Sentence said{fmt::format("Marching confirms {} of {} limits{}; contacts that open and close have the others at {} "
