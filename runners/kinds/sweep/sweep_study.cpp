@@ -277,7 +277,8 @@ bool any_place(const std::vector<GridAxis>& axes, std::size_t most, const PlaceV
   if (across == 1) return any(spread(along, most), {0});
   const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(most) / 2));
   constexpr std::size_t lines = 3;
-  return any(spread(along, side), spread(across, side)) || any(spread(along, most / 4 / lines), spread(across, lines)) ||
+  return any(spread(along, side), spread(across, side)) ||
+         any(spread(along, most / 4 / lines), spread(across, lines)) ||
          any(spread(along, lines), spread(across, most / 4 / lines));
 }
 
@@ -340,6 +341,7 @@ void check_values(const Study& study) {
   std::set<std::string> seen;
   std::optional<InputError> first;
   bool same = true, any = false, possible = false, unforced = false;
+  double places = 0, looked = 0;  // of cases that differ
   // Of very many cases some, evenly.
   constexpr std::size_t most_cases = 1000;
   const std::vector<std::size_t> looked_at = spread(study.cases.size(), most_cases);
@@ -356,7 +358,11 @@ void check_values(const Study& study) {
       if (!role_of(axis.pointer).empty()) key += one.mass.name + " " + one.contact.name + " " + one.time.name;
     if (!seen.insert(key).second) continue;
     const StudyCase started = as_it_starts(one);
+    double grid = 1;
+    for (const GridAxis& axis : axes) grid *= static_cast<double>(axis.values.size());
+    places += grid;
     const bool runs = any_place(axes, most, [&](const std::vector<std::pair<std::string, double>>& place) {
+      ++looked;
       try {
         const StudyCase at = with_parameters(started, place);
         possible = true;
@@ -376,8 +382,14 @@ void check_values(const Study& study) {
                      "a strobe reads once per forcing period, and nothing is forced at any value (amplitude 0); "
                      "expected a forcing, or the section \"impact\" or \"extremum\"");
   if (possible || !first) return;
-  throw InputError(first->pointer(), same ? std::string(first->what())
-                                          : fmt::format("no value is possible; the first: {}", first->what()));
+  throw InputError(
+      first->pointer(),
+      same ? std::string(first->what())
+           : fmt::format("{}; the first: {}",
+                         looked < places ? fmt::format("none of {:.0f} values, taken evenly among {:.0f}, is possible",
+                                                       looked, places)
+                                         : "no value is possible",
+                         first->what()));
 }
 
 }  // namespace ricochet
