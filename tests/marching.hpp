@@ -87,7 +87,7 @@ inline ProgramOrRefusal compiled(const std::shared_ptr<const SemiDiscrete>& prob
 inline Marcher marcher(const SceneSpec& scene, int elements, const Methods& methods, double h,
                        const CompileOptions& options = {}, const Lanes& lanes = one_lane) {
   auto program = compiled(problem_of(scene, elements, methods.mass, methods.contact), methods, h, options, lanes);
-  INFO((std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence : ""));
+  INFO((std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence.text : ""));
   REQUIRE(std::holds_alternative<Program>(program));
   return Marcher(std::move(std::get<Program>(program)));
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <ricochet/contract/said.hpp>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -22,7 +23,7 @@ class InputError : public std::runtime_error {
 /// A combination of methods that does not apply, as a value: one sentence a person can act on.
 /// It becomes a row of the table with status `refused`, never a crash and never a changed parameter.
 struct Refusal {
-  std::string sentence;
+  Said sentence;
 };
 
 /// A plugin that is missing or does not fit (exit code 4); the message names the file.

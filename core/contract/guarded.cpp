@@ -41,9 +41,11 @@ decltype(auto) ask(const PluginIdentity& plugin, const char* function, Question&
 }
 
 void check_refusal(const PluginIdentity& plugin, const char* function, Refusal& refusal) {
-  if (refusal.sentence.find_first_not_of(" \t\r\n") == std::string::npos)
+  if (refusal.sentence.text.find_first_not_of(" \t\r\n") == std::string::npos)
     throw PluginFault(plugin, function, "refuses without a sentence");
-  refusal.sentence = cut_short(refusal.sentence);
+  Said& sentence = refusal.sentence;
+  sentence.text = cut_short(sentence.text);
+  std::erase_if(sentence.marks, [&](const Mark& mark) { return mark.begin + mark.size > sentence.text.size(); });
 }
 
 /// What every guard holds. The identity is shared: objects may outlive the registry that made them.

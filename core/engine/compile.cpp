@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/contract/momentum_weights.hpp>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/indefinite_step.hpp>
@@ -89,8 +90,8 @@ std::optional<Refusal> read_impulse(StageProgram& program, const Stage& stage, c
   program.rate_reach = base.z != 0 ? rate.z / base.z : base.w != 0 ? rate.w / base.w : 0.0;
   auto made = definite_operator(whole, R, 1, "R of an impulse", stage.impulse->R);
   if (const auto* refusal = std::get_if<Refusal>(&made))
-    return Refusal{"the scheme's impulse has no solution (" + refusal->sentence +
-                   "): use a regular mass, or a scheme without impulse"};
+    return Refusal{said("the scheme's impulse has no solution ({}): use a regular mass, or a scheme without impulse",
+                        refusal->sentence)};
   impulse.op = std::move(std::get<std::unique_ptr<StageOperator>>(made));
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
@@ -70,14 +71,14 @@ std::optional<Refusal> refuse_restitution(const Program& program) {
   for (const Stage& stage : program.plan.stages) gate = gate || (stage.impact && stage.impact->gate);
   if (gate && program.tangents > 0)
     return Refusal{
-        fmt::format("stop {} has a restitution of its own, and tangents know one for all stops: exponents "
-                    "are those of twins",
-                    name)};
+        said("stop {} has a restitution of its own, and tangents know one for all stops: exponents "
+             "are those of twins",
+             name)};
   if (gate || program.plan.facts.restitution == Restitution::ignored) return std::nullopt;
   return Refusal{
-      fmt::format("the time scheme has one restitution in its step: leave restitution of stop {} out, or use a "
-                  "scheme that closes contact by velocities",
-                  name)};
+      said("the time scheme has one restitution in its step: leave restitution of stop {} out, or use a "
+           "scheme that closes contact by velocities",
+           name)};
 }
 
 // What stops have of their own that neither law nor scheme has a use for.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/scene/basis/modal_basis.hpp>
 #include <ricochet/scene/block_matrices.hpp>
 #include <ricochet/scene/bodies.hpp>
@@ -122,7 +123,7 @@ InertiaOrRefusal join_masses(const JoinedBodies& bodies, const SemiDiscrete& pro
     }
     InertiaOrRefusal built = build(one);
     if (const auto* refusal = std::get_if<Refusal>(&built))
-      return Refusal{fmt::format("body {}: {}", bodies.all[b].name, refusal->sentence)};
+      return Refusal{said("body {}: {}", bodies.all[b].name, refusal->sentence)};
     masses.push_back(std::get<Inertia>(std::move(built)));
   }
   const auto assembled = [](const Inertia& one) { return one.assembled(); };
@@ -130,9 +131,9 @@ InertiaOrRefusal join_masses(const JoinedBodies& bodies, const SemiDiscrete& pro
     for (std::size_t b = 0; b < masses.size(); ++b)
       if (masses[b].assembled() && masses[b].kernel_dimension > 0)
         return Refusal{
-            fmt::format("body {}: its mass is singular and those of other bodies are not kept as matrices: use "
-                        "the mass consistent",
-                        bodies.all[b].name)};
+            said("body {}: its mass is singular and those of other bodies are not kept as matrices: use "
+                 "the mass consistent",
+                 bodies.all[b].name)};
   return join_inertias(masses, unknowns_of(bodies, problem),
                        problem.basis ? problem.basis->dofs() : problem.space.dofs);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/coincident_stops.hpp>
@@ -114,7 +115,7 @@ std::optional<Refusal> keep_nearest_bounds(SemiDiscrete& problem) {
       if (side->size() < 2) continue;
       const Bound &first = (*side)[0], &second = (*side)[1];
       if (close(first.value, second.value))
-        return Refusal{fmt::format(
+        return Refusal{ricochet::said(
             "stops {} and {} have one bound at one place, and a rigid law knows only the sum of their forces: keep one "
             "of them, or use a compliant law",
             name(first), name(second))};

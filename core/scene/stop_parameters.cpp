@@ -1,7 +1,6 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/scene/stop_parameters.hpp>
 
 namespace ricochet {
@@ -87,9 +86,9 @@ std::optional<Refusal> refuse_own(const ContactLaw& law, const OwnParameters& st
   for (const UnusedParameter& unused : unused_by(law, stops)) {
     if (!unused.wrong) continue;
     const bool one_set = !law.per_point();
-    return Refusal{fmt::format("the contact law has {}: leave {} of stop {} out",
-                               one_set ? "one set of parameters for all stops" : "no stiffness in N/m",
-                               role_word(unused.role), names[static_cast<std::size_t>(unused.point)])};
+    return Refusal{said("the contact law has {}: leave {} of stop {} out",
+                        one_set ? "one set of parameters for all stops" : "no stiffness in N/m", role_word(unused.role),
+                        names[static_cast<std::size_t>(unused.point)])};
   }
   return std::nullopt;
 }

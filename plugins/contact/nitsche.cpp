@@ -1,8 +1,7 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <ricochet/contract/contact_law.hpp>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
 #include <vector>
 
@@ -62,18 +61,18 @@ class Nitsche final : public PointwiseContact {
   std::optional<Refusal> prepare_problem(ContactStructure& structure) override {
     if (theta_ != 1)
       return Refusal{
-          fmt::format("theta = {} makes the contact problem nonsymmetric, G S⁻¹ Hᵀ, and its points cannot be solved as "
-                      "the minimum that all laws are: take theta = 1",
-                      theta_)};
+          said("theta = {} makes the contact problem nonsymmetric, G S⁻¹ Hᵀ, and its points cannot be solved as "
+               "the minimum that all laws are: take theta = 1",
+               theta_)};
     if (structure.space->elements.empty())
       return Refusal{"an oscillator has no elements that could report a reaction at its stop: take a penalty"};
     const SparseRows& H = *structure.contact;
     for (Eigen::Index i = 0; i < H.rows(); ++i)
       if (!stands_at_node(H, i))
         return Refusal{
-            fmt::format("contact point {} of {} lies within an element, where the elements report no "
-                        "reaction: put the stops at nodes of the mesh",
-                        i + 1, H.rows())};
+            said("contact point {} of {} lies within an element, where the elements report no "
+                 "reaction: put the stops at nodes of the mesh",
+                 i + 1, H.rows())};
     if (share_a_node(H))
       return Refusal{
           "two stops stand at one node, where the elements report one reaction: keep one of them, or use a penalty"};
@@ -81,10 +80,10 @@ class Nitsche final : public PointwiseContact {
     const SparseRows s = H * structure.stiffness;
     const double limit = coercivity_limit(s * H.transpose(), kappa);
     if (!(kappa > limit))
-      return Refusal{fmt::format(
-          "gamma0 = {:g} leaves the structure a stiffness that is not positive: with {} contact point{} the "
-          "limit is {:.6g}, take a larger one",
-          gamma_, H.rows(), H.rows() == 1 ? "" : "s", limit / scale)};
+      return Refusal{
+          said("gamma0 = {:g} leaves the structure a stiffness that is not positive: with {} contact point{} the "
+               "limit is {:.6g}, take a larger one",
+               gamma_, H.rows(), H.rows() == 1 ? "" : "s", limit / scale)};
     structure.measured = H - s * (1 / kappa);
     const SparseMatrix soft = SparseMatrix(s.transpose()) * SparseMatrix(s);
     structure.stiffness = structure.stiffness - soft * (1 / kappa);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numeric>
 #include <ricochet/contract/plugin.hpp>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
 #include <vector>
@@ -210,8 +211,8 @@ class OfTheEnds : public MassStrategy {
     const auto count = static_cast<int>(space.elements.size());
     // Both neighbours of an end must be free nodes, and not those of the other end.
     if (count < 2 * free_ends + 1)
-      return Refusal{"the mass of a free end needs two further free nodes to go to: use at least " +
-                     std::to_string(2 * free_ends + 1) + " elements"};
+      return Refusal{said("the mass of a free end needs two further free nodes to go to: use at least {} elements",
+                          2 * free_ends + 1)};
     Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(space.dofs);
     for (const auto& element : space.elements)
       for (int a = 0; a < 2; ++a)

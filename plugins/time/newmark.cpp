@@ -1,6 +1,5 @@
-#include <fmt/format.h>
-
 #include <cmath>
+#include <ricochet/contract/said_format.hpp>
 
 #include "alpha_method.hpp"
 
@@ -21,9 +20,9 @@ PlanOrRefusal newmark(const Parameters& p, double h, const ProblemFacts& facts) 
   const bool unconditional = 2 * beta >= gamma, damps = gamma != 0.5;
   if (facts.mass_kernel_dimension > 0 && !unconditional)
     return Refusal{
-        fmt::format("beta = {:g} < gamma/2 = {:g} makes the kernel of a singular mass diverge at any step: "
-                    "use beta ≥ gamma/2",
-                    beta, gamma / 2)};
+        said("beta = {:g} < gamma/2 = {:g} makes the kernel of a singular mass diverge at any step: "
+             "use beta ≥ gamma/2",
+             beta, gamma / 2)};
   const auto [q, v, a] = slots<3>();
   const AlphaMethod method = AlphaMethod::newmark(beta, gamma);
   StepPlan plan = method.plan(h, facts);

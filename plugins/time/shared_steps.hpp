@@ -1,9 +1,8 @@
 #pragma once
-#include <fmt/format.h>
-
 #include <array>
 #include <cmath>
 #include <ricochet/contract/plugin.hpp>
+#include <ricochet/contract/said_format.hpp>
 #include <string_view>
 
 /// \file
@@ -23,7 +22,7 @@ inline StepPlan plan_with(std::vector<std::string> slots) {
 
 /// The refusal of a singular mass by schemes that have `what` of contact points as a state.
 inline Refusal needs_mass(std::string_view what, std::string_view remedy = "use a lumped mass, or an implicit scheme") {
-  return Refusal{fmt::format("{} needs the inverse of the mass, which is singular here: {}", what, remedy)};
+  return Refusal{said("{} needs the inverse of the mass, which is singular here: {}", what, remedy)};
 }
 
 /// e of Newton's law v⁺ = −e v⁻, from 0 to 1.

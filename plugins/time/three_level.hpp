@@ -1,7 +1,6 @@
 #pragma once
-#include <fmt/format.h>
-
 #include <cmath>
+#include <ricochet/contract/said_format.hpp>
 
 #include "shared_steps.hpp"
 
@@ -27,9 +26,9 @@ struct ThreeLevel {
           "beta = 0 leaves S singular on the kernel of a singular mass: use beta ≥ 0.25 of newmark-dumont-paoli"};
     if (facts.mass_kernel_dimension > 0 && beta < 0.25)
       return Refusal{
-          fmt::format("beta = {:g} < 0.25 makes the kernel of a singular mass diverge at any step (roots of βr² + "
-                      "(1−2β)r + β outside the unit circle). Use beta ≥ 0.25 of newmark-dumont-paoli",
-                      beta)};
+          said("beta = {:g} < 0.25 makes the kernel of a singular mass diverge at any step (roots of βr² + "
+               "(1−2β)r + β outside the unit circle). Use beta ≥ 0.25 of newmark-dumont-paoli",
+               beta)};
     const auto [q, d] = slots<2>();
     StepPlan plan;
     plan.slots = {"q", "d"};

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <regex>
 #include <set>
 #include <string_view>
 
@@ -15,65 +14,26 @@ namespace {
 
 constexpr std::size_t longest_reason = 160;
 
-/// A reason, without what holds for one of its cases alone.
+/// A reason of several cases; "…" stands for numbers in which they differ.
 struct Reason {
-  std::string text;
-  std::vector<std::string> numbers;  ///< in it; "…" where cases differ in one
+  Said said;
   Cases cases;
 };
-constexpr char number_here = '\x1f';
 
-std::string general(const std::string& reason) {
-  const std::string own = "excluded: ";
-  const std::size_t from = reason.starts_with(own) ? own.size() : 0, to = reason.find("; for this case alone");
-  return reason.substr(from, to == std::string::npos ? to : to - from);
+Said in_common(const Said& a, const Said& b) {
+  std::vector<std::string> numbers;
+  for (std::size_t k = 0; k < a.marks.size(); ++k) numbers.push_back(a.number(k) == b.number(k) ? a.number(k) : "…");
+  return a.with_numbers(numbers);
 }
 
-bool digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
-/// A text in parts: what stands between its numbers, and these.
-std::pair<std::string, std::vector<std::string>> numbers_apart(const std::string& text) {
-  std::pair<std::string, std::vector<std::string>> out;
-  const auto digit_at = [&](std::size_t k) { return k < text.size() && digit(text[k]); };
-  for (std::size_t at = 0; at < text.size();) {
-    std::size_t end = at;
-    while (digit_at(end) || (end > at && end < text.size() && text[end] == '.' && digit_at(end + 1))) ++end;
-    if (end > at && end < text.size() && text[end] == 'e') {
-      const std::size_t sign = end + 1 < text.size() && (text[end + 1] == '-' || text[end + 1] == '+') ? 1 : 0;
-      if (digit_at(end + 1 + sign))
-        for (end += 1 + sign; digit_at(end);) ++end;
-    }
-    if (end == at) {
-      out.first += text[at++];
-      continue;
-    }
-    out.first += number_here;
-    out.second.push_back(text.substr(at, end - at));
-    at = end;
-  }
-  return out;
-}
-
-/// Reasons by how many cases they stop. `alike`: reasons that differ in numbers alone are one, which says "…" for them.
+/// Reasons by how many cases they stop. `alike`: reasons that differ in numbers alone are one.
 std::vector<Reason> reasons_of(const Cases& cases, bool alike) {
   InOrderMet<std::string, Reason> groups;
   for (const CaseRecord* record : cases) {
-    const std::string reason = general(record->reason);
-    if (reason.empty()) continue;
-    const auto [between, numbers] = numbers_apart(reason);
-    Reason& one = groups[alike ? between : reason];
-    if (one.cases.empty()) one.numbers = numbers;
-    for (std::size_t k = 0; k < numbers.size(); ++k)
-      if (one.numbers[k] != numbers[k]) one.numbers[k] = "…";
-    std::size_t k = 0;
-    one.text.clear();
-    for (const char c : between)
-      if (c == number_here)
-        one.text += one.numbers[k++];
-      else
-        one.text += c;
+    if (record->reasons.empty()) continue;
+    const Said& reason = record->reasons.front();
+    Reason& one = groups[alike ? reason.without_numbers() : reason.text];
+    one.said = one.cases.empty() || !alike ? reason : in_common(one.said, reason);
     one.cases.push_back(record);
   }
   std::vector<Reason> out;
@@ -185,27 +145,17 @@ Sentence told_of(const Compared& study, const Listed& methods, const SetNames& n
   return {text, {status_clause(how.first, who, some.size(), total)}};
 }
 
-/// A sentence without its numbers, lists of them being one: doubts of one kind are alike.
-std::string without_numbers(const std::string& text) {
-  static const std::regex number(R"([-+]?[0-9][0-9.]*(e[-+]?[0-9]+)?)"), list(R"(#(( to |, )#)+)"), more(" and # more");
-  return std::regex_replace(std::regex_replace(std::regex_replace(text, number, "#"), list, "#"), more, "");
-}
-
 }  // namespace
 
 std::vector<Doubt> doubts_of(const StudyResults& results) {
   InOrderMet<std::string, Doubt> kinds;
-  constexpr std::string_view between = "; ";
   for (const CaseRecord& record : results.cases) {
     if (record.partial || record.status != "done") continue;
-    for (std::size_t begin = 0; begin < record.reason.size();) {
-      const std::size_t end = std::min(record.reason.find(between, begin), record.reason.size());
-      const std::string text = record.reason.substr(begin, end - begin);
-      Doubt& one = kinds[without_numbers(text)];
-      if (one.cases.empty()) one.text = text;
-      one.differs = one.differs || text != one.text;
+    for (const Said& doubt : record.reasons) {
+      Doubt& one = kinds[doubt.without_numbers()];
+      if (one.cases.empty()) one.text = doubt.text;
+      one.differs = one.differs || doubt.text != one.text;
       one.cases.push_back(&record);
-      begin = end + between.size();
     }
   }
   std::vector<Doubt> out;
@@ -256,20 +206,20 @@ std::vector<Sentence> ended(const Compared& study) {
     const bool together = named(cases) && std::any_of(reasons.begin(), reasons.end(),
                                                       [&](const Reason& one) { return !named(one.cases); });
     if (refused && reasons.size() > 1 && together) {
-      say(cases, shortened(reasons.front().text) + fmt::format(" ({} of these; {} other reason{})",
-                                                               reasons.front().cases.size(), reasons.size() - 1,
-                                                               reasons.size() == 2 ? "" : "s"));
+      say(cases, shortened(reasons.front().said.text) + fmt::format(" ({} of these; {} other reason{})",
+                                                                    reasons.front().cases.size(), reasons.size() - 1,
+                                                                    reasons.size() == 2 ? "" : "s"));
       continue;
     }
     if (!refused || reasons.size() < 2) {
       const bool shared = !reasons.empty() && (reasons.front().cases.size() > 1 || cases.size() == 1);
-      say(cases, shared ? shortened(reasons.front().text) : "");
+      say(cases, shared ? shortened(reasons.front().said.text) : "");
       continue;
     }
     const std::size_t most = reasons.size() <= all_told ? all_told : told;
     std::size_t left = cases.size();
     for (std::size_t k = 0; k < std::min(most, reasons.size()); ++k) {
-      say(reasons[k].cases, shortened(reasons[k].text));
+      say(reasons[k].cases, shortened(reasons[k].said.text));
       left -= reasons[k].cases.size();
     }
     if (left > 0)
@@ -317,7 +267,7 @@ std::vector<Sentence> status(const Compared& study) {
   // By reason, without what a colon explains.
   InOrderMet<std::string, Cases> reasons;
   for (const CaseRecord* record : refused) {
-    const std::string reason = general(record->reason);
+    const std::string reason = record->reasons.empty() ? "" : record->reasons.front().text;
     reasons[reason.substr(0, reason.find(": "))].push_back(record);
   }
   std::vector<std::pair<std::string, Cases>> by_size = reasons.list();

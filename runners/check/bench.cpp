@@ -101,7 +101,7 @@ SceneSpec structure_scene(const StructureBench& bench) {
 
 ProblemPointer discretised(const SceneSpec& scene, int elements, const MassStrategy& mass, ContactLaw* law) {
   auto made = discretise(scene, elements, mass, law);
-  if (auto* refusal = std::get_if<Refusal>(&made)) throw Refused{refusal->sentence};
+  if (auto* refusal = std::get_if<Refusal>(&made)) throw Refused{refusal->sentence.text};
   return std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(made)));
 }
 ProblemPointer discretised(const SceneSpec& scene, int elements) {
@@ -134,7 +134,7 @@ PlanOrRefusal ask_plan(const Scheme& scheme, double h, const ProblemFacts& facts
 
 StepPlan plan_of(const Scheme& scheme, double h, const ProblemFacts& facts) {
   PlanOrRefusal answer = ask_plan(scheme, h, facts);
-  if (auto* refusal = std::get_if<Refusal>(&answer)) throw Refused{refusal->sentence};
+  if (auto* refusal = std::get_if<Refusal>(&answer)) throw Refused{refusal->sentence.text};
   return std::move(std::get<StepPlan>(answer));
 }
 
@@ -145,7 +145,7 @@ Marcher marcher_of(const ProblemPointer& problem, StepPlan plan, double h, std::
   CompileOptions options;
   options.kind = kind;
   auto program = compile(problem, std::move(plan), h, std::move(law), std::move(lanes), options);
-  if (auto* refusal = std::get_if<Refusal>(&program)) throw std::runtime_error(refusal->sentence);
+  if (auto* refusal = std::get_if<Refusal>(&program)) throw std::runtime_error(refusal->sentence.text);
   return Marcher(std::move(std::get<Program>(program)));
 }
 

@@ -128,7 +128,7 @@ Verdict some_scene_is_accepted(const Reference& reference) {
   for (const ReferenceScene& scene : reference_scenes()) {
     const ReferenceOrRefusal answer = solved(reference, scene);
     if (const auto* refusal = std::get_if<Refusal>(&answer)) {
-      last = refusal->sentence;
+      last = refusal->sentence.text;
       if (std::string poor = poor_refusal(last, reference.entry->manual); !poor.empty())
         return fails(scene.name + ": " + poor);
     } else {

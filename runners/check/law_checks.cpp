@@ -57,7 +57,7 @@ Verdict changed_problem_is_sound(const Law& law) {
     const auto first = law.make(), other = law.make();
     auto made = discretise(one.scene, one.elements, *consistent_bench_mass(), first.get());
     if (const auto* refusal = std::get_if<Refusal>(&made)) {
-      refused = refusal->sentence;
+      refused = refusal->sentence.text;
       if (const std::string poor = poor_refusal(refused, law.entry->manual); !poor.empty())
         return fails(fmt::format("on {}: {}", one.name, poor));
       continue;

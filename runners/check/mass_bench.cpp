@@ -97,7 +97,7 @@ InertiaOrRefusal ask_mass(const Mass& mass, const FiniteElementSpace& space) {
 
 Inertia built(const Mass& mass, const FiniteElementSpace& space) {
   InertiaOrRefusal answer = ask_mass(mass, space);
-  if (auto* refusal = std::get_if<Refusal>(&answer)) throw Refused{refusal->sentence};
+  if (auto* refusal = std::get_if<Refusal>(&answer)) throw Refused{refusal->sentence.text};
   return std::get<Inertia>(std::move(answer));
 }
 

@@ -67,13 +67,13 @@ Verdict some_structure_is_accepted(const Mass& mass) {
               ++taken;
               continue;
             }
-            last = refusal->sentence;
+            last = refusal->sentence.text;
             if (std::string poor = poor_refusal(last, mass.entry->manual); !poor.empty())
               return fails(space_text(bench) + ": " + poor);
           }
   const InertiaOrRefusal oscillator = ask_mass(mass, oscillator_space());
   if (const auto* refusal = std::get_if<Refusal>(&oscillator)) {
-    if (std::string poor = poor_refusal(refusal->sentence, mass.entry->manual); !poor.empty())
+    if (std::string poor = poor_refusal(refusal->sentence.text, mass.entry->manual); !poor.empty())
       return fails("an oscillator: " + poor);
   } else {
     const Eigen::MatrixXd M = dense(std::get<Inertia>(oscillator), oscillator_space());

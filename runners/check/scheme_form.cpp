@@ -134,9 +134,9 @@ Verdict refusals_name_cause(const Scheme& scheme) {
       const auto* refusal = std::get_if<Refusal>(&answer);
       if (!refusal) continue;
       ++refused;
-      if (std::string poor = poor_refusal(refusal->sentence, scheme.entry->manual); !poor.empty())
+      if (std::string poor = poor_refusal(refusal->sentence.text, scheme.entry->manual); !poor.empty())
         return fails(facts_text(facts) + ": " + poor);
-      last = refusal->sentence;
+      last = refusal->sentence.text;
     }
   if (refused == 0) return not_applicable("nothing is refused with these values");
   return fine(last);
@@ -152,7 +152,7 @@ Verdict singular_mass_as_declared(const Scheme& scheme) {
   }
   if (const auto* refusal = std::get_if<Refusal>(&answer))
     return fails("declares that the mass may be singular, yet refuses a kernel of dimension 3 with contact: \"" +
-                 refusal->sentence + "\"");
+                 refusal->sentence.text + "\"");
   // A bar whose free end has no mass is thrown at a stop.
   const ProblemPointer bar = discretised(structure_scene({.stops = true}), 6, *massless_ends());
   const double h = sound_step(scheme, *bar, 1.0 / 200);

@@ -101,7 +101,7 @@ int print_again(const OpenCase& open, const StoredStudy& stored, const StudyCase
   const CaseRecord again = run_again(open, stored, study_case, stop);
   out << fmt::format("case {} of {} ({})\n", open.record.id, open.results.name, open.results.kind)
       << parameters_text(open.record) << "\n"
-      << again.status << (again.reason.empty() ? "" : ": " + again.reason)
+      << again.status << (again.reasons.empty() ? "" : ": " + again.reason())
       << (again.steps > 0 ? fmt::format(", {} steps", again.steps) : "");
   if (const std::string outcome = again.status == "done" ? open.kind->outcome(again) : ""; !outcome.empty())
     out << ": " << outcome;
@@ -123,9 +123,9 @@ int print_curve(const OpenCase& open, const StoredStudy& stored, StudyCase study
   const CaseRecord again = open.kind->march(study_case, stored.registry, stop);
   if (again.curve.columns.empty() || again.curve.columns.front().empty())
     throw PointRefused(fmt::format("this case leaves no curve: it is {}{}", again.status,
-                                   again.reason.empty() ? "" : ", " + again.reason));
+                                   again.reasons.empty() ? "" : ", " + again.reason()));
   out << curve_csv(again.curve);
-  std::cerr << again.status << (again.reason.empty() ? "" : ": " + again.reason)
+  std::cerr << again.status << (again.reasons.empty() ? "" : ": " + again.reason())
             << (samples > again.steps ? fmt::format("; it takes {} steps, and has no more samples", again.steps) : "")
             << "\n";
   return exit_done;
@@ -143,7 +143,7 @@ int keep_snapshots(const OpenCase& open, const StoredStudy& stored, StudyCase st
   const NumberTable* table = find_table(again.numbers, snapshots_name);
   if (!table)
     throw PointRefused(fmt::format("this case leaves no snapshots: it is {}{}", again.status,
-                                   again.reason.empty() ? "" : ", " + again.reason));
+                                   again.reasons.empty() ? "" : ", " + again.reason()));
   keep_numbers(open.folder, open.record.id, *table);
   const Snapshots kept = snapshots_of(*table).value();
   out << fmt::format("kept beside the case {}: {} instants at {} places, {} forces; `ricochet report {}` shows them\n",

@@ -85,7 +85,7 @@ std::string facts_of(const PluginManual& manual, const TimeScheme& scheme) {
   out << fmt::format("facts of {} with its default parameters, h = {} s, a regular mass, damping and contact:\n",
                      manual.name, step);
   if (const auto* refusal = std::get_if<Refusal>(&answer)) {
-    out << "  refused: " << refusal->sentence << "\n";
+    out << "  refused: " << refusal->sentence.text << "\n";
     return out.str();
   }
   const auto& plan = std::get<StepPlan>(answer);
@@ -112,7 +112,7 @@ std::string facts_of(const PluginManual& manual, const MassStrategy& mass) {
     const FiniteElementSpace space = make_space(structure, elements);
     const InertiaOrRefusal answer = mass.build(space);
     if (const auto* refusal = std::get_if<Refusal>(&answer)) {
-      text += "  " + space.structure + ": refused: " + refusal->sentence + "\n";
+      text += "  " + space.structure + ": refused: " + refusal->sentence.text + "\n";
       continue;
     }
     const auto& inertia = std::get<Inertia>(answer);

@@ -90,10 +90,10 @@ std::vector<std::string> standing_measures(const std::string& kind) {
 
 CaseRecord run_guarded(const CaseRunner& cases, const StudyCase& study_case, const std::atomic<bool>& stop) {
   CaseRecord record;
-  const auto fail = [&](std::string reason) {
+  const auto fail = [&](Said reason) {
     record = CaseRecord{};
     record.status = "failed";
-    record.reason = std::move(reason);
+    record.reasons = {std::move(reason)};
   };
   try {
     record = cases.run(study_case, stop);

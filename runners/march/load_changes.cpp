@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/whole_load.hpp>
 #include <set>
@@ -51,26 +52,27 @@ void GapWatch::update(const Marcher& marcher, double penetration) {
   times_ = std::max(times_, most);
 }
 
-std::string GapWatch::passed() const {
-  if (times_ == 0) return "";
-  return fmt::format("a point passes its stop by more than the gap, up to {:.3g} times, first at t = {:.9g} s", times_,
-                     first_);
+Said GapWatch::passed() const {
+  if (times_ == 0) return {};
+  return said("a point passes its stop by more than the gap, up to {:.3g} times, first at t = {:.9g} s", times_,
+              first_);
 }
 
-std::string GapWatch::crossed(const Marcher& marcher, const ImpactRecorder& recorder) {
+Said GapWatch::crossed(const Marcher& marcher, const ImpactRecorder& recorder) {
   const double h = marcher.program().h;
   constexpr double round_off = 1e-9;  // a point that a rigid law takes from stop to stop moves by the gap itself
   double most = 0;
   for (int j = 0; j < points_of(marcher); ++j)
     for (const StopSide side : {StopSide::lower, StopSide::upper})
       most = std::max(most, recorder.totals(0, j, side).fastest * h / gap_of(marcher, j));
-  if (!(most >= 1 - round_off)) return "";
+  if (!(most >= 1 - round_off)) return {};
   const auto crosses = [&](const Impact& impact) {
     return impact.speed_in * h >= (1 - round_off) * gap_of(marcher, impact.point);
   };
   const auto first = std::find_if(recorder.impacts(0).begin(), recorder.impacts(0).end(), crosses);
-  return fmt::format("a step of {:g} s takes a point further than the gap, {:.3g} times as far{}", h, most,
-                     first == recorder.impacts(0).end() ? "" : fmt::format(", first at t = {:.9g} s", first->time));
+  Said doubt = said("a step of {:g} s takes a point further than the gap, {:.3g} times as far", h, most);
+  if (first != recorder.impacts(0).end()) doubt += said(", first at t = {:.9g} s", first->time);
+  return doubt;
 }
 
 namespace {
@@ -242,17 +244,18 @@ class SignalSampler {
   std::vector<Seen> seen_;
 };
 
-std::string some_of(const std::vector<std::string>& times) {
+Said some_of(const std::vector<std::string>& times) {
   const std::size_t count = std::min(times.size(), most_told);
-  return fmt::format("{} s{}", fmt::join(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(count), ", "),
-                     times.size() > count ? fmt::format(" and {} more", times.size() - count) : "");
+  return as_number(fmt::format("{} s{}",
+                               fmt::join(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(count), ", "),
+                               times.size() > count ? fmt::format(" and {} more", times.size() - count) : ""));
 }
 
 }  // namespace
 
-std::vector<std::string> load_changes(const SceneSpec& shared, double step, long long steps) {
-  std::vector<std::string> said;
-  if (!shared.load.uses_t() || steps < 1) return said;
+std::vector<Said> load_changes(const SceneSpec& shared, double step, long long steps) {
+  std::vector<Said> changes;
+  if (!shared.load.uses_t() || steps < 1) return changes;
   const SceneSpec scene = shared;  // formulas keep their variables inside: evaluate our own copies
   const std::vector<Signal> signals = signals_of(scene);
   std::vector<SignalSampler> samplers;
@@ -270,13 +273,13 @@ std::vector<std::string> load_changes(const SceneSpec& shared, double step, long
     times.push_back(fmt::format("{:.9g}", last = t));
   }
   if (!times.empty())
-    said.push_back(fmt::format("the load comes and goes within a step of {:g} s, at t = {}", step, some_of(times)));
+    changes.push_back(said("the load comes and goes within a step of {:g} s, at t = {}", step, some_of(times)));
   times.clear();
   for (const long long one : jumping)
     times.push_back(
         fmt::format("{:.9g} to {:.9g}", static_cast<double>(one) * step, static_cast<double>(one + 1) * step));
-  if (!times.empty()) said.push_back(fmt::format("the load jumps within a step, at t = {}", some_of(times)));
-  return said;
+  if (!times.empty()) changes.push_back(said("the load jumps within a step, at t = {}", some_of(times)));
+  return changes;
 }
 
 namespace {

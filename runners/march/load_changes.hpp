@@ -22,8 +22,8 @@ class GapWatch {
   /// What the integration did in steps too long for its gaps, a sentence each. `crossed`: a point comes to its stop
   /// with a speed that crosses the gap in a step. `passed`: a point passes its stop by more than the gap. `recorder`:
   /// of the whole integration.
-  static std::string crossed(const Marcher& marcher, const ImpactRecorder& recorder);
-  std::string passed() const;
+  static Said crossed(const Marcher& marcher, const ImpactRecorder& recorder);
+  Said passed() const;
 
  private:
   void update(const Marcher& marcher, double penetration);
@@ -41,7 +41,7 @@ class GapWatch {
 /// Looks at a quarter of the steps, 500 to 2500 of them, spread evenly. It looks closely around the numbers that stand
 /// in the formulas, 64 of each at most. What it does not find may be there. Costs half a millisecond at most where a
 /// formula takes 100 ns. Empty where no load is a formula in t.
-std::vector<std::string> load_changes(const SceneSpec& scene, double step, long long steps);
+std::vector<Said> load_changes(const SceneSpec& scene, double step, long long steps);
 
 /// What the step of a case makes of its tables and spectra, a sentence each. Told are tables with many steps between
 /// entries, and spectra whose highest line has fewer than five steps in its period.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <ricochet/contract/plugin_call.hpp>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
 
@@ -21,8 +22,8 @@ bool explicit_step(const StepPlan& plan) {
 
 }  // namespace
 
-std::string beyond_explicit_limit(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
-                                  const std::function<PlanOrRefusal(double)>& plan_at) {
+Said beyond_explicit_limit(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
+                           const std::function<PlanOrRefusal(double)>& plan_at) {
   if (!explicit_step(plan)) return {};
   LinearLaw open;
   open.absent = true;
@@ -52,13 +53,13 @@ std::string beyond_explicit_limit(const std::shared_ptr<const SemiDiscrete>& pro
     const double middle = 0.5 * (stable + grows);
     (is_stable(middle) ? stable : grows) = middle;
   }
-  const std::string remedy =
-      stable > 0 ? fmt::format(
-                       "its largest stable step there is {:.5g} s: use a smaller step, a mass with lower highest "
-                       "frequencies, or an implicit scheme",
-                       stable)
-                 : std::string("no smaller step is stable either: use an implicit scheme");
-  return fmt::format(
+  const Said remedy = stable > 0
+                          ? said(
+                                "its largest stable step there is {:.5g} s: use a smaller step, a mass with lower "
+                                "highest frequencies, or an implicit scheme",
+                                stable)
+                          : Said("no smaller step is stable either: use an implicit scheme");
+  return said(
       "the step of {:.5g} s is beyond the limit of an explicit scheme on this structure, whose free motion grows "
       "{:.4g} times per step: {}",
       h, *radius, remedy);
@@ -218,7 +219,7 @@ CaseRecord begin_record(const StudyCase& study_case, const Prepared& prepared) {
       record.notes.push_back("every step is marched: " + prepared.program->every_step_because);
   } else {
     record.status = "refused";
-    record.reason = prepared.refusal;
+    record.reasons = {prepared.refusal};
   }
   return record;
 }
@@ -227,22 +228,22 @@ void record_early_end(CaseRecord& record, const Marcher& marcher, long long step
   const LaneStatus& status = marcher.status(0);
   if (status.running) {
     record.status = "failed";
-    record.reason = fmt::format("the budget of {:g} s was spent at step {} of {}, t = {:.6g} s", budget, marcher.step(),
-                                steps, marcher.time());
+    record.reasons = {said("the budget of {:g} s was spent at step {} of {}, t = {:.6g} s", budget, marcher.step(),
+                           steps, marcher.time())};
     return;
   }
   record.status = status.end.failed() ? "failed" : "diverged";
-  record.reason = fmt::format("step {}, t = {:.6g} s: {}", status.step, status.time, text(status.end));
+  record.reasons = {said("step {}, t = {:.6g} s: {}", status.step, status.time, text(status.end))};
   record.steps = status.step;
 }
 
-void add_doubts(CaseRecord& record, const std::vector<std::string>& sentences) {
-  for (const std::string& sentence : sentences) {
-    if (sentence.empty()) continue;
+void add_doubts(CaseRecord& record, const std::vector<Said>& doubts) {
+  for (const Said& doubt : doubts) {
+    if (doubt.empty()) continue;
     if (record.status == "done")
-      record.reason += (record.reason.empty() ? "" : "; ") + sentence;
+      record.reasons.push_back(doubt);
     else
-      record.notes.push_back(sentence);
+      record.notes.push_back(doubt.text);
   }
 }
 

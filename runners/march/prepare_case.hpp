@@ -50,14 +50,14 @@ class RunError : public std::runtime_error {
 /// spectral radius of the step, contact open, is then beyond 1. A scheme is explicit where no stage of `plan` solves
 /// with K. It names the largest stable step, found by bisection of the spectrum over plans that `plan_at` makes. ""
 /// where the step is stable, the scheme is implicit, or the structure has more dofs than modes are found of.
-std::string beyond_explicit_limit(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
-                                  const std::function<PlanOrRefusal(double)>& plan_at);
+Said beyond_explicit_limit(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
+                           const std::function<PlanOrRefusal(double)>& plan_at);
 
 /// A case made ready: its semi-discrete problem and its program, or the sentence that says why it does not apply.
 struct Prepared {
   std::shared_ptr<const SemiDiscrete> problem;
   std::optional<Program> program;
-  std::string refusal;
+  Said refusal;
   long long steps = 0;  ///< whole steps within the duration
   std::vector<std::string> notes;
   double aside_seconds = 0;  ///< processor time of looking for the limit of an explicit step: no part of the method
@@ -76,7 +76,7 @@ void record_early_end(CaseRecord& record, const Marcher& marcher, long long step
 
 /// What makes the figures of a finished case doubtful, a sentence each ("" is none): its reason where it is done, else
 /// notes.
-void add_doubts(CaseRecord& record, const std::vector<std::string>& sentences);
+void add_doubts(CaseRecord& record, const std::vector<Said>& doubts);
 
 /// The case's "march".
 MarchWay march_way(const StudyCase& study_case);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_delassus.hpp>
 #include <set>
@@ -46,11 +47,11 @@ void StruckTogether::over(double time) {
   struck_ = false;
 }
 
-std::string StruckTogether::told(const Marcher& marcher, std::optional<double> restitution) const {
+Said StruckTogether::told(const Marcher& marcher, std::optional<double> restitution) const {
   constexpr double negligible = 1e-3;
-  if (sets_.empty()) return "";
+  if (sets_.empty()) return {};
   const std::unique_ptr<DelassusColumns> columns = columns_of(marcher.program());
-  if (!columns) return "";
+  if (!columns) return {};
   const auto W = [&](int i, int j) { return columns->column(j)[i]; };
   const auto stop_of = [&](int point) { return list_.stop_of[static_cast<std::size_t>(point)]; };
   std::size_t most = 0;
@@ -69,9 +70,9 @@ std::string StruckTogether::told(const Marcher& marcher, std::optional<double> r
       first = time;
     }
   }
-  if (most == 0) return "";
-  return fmt::format("{} contacts were struck in one step: rigid laws choose among outcomes, first at t = {:.9g} s",
-                     most, first);
+  if (most == 0) return {};
+  return said("{} contacts were struck in one step: rigid laws choose among outcomes, first at t = {:.9g} s", most,
+              first);
 }
 
 }  // namespace ricochet

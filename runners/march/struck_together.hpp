@@ -26,7 +26,7 @@ class StruckTogether final : public ContactListener {
   /// (Paoli 2005, Continuous dependence on data for vibro-impact problems, Math. Models Methods Appl. Sci. 15, 53-93).
   /// `restitution`: the largest e of the stops; none: the scheme has none, and its rebounds are those of e > 0. |W_ij|
   /// below 1e-3 √(W_ii W_jj) is 0.
-  std::string told(const Marcher& marcher, std::optional<double> restitution) const;
+  Said told(const Marcher& marcher, std::optional<double> restitution) const;
 
  private:
   using Set = std::vector<std::pair<int, int>>;  // contact points and signs of their efforts

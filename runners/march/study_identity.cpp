@@ -87,7 +87,7 @@ void add_march(std::string& bytes, const std::shared_ptr<const SemiDiscrete>& pr
   std::vector<LaneSpec> block(lanes, scene_lane(*problem, {}));
   for (int lane = 0; lane < lanes; ++lane) block[static_cast<std::size_t>(lane)].amplitude *= 1 + 0.1 * lane;
   auto compiled = compile(problem, midpoint_plan(h), h, std::make_unique<RigidPoint>(), std::move(block), options);
-  if (const auto* refusal = std::get_if<Refusal>(&compiled)) throw std::logic_error(refusal->sentence);
+  if (const auto* refusal = std::get_if<Refusal>(&compiled)) throw std::logic_error(refusal->sentence.text);
   Marcher marcher(std::move(std::get<Program>(compiled)));
   marcher.start();
   for (int part = 0; part < parts; ++part) {
@@ -112,7 +112,7 @@ void add_functions(std::string& bytes) {
 std::string digest() {
   constexpr int elements = 12;
   auto discretised = discretise(forced_beam(), elements, GalerkinMass());
-  if (const auto* refusal = std::get_if<Refusal>(&discretised)) throw std::logic_error(refusal->sentence);
+  if (const auto* refusal = std::get_if<Refusal>(&discretised)) throw std::logic_error(refusal->sentence.text);
   const auto problem = std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(discretised)));
   std::string bytes;
   for (const OperatorKind kind : {OperatorKind::band, OperatorKind::modal, OperatorKind::sparse})

@@ -88,7 +88,7 @@ PageJson cases_json(const CaseView& view) {
     const CaseRecord& record = *all[c];
     out["id"].push_back(record.id);
     out["status"].push_back(record.status);
-    out["reason"].push_back(record.reason);
+    out["reason"].push_back(record.reason());
     out["partial"].push_back(record.partial);
     out["steps"].push_back(record.steps);
     out["setup_seconds"].push_back(record.setup_seconds);

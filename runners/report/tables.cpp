@@ -99,9 +99,9 @@ std::vector<CaseColumn> case_columns(const CaseView& view, const std::vector<std
        }}};
   for (const std::string& column : view.results().columns) out.push_back(axis_column(view, column));
   const Cases all = view.all();
-  if (std::any_of(all.begin(), all.end(), [](const CaseRecord* record) { return !record->reason.empty(); }))
+  if (std::any_of(all.begin(), all.end(), [](const CaseRecord* record) { return !record->reasons.empty(); }))
     out.push_back({"reason", "reason", "Why a case has no result", "text", false, [](const CaseRecord& record) {
-                     return CaseCell{record.reason, "reason"};
+                     return CaseCell{record.reason(), "reason"};
                    }});
   for (const std::string& name : measures) out.push_back(measure_cells(name));
   out.push_back({"steps", "steps", "Number of time steps marched", "number", false, [](const CaseRecord& record) {

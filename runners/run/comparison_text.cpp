@@ -60,7 +60,7 @@ std::string cases_text(const StudyComparison& found, const StudyResults& a, cons
   out += lines_of(found.only_a, most_cases, named(view_a, "A"));
   out += lines_of(found.only_b, most_cases, named(view_b, "B"));
   return out + lines_of(changed, most_cases, [&](const CasePair& pair) {
-           const std::string& reason = pair.b->reason.empty() ? pair.a->reason : pair.b->reason;
+           const std::string reason = (pair.b->reasons.empty() ? pair.a : pair.b)->reason();
            return fmt::format("{} ({}): {} → {}{}", pair.a->id, brief_text(view_a.name(*pair.a)), shown_status(*pair.a),
                               shown_status(*pair.b), reason.empty() ? "" : ", " + brief_text(reason));
          });

@@ -63,7 +63,7 @@ Table reasons_table(const StudyResults& results) {
     groups.emplace_back(std::pair(std::string("done"), doubt.text), doubt.cases);
   for (const CaseRecord& record : results.cases)
     if (!record.partial && record.status != "done")
-      in_order_met(groups, std::pair(record.status, record.reason)).push_back(&record);
+      in_order_met(groups, std::pair(record.status, record.reason())).push_back(&record);
   const auto first = [&](const auto& group) { return group.second.front(); };
   std::stable_sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) { return first(a) < first(b); });
   std::vector<ReasonRow> rows;
@@ -222,15 +222,16 @@ int count(const StudyResults& results, const char* status) {
 }  // namespace
 
 std::string outcome_text(const CaseRecord& record, const std::string& kind) {
-  if (record.partial) return record.reason;
+  const std::string reason = record.reason();
+  if (record.partial) return reason;
   if (record.status == "done") {
     const Kind* known = find_kind(kind);
     const std::string own = known ? known->outcome(record) : "";
     std::string text = own.empty() ? "done" : "done: " + own;
-    if (!record.reason.empty()) text += (own.empty() ? ": " : "; ") + record.reason;
+    if (!reason.empty()) text += (own.empty() ? ": " : "; ") + reason;
     return text;
   }
-  return record.reason.empty() ? record.status : fmt::format("{}: {}", record.status, record.reason);
+  return reason.empty() ? record.status : fmt::format("{}: {}", record.status, reason);
 }
 
 std::string answer_text(const StudyResults& results) {

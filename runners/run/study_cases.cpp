@@ -55,7 +55,8 @@ CaseRecord excluded_record(const StudyCase& study_case) {
   record.id = study_case.id;
   record.axes = study_case.axes;
   record.status = "refused";
-  record.reason = "excluded: " + *study_case.excluded;
+  record.reasons = {*study_case.excluded};
+  record.excluded = true;
   return record;
 }
 

@@ -208,11 +208,11 @@ class FolderRun {
       progress.started(ids.front(), cases.front().predicted_seconds);
     };
     events.finished = [&](const CaseRecord& record, const PendingCase* next) {
-      if (record.status == "failed" && record.reason.find(changed_since) != std::string::npos)
+      if (record.status == "failed" && record.reason().find(changed_since) != std::string::npos)
         throw StoreError(
             fmt::format("{}. This case is not kept, those that finished are. Put the file back, or keep it, "
                         "and run again",
-                        record.reason));
+                        record.reason()));
       note_failure(record);
       store_.save({&record, 1});
       progress.finished(record.id);

@@ -123,7 +123,7 @@ CaseRecord case_of(SQLite::Statement& row) {
   CaseRecord record;
   record.id = row.getColumn(0).getString();
   record.status = row.getColumn(1).getString();
-  record.reason = text_in(row.getColumn(2));
+  if (std::string reason = text_in(row.getColumn(2)); !reason.empty()) record.reasons = {std::move(reason)};
   record.steps = row.getColumn(3).getInt64();
   record.setup_seconds = row.getColumn(4).getDouble();
   record.run_seconds = row.getColumn(5).getDouble();
@@ -198,6 +198,19 @@ void read_numbers(SQLite::Database& database, ReadCases& cases, StoredSeries* la
   }
 }
 
+/// A text with the places of its numbers, [[begin, size], …].
+Said said_in(const SQLite::Column& stored, const Json& marks) {
+  Said out = text_in(stored);
+  std::size_t end = 0;
+  for (const Json& mark : marks) {
+    const auto begin = mark.at(0).get<std::size_t>(), size = mark.at(1).get<std::size_t>();
+    if (begin < end || size > out.text.size() || begin > out.text.size() - size) throw BadRow();
+    out.marks.push_back({begin, size});
+    end = begin + size;
+  }
+  return out;
+}
+
 /// Reads what belongs to these cases.
 void read_rows(SQLite::Database& database, ReadCases& cases, StoredSeries* later) {
   using Statement = SQLite::Statement;
@@ -210,6 +223,12 @@ void read_rows(SQLite::Database& database, ReadCases& cases, StoredSeries* later
   per_case(database, cases, "item, reason", "left_out", "position", [](CaseRecord& record, Statement& row) {
     record.left_out.emplace_back(text_in(row.getColumn(1)), text_in(row.getColumn(2)));
   });
+  per_case(database, cases, "position, excluded, reason, marks", "reasons", "position",
+           [](CaseRecord& record, Statement& row) {
+             if (row.getColumn(1).getInt() == 0) record.reasons.clear();
+             record.excluded = row.getColumn(2).getInt() != 0;
+             record.reasons.push_back(said_in(row.getColumn(3), json_in(row.getColumn(4))));
+           });
   per_case(database, cases, "note", "notes", "position",
            [](CaseRecord& record, Statement& row) { record.notes.push_back(text_in(row.getColumn(1))); });
   read_curves(database, cases, later);

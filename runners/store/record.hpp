@@ -2,6 +2,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <ricochet/contract/said.hpp>
 #include <set>
 #include <string>
 #include <utility>
@@ -24,8 +25,9 @@ struct CaseRecord {
   std::string id;
   std::vector<std::pair<std::string, nlohmann::ordered_json>> axes;
   std::string status;  ///< done, refused, diverged, failed
-  /// Why it is not done; of a done one what makes its figures doubtful, sentences joined by "; ": "" where nothing does
-  std::string reason;
+  /// Why it is not done, one; of a done one what makes its figures doubtful, none where nothing does.
+  std::vector<Said> reasons;
+  bool excluded = false;  ///< by the study itself, which says why
   long long steps = 0;
   double setup_seconds = 0, run_seconds = 0;
   std::vector<std::pair<std::string, double>> measures;  ///< in a fixed order, finite (an absent measure is left out)
@@ -37,6 +39,9 @@ struct CaseRecord {
   std::vector<NumberTable> numbers;  ///< its large tables (points.csv, impacts.csv)
   std::string arithmetic;            ///< digest of the arithmetic that computed it; "": not known
   bool partial = false;              ///< saved while the case was running: what it had by then
+
+  /// Its reasons in one text: "excluded: …", "…; …"; "" for none.
+  std::string reason() const;
 };
 
 /// Whether a reference solved the case, and none of the study's methods.

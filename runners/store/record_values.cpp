@@ -11,6 +11,12 @@
 
 namespace ricochet {
 
+std::string CaseRecord::reason() const {
+  std::string text = excluded ? "excluded: " : "";
+  for (const Said& one : reasons) text += (&one == &reasons.front() ? "" : "; ") + one.text;
+  return text;
+}
+
 bool went_wrong(const CaseRecord& record) {
   return record.status == "diverged" || record.status == "failed";
 }
@@ -224,7 +230,7 @@ Table cases_table(const StudyResults& results) {
   table.columns = joined(std::move(table.columns), measures);
   for (const CaseRecord& record : results.cases) {
     Row row = place_of(results, record);
-    row.insert(row.end(), {record.partial ? std::string("partial") : record.status, record.reason, record.steps,
+    row.insert(row.end(), {record.partial ? std::string("partial") : record.status, record.reason(), record.steps,
                            record.setup_seconds, record.run_seconds});
     for (const Column& column : measures) row.emplace_back(measure(record, column.name));
     table.rows.push_back(std::move(row));

@@ -107,6 +107,13 @@ CREATE TABLE {0}sums(
 constexpr const char* kMotionSumTable =
     "CREATE TABLE motion_sums(key TEXT PRIMARY KEY REFERENCES motions(key) ON DELETE CASCADE, sum TEXT NOT NULL);";
 
+// Version 9 adds the sentences that cases.reason is made of, and where their numbers stand: JSON [[begin, size], …].
+constexpr const char* kReasonTable = R"sql(
+CREATE TABLE {0}reasons(
+  case_id TEXT NOT NULL REFERENCES {0}cases({1}) ON DELETE CASCADE, position INTEGER NOT NULL,
+  excluded INTEGER NOT NULL, reason TEXT NOT NULL, marks TEXT NOT NULL, PRIMARY KEY(case_id, position));
+)sql";
+
 void create(SQLite::Database& database, const char* tables, const char* prefix = "", const char* key = "id") {
   database.exec(fmt::format(fmt::runtime(tables), prefix, key));
 }
@@ -131,6 +138,10 @@ void create_from(SQLite::Database& database, int version) {
   if (version < 6) {
     database.exec(kEpochTable);
     database.exec(kArithmeticColumns);
+  }
+  if (version < 9) {
+    create(database, kReasonTable);
+    create(database, kReasonTable, "aside_", "fingerprint");
   }
   if (version < 8) {
     create(database, kSumTables);
@@ -222,8 +233,9 @@ void prepare_schema(SQLite::Database& database, const std::filesystem::path& fil
       transaction.commit();
     } else if (application != kStoreApplication) {
       not_ours(file);
-    } else if (version == 7 && sqlite3_db_readonly(database.getHandle(), "main") == 1) {
-      // It is read as it is: it lacks checksums alone.
+    } else if ((version == 7 || version == 8) && sqlite3_db_readonly(database.getHandle(), "main") == 1) {
+      // It is read as it is: it lacks checksums, or the sentences of reasons apart.
+      database.exec("CREATE TEMP TABLE reasons(case_id, position, excluded, reason, marks)");
     } else if (version >= 1 && version < kStoreVersion) {
       SQLite::Transaction transaction(database);
       create_from(database, version);

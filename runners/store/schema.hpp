@@ -13,7 +13,7 @@ namespace ricochet {
 
 /// Identity of results.sqlite, in the file's header (PRAGMA application_id, user_version).
 constexpr int kStoreApplication = 0x5249434F;  // "RICO"
-constexpr int kStoreVersion = 8;
+constexpr int kStoreVersion = 9;
 
 /// The columns of a case beside its id, its fingerprint and its place.
 inline constexpr const char* kCaseColumns = "status, reason, steps, setup_seconds, run_seconds, operator, arithmetic";
@@ -23,6 +23,7 @@ inline constexpr std::pair<const char*, const char*> kRowsOfCases[] = {
     {"measures", "position, name, value"},
     {"left_out", "position, item, reason"},
     {"notes", "position, note"},
+    {"reasons", "position, excluded, reason, marks"},
     {"curves", "position, name, series"},
     {"case_tables", "position, name, content"},
     {"case_numbers", "position, part, name, exported, column_name, words, series"}};

@@ -236,7 +236,7 @@ void Store::save_one(const CaseRecord& record, bool partial) {
   SQLite::Statement& add = prepared_->of("INSERT INTO cases VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const auto& [fingerprint, case_position] = expected->second;
   // No case has the fingerprint "": what is partial is never taken for finished.
-  insert(add, record.id, case_position, partial ? std::string() : fingerprint, record.status, record.reason,
+  insert(add, record.id, case_position, partial ? std::string() : fingerprint, record.status, record.reason(),
          static_cast<std::int64_t>(record.steps), record.setup_seconds, record.run_seconds, record.operator_name,
          record.arithmetic.empty() ? arithmetic_ : record.arithmetic);
 
@@ -256,6 +256,14 @@ void Store::save_one(const CaseRecord& record, bool partial) {
   position = 0;
   SQLite::Statement& left_out = prepared_->of("INSERT INTO left_out VALUES(?, ?, ?, ?)");
   for (const auto& [item, reason] : record.left_out) insert(left_out, record.id, position++, item, reason);
+
+  position = 0;
+  SQLite::Statement& reason = prepared_->of("INSERT INTO reasons VALUES(?, ?, ?, ?, ?)");
+  for (const Said& one : record.reasons) {
+    Json marks = Json::array();
+    for (const Mark& mark : one.marks) marks.push_back({mark.begin, mark.size});
+    insert(reason, record.id, position++, record.excluded ? 1 : 0, one.text, marks.dump());
+  }
 
   position = 0;
   SQLite::Statement& note = prepared_->of("INSERT INTO notes VALUES(?, ?, ?)");

@@ -158,10 +158,20 @@ void serialize(Archive& archive, Curve& curve) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, Mark& mark) {
+  archive(mark.begin, mark.size, mark.unit);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Said& said) {
+  archive(said.text, said.marks);
+}
+
+template <class Archive>
 void serialize(Archive& archive, CaseRecord& record) {
-  archive(record.id, record.status, record.reason, record.steps, record.setup_seconds, record.run_seconds,
-          record.measures, record.left_out, record.notes, record.operator_name, record.curve, record.tables,
-          record.numbers, record.partial);
+  archive(record.id, record.status, record.reasons, record.excluded, record.steps, record.setup_seconds,
+          record.run_seconds, record.measures, record.left_out, record.notes, record.operator_name, record.curve,
+          record.tables, record.numbers, record.partial);
 }
 
 template <class Archive>

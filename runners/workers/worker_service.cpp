@@ -209,7 +209,7 @@ class WorkerService : public BlockService {
       caught.error = error.what();
       caught.pointer = error.pointer();
     } catch (const Refusal& refusal) {
-      caught.error = refusal.sentence;
+      caught.error = refusal.sentence.text;
     } catch (const std::exception& error) {
       caught.error = error.what();
     } catch (...) {
@@ -276,7 +276,7 @@ class WorkerService : public BlockService {
     } catch (const std::exception& error) {
       ready.failure = error.what();
     } catch (const Refusal& refusal) {
-      ready.failure = refusal.sentence;
+      ready.failure = refusal.sentence.text;
     }
     return ready;
   }

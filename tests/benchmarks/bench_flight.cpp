@@ -75,7 +75,7 @@ Outcome march(const Scene& scene, MarchWay way, Registry& registry) {
   auto program = compile(problem, std::get<StepPlan>(plan), scene.h, std::move(contact),
                          {scene_lane(*problem, parameters)}, options);
   if (const auto* refusal = std::get_if<Refusal>(&program)) {
-    out.refusal = refusal->sentence;
+    out.refusal = refusal->sentence.text;
     return out;
   }
   Marcher marcher(std::move(std::get<Program>(program)));

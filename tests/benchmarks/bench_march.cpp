@@ -133,7 +133,7 @@ void add_schemes(const Registry& registry, std::vector<Case>& cases) {
     constexpr double h = 2e-5;
     auto plan = time->make(defaults(time->manual, {}))->plan(h, problem_facts(*problem, *law));
     if (const auto* refusal = std::get_if<Refusal>(&plan)) {
-      fmt::print("{}: refused: {}\n", name, refusal->sentence);
+      fmt::print("{}: refused: {}\n", name, refusal->sentence.text);
       continue;
     }
     LaneSpec lane = scene_lane(*problem, {});
@@ -142,7 +142,7 @@ void add_schemes(const Registry& registry, std::vector<Case>& cases) {
     options.kind = OperatorKind::band;
     auto program = compile(problem, std::get<StepPlan>(plan), h, std::move(law), {lane}, options);
     if (const auto* refusal = std::get_if<Refusal>(&program)) {
-      fmt::print("{}: refused: {}\n", name, refusal->sentence);
+      fmt::print("{}: refused: {}\n", name, refusal->sentence.text);
       continue;
     }
     Case one{name, StopsSpec::Place::nodes, "lumped", "", options.kind, 1, {}, nullptr, nullptr, nullptr, nullptr, 0};

@@ -260,7 +260,7 @@ TEST_CASE("a refusal has a sentence") {
   CHECK_THROWS_WITH(plan_of([&] { return Refusal{blank}; }), Contains("plan(): refuses without a sentence"));
   CHECK_THROWS_WITH(mass_of([&] { return Refusal{blank}; }), Contains("build(): refuses without a sentence"));
   CHECK_THROWS_WITH(motion_of([&] { return Refusal{blank}; }), Contains("solve(): refuses without a sentence"));
-  CHECK(std::get<Refusal>(plan_of([] { return Refusal{"use β ≥ ¼"}; })).sentence == "use β ≥ ¼");
+  CHECK(std::get<Refusal>(plan_of([] { return Refusal{"use β ≥ ¼"}; })).sentence.text == "use β ≥ ¼");
 }
 
 TEST_CASE("a mass is checked before anybody sees it") {

@@ -238,7 +238,7 @@ TEST_CASE("an effort whose push goes on, or has no mass to push, gives no moment
   };
   const auto refused = compiled("signorini");
   REQUIRE(std::holds_alternative<Refusal>(refused));
-  CHECK(std::get<Refusal>(refused).sentence ==
+  CHECK(std::get<Refusal>(refused).sentence.text ==
         "contact gives no definite impulse under this time scheme, as what an effort of stage 1 gives to a free mass "
         "grows for ever: use another time scheme, or the contact law none");
   CHECK(std::holds_alternative<Program>(compiled("none")));

@@ -60,8 +60,8 @@ TEST_CASE("a time scheme may be one function of its parameters, the step and the
     return Refusal{p.word("name") + " " + std::to_string(h > 0.5) + " " + std::to_string(facts.dofs)};
   });
   const auto scheme = registry.time("function")->make(Parameters({{"name", std::string("mine")}}));
-  CHECK(std::get<Refusal>(scheme->plan(1, {7, 0, false, false})).sentence == "mine 1 7");
-  CHECK(std::get<Refusal>(scheme->plan(0.25, {3, 0, false, false})).sentence == "mine 0 3");
+  CHECK(std::get<Refusal>(scheme->plan(1, {7, 0, false, false})).sentence.text == "mine 1 7");
+  CHECK(std::get<Refusal>(scheme->plan(0.25, {3, 0, false, false})).sentence.text == "mine 0 3");
 }
 
 TEST_CASE("a name is registered once for each role") {

@@ -283,7 +283,7 @@ TEST_CASE("a body that refuses refuses with its name") {
   scene.stops.named = {{"gap", in_part("rod", 1), in_part("grid", 1), {}, 0.01}};
   const auto made = discretise(scene, 4, *mass("singular"));
   REQUIRE(std::holds_alternative<Refusal>(made));
-  CHECK_THAT(std::get<Refusal>(made).sentence, Catch::StartsWith("body grid: rotary inertia"));
+  CHECK_THAT(std::get<Refusal>(made).sentence.text, Catch::StartsWith("body grid: rotary inertia"));
   const auto fault = [&](const NamedStop& stop) {
     scene.stops.named = {stop};
     return input_error([&] { check_scene(scene, 4); });

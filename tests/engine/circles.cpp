@@ -291,7 +291,7 @@ TEST_CASE("steps are left out within the square of a hole, and marched beyond it
   CompileOptions flown;
   flown.march = MarchWay::flights;
   const auto program = compiled(problem_of(scene, 1, methods.mass, methods.contact), methods, 1e-6, flown);
-  if (std::holds_alternative<Refusal>(program)) WARN(std::get<Refusal>(program).sentence);
+  if (std::holds_alternative<Refusal>(program)) WARN(std::get<Refusal>(program).sentence.text);
   const InHole every = in_hole(scene, methods, 1e-6, 0.05), left = in_hole(scene, methods, 1e-6, 0.05, flown);
   CHECK(every.impacts.size() > 5);
   REQUIRE(left.impacts.size() == every.impacts.size());

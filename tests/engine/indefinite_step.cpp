@@ -54,7 +54,7 @@ std::vector<std::pair<std::optional<Of>, std::string>> said(const std::shared_pt
     try {
       auto result = compile(problem, plan, h, law(), {scene_lane(*problem, {})}, options);
       const auto* refusal = std::get_if<Refusal>(&result);
-      all.emplace_back(std::nullopt, refusal ? refusal->sentence : "");
+      all.emplace_back(std::nullopt, refusal ? refusal->sentence.text : "");
     } catch (const IndefiniteStep& wrong) {
       all.emplace_back(wrong.of, wrong.what());
     }

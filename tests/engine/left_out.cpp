@@ -97,7 +97,7 @@ SceneSpec thrown_pair(StopParameters first, StopParameters second) {
 
 std::string own_refused(const SceneSpec& scene, const Methods& methods) {
   const auto program = compiled(problem_of(scene, 4, methods.mass, methods.contact), methods, 1e-5);
-  return std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence : "";
+  return std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence.text : "";
 }
 
 std::string own_left_out(const SceneSpec& scene, const Methods& methods, const std::string& item) {

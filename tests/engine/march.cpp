@@ -140,7 +140,7 @@ TEST_CASE("combinations that do not apply are refused in a sentence") {
   const auto refused = [&](const Choice& time, const Choice& contact) {
     auto result = compiled(problem, {{"singular"}, contact, time}, 1e-4);
     const auto* refusal = std::get_if<Refusal>(&result);
-    return refusal ? refusal->sentence : std::string();
+    return refusal ? refusal->sentence.text : std::string();
   };
   CHECK(refused({"newmark-dumont-paoli", {{"beta", 0.2}}}, {"signorini"}).find("Use beta ≥ 0.25") != std::string::npos);
   CHECK(refused({"newmark-dumont-paoli", {{"beta", 0.0}}}, {"signorini"}).find("singular") != std::string::npos);
@@ -158,7 +158,7 @@ TEST_CASE("a step that is singular is refused, not divided by") {
     auto result =
         compile(problem, plan, 1e-4, make(registry().contact("none"), {"none"}), {scene_lane(*problem, {})}, options);
     REQUIRE(std::holds_alternative<Refusal>(result));
-    CHECK(std::get<Refusal>(result).sentence.find("singular") != std::string::npos);
+    CHECK(std::get<Refusal>(result).sentence.text.find("singular") != std::string::npos);
   }
 }
 

@@ -116,7 +116,7 @@ TEST_CASE("ratios of more dofs than march in modes are refused, and a basis marc
   beam_of(scene).damping = {.beyond = 0.02};
   const ProgramOrRefusal refused = compiled(problem_of(scene, 501, {"consistent"}), rigid, 1e-3);
   REQUIRE(std::holds_alternative<Refusal>(refused));
-  CHECK(std::get<Refusal>(refused).sentence.find("use mesh.modes") != std::string::npos);
+  CHECK(std::get<Refusal>(refused).sentence.text.find("use mesh.modes") != std::string::npos);
   scene.basis = BasisSpec{8, true};
   CHECK(std::holds_alternative<Program>(compiled(problem_of(scene, 501, {"consistent"}), rigid, 1e-3)));
 }

@@ -69,7 +69,7 @@ Seen seen(const SceneSpec& scene, const Methods& methods, const StepPlan& plan, 
   std::vector<LaneSpec> all(static_cast<std::size_t>(lanes), lane);
   for (int l = 1; l < lanes; ++l) all[static_cast<std::size_t>(l)].amplitude *= 1 + 0.1 * l;
   auto program = compile(problem, plan, h, make(entry, methods.contact), all, options);
-  INFO((std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence : ""));
+  INFO((std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence.text : ""));
   REQUIRE(std::holds_alternative<Program>(program));
   Marcher made(std::move(std::get<Program>(program)));
   Seen out;

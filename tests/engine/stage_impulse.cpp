@@ -71,7 +71,7 @@ Marcher impulsive(const Law& law, const SceneSpec& scene, const Choice& mass, co
   const auto* entry = registry().contact(law.contact.name);
   const LaneSpec lane = scene_lane(*problem, complete(entry->manual.parameters, law.contact.values));
   auto program = compile(problem, full_plan(law.gated), h, make(entry, law.contact), lanes(lane), options);
-  INFO((std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence : ""));
+  INFO((std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence.text : ""));
   REQUIRE(std::holds_alternative<Program>(program));
   return Marcher(std::move(std::get<Program>(program)));
 }
@@ -248,7 +248,7 @@ TEST_CASE("what cannot carry an impulse is refused with its cause") {
     auto program =
         compile(problem, plan, h, make(entry, contact),
                 {scene_lane(*problem, complete(entry->manual.parameters, contact.values))}, with(OperatorKind::band));
-    return std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence : std::string("nothing");
+    return std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence.text : std::string("nothing");
   };
   const Choice consistent{"consistent"}, massless{"singular", {{"velocity", std::string("P1")}}};
   using Catch::Matchers::Contains;

@@ -85,7 +85,7 @@ Marcher made(const Case& one, const Methods& methods, int n, const CompileOption
   const StepPlan whole = n == 1 ? std::get<StepPlan>(plan) : composed(std::get<StepPlan>(plan), n);
   const LaneSpec lane = scene_lane(*problem, complete(entry->manual.parameters, methods.contact.values));
   auto program = compile(problem, whole, n * one.h, std::move(law), lanes(lane), options);
-  INFO((std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence : ""));
+  INFO((std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence.text : ""));
   REQUIRE(std::holds_alternative<Program>(program));
   return Marcher(std::move(std::get<Program>(program)));
 }

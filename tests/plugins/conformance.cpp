@@ -31,7 +31,7 @@ SceneSpec impacting_scene() {
 SceneSpec scene_for(const Choice& mass, int elements) {
   auto made = discretise(impacting_scene(), elements, *make(registry().mass(mass.name), mass));
   if (const auto* refusal = std::get_if<Refusal>(&made)) {
-    CHECK_THAT(refusal->sentence, names_cause_and_remedy());
+    CHECK_THAT(refusal->sentence.text, names_cause_and_remedy());
     return released_bar(1e4, "0.05*(1-x)");
   }
   return impacting_scene();
@@ -142,7 +142,7 @@ TEST_CASE("conformance: a scheme's plan is well formed, prints itself, and is as
       auto refused = plan_of(choice, h, massless);
       const auto* refusal = std::get_if<Refusal>(&refused);
       REQUIRE(refusal);
-      CHECK_THAT(refusal->sentence, names_cause_and_remedy());
+      CHECK_THAT(refusal->sentence.text, names_cause_and_remedy());
     }
   }
 }
@@ -225,7 +225,7 @@ TEST_CASE("conformance: any law, scheme and mass either run together or refuse i
         // No scheme refuses every mass.
         if (problem->inertia.kernel_dimension == 0) REQUIRE(std::holds_alternative<StepPlan>(plan));
         if (refusal) {
-          CHECK_THAT(refusal->sentence, names_cause_and_remedy());
+          CHECK_THAT(refusal->sentence.text, names_cause_and_remedy());
           continue;
         }
         Marcher beam(std::move(std::get<Program>(program)));

@@ -107,7 +107,7 @@ SemiDiscreteOrRefusal seen(const SceneSpec& scene, const char* law_name) {
 }
 
 std::string refusal(const SemiDiscreteOrRefusal& answer) {
-  return std::holds_alternative<Refusal>(answer) ? std::get<Refusal>(answer).sentence : "";
+  return std::holds_alternative<Refusal>(answer) ? std::get<Refusal>(answer).sentence.text : "";
 }
 
 }  // namespace
@@ -199,7 +199,7 @@ TEST_CASE("masses made of elements refuse matrices that are given") {
     const auto answer = discretise(scene, 1, *mass(name));
     INFO(name);
     REQUIRE(std::holds_alternative<Refusal>(answer));
-    CHECK(std::get<Refusal>(answer).sentence.starts_with("this mass is made of velocities on elements"));
+    CHECK(std::get<Refusal>(answer).sentence.text.starts_with("this mass is made of velocities on elements"));
   }
   const SemiDiscrete problem = discretised(scene, 1, *mass("consistent"));
   CHECK(problem.held);

@@ -217,7 +217,7 @@ TEST_CASE("a strategy that does not apply is a refusal, not an error") {
   };
   const auto result = discretise(working_set(), 4, Never());
   REQUIRE(std::holds_alternative<Refusal>(result));
-  CHECK(std::get<Refusal>(result).sentence == "not here: use another");
+  CHECK(std::get<Refusal>(result).sentence.text == "not here: use another");
 }
 
 TEST_CASE("damping, support and load are handed on") {

@@ -88,7 +88,7 @@ inline std::unique_ptr<MassStrategy> mass(const std::string& name, std::map<std:
 
 inline Inertia built(const MassStrategy& strategy, const FiniteElementSpace& space) {
   auto result = strategy.build(space);
-  INFO((std::holds_alternative<Refusal>(result) ? std::get<Refusal>(result).sentence : ""));
+  INFO((std::holds_alternative<Refusal>(result) ? std::get<Refusal>(result).sentence.text : ""));
   REQUIRE(std::holds_alternative<Inertia>(result));
   return std::get<Inertia>(result);
 }

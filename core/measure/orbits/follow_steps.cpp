@@ -87,7 +87,7 @@ std::optional<FollowedMap::Image> StepFollower::image_of(const Point& point, boo
     if (!made.end) return made;
     failure_ = text(made.end);
   } catch (const Refusal& refusal) {
-    failure_ = refusal.sentence;
+    failure_ = refusal.sentence.text;
   }
   return std::nullopt;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <ricochet/contract/plugin.hpp>
+#include <ricochet/contract/said_format.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -295,9 +296,9 @@ class EventDrivenSemiDiscrete final : public ReferenceSolver {
     if (!problem.discrete) return Refusal{"the matrices of a mesh are missing: this reference is one of the mesh"};
     if (problem.discrete->mass.rows() > most_dofs)
       return Refusal{
-          fmt::format("{} dofs: the exact semi-discrete solution is worked out for at most {}, 20 elements of "
-                      "a beam; use fewer elements, or the reference event-driven or self",
-                      problem.discrete->mass.rows(), most_dofs)};
+          said("{} dofs: the exact semi-discrete solution is worked out for at most {}, 20 elements of "
+               "a beam; use fewer elements, or the reference event-driven or self",
+               problem.discrete->mass.rows(), most_dofs)};
     if (!problem.load_constant)
       return Refusal{
           "the load depends on time by a formula: between events only constant and harmonic forces are "

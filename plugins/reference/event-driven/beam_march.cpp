@@ -1,7 +1,6 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <ricochet/contract/said_format.hpp>
 #include <utility>
 
 #include "beam_run.hpp"
@@ -13,14 +12,14 @@ namespace ricochet::event_driven {
 std::variant<int, Refusal> BeamRun::march(ModalPhase& phase, std::array<Guard, 2>& guards, double tolerance) {
   if (out_.events.size() > settings_.events_per_period * (1 + state_.time / first_period_))
     return Refusal{
-        fmt::format("more than {:g} impacts and releases per period of the first mode by t = {:g} s: the tip chatters, "
-                    "which modal phases cannot follow. Raise `events`, add damping, or use another reference",
-                    settings_.events_per_period, state_.time)};
+        said("more than {:g} impacts and releases per period of the first mode by t = {:g} s: the tip chatters, "
+             "which modal phases cannot follow. Raise `events`, add damping, or use another reference",
+             settings_.events_per_period, state_.time)};
   Reading here = phase.read(state_);
   for (Guard& guard : guards) guard.read(state_.time, here.value);
   while (next_ < grid_.times.size()) {
     if (++looks_ > most_looks)
-      return Refusal{fmt::format(
+      return Refusal{said(
           "the search for events needs more than {:g} readings of the gap to reach t = {:g} s: shorten the duration, "
           "lower `modes`, or loosen `tolerance`",
           static_cast<double>(most_looks), grid_.times.back())};

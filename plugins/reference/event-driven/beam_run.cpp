@@ -1,10 +1,9 @@
 #include "beam_run.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ricochet/contract/said_format.hpp>
 #include <utility>
 
 namespace ricochet::event_driven {
@@ -66,15 +65,15 @@ BeamRun::Failure BeamRun::begin() {
   const double step = problem_.displacement(0) - support.at(0), slope = displacement.slope(0);
   if (std::abs(step) > 1e-9 * scale_ || std::abs(slope) * L > 1e-6 * scale_)
     return Refusal{
-        fmt::format("the initial displacement does not follow the clamp: at x = 0, u − φ is {:.3g} m and its slope "
-                    "{:.3g}, but both must be 0. A continuous beam has no finite energy otherwise. Start from a shape "
-                    "that the clamp allows, or use `self`",
-                    step, slope)};
+        said("the initial displacement does not follow the clamp: at x = 0, u − φ is {:.3g} m and its slope "
+             "{:.3g}, but both must be 0. A continuous beam has no finite energy otherwise. Start from a shape "
+             "that the clamp allows, or use `self`",
+             step, slope)};
   const double tip = problem_.displacement(L), touching = 1e-9 * scale_;
   if (tip < lower_ - touching || tip > upper_ + touching)
     return Refusal{
-        fmt::format("the tip starts at {:g} m, beyond its stops [{:g}, {:g}] m: start between them or move the stops",
-                    tip, lower_, upper_)};
+        said("the tip starts at {:g} m, beyond its stops [{:g}, {:g}] m: start between them or move the stops", tip,
+             lower_, upper_)};
   const auto position = [&](double x) { return problem_.displacement(x) - support.at(0); };
   const auto rate = [&](double x) { return problem_.velocity(x) - support.rate(0); };
   a_ = Beam::projection(position, beam_.free, L);
@@ -233,14 +232,12 @@ std::variant<SampledMotion, Refusal> BeamRun::motion_from(Eigen::ArrayXd& a, Eig
   const double tip = flight_.read(state_).value;
   if (!std::isfinite(tip)) return Refusal{"the state is not finite"};
   if (tip < lower_ - tolerance() || tip > upper_ + tolerance())
-    return Refusal{
-        fmt::format("the tip is at {:g} m at t = 0, at or beyond a stop; shift the phase of the support", tip)};
+    return Refusal{said("the tip is at {:g} m at t = 0, at or beyond a stop; shift the phase of the support", tip)};
   guards_ = {Guard{lower_, 1}, Guard{upper_, -1}};
   while (next_ < grid_.times.size())
     if (auto refusal = side_ == 0 ? fly() : touch()) return *refusal;
   if (side_ != 0)
-    return Refusal{
-        fmt::format("the tip is at its stop at t = {:g} s; shift the phase of the support", grid_.times.back())};
+    return Refusal{said("the tip is at its stop at t = {:g} s; shift the phase of the support", grid_.times.back())};
   if (tangent_) move_tangent(flight_, grid_.times.back());
   tangent_ = nullptr;
   a = a_;

@@ -2,6 +2,7 @@
 
 #include <ricochet/contract/plugin.hpp>
 #include <ricochet/contract/reference.hpp>
+#include <ricochet/contract/said_format.hpp>
 
 #include "beam_run.hpp"
 
@@ -41,7 +42,7 @@ class BeamMap final : public ReferenceMap {
     Eigen::ArrayXd a = x.head(modes_).array(), b = x.tail(modes_).array();
     const auto motion = run_.motion_from(a, b, derivative ? &image.derivative : nullptr);
     if (const auto* refusal = std::get_if<Refusal>(&motion)) {
-      image.stopped = refusal->sentence;
+      image.stopped = refusal->sentence.text;
       return image;
     }
     for (const ContactEvent& event : std::get<SampledMotion>(motion).events) image.impacts += event.begins;
@@ -103,9 +104,9 @@ class EventDriven final : public ReferenceSolver {
   std::optional<Refusal> does_not_apply(const ReferenceProblem& problem) const {
     if (problem.structure != "beam")
       return Refusal{
-          fmt::format("event-driven solves the continuous beam, and the structure is a{} {}: the closed forms of "
-                      "`exact` are made for it, `self` refines any scheme",
-                      problem.structure.starts_with('o') ? "n" : "", problem.structure)};
+          said("event-driven solves the continuous beam, and the structure is a{} {}: the closed forms of "
+               "`exact` are made for it, `self` refines any scheme",
+               problem.structure.starts_with('o') ? "n" : "", problem.structure)};
     if (problem.other_beam)
       return Refusal{
           "event-driven knows the uniform beam clamped at x = 0 and free at x = L: this one has other supports, "
@@ -142,10 +143,10 @@ class EventDriven final : public ReferenceSolver {
         if (std::hypot(mode.stiffness(m) - pulsation * pulsation, mode.damping(m) * pulsation) <
             1e-7 * mode.stiffness(m))
           return Refusal{
-              fmt::format("the support moves at the pulsation of undamped mode {} {} ({:.9g} rad/s), which grows "
-                          "without bound: add damping. Otherwise move the pulsation by more than 1e-7 of it",
-                          m + 1, modes == &beam.free ? "of the free beam" : "of the beam held at its tip",
-                          std::sqrt(mode.stiffness(m)))};
+              said("the support moves at the pulsation of undamped mode {} {} ({:.9g} rad/s), which grows "
+                   "without bound: add damping. Otherwise move the pulsation by more than 1e-7 of it",
+                   m + 1, modes == &beam.free ? "of the free beam" : "of the beam held at its tip",
+                   std::sqrt(mode.stiffness(m)))};
     }
     return {};
   }

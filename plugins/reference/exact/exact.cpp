@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <ricochet/contract/plugin.hpp>
+#include <ricochet/contract/said_format.hpp>
 
 #include "bar_waves.hpp"
 #include "impact_oscillator.hpp"
@@ -156,9 +157,9 @@ class Exact final : public ReferenceSolver {
     if (problem.structure == "oscillator") return oscillator(problem, grid);
     if (problem.structure == "bar") return bar(problem, grid);
     return Refusal{
-        fmt::format("closed forms are known for the oscillator and the bar, not for a {}: use event-driven (rigid "
-                    "stops at the tip, or none). Otherwise use event-driven-semi-discrete (on the mesh), or self",
-                    problem.structure)};
+        said("closed forms are known for the oscillator and the bar, not for a {}: use event-driven (rigid "
+             "stops at the tip, or none). Otherwise use event-driven-semi-discrete (on the mesh), or self",
+             problem.structure)};
   }
 };
 

@@ -1,9 +1,8 @@
 #pragma once
-#include <fmt/format.h>
-
 #include <limits>
 #include <optional>
 #include <ricochet/contract/reference.hpp>
+#include <ricochet/contract/said_format.hpp>
 #include <utility>
 #include <vector>
 
@@ -104,9 +103,9 @@ class ImpactOscillator {
           "use the reference self"};
     if (rigid() && pressed() != 0)
       return Refusal{
-          fmt::format("the start lies beyond the {} stop, which is rigid here: use event-driven-semi-discrete, "
-                      "which follows a linear spring, or self",
-                      pressed() < 0 ? "lower" : "upper")};
+          said("the start lies beyond the {} stop, which is rigid here: use event-driven-semi-discrete, "
+               "which follows a linear spring, or self",
+               pressed() < 0 ? "lower" : "upper")};
     hold();
     // A spring pushes from the start what lies beyond it.
     begin(0, rigid() ? 0 : pressed(), spec_.position, spec_.velocity);

@@ -49,7 +49,7 @@ CellScenes::Prepared CellScenes::prepare(std::size_t column, std::size_t row) {
   Prepared out;
   const double x = axes_[0].values[column], y = axes_[1].values[row];
   const auto refused = [&](int scene) {
-    out.refusal = (*scenes_)[scene].refusal;
+    out.refusal = (*scenes_)[scene].refusal.text;
     out.no_start = (*scenes_)[scene].no_start;
     return !out.refusal.empty();
   };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/measure/attractors/attractors.hpp>
 #include <ricochet/measure/attractors/basin_grid.hpp>
 
@@ -248,7 +249,7 @@ class BasinsRun {
     partial.status = "done";
     std::size_t known = 0;
     for (std::size_t cell = 0; cell < ends_.size(); ++cell) known += refinement_.marched(cell);
-    partial.reason = fmt::format("under way: {} cells marched", known);
+    partial.reasons = {said("under way: {} cells marched", known)};
     pace_.take([&] { context_.checkpoints.show(partial); });
   }
 
@@ -285,11 +286,11 @@ class BasinsRun {
     record_.status = complete > 0 ? "done" : (marched == 0 ? "refused" : "diverged");
     if (over_budget_) {
       record_.status = "failed";
-      record_.reason = fmt::format("the budget of {:g} s was spent: {} of {} cells are known", budget_of(case_),
-                                   complete, ends_.size());
+      record_.reasons = {
+          said("the budget of {:g} s was spent: {} of {} cells are known", budget_of(case_), complete, ends_.size())};
     } else if (complete == 0) {
       const CellEnd* why = bad ? bad : beyond;
-      record_.reason = "no cell could be marched to its end" + (why ? "; " + why->reason : std::string());
+      record_.reasons = {"no cell could be marched to its end" + (why ? "; " + why->reason : std::string())};
     } else if (bad) {
       record_.notes.push_back(fmt::format("{} of {} marched cells were refused or stopped; their rows say why",
                                           marched + refused - complete, marched + refused));

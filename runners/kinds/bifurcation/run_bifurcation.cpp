@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/measure/orbits/section_march.hpp>
 #include <ricochet/measure/stability/linear_response.hpp>
 
@@ -141,12 +142,12 @@ class BifurcationRun {
 
   CaseRecord refused() {
     record_.status = "refused";
-    record_.reason = "no value of the parameter can be marched";
+    record_.reasons = {"no value of the parameter can be marched"};
     for (const Value& value : known_)
       for (const int scene : {value.rest, value.state})
         if (scene >= 0 && !scenes_[scene].refusal.empty()) {
-          record_.reason =
-              fmt::format("no value of the parameter can be marched; at {:g}: {}", value.value, scenes_[scene].refusal);
+          record_.reasons = {
+              said("no value of the parameter can be marched; at {:g}: {}", value.value, scenes_[scene].refusal)};
           return std::move(record_);
         }
     return std::move(record_);
@@ -222,7 +223,7 @@ class BifurcationRun {
         view.value = value.value;
         view.start = s;
         view.scene = scene;
-        view.refusal = scenes_[scene].refusal;
+        view.refusal = scenes_[scene].refusal.text;
         if (task >= 0) {
           if (!scheduler_->finished(task)) continue;
           view.orbit = &scheduler_->orbit(task);
@@ -243,7 +244,7 @@ class BifurcationRun {
     classify_all(all);
     write_tables(partial, all);
     partial.status = "done";
-    partial.reason = fmt::format("under way: {} of {} orbits", all.size(), scheduler_->count());
+    partial.reasons = {said("under way: {} of {} orbits", all.size(), scheduler_->count())};
     pace_.take([&] { context_.checkpoints.show(partial); });
   }
 
@@ -331,11 +332,11 @@ class BifurcationRun {
     record_.status = marched > 0 ? "done" : "diverged";
     if (scheduler_->over_budget()) {
       record_.status = "failed";
-      record_.reason = fmt::format("the budget of {:g} s was spent: {} of {} orbits are complete", budget_of(case_),
-                                   marched, scheduler_->count());
+      record_.reasons = {said("the budget of {:g} s was spent: {} of {} orbits are complete", budget_of(case_), marched,
+                              scheduler_->count())};
     } else if (marched == 0) {
       for (const OrbitView& view : all)
-        if (view.orbit) record_.reason = "no orbit was completed; " + end_text(*view.orbit);
+        if (view.orbit) record_.reasons = {"no orbit was completed; " + end_text(*view.orbit)};
     } else if (bad > 0) {
       record_.notes.push_back(
           fmt::format("{} of {} orbits were refused or stopped; their rows say why", bad, all.size()));

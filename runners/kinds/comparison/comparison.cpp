@@ -75,7 +75,7 @@ void require_reference(const Study& study, References& references, const Checkpo
     try {
       const ReferenceSet set = references.of(one, stop);
       if (!set.applicable.empty()) return;
-      refusals.insert(set.refusals.begin(), set.refusals.end());
+      for (const Said& refusal : set.refusals) refusals.insert(refusal.text);
     } catch (const Interrupted&) {
       throw;
     } catch (const InputError&) {

@@ -80,7 +80,7 @@ References::Solutions References::solutions(const std::vector<const StudyCase*>&
               const double begin = thread_seconds();
               const KnownReference part =
                   compute(beginning_of(*one, k == 0 ? first_share : second_share), choice, stop);
-              if (!part.refusal.empty()) return refused + part.refusal;
+              if (!part.refusal.empty()) return refused + part.refusal.text;
               seconds[k] = thread_seconds() - begin;
             }
             const double more = std::max(0.0, seconds[1] - seconds[0]) / (second_share - first_share);

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 #include <ricochet/contract/reference.hpp>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/measure/motion/motion_errors.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
@@ -34,7 +35,7 @@ constexpr const char* not_seen =
 // A motion marched to the end of the grid, or why there is none.
 struct Marched {
   std::optional<SampledMotion> motion;
-  std::string refusal;
+  Said refusal;
   double order = 1;
   bool at_steps = false;  ///< stops_met_at_steps()
 };
@@ -59,8 +60,8 @@ Marched march(const StudyCase& study_case, const Registry& registry, const Sampl
   if (sampler.sampled() == grid.times.size())
     marched.motion = sampler.finish();
   else
-    marched.refusal = fmt::format("at h = {:g} s the method itself stops at t = {:.6g} s: {}", study_case.step,
-                                  marcher.status(0).time, text(marcher.status(0).end));
+    marched.refusal = said("at h = {:g} s the method itself stops at t = {:.6g} s: {}", study_case.step,
+                           marcher.status(0).time, text(marcher.status(0).end));
   return marched;
 }
 
@@ -327,7 +328,7 @@ ReferenceSet References::of(const StudyCase& study_case, const std::atomic<bool>
     if (known->refusal.empty())
       set.applicable.push_back(std::move(known));
     else
-      set.refusals.push_back(choice.name + ": " + known->refusal);
+      set.refusals.push_back(said("{}: {}", choice.name, known->refusal));
   }
   if (set.applicable.empty()) return set;
   if (study_case.settings.contains("horizon")) {

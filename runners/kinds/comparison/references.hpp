@@ -21,7 +21,7 @@ namespace ricochet {
 /// A reference as cases are compared with it.
 struct KnownReference {
   std::string name;
-  std::string refusal;       ///< why it does not apply; then nothing else is set
+  Said refusal;              ///< why it does not apply; then nothing else is set
   bool of_the_mesh = false;  ///< it has the case's own mesh: what differs is the time scheme's error alone
   ReferenceMotion found;
 };
@@ -30,7 +30,7 @@ using ReferencePointer = std::shared_ptr<const KnownReference>;
 /// What one case is compared with.
 struct ReferenceSet {
   std::vector<ReferencePointer> applicable;  ///< in the study's order; the first is the reference
-  std::vector<std::string> refusals;         ///< "NAME: sentence" of those that do not apply
+  std::vector<Said> refusals;                ///< "NAME: sentence" of those that do not apply
   SampleGrid grid;
   double horizon = 0;       ///< s
   std::string horizon_why;  ///< what set it

@@ -29,7 +29,7 @@ void say_references(CaseRecord& record, const ReferenceSet& set) {
         fmt::format("{} {}: {}", i == 0 ? "reference" : "second reference", known.name, known.found.how));
     for (const std::string& note : known.found.notes) record.notes.push_back(known.name + ": " + note);
   }
-  for (const std::string& refusal : set.refusals) record.notes.push_back(refused_reference + refusal);
+  for (const Said& refusal : set.refusals) record.notes.push_back(refused_reference + refusal.text);
   record.notes.push_back(fmt::format("compared up to t = {:g} s: {}", set.horizon, set.horizon_why));
 }
 
@@ -83,7 +83,9 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   const ReferenceSet set = references.of(study_case, stop);
   if (set.applicable.empty()) {
     record.status = "refused";
-    record.reason = fmt::format("no reference applies: {}", fmt::join(set.refusals, "; "));
+    Said reason = "no reference applies: ";
+    for (const Said& refusal : set.refusals) reason += (&refusal == &set.refusals.front() ? "" : "; ") + refusal;
+    record.reasons = {reason};
     return record;
   }
   say_references(record, set);
@@ -126,7 +128,7 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   } else {
     record_early_end(record, marcher, prepared.steps, budget);
   }
-  std::vector<std::string> doubts = load_changes(study_case.scene, study_case.step, prepared.steps);
+  std::vector<Said> doubts = load_changes(study_case.scene, study_case.step, prepared.steps);
   doubts.push_back(GapWatch::crossed(marcher, recorder));
   doubts.push_back(struck.told(marcher, largest_restitution(study_case, *marcher.program().problem, registry)));
   add_doubts(record, doubts);

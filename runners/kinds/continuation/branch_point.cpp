@@ -245,7 +245,7 @@ int solve_branch_point(const StudyResults& results, const PointRequest& asked, s
   const StudyCase& study_case = stored.find(record.id);
   const ContinuationPlan plan = continuation_plan(study_case.settings);
   ContinuedMap continued(study_case, stored.registry, plan);
-  if (!continued.refusal().empty()) throw PointRefused(continued.refusal());
+  if (!continued.refusal().empty()) throw PointRefused(continued.refusal().text);
   const MapClock clock{study_case.steps_per_period, rows.front().period, rows.front().symmetric.value_or(false)};
   const auto check = [&](int size) {
     if (size != kept.at->x.size())

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/measure/orbits/own_march.hpp>
 
 #include "runners/store/record_values.hpp"
@@ -280,8 +281,11 @@ void BranchResults::put(CaseRecord& record, const ContinuationPlan& plan, long l
   put_measure(record, "branches", branches_);
   put_measure(record, "pieces", static_cast<double>(pieces));
   put_measure(record, "special_points", found_);
-  record.reason = spent ? fmt::format("the budget of {:g} s was spent", *spent) : missing_;
-  record.status = record.reason.empty() ? "done" : "failed";
+  if (spent)
+    record.reasons = {said("the budget of {:g} s was spent", *spent)};
+  else if (!missing_.empty())
+    record.reasons = {missing_};
+  record.status = record.reasons.empty() ? "done" : "failed";
 }
 
 }  // namespace ricochet

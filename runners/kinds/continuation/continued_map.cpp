@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 #include <ricochet/measure/orbits/multipliers.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
@@ -83,10 +84,10 @@ ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry
       reference_at_ = orbit.at;
       break;
     }
-    if (refusal_.empty()) refusal_ = fmt::format("at {:g}: {}", orbit.at, reason);
+    if (refusal_.empty()) refusal_ = said("at {:g}: {}", orbit.at, reason);
   }
   if (reference_ < 0) return;
-  refusal_.clear();
+  refusal_ = {};
   gap_ = gap_of(scenes_[reference_].lane);
   if (!is_length(plan.pointer) || is_formula(study_case.scene_json, plan.pointer)) {
     const double value = std::max(std::abs(plan.from), std::abs(plan.to));
@@ -109,7 +110,7 @@ ContinuedMap::ContinuedMap(const StudyCase& study_case, const Registry& registry
 
 int ContinuedMap::scene_at(double value, bool own_state, std::string& reason) {
   const int scene = scenes_.add(plan_.pointer, value, own_state);
-  reason = scenes_[scene].refusal;
+  reason = scenes_[scene].refusal.text;
   return reason.empty() ? scene : -1;
 }
 

@@ -20,7 +20,7 @@ class ContinuedMap {
   ContinuedMap(const StudyCase& study_case, const Registry& registry, const ContinuationPlan& plan);
 
   /// Why the case is refused; "" where it is not.
-  const std::string& refusal() const { return refusal_; }
+  const Said& refusal() const { return refusal_; }
   /// Why the map is not followed by pieces; "" where it is.
   const std::string& no_pieces() const { return no_pieces_; }
   /// Whether it is followed so.
@@ -65,7 +65,8 @@ class ContinuedMap {
   const StudyCase& case_;
   const ContinuationPlan& plan_;
   ForcedScenes scenes_;
-  std::string refusal_, no_pieces_, no_image_;
+  Said refusal_;
+  std::string no_pieces_, no_image_;
   int reference_ = -1, origin_ = -1;  // scenes: that of an orbit, and the one that lanes begin with
   bool moves_loads_ = false, rebounds_ = false;
   std::map<double, int> marched_;  // scenes by value

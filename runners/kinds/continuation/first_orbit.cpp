@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ricochet/contract/said_format.hpp>
 #include <ricochet/measure/orbits/own_march.hpp>
 #include <ricochet/measure/orbits/stepped_map.hpp>
 
@@ -58,8 +59,8 @@ class OrbitSearch {
     if (!found.clock.half && may_be_image() && returns(found.shot.x, clock(true)) && use_half(found.shot.x, found))
       found.shot.iterations += iterations;
     if (const int sooner = repeats_after(found); sooner > 0)
-      throw Refusal{fmt::format("the orbit found from {} at λ = {:g} repeats after {} period{}; expected period {}",
-                                from(), orbit_.at, sooner, sooner == 1 ? "" : "s", orbit_.period)};
+      throw Refusal{said("the orbit found from {} at λ = {:g} repeats after {} period{}; expected period {}", from(),
+                         orbit_.at, sooner, sooner == 1 ? "" : "s", orbit_.period)};
     check_march(found);
     return found;
   }
@@ -75,10 +76,10 @@ class OrbitSearch {
     const double far = std::max(image_tolerance * starts_.gap, late * impacts.rebounds),
                  fast = far * std::max(map_.metric().pulsation(), impacts.pace);
     if (!own.end && own.displacement <= far && own.velocity <= fast) return;
-    throw Refusal{fmt::format(
-        "no orbit at λ = {:g}: the scheme's own march leaves what was solved by {:.3g} m and {:.3g} "
-        "m/s in a period; its impacts explain {:.3g} m and {:.3g} m/s{}",
-        orbit_.at, own.displacement, own.velocity, far, fast, own.end ? "; " + text(own.end) : std::string())};
+    throw Refusal{
+        said("no orbit at λ = {:g}: the scheme's own march leaves what was solved by {:.3g} m and {:.3g} "
+             "m/s in a period; its impacts explain {:.3g} m and {:.3g} m/s{}",
+             orbit_.at, own.displacement, own.velocity, far, fast, own.end ? "; " + text(own.end) : std::string())};
   }
   // What impacts that rebound make of a march; none do on pieces.
   struct Impacts {
@@ -198,7 +199,7 @@ template <class Map>
 FirstOrbit first_orbit(Map& map, const OrbitStarts& starts, const WantedOrbit& orbit) try {
   return OrbitSearch<Map>(map, starts, orbit).find();
 } catch (const Refusal& refusal) {
-  return {{}, {}, refusal.sentence};
+  return {{}, {}, refusal.sentence.text};
 }
 
 template <class Map>
@@ -221,7 +222,7 @@ FirstOrbit first_orbit(ContinuedMap& continued, Map& map, int steps_per_period, 
     LaneEnd end;
     if (const auto settled = settle(continued.program(scene), steps_per_period, periods, end))
       return as_x(map, *settled, group);
-    throw Refusal{fmt::format("the transient stopped: {}", text(end))};
+    throw Refusal{said("the transient stopped: {}", text(end))};
   };
   const auto tolerance = [&](const Eigen::VectorXd& x, const MapClock& clock) {
     round_off = std::max(round_off, round_off_of_map(map, x, orbit.at, clock));

@@ -13,7 +13,7 @@ CasePlan plan_continuation(const StudyCase& study_case, const Registry& registry
   CasePlan out;
   const ContinuationPlan plan = continuation_plan(study_case.settings);
   ContinuedMap continued(study_case, registry, plan);
-  out.refusal = continued.refusal();
+  out.refusal = continued.refusal().text;
   if (!out.refusal.empty()) return out;
   if (!continued.no_pieces().empty()) out.notes.push_back("followed by steps: " + continued.no_pieces());
   const auto notes = out.notes;

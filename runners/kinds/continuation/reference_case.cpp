@@ -64,7 +64,7 @@ class ReferenceRun {
     for (const WantedOrbit& orbit : plan_.orbits) try {
         follow(orbit);
       } catch (const Refusal& refusal) {
-        results_.add_missing(orbit.name, orbit.at, refusal.sentence);
+        results_.add_missing(orbit.name, orbit.at, refusal.sentence.text);
       }
     results_.put(record_, plan_, steps_, over_budget_ ? std::optional(budget_of(case_)) : std::nullopt);
     record_.run_seconds = thread_seconds() - begun_;
@@ -156,7 +156,7 @@ class ReferenceRun {
           break;
       }
     } catch (const Refusal& refusal) {  // no state where the branch would go on
-      failure = refusal.sentence;
+      failure = refusal.sentence.text;
     }
     branch.trace = follower.trace();
     if (!failure.empty()) branch.trace.end_by(TraceEnd::left, failure);
@@ -237,7 +237,7 @@ CasePlan plan_reference(const StudyCase& study_case, const Registry& registry) {
     const double branches = static_cast<double>(plan.orbits.size()) * (plan.both_ways ? 2 : 1);
     out.predicted_seconds = seconds_per_number * ReferenceRun(study_case, registry).size() * branches;
   } catch (const Refusal& refusal) {
-    out.refusal = refusal.sentence;
+    out.refusal = refusal.sentence.text;
   }
   return out;
 }
@@ -250,7 +250,7 @@ CaseRecord run_reference(const StudyCase& study_case, const Registry& registry, 
     record.id = study_case.id;
     record.axes = study_case.axes;
     record.status = "refused";
-    record.reason = refusal.sentence;
+    record.reasons = {refusal.sentence};
     return record;
   }
 }

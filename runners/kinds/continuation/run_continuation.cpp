@@ -342,7 +342,7 @@ CaseRecord run_continuation(const StudyCase& study_case, const Registry& registr
   ContinuedMap continued(study_case, registry, plan);
   if (!continued.refusal().empty()) {
     record.status = "refused";
-    record.reason = continued.refusal();
+    record.reasons = {continued.refusal()};
     return record;
   }
   describe_march(record, continued.scenes(), study_case);

@@ -113,8 +113,8 @@ class StabilityRun {
   PlanOrRefusal plan(double h) const { return scheme_->plan(h, facts_); }
 
   // Keeps the plan of the smallest step of the range that has one. The sentence, when none has.
-  std::optional<std::string> refused_everywhere() {
-    std::optional<std::string> sentence;
+  std::optional<Said> refused_everywhere() {
+    std::optional<Said> sentence;
     for (const double h : steps_) {
       auto made = plan(h);
       if (auto* step = std::get_if<StepPlan>(&made)) {
@@ -126,11 +126,11 @@ class StabilityRun {
     return sentence;
   }
 
-  CaseRecord refused(const std::string& sentence) {
+  CaseRecord refused(const Said& sentence) {
     record_.status = "refused";
-    record_.reason = sentence;
+    record_.reasons = {sentence};
     std::vector<StabilityRow> rows;
-    for (const double h : steps_) rows.push_back({h, false, {}, "", {}, {}, "refused", sentence});
+    for (const double h : steps_) rows.push_back({h, false, {}, "", {}, {}, "refused", sentence.text});
     record_.tables.push_back(stability_type().with(rows));
     return std::move(record_);
   }
@@ -237,7 +237,7 @@ class StabilityRun {
       if (grows_open) append(reason, "open, it " + growth_text(*apart, false));
     } else if (side.spectra[i]) {
       status = "refused";
-      append(reason, "not predicted: " + std::get<Refusal>(*side.spectra[i]).sentence);
+      append(reason, "not predicted: " + std::get<Refusal>(*side.spectra[i]).sentence.text);
     } else {
       append(reason, "not predicted: the budget was spent");
     }

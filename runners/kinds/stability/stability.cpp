@@ -158,7 +158,7 @@ CasePlan plan_stability(const StudyCase& study_case, const Registry& registry) {
   const auto discretised = discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry),
                                       law.get(), &study_case.contact.parameters);
   if (const auto* refusal = std::get_if<Refusal>(&discretised)) {
-    out.refusal = refusal->sentence;
+    out.refusal = refusal->sentence.text;
     return out;
   }
   const SemiDiscrete& problem = std::get<SemiDiscrete>(discretised);
@@ -167,7 +167,7 @@ CasePlan plan_stability(const StudyCase& study_case, const Registry& registry) {
   const std::vector<double> steps = steps_of(study_case);
   const auto made = scheme->plan(steps.front(), problem_facts(problem, *law));
   if (const auto* refusal = std::get_if<Refusal>(&made)) {
-    out.refusal = refusal->sentence;
+    out.refusal = refusal->sentence.text;
     return out;
   }
   out.coarsest_step = std::max(steps.front(), steps.back());

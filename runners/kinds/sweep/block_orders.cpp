@@ -107,7 +107,7 @@ std::string BlockMarcher::march(const StudyCase& study_case, const std::string& 
     const auto [known, added] = kept.known.try_emplace(key_of(variant), 0);
     if (added) known->second = kept.all->add(variant);
     const ForcedScene& scene = (*kept.all)[known->second];
-    if (!scene.refusal.empty()) throw std::runtime_error(scene.refusal);
+    if (!scene.refusal.empty()) throw std::runtime_error(scene.refusal.text);
     scenes.push_back(known->second);
   }
   const auto lane_of = [&](const OrderedOrbit& orbit) {

@@ -23,7 +23,7 @@ struct SceneVariant {
 /// One scene of a sweep, made ready.
 struct ForcedScene {
   SceneVariant variant;
-  std::string refusal;    ///< why this one cannot be marched; "" when it can
+  Said refusal;           ///< why this one cannot be marched; "" when it can
   bool no_start = false;  ///< because its initial state lies beyond a stop
   int group = -1;         ///< of those that share one factorisation
   LaneSpec lane;          ///< with the scene's own initial state
@@ -69,7 +69,7 @@ class ForcedScenes {
   std::vector<ForcedScene> scenes_;
   LaneGroups groups_;
   int reference_ = -1;
-  std::vector<std::string> beyond_limit_;  // per group: why an explicit step of it is refused
+  std::vector<Said> beyond_limit_;  // per group: why an explicit step of it is refused
 };
 
 /// Item and reason of what the integration of a case does without; tangents belong to the exponents, where these are

@@ -85,7 +85,7 @@ void march_point(const StudyCase& study_case, const Registry& registry, const Po
   PointScenes made(study_case, registry);
   const int scene = made.add(task.parameter, task.start);
   const ForcedScene& found = made.scenes()[scene];
-  if (!found.refusal.empty()) throw InputError("", found.refusal);
+  if (!found.refusal.empty()) throw InputError("", found.refusal.text);
   Orbit orbit;
   orbit.lane = found.lane;
   orbit.entry = task.entry;
@@ -103,7 +103,7 @@ constexpr double same_value = 1e-9;  // relative
 const Table& stored_table(const CaseRecord& record, const std::string& name) {
   if (const Table* table = find_table(record.tables, name)) return *table;
   throw PointRefused(fmt::format("the case {} has no {}: it is {}{}", record.id, name, record.status,
-                                 record.reason.empty() ? "" : ", " + record.reason));
+                                 record.reasons.empty() ? "" : ", " + record.reason()));
 }
 
 SamplePrinter::SamplePrinter(std::ostream& out) : out_(out) {

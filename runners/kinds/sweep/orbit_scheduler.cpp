@@ -265,7 +265,7 @@ void OrbitScheduler::run(const std::atomic<bool>& stop, const std::function<void
       if (!orbits.empty()) orbits = march_block(std::move(orbits), stop, checkpoint);
     }
   } catch (const Refusal& refusal) {
-    throw std::runtime_error(refusal.sentence);
+    throw std::runtime_error(refusal.sentence.text);
   }
   checkpoint(queue_.stock({orbits}));
   if (stop) throw Interrupted{};

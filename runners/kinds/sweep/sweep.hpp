@@ -78,7 +78,7 @@ bool some_value_possible(const StudyCase& study_case);
 
 /// What the steps of a case do not resolve of its load (load_changes()), at the first or the last value of what is
 /// swept.
-std::vector<std::string> load_doubts(const StudyCase& study_case);
+std::vector<Said> load_doubts(const StudyCase& study_case);
 
 /// Refuses a study in which no value of any case is possible, or nothing is forced at any value while the section is a
 /// strobe.

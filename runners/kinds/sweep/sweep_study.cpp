@@ -309,7 +309,7 @@ bool some_value_possible(const StudyCase& study_case) {
   return any_place(axes, most_places, possible);
 }
 
-std::vector<std::string> load_doubts(const StudyCase& study_case) {
+std::vector<Said> load_doubts(const StudyCase& study_case) {
   std::vector<GridAxis> axes;
   if (const Json& settings = study_case.settings;
       settings.contains("axes") || settings.at("parameter").contains("values"))

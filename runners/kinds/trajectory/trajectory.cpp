@@ -381,7 +381,7 @@ Json minimal_study(const StudyResults& results, const CaseRecord& record) {
         methods["time"]["plan"] = method.at("plan");
   Json study = {
       {"name", fmt::format("{}-{}", results.name, record.id)},
-      {"question", fmt::format("Why did this case of {} end as {}? {}", results.name, record.status, record.reason)},
+      {"question", fmt::format("Why did this case of {} end as {}? {}", results.name, record.status, record.reason())},
       {"kind", "trajectory"},
       {"scene", scene},
       {"mesh", mesh},

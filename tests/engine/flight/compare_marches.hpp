@@ -90,13 +90,13 @@ inline Compared compare(const SceneSpec& scene, int elements, const Methods& met
   const auto law = make(registry().contact(methods.contact.name), methods.contact);
   auto discrete = discretise(scene, elements, *make(registry().mass(methods.mass.name), methods.mass), law.get());
   if (const auto* refusal = std::get_if<Refusal>(&discrete)) {
-    result.cause = refusal->sentence;
+    result.cause = refusal->sentence.text;
     return result;
   }
   const auto problem = std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(discrete)));
   auto flown = compiled(problem, methods, h, modal_options(MarchWay::flights, steps));
   if (const auto* refusal = std::get_if<Refusal>(&flown)) {
-    result.cause = refusal->sentence;
+    result.cause = refusal->sentence.text;
     return result;
   }
   result.flew = true;

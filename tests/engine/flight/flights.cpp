@@ -29,7 +29,7 @@ SceneSpec swinging(double viscosity, double amplitude) {
 std::string refusal_of(const SceneSpec& scene, const Methods& methods, double h, const Lanes& lanes = one_lane) {
   const auto made = compiled(problem_of(scene, 6, methods.mass, methods.contact), methods, h, flights(), lanes);
   const auto* refusal = std::get_if<Refusal>(&made);
-  return refusal ? refusal->sentence : "";
+  return refusal ? refusal->sentence.text : "";
 }
 
 // Lets flights leave out as many steps as the test says.
@@ -178,7 +178,7 @@ TEST_CASE("tables that would not fit into memory are refused with how much there
   const auto problem = problem_of(scene, 6, free_of_contact.mass, free_of_contact.contact);
   const auto refused = compiled(problem, free_of_contact, 1e-6, small);
   REQUIRE(std::holds_alternative<Refusal>(refused));
-  CHECK_THAT(std::get<Refusal>(refused).sentence, Catch::Contains("MB of memory, and there are 0.01 MB"));
+  CHECK_THAT(std::get<Refusal>(refused).sentence.text, Catch::Contains("MB of memory, and there are 0.01 MB"));
   small.march = MarchWay::automatic;
   const auto marched = compiled(problem, free_of_contact, 1e-6, small);
   REQUIRE(std::holds_alternative<Program>(marched));

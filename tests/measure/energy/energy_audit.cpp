@@ -46,7 +46,7 @@ TEST_CASE("the balance of energy closes to round-off, with damping, loads, a mov
     // No inertia to rebound with.
     const auto program = compiled(problem_of(busy_scene(), 8, mass), {mass, {"signorini"}, time}, h, options);
     REQUIRE(std::holds_alternative<Refusal>(program));
-    CHECK_THAT(std::get<Refusal>(program).sentence, names_cause_and_remedy());
+    CHECK_THAT(std::get<Refusal>(program).sentence.text, names_cause_and_remedy());
     return;
   }
   Marcher beam = marcher(busy_scene(), 8, {mass, {"signorini"}, time}, h, options);

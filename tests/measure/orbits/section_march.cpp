@@ -34,7 +34,7 @@ Program program_of(const SceneSpec& scene, int elements, const Methods& methods,
   options.tangents = tangents;
   options.moving_support = true;
   auto program = compiled(problem_of(scene, elements, methods.mass), methods, h, options, lanes);
-  INFO((std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence : ""));
+  INFO((std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence.text : ""));
   REQUIRE(std::holds_alternative<Program>(program));
   return std::move(std::get<Program>(program));
 }

@@ -21,7 +21,7 @@ Choice moreau_jean(double theta) {
 
 StepPlan undamped(const Choice& time, double h, int kernel = 0) {
   auto made = plan_of(time, h, {.mass_kernel_dimension = kernel});
-  INFO((std::holds_alternative<Refusal>(made) ? std::get<Refusal>(made).sentence : ""));
+  INFO((std::holds_alternative<Refusal>(made) ? std::get<Refusal>(made).sentence.text : ""));
   REQUIRE(std::holds_alternative<StepPlan>(made));
   return std::get<StepPlan>(made);
 }

@@ -23,7 +23,7 @@ using Problem = std::shared_ptr<const SemiDiscrete>;
 
 inline StepPlan plan(const Choice& time, double h, const ProblemFacts& facts = {}) {
   auto made = plan_of(time, h, facts);
-  INFO((std::holds_alternative<Refusal>(made) ? std::get<Refusal>(made).sentence : ""));
+  INFO((std::holds_alternative<Refusal>(made) ? std::get<Refusal>(made).sentence.text : ""));
   REQUIRE(std::holds_alternative<StepPlan>(made));
   return std::get<StepPlan>(made);
 }
@@ -47,7 +47,7 @@ inline StabilityPredictor predictor(const Problem& problem, const Choice& contac
 }
 
 inline StepSpectrum known(const SpectrumOrRefusal& spectrum) {
-  INFO((std::holds_alternative<Refusal>(spectrum) ? std::get<Refusal>(spectrum).sentence : ""));
+  INFO((std::holds_alternative<Refusal>(spectrum) ? std::get<Refusal>(spectrum).sentence.text : ""));
   REQUIRE(std::holds_alternative<StepSpectrum>(spectrum));
   return std::get<StepSpectrum>(spectrum);
 }

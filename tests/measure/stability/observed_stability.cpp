@@ -37,7 +37,7 @@ struct Cell {
   std::unique_ptr<ContactLaw> law() const { return make(registry().contact(contact.name), contact); }
   StepPlan plan(double h) const {
     auto made = plan_of(time, h, problem_facts(*problem, *law()));
-    INFO((std::holds_alternative<Refusal>(made) ? std::get<Refusal>(made).sentence : ""));
+    INFO((std::holds_alternative<Refusal>(made) ? std::get<Refusal>(made).sentence.text : ""));
     REQUIRE(std::holds_alternative<StepPlan>(made));
     return std::get<StepPlan>(made);
   }
@@ -57,7 +57,7 @@ struct Cell {
         problem, plan(h), h, [this] { return law(); }, parameters(), horizon));
   }
   static ObservedCell known(const ObservedOrRefusal& cell) {
-    INFO((std::holds_alternative<Refusal>(cell) ? std::get<Refusal>(cell).sentence : ""));
+    INFO((std::holds_alternative<Refusal>(cell) ? std::get<Refusal>(cell).sentence.text : ""));
     REQUIRE(std::holds_alternative<ObservedCell>(cell));
     return std::get<ObservedCell>(cell);
   }

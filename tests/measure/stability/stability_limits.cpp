@@ -201,7 +201,7 @@ TEST_CASE("closed sets: each point and all of them, or what says why not") {
   const double h = 1e-6;
   const auto explicit_newmark = few.worst_closed(plan({"newmark", {{"beta", 0.0}}}, h), h);
   REQUIRE(std::holds_alternative<Refusal>(explicit_newmark));
-  CHECK_THAT(std::get<Refusal>(explicit_newmark).sentence, Contains("no impact measure"));
+  CHECK_THAT(std::get<Refusal>(explicit_newmark).sentence.text, Contains("no impact measure"));
 }
 
 }  // namespace stability_tests

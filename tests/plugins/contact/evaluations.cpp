@@ -160,6 +160,6 @@ TEST_CASE("the words of evaluation are one list for all laws of the depth, and a
     const Methods methods{{"consistent"}, law_of("penalty", evaluation), {"central-difference"}};
     auto program = compiled(problem_of(bouncing_mass(), 1, methods.mass), methods, 1e-4);
     if (const auto* refusal = std::get_if<Refusal>(&program))
-      CHECK(refusal->sentence.find("before the step") != std::string::npos);
+      CHECK(refusal->sentence.text.find("before the step") != std::string::npos);
   }
 }

@@ -42,7 +42,7 @@ SemiDiscreteOrRefusal made(const SceneSpec& scene, int elements, const Choice& l
 std::string refusal(const SceneSpec& scene, int elements, const Choice& law) {
   const auto result = made(scene, elements, law);
   const auto* refused = std::get_if<Refusal>(&result);
-  return refused ? refused->sentence : "";
+  return refused ? refused->sentence.text : "";
 }
 
 // λ of tridiag(−1, 2, −1) with 1 in the last place, at its largest: of H K Hᵀ over 12EI/ℓ³ or EA/ℓ at all nodes.
@@ -119,7 +119,7 @@ TEST_CASE("what Nitsche's method cannot do is refused in a sentence") {
   };
   const auto program = compiled(problem, {{"consistent"}, nitsche(10), {"midpoint"}}, 1e-4, {}, two);
   REQUIRE(std::holds_alternative<Refusal>(program));
-  CHECK_THAT(std::get<Refusal>(program).sentence, Contains("stiffness") && Contains("lanes"));
+  CHECK_THAT(std::get<Refusal>(program).sentence.text, Contains("stiffness") && Contains("lanes"));
   // Nor is a problem that was made for another law taken.
   CHECK_THROWS_AS(compiled(problem, {{"consistent"}, nitsche(20), {"midpoint"}}, 1e-4), std::logic_error);
 }

@@ -331,5 +331,5 @@ TEST_CASE("tangents and twins of nonlinear laws agree, and a law without slopes 
 
   const auto refused = program(1, {"lankarani-nikravesh", {{"stiffness", 300.0}, {"restitution", 0.8}}});
   REQUIRE(std::holds_alternative<Refusal>(refused));
-  CHECK(std::get<Refusal>(refused).sentence.find("twins") != std::string::npos);
+  CHECK(std::get<Refusal>(refused).sentence.text.find("twins") != std::string::npos);
 }

@@ -207,7 +207,7 @@ TEST_CASE("laws without a force there refuse, and say which laws have one") {
     const auto built =
         discretise(scene, 1, *make(registry().mass("consistent"), Choice{"consistent"}), law.get(), &parameters);
     const auto* refusal = std::get_if<Refusal>(&built);
-    return refusal ? refusal->sentence : std::string();
+    return refusal ? refusal->sentence.text : std::string();
   };
   for (const Choice& rigid : {Choice{"signorini"}, Choice{"perturbed-lagrangian", {{"stiffness", 1e5}}},
                               Choice{"augmented-lagrangian", {{"augmentation", 1e5}}},

@@ -20,7 +20,7 @@ FiniteElementSpace space_of(AssembledStructure structure) {
 
 std::string sentence(const MassStrategy& strategy, const FiniteElementSpace& space) {
   const auto made = strategy.build(space);
-  return std::holds_alternative<Refusal>(made) ? std::get<Refusal>(made).sentence : "built";
+  return std::holds_alternative<Refusal>(made) ? std::get<Refusal>(made).sentence.text : "built";
 }
 
 // Two nodes that move along x and y, M diagonal.

@@ -14,7 +14,7 @@ FiniteElementSpace bar(BarSpec::Fixed fixed, int elements, std::vector<int> cont
 
 std::string refusal(const FiniteElementSpace& space) {
   auto made = mass("hybrid-singular")->build(space);
-  return std::holds_alternative<Refusal>(made) ? std::get<Refusal>(made).sentence : std::string("built");
+  return std::holds_alternative<Refusal>(made) ? std::get<Refusal>(made).sentence.text : std::string("built");
 }
 
 }  // namespace

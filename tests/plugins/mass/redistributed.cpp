@@ -17,7 +17,7 @@ std::unique_ptr<MassStrategy> projected(int reach = 2) {
 
 std::string refusal_of(const MassStrategy& strategy, const FiniteElementSpace& space) {
   auto made = strategy.build(space);
-  return std::holds_alternative<Refusal>(made) ? std::get<Refusal>(made).sentence : std::string("built");
+  return std::holds_alternative<Refusal>(made) ? std::get<Refusal>(made).sentence.text : std::string("built");
 }
 
 FiniteElementSpace touched(FiniteElementSpace space, std::vector<int> contact) {
@@ -145,7 +145,7 @@ TEST_CASE("redistributed: projected, refuses what no neighbour can carry") {
   scene.stops.place = StopsSpec::Place::nodes;
   const auto nodes = discretise(scene, 8, *projected());
   REQUIRE(std::holds_alternative<Refusal>(nodes));
-  CHECK(std::get<Refusal>(nodes).sentence.find("the mass singular") != std::string::npos);
+  CHECK(std::get<Refusal>(nodes).sentence.text.find("the mass singular") != std::string::npos);
   CHECK(refusal_of(*projected(), touched(bar(BarSpec::Fixed::none, 3), {0, 1, 2, 3})).find("fewer stops") !=
         std::string::npos);
   CHECK(refusal_of(*projected(1), touched(bar(BarSpec::Fixed::right, 6), {0})).find("use more elements") !=

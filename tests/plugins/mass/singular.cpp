@@ -100,7 +100,7 @@ TEST_CASE("singular: where it does not apply it says what to use") {
   const auto sentence = [](const MassStrategy& strategy, const FiniteElementSpace& space) {
     const auto result = strategy.build(space);
     REQUIRE(std::holds_alternative<Refusal>(result));
-    return std::get<Refusal>(result).sentence;
+    return std::get<Refusal>(result).sentence.text;
   };
   CHECK_THAT(sentence(*singular("P0"), oscillator_space(1)), Contains("oscillator") && Contains("use the mass"));
   CHECK_THAT(sentence(*singular("P1"), bar_space(4)), Contains("bar") && Contains("use velocity P0"));

@@ -87,5 +87,5 @@ TEST_CASE("a reference without a map says so") {
   refused.load_zero = refused.load_constant = false;
   const auto answer = beam_solver(8)->map(refused);
   REQUIRE(std::holds_alternative<Refusal>(answer));
-  CHECK(std::get<Refusal>(answer).sentence.find("load depends on time") != std::string::npos);
+  CHECK(std::get<Refusal>(answer).sentence.text.find("load depends on time") != std::string::npos);
 }

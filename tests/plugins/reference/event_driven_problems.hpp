@@ -71,14 +71,14 @@ inline ReferenceProblem without_stops(ReferenceProblem problem) {
 inline ReferenceMotion solved(const ReferenceProblem& problem, const SampleGrid& grid,
                               const std::map<std::string, ParameterValue>& values = {}) {
   auto result = solver(values)->solve(problem, grid);
-  INFO((std::holds_alternative<Refusal>(result) ? std::get<Refusal>(result).sentence : ""));
+  INFO((std::holds_alternative<Refusal>(result) ? std::get<Refusal>(result).sentence.text : ""));
   REQUIRE(std::holds_alternative<ReferenceMotion>(result));
   return std::get<ReferenceMotion>(result);
 }
 
 inline std::string refused(const ReferenceProblem& problem, const std::map<std::string, ParameterValue>& values = {}) {
   const auto result = solver(values)->solve(problem, {{0, 0.5}, {}, {}});
-  return std::holds_alternative<Refusal>(result) ? std::get<Refusal>(result).sentence : "";
+  return std::holds_alternative<Refusal>(result) ? std::get<Refusal>(result).sentence.text : "";
 }
 
 inline std::vector<double> spread(double end, int count) {

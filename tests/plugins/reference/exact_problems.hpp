@@ -24,7 +24,7 @@ inline const ReferenceSolver& exact() {
 
 inline SampledMotion solved(const ReferenceProblem& problem, const SampleGrid& grid) {
   auto found = exact().solve(problem, grid);
-  INFO((std::holds_alternative<Refusal>(found) ? std::get<Refusal>(found).sentence : ""));
+  INFO((std::holds_alternative<Refusal>(found) ? std::get<Refusal>(found).sentence.text : ""));
   REQUIRE(std::holds_alternative<ReferenceMotion>(found));
   SampledMotion motion = std::get<ReferenceMotion>(std::move(found)).motion;
   CHECK(motion.tip.size() == grid.times.size());
@@ -38,7 +38,7 @@ inline SampledMotion solved(const ReferenceProblem& problem, const SampleGrid& g
 inline std::string refusal(const ReferenceProblem& problem) {
   const auto found = exact().solve(problem, {{0, 1}, {}, {}});
   const auto* refused = std::get_if<Refusal>(&found);
-  return refused ? refused->sentence : std::string();
+  return refused ? refused->sentence.text : std::string();
 }
 
 inline std::vector<double> times(double end, int count) {

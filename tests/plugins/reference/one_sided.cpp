@@ -167,7 +167,7 @@ SampledMotion motion_by(const std::string& reference, const SceneSpec& scene, co
   const auto* entry = registry().reference(reference);
   REQUIRE(entry);
   auto solved = entry->make(complete(entry->manual.parameters, {}))->solve(asked.problem, grid_to(end));
-  INFO((std::holds_alternative<Refusal>(solved) ? std::get<Refusal>(solved).sentence : ""));
+  INFO((std::holds_alternative<Refusal>(solved) ? std::get<Refusal>(solved).sentence.text : ""));
   REQUIRE(std::holds_alternative<ReferenceMotion>(solved));
   return std::get<ReferenceMotion>(std::move(solved)).motion;
 }

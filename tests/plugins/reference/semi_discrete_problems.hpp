@@ -31,7 +31,7 @@ inline ReferenceOrRefusal solved_by(const std::string& name, const ReferenceProb
 inline ReferenceMotion found(const ReferenceProblem& problem, const SampleGrid& grid,
                              const std::string& name = "event-driven-semi-discrete") {
   auto result = solved_by(name, problem, grid);
-  INFO((std::holds_alternative<Refusal>(result) ? std::get<Refusal>(result).sentence : ""));
+  INFO((std::holds_alternative<Refusal>(result) ? std::get<Refusal>(result).sentence.text : ""));
   REQUIRE(std::holds_alternative<ReferenceMotion>(result));
   return std::get<ReferenceMotion>(std::move(result));
 }
@@ -39,7 +39,7 @@ inline ReferenceMotion found(const ReferenceProblem& problem, const SampleGrid& 
 inline std::string refusal(const ReferenceProblem& problem) {
   const auto result = solved_by("event-driven-semi-discrete", problem, {{0, 0.01}, {}, {}});
   const auto* refused = std::get_if<Refusal>(&result);
-  return refused ? refused->sentence : std::string();
+  return refused ? refused->sentence.text : std::string();
 }
 
 /// A scene on a mesh, as a reference sees it.

@@ -212,7 +212,7 @@ TEST_CASE("a velocity that jumps needs a regular mass") {
   for (const char* position : {"half", "beta", "projected"}) {
     const auto refused = plan_of(alpha(0.8, position), 1e-3, {12, 3, false, true});
     REQUIRE(std::holds_alternative<Refusal>(refused));
-    CHECK_THAT(std::get<Refusal>(refused).sentence,
+    CHECK_THAT(std::get<Refusal>(refused).sentence.text,
                Catch::Contains("singular") && Catch::Contains("or a regular mass"));
   }
   CHECK(std::holds_alternative<Refusal>(plan_of(kane(0.3, 0.5), 1e-3, {12, 3, false, true})));

@@ -174,7 +174,7 @@ TEST_CASE("a step that begins beyond its stop ends the lane, with the cause", "[
 TEST_CASE("exponents by tangents are refused, a singular mass too, each in a sentence", "[laursen-love]") {
   const auto sentence = [](const ProgramOrRefusal& made) {
     const auto* refusal = std::get_if<Refusal>(&made);
-    return refusal ? refusal->sentence : std::string();
+    return refusal ? refusal->sentence.text : std::string();
   };
   const auto problem = problem_of(shaken_beam(), 6, {"consistent"});
   CHECK(sentence(compiled(problem, {{"consistent"}, {"signorini"}, love}, 1e-4, {.tangents = 1})).find("twins") !=

@@ -16,7 +16,7 @@ std::string refusal_of(const std::string& velocity, const Choice& time, double a
   const Choice mass{"singular", {{"velocity", velocity}}};
   auto result = compiled(problem_of(compared_beam(alpha), 6, mass), {mass, {"signorini"}, time}, 1e-4);
   const auto* refused = std::get_if<Refusal>(&result);
-  return refused ? refused->sentence : std::string();
+  return refused ? refused->sentence.text : std::string();
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ TEST_CASE("central differences have nothing that a rigid law could act on, and n
   const Choice mass{"lumped"};
   auto result = compiled(problem_of(compared_beam(0), 6, mass), {mass, {"signorini"}, {"central-difference"}}, 1e-5);
   REQUIRE(std::holds_alternative<Refusal>(result));
-  CHECK_THAT(std::get<Refusal>(result).sentence,
+  CHECK_THAT(std::get<Refusal>(result).sentence.text,
              names_cause_and_remedy() && Contains("no impact measure") && Contains("use a penalty"));
 }
 

@@ -190,7 +190,7 @@ TEST_CASE("Moreau–Jean refuses what it cannot do with a contact point without 
     beam_of(scene).damping.stiffness = alpha;
     auto result = compiled(problem_of(scene, 6, {"singular"}), {{"singular"}, {"signorini"}, time}, 1e-4);
     const auto* refused = std::get_if<Refusal>(&result);
-    return refused ? refused->sentence : std::string();
+    return refused ? refused->sentence.text : std::string();
   };
   CHECK(refusal({"moreau-jean", {{"restitution", 0.5}}}, 1e-4).find("restitution = 0.5") != std::string::npos);
   CHECK(refusal({"moreau-jean"}, 0).find("theta = 0.5") != std::string::npos);

@@ -65,7 +65,7 @@ void require_twins(const std::string& file, const std::string& name, const std::
         const PlanOrRefusal theirs = plan_of(compiled, twin, values, h, facts);
         REQUIRE(mine.index() == theirs.index());
         if (const auto* refusal = std::get_if<Refusal>(&mine)) {
-          CHECK(refusal->sentence == std::get<Refusal>(theirs).sentence);
+          CHECK(refusal->sentence.text == std::get<Refusal>(theirs).sentence.text);
           continue;
         }
         const auto& step = std::get<StepPlan>(mine);
@@ -330,7 +330,7 @@ TEST_CASE("a refusal is a sentence with the values in it", "[plan-file]") {
   facts.mass_kernel_dimension = 1;
   const PlanOrRefusal answer = plan_of(registry, "mine", {}, 0.1, facts);
   REQUIRE(std::holds_alternative<Refusal>(answer));
-  CHECK(std::get<Refusal>(answer).sentence == "theta = 0.5 on a singular mass");
+  CHECK(std::get<Refusal>(answer).sentence.text == "theta = 0.5 on a singular mass");
   CHECK(std::holds_alternative<StepPlan>(plan_of(registry, "mine", {{"theta", 0.75}}, 0.1, facts)));
 }
 

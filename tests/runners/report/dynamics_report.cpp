@@ -170,7 +170,7 @@ TEST_CASE("nothing is written of cases that left nothing", "[report]") {
     record.tables.clear();
     record.numbers.clear();
     record.status = "failed";
-    record.reason = "it went wrong";
+    record.reasons = {"it went wrong"};
   }
   results.derived.clear();
   CurveData curves(1000);

@@ -68,10 +68,10 @@ inline StudyResults comparison(const std::vector<double>& steps = {1e-3, 5e-4, 2
         record.steps = std::llround(0.5 / step);
         if (refused) {
           record.status = "refused";
-          record.reason = "this law needs a regular mass";
+          record.reasons = {"this law needs a regular mass"};
         } else if (scheme.time == "moreau-jean" && step > 9e-4) {
           record.status = "diverged";
-          record.reason = "step 12, t = 0.012 s: the energy passed the bound";
+          record.reasons = {"step 12, t = 0.012 s: the energy passed the bound"};
         }
         const double seconds = scheme.microseconds * 1e-6 * static_cast<double>(record.steps) * noise(random);
         if (record.status == "done") record.run_seconds = seconds;

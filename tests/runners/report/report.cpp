@@ -113,7 +113,7 @@ TEST_CASE("nothing that a study says can leave its place in the page", "[report]
     record.id += attack;
     record.notes.push_back(attack);
     record.left_out.emplace_back(attack, attack);
-    if (record.status != "done") record.reason = attack;
+    if (record.status != "done") record.reasons = {attack};
   }
   const std::string page = synthetic::rendered(results, "var s = '</script><!--';", attack);
   CHECK(!page_contains(page, "<script>alert"));
@@ -146,7 +146,7 @@ TEST_CASE("results without a single curve or measure make a page", "[report]") {
     record.curve = {};
     record.measures.clear();
     record.status = "failed";
-    record.reason = "it went wrong";
+    record.reasons = {"it went wrong"};
   }
   results.derived.clear();
   const std::string page = synthetic::rendered(results, no_library, "6");

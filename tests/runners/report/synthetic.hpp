@@ -45,7 +45,7 @@ inline CaseRecord make_case(const std::string& mass, const std::string& velocity
   record.steps = std::llround(duration / step);
   if (time == "newmark" && mass == "singular") {
     record.status = "refused";
-    record.reason = "the implicit step is singular on the kernel of this mass <M>: use beta ≥ 1/4 & gamma ≥ 1/2";
+    record.reasons = {"the implicit step is singular on the kernel of this mass <M>: use beta ≥ 1/4 & gamma ≥ 1/2"};
     record.steps = 0;
     return record;
   }
@@ -74,7 +74,7 @@ inline CaseRecord make_case(const std::string& mass, const std::string& velocity
   }
   if (diverges) {
     record.status = "diverged";
-    record.reason = "the energy passed 1e9 J at step 77: \"no bound\" holds";
+    record.reasons = {"the energy passed 1e9 J at step 77: \"no bound\" holds"};
     return record;
   }
   record.setup_seconds = 0.0021;

@@ -171,7 +171,7 @@ inline StudyResults points(const std::vector<int>& steps = {2000, 4000, 8000}, c
   refused.id = "refused";
   refused.axes[0].second = "none at all";
   refused.status = "refused";
-  refused.reason = "nothing to follow";
+  refused.reasons = {"nothing to follow"};
   refused.tables.clear();
   out.cases.push_back(std::move(refused));
   out.expected_cases = static_cast<int>(out.cases.size());

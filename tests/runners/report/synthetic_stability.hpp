@@ -56,9 +56,9 @@ inline StudyResults stability() {
                   {"elements", 10}};
   refused.id = "refused";
   refused.status = "refused";
-  refused.reason = "nothing to march";
+  refused.reasons = {"nothing to march"};
   Table table = stability_type().head();
-  table.rows.push_back({1e-6, false, nullptr, "", nullptr, nullptr, "refused", refused.reason});
+  table.rows.push_back({1e-6, false, nullptr, "", nullptr, nullptr, "refused", refused.reason()});
   refused.tables = {table};
   out.cases.push_back(std::move(refused));
   out.expected_cases = static_cast<int>(out.cases.size());

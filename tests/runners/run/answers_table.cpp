@@ -1,6 +1,7 @@
 // What a study of trajectories answers: tiers of methods, choices by what they move, cases without a result.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <ricochet/contract/said_format.hpp>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -258,23 +259,23 @@ TEST_CASE("cases that gave no result are told by what sets them apart, where all
   for (CaseRecord& record : results.cases)
     if (record.status == "diverged") {
       record.status = "refused";
-      record.reason = "no impact measure";
+      record.reasons = {"no impact measure"};
     }
   CHECK_THAT(said(answers_table(answers::Compared(results))),
              Catch::Contains("Not run: 3 of 12 cases (the heavy mass with soft): no impact measure.\n"));
   // Each reason with its own cases; reasons that differ in numbers alone are one.
-  results.cases.back().reason = "no step";
+  results.cases.back().reasons = {"no step"};
   CHECK_THAT(said(answers_table(answers::Compared(results))),
              Catch::Contains("Not run: 2 of 12 cases (the heavy mass with soft at h = ") &&
                  Catch::Contains(": no impact measure.\n") && Catch::Contains("Not run: 1 of 12 cases (") &&
                  Catch::Contains(": no step.\n"));
   int number = 0;
   for (CaseRecord& record : results.cases)
-    if (record.status == "refused") record.reason = "step 0." + std::to_string(++number) + " is beyond 2";
+    if (record.status == "refused") record.reasons = {said("step {} is beyond 2", 0.125 * ++number)};
   CHECK_THAT(said(answers_table(answers::Compared(results))),
              Catch::Contains("Not run: 3 of 12 cases (the heavy mass with soft): step … is beyond 2.\n"));
   for (CaseRecord& record : results.cases)
-    if (record.status == "refused") record.reason = "no impact measure";
+    if (record.status == "refused") record.reasons = {"no impact measure"};
   // A reference that refuses is named.
   for (CaseRecord& record : results.cases)
     record.notes = {"reference that does not apply: exact: the beam is held twice"};

@@ -134,7 +134,7 @@ TEST_CASE("Cases go together by their ids, else by their parameters, and never t
   const StudyResults a = study("a");
   StudyResults b = study("b");
   b.cases[1].status = "diverged";
-  b.cases[1].reason = "the energy grew";
+  b.cases[1].reasons = {"the energy grew"};
   b.cases.pop_back();
   StudyComparison found = compare_studies(a, b);
   CHECK_FALSE(found.by_id);

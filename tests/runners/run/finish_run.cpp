@@ -1,6 +1,7 @@
 #include "runners/run/finish_run.hpp"
 
 #include <catch2/catch.hpp>
+#include <ricochet/contract/said_format.hpp>
 
 using namespace ricochet;
 
@@ -10,7 +11,7 @@ TEST_CASE("reasons: each once, with its cases, nothing is said of what is done w
     CaseRecord& record = results.cases.emplace_back();
     record.id = id;
     record.status = status;
-    record.reason = reason;
+    if (*reason) record.reasons = {reason};
     return record;
   };
   add("a", "done", "");
@@ -27,15 +28,19 @@ TEST_CASE("reasons: each once, with its cases, nothing is said of what is done w
 
 TEST_CASE("reasons: doubts of one kind are one, whatever their numbers") {
   StudyResults results;
-  const auto add = [&](const char* id, const char* reason) {
+  const auto add = [&](const char* id, std::vector<Said> doubts) {
     CaseRecord& record = results.cases.emplace_back();
     record.id = id;
     record.status = "done";
-    record.reason = reason;
+    record.reasons = std::move(doubts);
   };
-  add("a", "the load jumps within a step, at t = 0.1 to 0.2, 0.5 to 0.6 s; a step of 0.1 s takes a point too far");
-  add("b", "a step of 1e-05 s takes a point too far");
-  add("c", "the load jumps within a step, at t = 1e-3 to 2e-3 s and 12 more");
+  const auto jumps = [](const char* times) {
+    return said("the load jumps within a step, at t = {}", as_number(times));
+  };
+  const auto too_far = [](double step) { return said("a step of {:g} s takes a point too far", step); };
+  add("a", {jumps("0.1 to 0.2, 0.5 to 0.6 s"), too_far(0.1)});
+  add("b", {too_far(1e-5)});
+  add("c", {jumps("1e-3 to 2e-3 s and 12 more")});
   const Table table = reasons_table(results);
   REQUIRE(table.rows.size() == 2);
   CHECK(table.rows[0] == Row{"done", "the load jumps within a step, at t = 0.1 to 0.2, 0.5 to 0.6 s", 2, "a"});
@@ -59,7 +64,7 @@ CaseRecord done(double start, double end, double impacts) {
 CaseRecord ended(const char* status, const char* reason) {
   CaseRecord record;
   record.status = status;
-  record.reason = reason;
+  record.reasons = {reason};
   return record;
 }
 

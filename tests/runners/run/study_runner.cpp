@@ -173,7 +173,7 @@ TEST_CASE("run: excluded cases are rows with their reason, and nothing runs for 
   CHECK(run.runs == 2);
   const CaseRecord record = read_store(options.out).cases[1];
   CHECK(record.status == "refused");
-  CHECK(record.reason == "excluded: an hour each");
+  CHECK(record.reason() == "excluded: an hour each");
   CHECK(record.axes == study.cases[1].axes);
 }
 
@@ -191,9 +191,9 @@ TEST_CASE("run: what a case throws is its row, and the others go on") {
   CHECK(run(fake_study(5), options) == 3);
   const std::vector<CaseRecord> cases = read_store(options.out).cases;
   REQUIRE(cases.size() == 5);
-  CHECK(cases[0].reason == "at /scene/stops/lower: the stops cross at x = 0.3");
-  CHECK(cases[1].reason == "out of luck");
-  CHECK(cases[2].reason == "not enough memory");
+  CHECK(cases[0].reason() == "at /scene/stops/lower: the stops cross at x = 0.3");
+  CHECK(cases[1].reason() == "out of luck");
+  CHECK(cases[2].reason() == "not enough memory");
   for (int i = 0; i < 4; ++i) CHECK(cases[static_cast<std::size_t>(i)].status == "failed");
   CHECK(cases[4].status == "done");
   CHECK_THAT(run.summary, Contains("1 done, 4 failed") && Contains("exit code 3"));

@@ -119,10 +119,10 @@ TEST_CASE("checksums: a store of an earlier program is checked for what cannot b
     INFO(sql);
     const ScratchFolder folder;
     fill(folder.path());
-    change(folder.path(),
-           sql +
-               "; DROP TABLE sums; DROP TABLE aside_sums; DROP TABLE motion_sums; PRAGMA user_version=7; "
-               "DELETE FROM study WHERE key = 'checksums'");
+    change(folder.path(), sql +
+                              "; DROP TABLE sums; DROP TABLE aside_sums; DROP TABLE motion_sums; DROP TABLE reasons; "
+                              "DROP TABLE aside_reasons; PRAGMA user_version=7; "
+                              "DELETE FROM study WHERE key = 'checksums'");
     const StudyResults read = read_what_is_whole(folder.path());
     REQUIRE(read.cases.size() == 1);
     CHECK(read.damage.cases.size() == 1);
@@ -133,7 +133,7 @@ TEST_CASE("checksums: texts of a store are read as they may be shown") {
   const ScratchFolder folder;
   StudyResults results = sample_results();
   results.question = "\x1b[2J?";
-  results.cases[1].reason = "caf\xE9 \x1b]0;X\a \u202E.";
+  results.cases[1].reasons = { "caf\xE9 \x1b]0};X\a \u202E.";
   results.cases[0].notes = {"\r\n"};
   {
     Store store(folder.path(), false);
@@ -142,7 +142,7 @@ TEST_CASE("checksums: texts of a store are read as they may be shown") {
   }
   const StudyResults read = read_store(folder.path());
   CHECK(read.question == "<U+001B>[2J?");
-  CHECK(read.cases[1].reason == "caf\uFFFD <U+001B>]0;X<U+0007> <U+202E>.");
+  CHECK(read.cases[1].reason() == "caf\uFFFD <U+001B>]0;X<U+0007> <U+202E>.");
   CHECK(read.cases[0].notes[0] == "<U+000D>\n");
   SQLite::Database database(folder / "results.sqlite");
   CHECK(is_plain(database.execAndGet("SELECT reason FROM cases WHERE reason != ''").getString()));

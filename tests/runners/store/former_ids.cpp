@@ -12,7 +12,9 @@ namespace {
 void make_former(const std::filesystem::path& folder) {
   fill(folder);
   SQLite::Database database(folder / "results.sqlite", SQLite::OPEN_READWRITE);
-  database.exec("DROP TABLE sums; DROP TABLE aside_sums; DROP TABLE motion_sums; PRAGMA user_version=7");
+  database.exec(
+      "DROP TABLE sums; DROP TABLE aside_sums; DROP TABLE motion_sums; DROP TABLE reasons; DROP TABLE aside_reasons; "
+      "PRAGMA user_version=7");
   for (const char* table : {"axes", "measures", "left_out", "notes", "curves", "case_tables", "case_numbers"})
     database.exec(std::string("UPDATE ") + table + " SET case_id = substr(case_id, 2)");
   database.exec("UPDATE cases SET id = substr(id, 2)");

@@ -1,5 +1,6 @@
 #pragma once
 #include <limits>
+#include <ricochet/contract/said_format.hpp>
 
 #include "runners/store/record.hpp"
 
@@ -39,7 +40,7 @@ inline ricochet::StudyResults sample_results() {
   refused.id = "cabcdefabcd";
   refused.axes = {{"mass", "lumped"}, {"step", 1e-4}};
   refused.status = "refused";
-  refused.reason = "β = 0 leaves S \"singular\",\nuse β ≥ 1/4";
+  refused.reasons = {ricochet::said("β = {} leaves S \"singular\",\nuse β ≥ 1/{}", 0, 4)};
   results.cases = {done, refused};
   results.environment.entries = {{"program", "ricochet"}, {"cores", "2"}};
   return results;

@@ -135,7 +135,7 @@ void ScriptedWorker::hear_block(const Message& message) {
   CaseAnswer answer;
   if (status.what != BlockStatus::What::done) {
     answer.record.status = "failed";
-    answer.record.reason = "block " + order + ": " + status.content;
+    answer.record.reasons = {"block " + order + ": " + status.content};
   } else {
     parts_[order] = status.content;
     if (parts_.size() < at_one_time) return;

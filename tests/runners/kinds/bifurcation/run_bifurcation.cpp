@@ -50,10 +50,10 @@ TEST_CASE("bifurcation: a start beyond a stop is for the laws that push it back,
   const std::atomic<bool> stop = false;
   for (const StudyCase& one : opened.study.cases) {
     const CaseRecord record = run_bifurcation(one, *opened.registry, {}, stop);
-    INFO(record.reason);
+    INFO(record.reason());
     CHECK(record.status == (one.contact.name == "penalty" ? "done" : "refused"));
     if (record.status == "refused")
-      CHECK_THAT(record.reason, Catch::Matchers::Contains("beyond the lower stop at 0.01 m") &&
+      CHECK_THAT(record.reason(), Catch::Matchers::Contains("beyond the lower stop at 0.01 m") &&
                                     Catch::Matchers::Contains("a compliant law"));
   }
 }

@@ -235,7 +235,7 @@ TEST_CASE("a budget stops a case, which counts as failed and leaves a study of i
   const StudyResults results = run.results();
   REQUIRE(results.cases.size() == 1);
   CHECK(results.cases[0].status == "failed");
-  CHECK(results.cases[0].reason.starts_with("the budget of 1e-06 s was spent at step "));
+  CHECK(results.cases[0].reason().starts_with("the budget of 1e-06 s was spent at step "));
   const auto file = run.folder.path() / "failures" / (results.cases[0].id + ".json");
   REQUIRE(std::filesystem::exists(file));
   Json alone = minimal_study(results, results.cases[0]);

@@ -132,7 +132,7 @@ TEST_CASE("a step without tangents refuses the case, and a motion that does not 
   CHECK(refusal_of(study).empty());
   const CaseRecord record = continued(study);
   CHECK(record.status == "failed");
-  check_says(record.reason, {"no orbit at λ = 1: the scheme's own march leaves what was solved by "});
+  check_says(record.reason(), {"no orbit at λ = 1: the scheme's own march leaves what was solved by "});
 }
 
 TEST_CASE("pieces are refused of a parameter that is not affine, and of a law that is not linear") {

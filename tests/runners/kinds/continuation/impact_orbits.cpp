@@ -176,7 +176,7 @@ TEST_CASE("orbits with impacts are where their closed forms say: displacement, v
     Json study = study_of(one, time, 0.9 * force, 1.1 * force, force, steps);
     study["follow"] = "none";
     const CaseRecord record = continued(study);
-    INFO(time << " " << study.dump() << " " << record.reason);
+    INFO(time << " " << study.dump() << " " << record.reason());
     REQUIRE(record.status == "done");
     const BranchRow row = rows_of(record).front();
     CHECK(row.symmetric == one.symmetric);
@@ -213,7 +213,7 @@ TEST_CASE("impact orbits fold where their closed forms meet, within the interval
     Json study = study_of(one, time, 0.5 * fold, 2 * fold, at, 2000);
     const CaseRecord record = continued(study);
     const std::vector<SpecialRow> points = points_of(record);
-    INFO(time << " " << study.dump() << " " << record.reason);
+    INFO(time << " " << study.dump() << " " << record.reason());
     REQUIRE(record.status == "done");
     std::vector<SpecialRow> folds;
     for (const SpecialRow& point : points)
@@ -262,7 +262,7 @@ TEST_CASE("impact orbits double their period where a multiplier of the closed fo
     study["scene"]["initial"] = {{"displacement", orbit->strobe[0]}, {"velocity", orbit->strobe[1]}};
     study["parameter"]["pointer"] = "/scene/structure/force/pulsation";
     const CaseRecord record = continued(study);
-    INFO(time << " " << low << " " << study.dump() << " " << record.reason);
+    INFO(time << " " << low << " " << study.dump() << " " << record.reason());
     REQUIRE(record.status == "done");
     std::vector<SpecialRow> flips;
     for (const SpecialRow& point : points_of(record))

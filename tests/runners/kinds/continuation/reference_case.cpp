@@ -137,10 +137,10 @@ TEST_CASE("first orbits of a reference are looked for as those of a method") {
     CHECK(row.symmetric == true);
     CHECK(*row.tip_displacement == Approx(*rows[0].tip_displacement).epsilon(0).margin(1e-11));
   }
-  CHECK(record.reason == "the orbit found from rest at λ = 0.03 repeats after 1 period; expected period 2");
+  CHECK(record.reason() == "the orbit found from rest at λ = 0.03 repeats after 1 period; expected period 2");
   study["orbits"].erase(2);
   study["scene"]["stops"]["lower"] = -0.11;
-  CHECK(run().reason.starts_with("the scene is not its own image"));
+  CHECK(run().reason().starts_with("the scene is not its own image"));
 }
 
 TEST_CASE("a reference fills its columns and changes neither names nor limits nor orders") {

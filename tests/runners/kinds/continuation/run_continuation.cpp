@@ -268,8 +268,8 @@ TEST_CASE("an orbit that is not found fails its case, whose other orbits are fol
         std::find_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.branch == "orbit-2"; });
     REQUIRE(missing != points.end());
     CHECK(record.status == "failed");
-    CHECK(record.reason == missing->note);
-    CHECK(record.reason == "the orbit found from rest at λ = 0.085 repeats after 1 period; expected period 2");
+    CHECK(record.reason() == missing->note);
+    CHECK(record.reason() == "the orbit found from rest at λ = 0.085 repeats after 1 period; expected period 2");
     CHECK_FALSE(rows_of(record).empty());
   }
 }
@@ -281,8 +281,8 @@ TEST_CASE("an orbit of a bifurcation study that is not there is a row that says 
   study["at_most"] = {{"pieces", 3}};
   const CaseRecord record = continued(study);
   CHECK(record.status == "failed");
-  CHECK(record.reason.find("/nowhere: there is no results.sqlite") != std::string::npos);
-  CHECK(points_of(record).front().note == record.reason);
+  CHECK(record.reason().find("/nowhere: there is no results.sqlite") != std::string::npos);
+  CHECK(points_of(record).front().note == record.reason());
   CHECK_FALSE(rows_of(record).empty());
 }
 

@@ -93,7 +93,7 @@ constexpr double central_limit = 0.0334014193 / 25;
 TEST_CASE("central differences: the predicted limit, the observed one within 2 %, a status per cell") {
   const Result result = run(study_text("consistent", "signorini", dumont_paoli(0), 1e-4, 1e-2, 9));
   CHECK(result.record.status == "done");
-  CHECK(result.record.reason.empty());
+  CHECK(result.record.reason().empty());
   const Table& table = result.table("stability");
   CHECK(table_csv({"", "", table.columns, {}}) ==
         "step,closed,radius,marginal,limit_predicted,limit_observed,status,reason\n");
@@ -150,11 +150,11 @@ TEST_CASE("marginal cells are named, refused ones say why") {
 
   const Result refused = run(study_text(singular, "signorini", dumont_paoli(0), 1e-4, 1e-2, 3));
   CHECK(refused.record.status == "refused");
-  CHECK_THAT(refused.record.reason, Contains("beta"));
+  CHECK_THAT(refused.record.reason(), Contains("beta"));
   const auto rows = refused.column("status", "open");
   REQUIRE(rows.size() == 3);
   for (const Cell& status : rows) CHECK(status == "refused");
-  for (const Cell& reason : refused.column("reason", "open")) CHECK(reason == refused.record.reason);
+  for (const Cell& reason : refused.column("reason", "open")) CHECK(reason == refused.record.reason());
 }
 
 TEST_CASE("without observation nothing is marched") {

@@ -73,7 +73,7 @@ class Moved : ScratchFolder, public CaseRuns {
   CaseRecord run(const Json& text) {
     const std::atomic<bool> stop = false;
     CaseRecord record = run_bifurcation(study(text).cases.front(), registry(), {}, stop);
-    INFO(record.reason);
+    INFO(record.reason());
     REQUIRE(record.status == "done");
     return record;
   }
@@ -90,7 +90,7 @@ class Moved : ScratchFolder, public CaseRuns {
     text["duration"] = periods * whole * (1 + 1e-9);
     text["samples"] = periods;
     const CaseRecord record = first_of(text);
-    INFO(record.reason);
+    INFO(record.reason());
     REQUIRE(record.status == "done");
     const Series& tip = record.curve.columns.at(1);
     return {tip.begin() + transient + 1, tip.end()};
@@ -210,7 +210,7 @@ TEST_CASE("basins: bodies begin as they say, files are multiplied, and both axes
                                  {{"pointer", y}, {"from", -2}, {"to", 2}, {"count", 2}}});
     const std::atomic<bool> stop = false;
     const CaseRecord record = run_basins(studies.study(study).cases.front(), studies.registry(), {}, stop);
-    INFO(record.reason);
+    INFO(record.reason());
     CHECK(record.status == "done");
     return table_of(record, "cells").rows.size();
   };

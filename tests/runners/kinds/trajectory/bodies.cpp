@@ -70,7 +70,7 @@ TEST_CASE("a rod and a ball run, each mesh by the numbers of its bodies") {
   const std::vector<CaseRecord> records = runs.of(driven_pair());
   REQUIRE(records.size() == 8);
   for (const CaseRecord& record : records) {
-    INFO(record.reason);
+    INFO(record.reason());
     CHECK(record.status == "done");
     CHECK(measured(record, "impulse[gap]") > 0);
   }
@@ -86,5 +86,5 @@ TEST_CASE("a study of bodies refuses what one of them refuses, by its name") {
   study["mesh"]["elements"] = 4;
   CaseRuns runs;
   for (const CaseRecord& record : runs.of(study))
-    if (record.status == "refused") CHECK_THAT(record.reason, Catch::StartsWith("body "));
+    if (record.status == "refused") CHECK_THAT(record.reason(), Catch::StartsWith("body "));
 }

@@ -41,23 +41,23 @@ const Json rigid = "signorini", soft = {{"name", "penalty"}, {"stiffness", 100}}
 TEST_CASE("a step that is longer than the way from stop to stop is told") {
   const CaseRecord fine = CaseRuns().first_of(thrown(0.1, 1e-3, rigid));
   CHECK(fine.status == "done");
-  CHECK(fine.reason.empty());
+  CHECK(fine.reason().empty());
   const CaseRecord coarse = CaseRuns().first_of(thrown(1e-3, 1e-2, rigid));
   CHECK(coarse.status == "done");
-  CHECK_THAT(coarse.reason,
+  CHECK_THAT(coarse.reason(),
              Contains("a step of 0.01 s takes a point further than the gap, 10 times as far, first at t"));
   // One stop has no gap, nor have two that meet.
   Json one = thrown(1e-3, 1e-2, rigid);
   one["scene"]["stops"]["lower"] = nullptr;
-  CHECK(CaseRuns().first_of(one).reason.empty());
+  CHECK(CaseRuns().first_of(one).reason().empty());
   Json meeting = thrown(1e-3, 1e-2, rigid);
   meeting["scene"]["stops"]["lower"] = meeting["scene"]["stops"]["upper"] = 0;
-  CHECK(CaseRuns().first_of(meeting).reason.empty());
+  CHECK(CaseRuns().first_of(meeting).reason().empty());
 }
 
 TEST_CASE("a point that is further beyond its stop than the gap is wide is told") {
   // It turns v √(m/k) = 0.1 m beyond the stop.
-  const auto told = [](double gap, double step) { return CaseRuns().first_of(thrown(gap, step, soft)).reason; };
+  const auto told = [](double gap, double step) { return CaseRuns().first_of(thrown(gap, step, soft)).reason(); };
   CHECK(told(0.2, 1e-3).empty());
   CHECK_THAT(told(0.02, 1e-3),
              Contains("a point passes its stop by more than the gap, up to ") && !Contains("a step of"));
@@ -67,19 +67,19 @@ TEST_CASE("a point that is further beyond its stop than the gap is wide is told"
   const CaseRecord turned = CaseRuns().first_of(damped);
   const double deepest = measure(turned, "deepest_penetration").value();
   CHECK(deepest == Approx(0.1).epsilon(0.01));  // five gaps; the implicit law loses a share of the order of ωh
-  CHECK_THAT(turned.reason, Contains(fmt::format("up to {:.3g} times, first at t = 0.0", deepest / 0.02)));
+  CHECK_THAT(turned.reason(), Contains(fmt::format("up to {:.3g} times, first at t = 0.0", deepest / 0.02)));
 }
 
 TEST_CASE("a load that no step sees is told, and a case that fails keeps it as a note") {
   Json study = thrown(0.1, 1e-3, rigid);
   study["scene"]["load"] = Json::array({{{"force", "t > 0.0101 && t < 0.0102 ? 1 : 0"}}});
   const CaseRecord done = CaseRuns().first_of(study);
-  CHECK_THAT(done.reason, Contains("the load comes and goes within a step of 0.001 s, at t = 0.0101"));
+  CHECK_THAT(done.reason(), Contains("the load comes and goes within a step of 0.001 s, at t = 0.0101"));
   study["budget"] = 1e-12;
   study["duration"] = 1000;
   const CaseRecord failed = CaseRuns().first_of(study);
   CHECK(failed.status == "failed");
-  CHECK_THAT(failed.reason, Contains("budget") && !Contains("comes and goes"));
+  CHECK_THAT(failed.reason(), Contains("budget") && !Contains("comes and goes"));
   CHECK(std::any_of(failed.notes.begin(), failed.notes.end(),
                     [](const std::string& note) { return note.find("comes and goes") != std::string::npos; }));
 }
@@ -111,7 +111,7 @@ std::set<std::string> reasons(const Json& study) {
   std::set<std::string> out;
   for (const CaseRecord& record : CaseRuns().of(study)) {
     CHECK(record.status == "done");
-    out.insert(record.reason);
+    out.insert(record.reason());
   }
   return out;
 }

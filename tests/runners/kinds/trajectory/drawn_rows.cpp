@@ -42,7 +42,7 @@ CaseRecord run_in(const Json& text, const ScratchFolder& folder) {
 }
 
 Snapshots film_of(const CaseRecord& record) {
-  INFO(record.reason);
+  INFO(record.reason());
   REQUIRE(record.status == "done");
   const NumberTable* table = find_table(record.numbers, snapshots_name);
   REQUIRE(table);

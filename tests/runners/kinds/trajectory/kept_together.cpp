@@ -60,7 +60,7 @@ TEST_CASE("a film, parts of a window, wear and a clearance go together") {
                 "rate": 100, "segment": 0.5},
     "observe": ["wear_power[plate]"]})json");
   const CaseRecord record = CaseRuns().first_of(study);
-  INFO(record.reason);
+  INFO(record.reason());
   REQUIRE(record.status == "done");
   CHECK(measure(record, "wear_power[plate]").value() > 0);
   for (const char* name : {"snapshots", "orbits", "spectra", "shocks", "impacts"}) {

@@ -83,7 +83,7 @@ TEST_CASE("an integration by flights that cannot fly is refused with the reason,
   const std::vector<CaseRecord> records = shaken.of(text);
   CHECK(records[0].status == "done");
   CHECK(records[1].status == "refused");
-  CHECK_THAT(records[1].reason, Catch::Contains("the load depends on time") && Catch::Contains("march every step"));
+  CHECK_THAT(records[1].reason(), Catch::Contains("the load depends on time") && Catch::Contains("march every step"));
   text["march"] = "auto";
   const CaseRecord chosen = shaken.of(text).front();
   CHECK(chosen.status == "done");

@@ -81,7 +81,7 @@ Json carriage(double mass, double speed, const std::vector<Spring>& springs, dou
 }
 
 double value(const CaseRecord& record, const std::string& name) {
-  INFO(name << " of " << record.status << " " << record.reason);
+  INFO(name << " of " << record.status << " " << record.reason());
   const auto found = measure(record, name);
   REQUIRE(found.has_value());
   return *found;
@@ -131,7 +131,7 @@ TEST_CASE("springs at one place with gaps of their own are one spring in pieces"
     const Stages exact = run_onto(mass, speed, springs);
     const double duration = 0.02 / speed + 1.05 * exact.time.front(), step = duration / 20000;
     const CaseRecord record = CaseRuns().first_of(carriage(mass, speed, springs, step, 20000 * step));
-    INFO(scene << ": " << record.reason);
+    INFO(scene << ": " << record.reason());
     REQUIRE(record.status == "done");
     CHECK(value(record, "deepest_penetration") == Approx(exact.depth - springs.front().gap).epsilon(1e-4));
     for (std::size_t i = 0; i < springs.size(); ++i) {
@@ -187,12 +187,12 @@ TEST_CASE("rigid laws refuse interference and equal bounds case by case, and com
   std::vector<CaseRecord> records = CaseRuns().of(study);
   REQUIRE(records.size() == 2);
   CHECK(records[0].status == "refused");
-  CHECK_THAT(records[0].reason, Contains("rigid law knows only the sum of their forces") && names_cause_and_remedy());
+  CHECK_THAT(records[0].reason(), Contains("rigid law knows only the sum of their forces") && names_cause_and_remedy());
   CHECK(records[1].status == "done");
   study["scene"]["stops"] = Json::parse(R"([{"name": "grip", "at": {"x": 0}, "lower": 1e-4, "upper": -1e-4}])");
   records = CaseRuns().of(study);
   CHECK(records[0].status == "refused");
-  CHECK_THAT(records[0].reason, Contains("Expected lower ≤ upper, or a compliant law that lets points pass both"));
+  CHECK_THAT(records[0].reason(), Contains("Expected lower ≤ upper, or a compliant law that lets points pass both"));
   CHECK(records[1].status == "done");
   study["methods"]["contact"] = "signorini";
   CHECK_THAT(CaseRuns().refusal(study), Contains("/scene/stops/0/lower: stop grip: lower 0.0001 m > upper -0.0001 m"));
@@ -206,7 +206,7 @@ TEST_CASE("the stop of two that a rigid law never meets is told, and has no cont
   REQUIRE(record.status == "done");
   CHECK(value(record, "impulse[s0]") == Approx(1.5).epsilon(1e-9));
   CHECK(value(record, "impulse[s1]") == 0);
-  CHECK(record.reason.empty());
+  CHECK(record.reason().empty());
   CHECK(std::find(record.notes.begin(), record.notes.end(),
                   "stop s1: a rigid law never meets its upper bound, behind that of s0 at one place") !=
         record.notes.end());
