@@ -90,7 +90,7 @@ class PlanValues {
   /// A linear formula in M, C and K, or an object of their weights.
   OperatorWeights matrices(const JsonPlace& place);
   /// A sentence in which {formula} stands for its value.
-  std::string sentence(const JsonPlace& place);
+  Said sentence(const JsonPlace& place);
 
  private:
   void name(const std::string& name, const std::string& pointer, const char* what);

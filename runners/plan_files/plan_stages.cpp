@@ -216,7 +216,7 @@ std::optional<Refusal> plan_refusal(const JsonPlace& plan, PlanValues& values) {
   for (const JsonPlace& one : plan.at("refuse").items("a list of refusals {when, because}")) {
     one.close({"when", "because"});
     const bool holds = values.truth(one.at("when", "the formula that decides"));
-    std::string because = values.sentence(one.at("because", "the sentence that says why, and what to do"));
+    Said because = values.sentence(one.at("because", "the sentence that says why, and what to do"));
     if (holds && !first) first = Refusal{std::move(because)};
   }
   return first;

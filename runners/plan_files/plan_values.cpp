@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ricochet/contract/said_format.hpp>
 
 #include "runners/json/json_text.hpp"
 #include "runners/plan_files/plan_reader.hpp"
@@ -243,9 +244,9 @@ OperatorWeights PlanValues::matrices(const JsonPlace& place) {
   return {all[0], all[1], all[2]};
 }
 
-std::string PlanValues::sentence(const JsonPlace& place) {
+Said PlanValues::sentence(const JsonPlace& place) {
   const std::string text = place.text("a sentence that says why, and what to do");
-  std::string result;
+  Said result;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t open = std::min(text.find('{', at), text.size());
     result += text.substr(at, open - at);
@@ -254,7 +255,7 @@ std::string PlanValues::sentence(const JsonPlace& place) {
     if (close == std::string::npos)
       throw InputError(place.pointer(), "a brace opens a formula and none closes it; expected {formula}");
     numbers_.read(text.substr(open + 1, close - open - 1), place.pointer());
-    result += fmt::format("{:g}", numbers_.value());
+    result += said("{:g}", numbers_.value());
     at = close + 1;
   }
   return result;
