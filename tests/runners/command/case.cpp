@@ -39,7 +39,7 @@ Json convergence() {
 /// The study is run into the folder `there`; the id of its `row`th case.
 std::string run(const ScratchFolder& here, const Json& text, std::size_t row = 0) {
   write_text(here / "study.json", text.dump(1));
-  const Said said = say(here, "run study.json --out there --jobs 1");
+  const CommandOutput said = say(here, "run study.json --out there --jobs 1");
   INFO(said.err);
   REQUIRE(said.code == 0);
   const std::string cases = read_text(here / "there" / "cases.csv");
@@ -51,10 +51,10 @@ std::string run(const ScratchFolder& here, const Json& text, std::size_t row = 0
 /// The study of the case alone has the case, bit for bit.
 void check_alone(const ScratchFolder& here, const std::string& id) {
   REQUIRE(say(here, "case there " + id + " --study > one.json").code == 0);
-  const Said alone = say(here, "run one.json --out alone --jobs 1");
+  const CommandOutput alone = say(here, "run one.json --out alone --jobs 1");
   INFO(alone.err << read_text(here / "one.json"));
   REQUIRE(alone.code == 0);
-  const Said again = say(here, "case alone " + id);
+  const CommandOutput again = say(here, "case alone " + id);
   INFO(again.err);
   CHECK_THAT(again.out, Contains("as stored to the last bit"));
 }
@@ -64,14 +64,14 @@ void check_alone(const ScratchFolder& here, const std::string& id) {
 TEST_CASE("A case is marched again to the last bit, and its study alone has the same case") {
   const ScratchFolder here;
   const std::string id = run(here, trajectory(), 5);
-  const Said again = say(here, "case there " + id.substr(0, 5));
+  const CommandOutput again = say(here, "case there " + id.substr(0, 5));
   INFO(again.out << again.err);
   CHECK(again.code == 0);
   for (const char* part :
        {"case ", "stops.upper", "dissipated_at_contact", "energy ledger:", "stops:", "as stored to the last bit"})
     CHECK_THAT(again.out, Contains(part));
 
-  const Said curve = say(here, "case there " + id + " --samples 50");
+  const CommandOutput curve = say(here, "case there " + id + " --samples 50");
   CHECK(curve.code == 0);
   const std::string stored = read_text(here / "there" / "curves" / (id + ".csv"));
   REQUIRE_FALSE(stored.empty());
@@ -89,7 +89,7 @@ TEST_CASE("What differs from the stored case is told by its name and both number
     CHECK(say(here, "case there " + id).code == 5);
     ricochet::seal_cases(store, "");
   }
-  const Said again = say(here, "case there " + id);
+  const CommandOutput again = say(here, "case there " + id);
   CHECK(again.code == 0);
   CHECK_THAT(again.out, Contains("not as stored") && Contains("impulse is ") && Contains(", stored is 7"));
 }
@@ -97,7 +97,7 @@ TEST_CASE("What differs from the stored case is told by its name and both number
 TEST_CASE("A case of a comparison is compared with its reference again") {
   const ScratchFolder here;
   const std::string id = run(here, convergence(), 2);
-  const Said again = say(here, "case there " + id);
+  const CommandOutput again = say(here, "case there " + id);
   INFO(again.out << again.err);
   CHECK_THAT(again.out, Contains("error.tip-l2") && Contains("as stored to the last bit"));
   CHECK_THAT(say(here, "case there " + id + " --samples 10").out, Contains("t,tip_displacement,tip_velocity"));
@@ -109,9 +109,9 @@ TEST_CASE("A case of stability prints its rows, and orbits are sent to point") {
   Json stability = study("stability");
   stability.update(Json{{"steps", {{"from", 0.01}, {"to", 1}, {"count", 4}}}});
   const std::string id = run(here, stability);
-  const Said again = say(here, "case there " + id);
+  const CommandOutput again = say(here, "case there " + id);
   CHECK_THAT(again.out, Contains("stability:") && Contains("as stored to the last bit"));
-  const Said curve = say(here, "case there " + id + " --samples 10");
+  const CommandOutput curve = say(here, "case there " + id + " --samples 10");
   CHECK(curve.code == 2);
   CHECK_THAT(curve.err, Contains("more than one integration"));
 
@@ -122,7 +122,7 @@ TEST_CASE("A case of stability prints its rows, and orbits are sent to point") {
                                "steps_per_period": 64, "start": ["rest"],
                                "transient": {"periods": 4, "at_most": 4}, "keep": 16})"));
   const std::string orbits = run(other, sweep);
-  const Said refused = say(other, "case there " + orbits);
+  const CommandOutput refused = say(other, "case there " + orbits);
   CHECK(refused.code == 2);
   CHECK_THAT(refused.err, Contains("ricochet point there " + orbits));
   CHECK(say(other, "case there " + orbits + " --study > one.json").code == 0);
@@ -133,7 +133,7 @@ TEST_CASE("Snapshots of a case are kept beside it, and the next report has its f
   const ScratchFolder here;
   const std::string id = run(here, trajectory());
   CHECK_THAT(read_text(here / "there" / "report.html"), Contains("\"snapshots\":null"));
-  const Said kept = say(here, "case there " + id + " --snapshots 40");
+  const CommandOutput kept = say(here, "case there " + id + " --snapshots 40");
   INFO(kept.out << kept.err);
   CHECK(kept.code == 0);
   CHECK_THAT(kept.out, Contains("41 instants at 1 places"));
@@ -141,7 +141,7 @@ TEST_CASE("Snapshots of a case are kept beside it, and the next report has its f
   CHECK_THAT(read_text(here / "there" / "report.html"), Contains(id + "/snapshots/u:i16"));
   // They are not the results: these stay as they are, and a run takes them for finished.
   CHECK_THAT(say(here, "case there " + id).out, Contains("as stored to the last bit"));
-  const Said resumed = say(here, "run study.json --out there --jobs 1");
+  const CommandOutput resumed = say(here, "run study.json --out there --jobs 1");
   CHECK_THAT(resumed.err + resumed.out, Contains("0 run now"));
   CHECK_THAT(read_text(here / "there" / "report.html"), Contains(id + "/snapshots/u:i16"));
 }
@@ -149,7 +149,7 @@ TEST_CASE("Snapshots of a case are kept beside it, and the next report has its f
 TEST_CASE("A case that is not there is told with the nearest, and what is no case with the kinds") {
   const ScratchFolder here;
   const std::string id = run(here, trajectory());
-  const Said unknown = say(here, "case there " + id + "0");
+  const CommandOutput unknown = say(here, "case there " + id + "0");
   CHECK(unknown.code == 2);
   CHECK_THAT(unknown.err, Contains("did you mean \"" + id + "\"?"));
   CHECK(say(here, "case nowhere " + id).code == 5);

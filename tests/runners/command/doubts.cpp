@@ -29,7 +29,7 @@ struct FirstScreen {
 FirstScreen first_screen(const Json& study) {
   const ScratchFolder here;
   write_text(here / "study.json", study.dump(1));
-  const Said ran = say(here, "run study.json --inline --out out");
+  const CommandOutput ran = say(here, "run study.json --inline --out out");
   CAPTURE(ran.out, ran.err);
   REQUIRE(ran.code == 0);
   const std::string page = read_text(here / "out/report.html");

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "runners/store/folder_lock.hpp"
 #include "runners/store/checksums.hpp"
+#include "runners/store/folder_lock.hpp"
 #include "runners/store/read_store.hpp"
 #include "runners/store/store.hpp"
 #include "tests/runners/command/said.hpp"
@@ -49,7 +49,8 @@ std::string merge_study(const std::string& kind) {
 void run_parts(const ScratchFolder& here, int of) {
   for (int number = 1; number <= of; ++number) {
     const std::string part = std::to_string(number);
-    const Said said = say(here, "run study.json --part " + part + "/" + std::to_string(of) + " --out parts/" + part);
+    const CommandOutput said =
+        say(here, "run study.json --part " + part + "/" + std::to_string(of) + " --out parts/" + part);
     INFO(said.out << said.err);
     REQUIRE(said.code == 0);
   }
@@ -72,7 +73,7 @@ class TwoParts {
   }
   /// The message of a merge that is refused with this code, and leaves nothing.
   std::string refused(const std::string& folders, int code) const {
-    const Said said = say(here, "merge " + folders + " --out all");
+    const CommandOutput said = say(here, "merge " + folders + " --out all");
     INFO(said.err << said.out);
     CHECK(said.code == code);
     CHECK(said.out.empty());
@@ -99,18 +100,18 @@ TEST_CASE("merge: three parts are what one run leaves, in every table and in the
   CAPTURE(kind);
   const ScratchFolder here;
   write_text(here / "study.json", merge_study(kind));
-  const Said one = say(here, "run study.json --out one");
+  const CommandOutput one = say(here, "run study.json --out one");
   INFO(one.err);
   REQUIRE(one.code == 0);
   run_parts(here, 3);
-  const Said merged = say(here, "merge parts/3 parts/1 parts/2 --out all/of/it/");
+  const CommandOutput merged = say(here, "merge parts/3 parts/1 parts/2 --out all/of/it/");
   INFO(merged.err);
   REQUIRE(merged.code == 0);
   CHECK_THAT(merged.out, Contains("merged from 3 folders") && !Contains("in none of") && !Contains("part "));
   same_tables::check_same(here / "one", here / "all/of/it");
   same_tables::check_same(here / "all/of/it", here / "one");
   CHECK(read_text(here / "one/study.json") == read_text(here / "all/of/it/study.json"));
-  const Said compared = say(here, "compare one all/of/it");
+  const CommandOutput compared = say(here, "compare one all/of/it");
   CHECK_THAT(compared.out, Contains("The results are equal to the last bit.") && Contains("answer: the same lines") &&
                                Contains("environment: the same"));
   const StudyResults all = read_store(here / "all/of/it"), single = read_store(here / "one");
@@ -120,7 +121,7 @@ TEST_CASE("merge: three parts are what one run leaves, in every table and in the
   if (kind == "convergence") CHECK_FALSE(shared_keys(here / "one").empty());
   CHECK(shared_keys(here / "all/of/it") == shared_keys(here / "one"));
   // A run finds nothing to do.
-  const Said again = say(here, "run study.json --out all/of/it");
+  const CommandOutput again = say(here, "run study.json --out all/of/it");
   CHECK(again.code == 0);
   CHECK_THAT(again.err, Contains(", 0 to run") && !Contains("aside"));
 }
@@ -129,18 +130,18 @@ TEST_CASE("merge: what is missing is counted, and a run in the merged folder add
   const ScratchFolder here;
   write_text(here / "study.json", merge_study("trajectory"));
   run_parts(here, 3);
-  const Said merged = say(here, "merge parts/1 parts/3 --out all");
+  const CommandOutput merged = say(here, "merge parts/1 parts/3 --out all");
   CHECK(merged.code == 0);
   const std::string go_on = "run all/study.json --out all";
   CHECK_THAT(merged.out, Contains("3 of 9 cases are in none of these folders: `ricochet " + go_on + "` goes on"));
   CHECK_THAT(read_text(here / "all/report.html"), Contains("Partial results: 6 of 9 cases so far"));
-  const Said more = say(here, go_on);
+  const CommandOutput more = say(here, go_on);
   CHECK(more.code == 0);
   CHECK_THAT(more.err, Contains("6 finished before, 3 to run"));
   CHECK(say(here, "run study.json --out one").code == 0);
   same_tables::check_same(here / "one", here / "all");
   // A whole folder beside its parts: every case is there twice, and once in what comes out.
-  const Said twice = say(here, "merge one parts/2 all --out both");
+  const CommandOutput twice = say(here, "merge one parts/2 all --out both");
   CHECK(twice.code == 0);
   same_tables::check_same(here / "one", here / "both");
 }
@@ -217,7 +218,7 @@ TEST_CASE("merge: a folder that holds something is not written to, an empty one 
   TwoParts parts;
   const std::string before = read_text(parts.here / "parts/1/results.sqlite");
   for (const std::string out : {"parts/1", "study.json", "parts"}) {
-    const Said said = say(parts.here, "merge parts/1 parts/2 --out " + out);
+    const CommandOutput said = say(parts.here, "merge parts/1 parts/2 --out " + out);
     CHECK(said.code == 2);
     CHECK_THAT(said.err, Contains(out + ": it is there, and not an empty folder"));
   }

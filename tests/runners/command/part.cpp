@@ -53,21 +53,21 @@ TEST_CASE("part: one process, workers and a plan deal alike") {
   std::set<std::string> all;
   for (const std::string number : {"1", "2", "3"}) {
     const std::string part = " --part " + number + "/3";
-    const Said alone = say(here, "run study.json --inline" + part);
+    const CommandOutput alone = say(here, "run study.json --inline" + part);
     INFO(alone.err);
     REQUIRE(alone.code == 0);
     const auto ids = ids_in(here / ("results/dealt-part-" + number + "-of-3"));
     CHECK(ids.size() == 2);
     REQUIRE(say(here, "run study.json --isolate --out workers/" + number + part).code == 0);
     CHECK(ids_in(here / ("workers/" + number)) == ids);
-    const Said plan = say(here, "plan study.json --cases" + part);
+    const CommandOutput plan = say(here, "plan study.json --cases" + part);
     CHECK(plan.code == 0);
     CHECK_THAT(plan.out, Contains("part " + number + " of 3: kind trajectory, 2 cases"));
     CHECK(planned_ids(plan.out) == ids);
     all.insert(ids.begin(), ids.end());
   }
   CHECK(all.size() == 6);
-  const Said status = say(here, "status results/dealt-part-2-of-3");
+  const CommandOutput status = say(here, "status results/dealt-part-2-of-3");
   CHECK_THAT(status.out, Contains("(dealt, trajectory, part 2 of 3): 2 of 2 cases finished"));
 }
 
@@ -76,11 +76,11 @@ TEST_CASE("part: what is no part is a sentence, exit code 2 and no folder") {
   write_text(here / "study.json", dealt_study());
   for (const std::string command : {"run", "plan"}) {
     for (const std::string part : {"0/4", "5/4", "a/b", "4", "''"}) {
-      const Said said = say(here, command + " study.json --part " + part);
+      const CommandOutput said = say(here, command + " study.json --part " + part);
       CHECK(said.code == 2);
       CHECK_THAT(said.err, Contains("expected K/N, part K of N with 1 ≤ K ≤ N, such as 3/64"));
     }
-    const Said many = say(here, command + " study.json --part 1/6");
+    const CommandOutput many = say(here, command + " study.json --part 1/6");
     CHECK(many.code == 2);
     CHECK_THAT(many.err, Contains("dealt: this study has 5 cases to run: at most 5 parts, not 6"));
   }
@@ -92,11 +92,11 @@ TEST_CASE("part: a folder goes on as the part that it holds, else exit code 2") 
   write_text(here / "study.json", dealt_study());
   REQUIRE(say(here, "run study.json --part 2/3 --out out").code == 0);
   for (const std::string part : {"--part 1/3", "--part 2/4", ""}) {
-    const Said said = say(here, "run study.json --out out " + part);
+    const CommandOutput said = say(here, "run study.json --out out " + part);
     CHECK(said.code == 2);
     CHECK_THAT(said.err, Contains("out: this folder holds part 2 of 3 of \"dealt\""));
   }
-  const Said again = say(here, "run study.json --part 2/3 --out out");
+  const CommandOutput again = say(here, "run study.json --part 2/3 --out out");
   CHECK(again.code == 0);
   CHECK_THAT(again.err, Contains("2 finished before, 0 to run"));
 }

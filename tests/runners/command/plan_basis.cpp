@@ -22,7 +22,7 @@ TEST_CASE("plan tells what modes leave out at each stop, and that times the stif
     std::string text = study;
     text.replace(text.find("LAWS"), 4, laws);
     write_text(here / "modes.json", text);
-    const Said plan = say(here, "plan modes.json");
+    const CommandOutput plan = say(here, "plan modes.json");
     INFO(plan.err);
     REQUIRE(plan.code == 0);
     return plan.out;

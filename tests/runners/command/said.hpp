@@ -8,14 +8,14 @@
 #include "tests/runners/scratch_folder.hpp"
 
 /// What a command of a shell ended with and wrote.
-struct Said {
+struct CommandOutput {
   int code = -1;
   std::string out, err;
 };
 
 /// Runs the program in a folder with the plugins of the tree; `words` is a piece of shell, which may write its output
 /// elsewhere.
-inline Said say(const ScratchFolder& here, const std::string& words) {
+inline CommandOutput say(const ScratchFolder& here, const std::string& words) {
   const std::string line = "cd '" + here.path().string() + "' && RICOCHET_PLUGIN_PATH='" +
                            ricochet::tests::places().plugins + "' '" + ricochet::tests::places().command + "' " +
                            words + " 2>.err </dev/null";

@@ -32,7 +32,7 @@ int place(const std::string& line, const std::string& name) {
 void check_refused(const ScratchFolder& here, const std::vector<std::pair<std::string, std::string>>& wrong) {
   for (const auto& [words, part] : wrong) {
     INFO(words);
-    const Said refused = say(here, "point " + words);
+    const CommandOutput refused = say(here, "point " + words);
     CHECK(refused.code == 2);
     CHECK(refused.out.empty());
     CHECK_THAT(refused.err, Contains(part));
@@ -52,7 +52,7 @@ TEST_CASE("A point of a diagram is printed as it was stored, or the nearest name
     "parameter": {"pointer": "/scene/stops/upper", "from": 0.1, "to": 0.3, "count": 3},
     "steps_per_period": 64, "start": ["rest", "down"], "transient": {"periods": 8, "at_most": 8}, "keep": 16
   })";
-  const Said run = say(here, "run diagram.json --out there --jobs 1");
+  const CommandOutput run = say(here, "run diagram.json --out there --jobs 1");
   INFO(run.out << run.err);
   REQUIRE(run.code == 0);
   // case, axes …, parameter, start, index, tip_displacement, tip_velocity: by the names of the first line.
@@ -65,7 +65,7 @@ TEST_CASE("A point of a diagram is printed as it was stored, or the nearest name
       stored += field(line, start + 2) + "," + field(line, start + 3) + "\n";
   REQUIRE_FALSE(stored.empty());
 
-  const Said point =
+  const CommandOutput point =
       say(here, "point there " + id.substr(0, 4) + " --parameter 0.2 --start down --periods 16 --samples 1");
   INFO(point.err);
   CHECK(point.code == 0);
@@ -103,7 +103,7 @@ TEST_CASE("A cell of a grid is marched as its run did, or the nearest cells are 
              {"pointer": "/scene/initial/velocity", "from": -1, "to": 1, "count": 9}],
     "steps_per_period": 64, "transient": {"periods": 60, "at_most": 160}, "keep": 32, "refine": true
   })";
-  const Said run = say(here, "run grid.json --out there --jobs 1");
+  const CommandOutput run = say(here, "run grid.json --out there --jobs 1");
   INFO(run.out << run.err);
   REQUIRE(run.code == 0);
   std::ifstream cells(here / "there" / "cells.csv");
@@ -116,8 +116,8 @@ TEST_CASE("A cell of a grid is marched as its run did, or the nearest cells are 
     id = field(line, 0);
     const bool alone = field(line, marched) == "true";
     if ((alone ? compared : filled) == 3) continue;
-    const Said point = say(here, "point there " + id + " --cell=" + field(line, x) + "," + field(line, x + 1) +
-                                     " --periods 2 --samples 16");
+    const CommandOutput point = say(here, "point there " + id + " --cell=" + field(line, x) + "," + field(line, x + 1) +
+                                              " --periods 2 --samples 16");
     INFO(line << "\n" << point.err);
     CHECK(point.code == 0);
     CHECK(std::count(point.out.begin(), point.out.end(), '\n') == 33);
@@ -165,7 +165,7 @@ TEST_CASE("status: a folder says how many of its cases are finished, as what, an
   nlohmann::ordered_json study = free_beam();
   write_text(here / "study.json", study.dump());
   REQUIRE(say(here, "run study.json").code == 0);
-  const Said ended = say(here, "status results/far");
+  const CommandOutput ended = say(here, "status results/far");
   CHECK(ended.code == 0);
   CHECK_THAT(ended.out, Contains("2 of 2 cases finished: 2 done") && !Contains("under way"));
 
@@ -179,12 +179,12 @@ TEST_CASE("status: a folder says how many of its cases are finished, as what, an
     store.begin(more, cases);
     store.save_progress("1/3 cases, 33 %, 5 s left");
   }
-  const Said going = say(here, "status results/far");
+  const CommandOutput going = say(here, "status results/far");
   CHECK(going.code == 0);
   CHECK_THAT(going.out, Contains("0 of 3 cases finished") && Contains("33 %"));
   CHECK(going.out.find("has ended") == std::string::npos);
 
-  const Said both = say(here, "status results/far results/none");
+  const CommandOutput both = say(here, "status results/far results/none");
   CHECK(both.code == 5);
   CHECK_THAT(both.err, Contains("none"));
   CHECK(say(here, "status").code == 2);
@@ -193,13 +193,13 @@ TEST_CASE("status: a folder says how many of its cases are finished, as what, an
 TEST_CASE("plan --workers: what one worker takes is the whole, what many take is no less than the longest chain") {
   const ScratchFolder here;
   write_text(here / "study.json", free_beam().dump());
-  const Said one = say(here, "plan study.json --workers 1");
+  const CommandOutput one = say(here, "plan study.json --workers 1");
   CHECK(one.code == 0);
   CHECK_THAT(one.out, Contains("with 1 worker: "));
-  const Said many = say(here, "plan study.json --workers 500");
+  const CommandOutput many = say(here, "plan study.json --workers 500");
   CHECK_THAT(many.out, Contains("with 500 workers: ") && Contains("shorten nothing") && Contains("memory"));
   for (const std::string wrong : {"0", "-3", "many"}) {
-    const Said said = say(here, "plan study.json --workers " + wrong);
+    const CommandOutput said = say(here, "plan study.json --workers " + wrong);
     CHECK(said.code == 2);
     CHECK_THAT(said.err, Contains("--workers"));
   }
@@ -210,7 +210,7 @@ TEST_CASE("slurm: bad times, no program of ranks and studies that are none are t
   write_text(here / "study.json", free_beam().dump());
   CHECK_THAT(say(here, "slurm study.json").err, Contains("--time"));
   for (const std::string wrong : {"soon", "1:2:3:4", "0:30", "0"}) {
-    const Said said = say(here, "slurm study.json --time " + wrong);
+    const CommandOutput said = say(here, "slurm study.json --time " + wrong);
     INFO(said.err);
     CHECK(said.code == 2);
     CHECK(said.out.empty());
@@ -231,7 +231,7 @@ TEST_CASE("An orbit of a branch is solved again, or what the branch has is told"
     "steps_per_period": 200, "parameter": {"pointer": "/scene/structure/force/amplitude", "from": 0.3, "to": 1.0},
     "orbits": [{"at": 0.5, "from": "free"}], "both_ways": false, "switch": null, "at_most": {"arc": 10}
   })";
-  const Said run = say(here, "run branch.json --out there --jobs 1");
+  const CommandOutput run = say(here, "run branch.json --out there --jobs 1");
   INFO(run.out << run.err);
   REQUIRE(run.code == 0);
   std::ifstream branches(here / "there" / "branches.csv");
@@ -240,7 +240,7 @@ TEST_CASE("An orbit of a branch is solved again, or what the branch has is told"
   const int arc = place(line, "arc"), tip = place(line, "tip_displacement");
   while (std::getline(branches, line)) last = line;
   id = field(last, 0);
-  const Said point =
+  const CommandOutput point =
       say(here, "point there " + id.substr(0, 4) + " --branch orbit-1+ --arc " + field(last, arc) + " --snapshots 20");
   INFO(point.out << point.err);
   REQUIRE(point.code == 0);
@@ -253,7 +253,7 @@ TEST_CASE("An orbit of a branch is solved again, or what the branch has is told"
   // The next report shows the film, and says of which orbit it is.
   REQUIRE(say(here, "report there").code == 0);
   CHECK_THAT(read_text(here / "there" / "report.html"), Contains("orbit-1+ at an arc of " + field(last, arc) + " m"));
-  const Said elsewhere = say(here, "point there " + id + " --branch orbit-1+ --arc 0.1 --out one.csv");
+  const CommandOutput elsewhere = say(here, "point there " + id + " --branch orbit-1+ --arc 0.1 --out one.csv");
   CHECK(elsewhere.code == 0);
   CHECK_FALSE(read_text(here / "one.csv").empty());
 

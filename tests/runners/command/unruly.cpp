@@ -28,7 +28,7 @@ namespace {
 
 const std::string library = places().unruly + "/contact-unruly.so";
 
-Said in_shell(const ScratchFolder& here, const std::string& line) {
+CommandOutput in_shell(const ScratchFolder& here, const std::string& line) {
   const std::string out = (here / ".out").string(), err = (here / ".err").string();
   const int status = std::system(
       ("cd '" + here.path().string() + "' && (" + line + ") >'" + out + "' 2>'" + err + "' </dev/null").c_str());
@@ -36,7 +36,7 @@ Said in_shell(const ScratchFolder& here, const std::string& line) {
 }
 
 /// The command in a folder, with the unruly library beside its own.
-Said unruly(const ScratchFolder& here, const std::string& words, const std::string& does = "") {
+CommandOutput unruly(const ScratchFolder& here, const std::string& words, const std::string& does = "") {
   const Variable wish("RICOCHET_TEST_UNRULY", does), left("RICOCHET_TEST_LEFT", (here / "left").string());
   return in_shell(here, "RICOCHET_PLUGIN_PATH='" + places().unruly + "' '" + places().command + "' " + words);
 }
@@ -54,7 +54,7 @@ quick_studies::Json small_study(const std::string& law = "unruly") {
     "step": [1e-2, 5e-3], "duration": 1, "samples": 20, "budget": 2})");
 }
 
-Said run_unruly(const ScratchFolder& here, const std::string& does, const std::string& options = "") {
+CommandOutput run_unruly(const ScratchFolder& here, const std::string& does, const std::string& options = "") {
   write_text(here / "small.json", small_study().dump());
   return unruly(here, "run small.json --jobs 2 --table --fresh --out out " + options, does);
 }
@@ -88,7 +88,7 @@ TEST_CASE("unruly: what a library prints is on stderr, and what a command prints
     // Durations, dates and what depends on them.
     return std::regex_replace(text, std::regex("[0-9.:-]+(e-?[0-9]+)?( ms| µs| s|T[0-9:]+Z)?|\\s+"), "");
   };
-  const Said quiet = unruly(here, words), loud = unruly(here, words, moment + " print");
+  const CommandOutput quiet = unruly(here, words), loud = unruly(here, words, moment + " print");
   INFO(loud.err);
   CHECK(loud.code == quiet.code);
   CHECK(without_times(loud.out) == without_times(quiet.out));
@@ -105,7 +105,7 @@ TEST_CASE("unruly: static destructors that end the process, or never end, change
   CAPTURE(what, words);
   const ScratchFolder here;
   write_text(here / "small.json", small_study().dump());
-  const Said ended = unruly(here, words, "end " + what);
+  const CommandOutput ended = unruly(here, words, "end " + what);
   INFO(ended.err);
   CHECK(ended.code == 0);
   CHECK_THAT(ended.err, Contains(library + ": its static destructors: " + told));
@@ -127,7 +127,7 @@ TEST_CASE("unruly: a library that ends the process which loads it is told by lis
 #endif
   if (what == "leak" && moment == "load") return;  // seconds each
   const ScratchFolder here;
-  const Said listed = unruly(here, "list contact", moment + " " + what);
+  const CommandOutput listed = unruly(here, "list contact", moment + " " + what);
   CHECK(listed.code == 4);
   CHECK_THAT(listed.out,
              Contains("cannot be used: " + library + ": " + told + " while it was loaded") && Contains("signorini"));
@@ -138,10 +138,10 @@ TEST_CASE("unruly: an environment that is cleared, a thread that crashes later, 
   const std::string what = GENERATE("clear", "thread", "fork");
   CAPTURE(moment, what);
   const ScratchFolder here;
-  const Said listed = unruly(here, "list", moment + " " + what);
+  const CommandOutput listed = unruly(here, "list", moment + " " + what);
   CHECK(listed.code == 0);
   CHECK_THAT(listed.out, Contains("unruly"));
-  const Said ran = run_unruly(here, moment + " " + what);
+  const CommandOutput ran = run_unruly(here, moment + " " + what);
   INFO(ran.out << ran.err);
   // A worker whose thread crashes is lost, whether it has opened the study, runs a case or is done by then.
   CHECK((ran.code == 0 || (what == "thread" && (ran.code == 3 || ran.code == 4))));
@@ -151,7 +151,7 @@ TEST_CASE("unruly: an environment that is cleared, a thread that crashes later, 
 
 TEST_CASE("unruly: a library that crashes where it is loaded once more is named, with exit code 4") {
   const ScratchFolder here;
-  const Said ran = run_unruly(here, "register second");
+  const CommandOutput ran = run_unruly(here, "register second");
   INFO(ran.out << ran.err);
   CHECK(ran.code == 4);
   CHECK_THAT(ran.err, Contains("plugin contact 'unruly' (" + library + "), load(): ") &&
@@ -167,7 +167,7 @@ TEST_CASE("unruly: whatever ends a worker in a law, its case is failed and the l
                                                 {"deaf", "did not return from solve() within the budget of 2 s"}}));
   CAPTURE(what);
   const ScratchFolder here;
-  const Said ran = run_unruly(here, "solve " + what);
+  const CommandOutput ran = run_unruly(here, "solve " + what);
   INFO(ran.out << ran.err);
   CHECK(ran.code == 3);
   check_rows(here, "failed", told);
@@ -183,7 +183,7 @@ TEST_CASE("unruly: a thread that crashes outside of any function is told with th
   study["duration"] = 10;
   study["budget"] = 60;
   write_text(here / "small.json", study.dump());
-  const Said ran = unruly(here, "run small.json --jobs 1 --out out", "register thread");
+  const CommandOutput ran = unruly(here, "run small.json --jobs 1 --out out", "register thread");
   INFO(ran.out << ran.err);
   CHECK(ran.code == 3);
   const auto rows = cases_of(here);
@@ -196,8 +196,8 @@ TEST_CASE("unruly: a law that takes all memory is failed with memory as the caus
   const ScratchFolder here;
   write_text(here / "small.json", small_study().dump());
   const Variable does("RICOCHET_TEST_UNRULY", std::string("solve leak"));
-  const Said ran = in_shell(here, "ulimit -v 1000000; RICOCHET_PLUGIN_PATH='" + places().unruly + "' '" +
-                                      places().command + "' run small.json --jobs 2 --out out");
+  const CommandOutput ran = in_shell(here, "ulimit -v 1000000; RICOCHET_PLUGIN_PATH='" + places().unruly + "' '" +
+                                               places().command + "' run small.json --jobs 2 --out out");
   INFO(ran.out << ran.err);
   CHECK(ran.code == 3);
   check_rows(here, "failed",
@@ -213,8 +213,8 @@ TEST_CASE("a run with little memory ends, and says so where it is not enough") {
   CAPTURE(kilobytes, cut);
   const ScratchFolder here;
   write_text(here / "small.json", (cut ? quick_studies::study_of("bifurcation") : small_study("signorini")).dump());
-  const Said ran = in_shell(here, "ulimit -v " + std::to_string(kilobytes) + "; RICOCHET_PLUGIN_PATH= '" +
-                                      places().command + "' run small.json --isolate --jobs 2");
+  const CommandOutput ran = in_shell(here, "ulimit -v " + std::to_string(kilobytes) + "; RICOCHET_PLUGIN_PATH= '" +
+                                               places().command + "' run small.json --isolate --jobs 2");
   INFO(ran.out << ran.err);
   // Below what the program itself needs the loader of the system ends it.
   CHECK((ran.code == 0 || ran.code == 3 || ran.code == 5 || ran.code == 127));
@@ -225,7 +225,7 @@ TEST_CASE("a run with little memory ends, and says so where it is not enough") {
 
 TEST_CASE("unruly: a process that a law leaves behind keeps no run waiting") {
   const ScratchFolder here;
-  const Said ran = run_unruly(here, "solve fork");
+  const CommandOutput ran = run_unruly(here, "solve fork");
   INFO(ran.out << ran.err);
   CHECK(ran.code == 0);
   check_rows(here, "done", "");
@@ -238,7 +238,7 @@ TEST_CASE("unruly: a process that a law leaves behind keeps no run waiting") {
 TEST_CASE("unruly: long texts of exceptions are cut where they are stored, between two characters") {
   const auto [what, letter] = GENERATE(table<std::string, std::string>({{"long", "L"}, {"accents", "é"}}));
   const ScratchFolder here;
-  const Said ran = run_unruly(here, "solve " + what);
+  const CommandOutput ran = run_unruly(here, "solve " + what);
   CHECK(ran.code == 3);
   for (const auto& row : cases_of(here))
     if (row.at("contact") == "unruly") {
@@ -257,14 +257,14 @@ TEST_CASE("unruly: a point or a case is marched in a child as well") {
   std::string id;
   for (const auto& row : rows)
     if (row.at("contact") == "unruly") id = row.at("case");
-  const Said quiet = unruly(here, "case out " + id), loud = unruly(here, "case out " + id, "load print");
+  const CommandOutput quiet = unruly(here, "case out " + id), loud = unruly(here, "case out " + id, "load print");
   CHECK(quiet.code == 0);
   CHECK(loud.code == 0);
   CHECK_THAT(loud.out, !Contains("printed") && Contains("case " + id));
-  const Said ended = unruly(here, "case out " + id, "solve kill");
+  const CommandOutput ended = unruly(here, "case out " + id, "solve kill");
   CHECK(ended.code == 3);
   CHECK_THAT(ended.err, Contains("plugin contact 'unruly' (" + library + "), solve(): ended by signal 9 (killed)"));
-  const Said wrong = unruly(here, "case out c99");
+  const CommandOutput wrong = unruly(here, "case out c99");
   CHECK(wrong.code == 2);
 }
 

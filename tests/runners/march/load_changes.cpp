@@ -19,7 +19,9 @@ SceneSpec pushed(const std::vector<std::string>& forces) {
 }
 
 std::vector<std::string> said(const std::string& force, double step, long long steps) {
-  return load_changes(pushed({force}), step, steps);
+  std::vector<std::string> texts;
+  for (const Said& change : load_changes(pushed({force}), step, steps)) texts.push_back(change.text);
+  return texts;
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ std::string refusal_of(const Choice& time, double h) {
   ProblemFacts facts;
   facts.dofs = problem->dofs();
   const auto plan_at = [&](double length) { return plan_of(time, length, facts); };
-  return beyond_explicit_limit(problem, std::get<StepPlan>(plan_at(h)), h, plan_at);
+  return beyond_explicit_limit(problem, std::get<StepPlan>(plan_at(h)), h, plan_at).text;
 }
 
 }  // namespace

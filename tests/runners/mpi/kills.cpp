@@ -142,7 +142,7 @@ TEST_CASE("kills: of two starts of one job on one folder the later one has it, t
   const Json study = lingering::study();
   REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "here") + " --inline" + lingering::plugin)).code == 0);
   const std::string words = ranks_program() + " " + run_words(scratch, study, "out") + lingering::plugin;
-  // Said behind mpirun, which asks Slurm for nodes where it sees a job of it.
+  // CommandOutput behind mpirun, which asks Slurm for nodes where it sees a job of it.
   const auto start = [&](int restart) {
     return mpirun("-n 2 env SLURM_JOB_ID=4711 SLURM_RESTART_COUNT=" + std::to_string(restart) + " " + words);
   };

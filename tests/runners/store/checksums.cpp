@@ -133,7 +133,7 @@ TEST_CASE("checksums: texts of a store are read as they may be shown") {
   const ScratchFolder folder;
   StudyResults results = sample_results();
   results.question = "\x1b[2J?";
-  results.cases[1].reasons = { "caf\xE9 \x1b]0};X\a \u202E.";
+  results.cases[1].reasons = {"caf\xE9 \x1b]0;X\a \u202E."};
   results.cases[0].notes = {"\r\n"};
   {
     Store store(folder.path(), false);

@@ -32,7 +32,7 @@ TEST_CASE("a gap of a stop is a lane's own, its stiffness and its bodies are not
     ForcedScenes scenes(opened.first(), *opened.registry);
     for (const double value : values) {
       scenes.add(pointer, value, false);
-      INFO(scenes[scenes.count() - 1].refusal);
+      INFO(scenes[scenes.count() - 1].refusal.text);
       REQUIRE(scenes[scenes.count() - 1].refusal.empty());
     }
     return scenes.groups();
