@@ -99,9 +99,10 @@ const Field* declared_at(const std::string& pointer, const Json& study) {
     return keys.size() > 1 && keys[0] == "scene" && scene != study.end()
                ? find_declared(scene_form(), *scene, Path(keys).subspan(1))
                : find_declared(study_form(), study, keys);
-  } catch (const InputError&) {
-    return nullptr;  // no study of this format
+  } catch (const InputError&) {  // no study of this format
+  } catch (const Json::exception&) {
   }
+  return nullptr;
 }
 
 std::string words_at(const std::string& pointer) {

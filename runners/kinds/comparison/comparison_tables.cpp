@@ -62,7 +62,8 @@ bool single_valued(const StudyResults& results, const std::string& column) {
 
 // An oscillator has no mesh whose error could be in the way.
 bool meshed(const StudyResults& results) {
-  return has_structure(results.study.at("scene"), {"beam", "bar", "assembled", "modal"});
+  const auto scene = results.study.find("scene");
+  return scene != results.study.end() && has_structure(*scene, {"beam", "bar", "assembled", "modal"});
 }
 
 /// What errors that do not fall may have met.

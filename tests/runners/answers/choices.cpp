@@ -156,6 +156,6 @@ TEST_CASE("a measure that agrees as well is told with its value, several with ho
 TEST_CASE("a mass of the scene is never called by the name of a role") {
   CHECK(answers::spoken("mass") == "the mass matrix");
   CHECK(answers::spoken("structure.mass") == "the mass of the oscillator");
-  CHECK(answers::spoken("structure.masses.0.mass") == "the scene's mass");
-  CHECK(answers::spoken("structure.young") == "young");
+  CHECK(answers::spoken("structure.masses.0.mass") == "the point mass");
+  CHECK(answers::spoken("structure.young") == "Young's modulus");
 }

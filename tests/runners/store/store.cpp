@@ -26,7 +26,10 @@ TEST_CASE("store: everything comes back, to the last bit") {
   CHECK(out.expected_cases == in.expected_cases);
   CHECK(out.environment.entries == in.environment.entries);
   REQUIRE(out.cases.size() == in.cases.size());
-  for (std::size_t i = 0; i < in.cases.size(); ++i) check_equal(out.cases[i], in.cases[i]);
+  for (std::size_t i = 0; i < in.cases.size(); ++i) {
+    check_equal(out.cases[i], in.cases[i]);
+    CHECK(out.cases[i].reasons == in.cases[i].reasons);
+  }
 }
 
 TEST_CASE("store: between two cases the record is one file, readable while the run has it open") {

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/checksums.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/store.hpp"
 #include "tests/runners/scratch_folder.hpp"
@@ -29,6 +30,9 @@ TEST_CASE("store: what earlier versions wrote is read, and gets the tables that 
   const int version = GENERATE(1, 2, 3, 4, 5, 6, 7, 8);
   {
     SQLite::Database database(folder / "results.sqlite", SQLite::OPEN_READWRITE);
+    // Its checksums know nothing of rows that came later.
+    database.exec("DELETE FROM reasons");
+    seal_cases(database, "");
     database.exec("DROP TABLE reasons; DROP TABLE aside_reasons");
     if (version < 8) database.exec("DROP TABLE sums; DROP TABLE aside_sums; DROP TABLE motion_sums");
     if (version < 8) database.exec("DELETE FROM study WHERE key = 'checksums'");
