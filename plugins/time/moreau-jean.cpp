@@ -17,7 +17,7 @@ PlanOrRefusal moreau_jean(const Parameters& p, double h, const ProblemFacts& fac
   const double theta = p.real("theta"), e = p.real("restitution");
   const bool damps = theta != 0.5, massless_contact = facts.contact && facts.mass_kernel_dimension > 0;
   if (massless_contact && e > 0)
-    return needs_mass(fmt::format("restitution = {:g}", e), "use restitution 0, or a regular mass");
+    return needs_mass(said("restitution = {:g}", e), "use restitution 0, or a regular mass");
   if (massless_contact && !damps)
     return Refusal{
         "theta = 0.5 leaves the root −1 on the kernel of a singular mass, with or without damping: use theta > 0.5, or "

@@ -21,7 +21,7 @@ inline StepPlan plan_with(std::vector<std::string> slots) {
 }
 
 /// The refusal of a singular mass by schemes that have `what` of contact points as a state.
-inline Refusal needs_mass(std::string_view what, std::string_view remedy = "use a lumped mass, or an implicit scheme") {
+inline Refusal needs_mass(const Said& what, std::string_view remedy = "use a lumped mass, or an implicit scheme") {
   return Refusal{said("{} needs the inverse of the mass, which is singular here: {}", what, remedy)};
 }
 

@@ -122,7 +122,7 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
       representative = scene;
       break;
     }
-    if (out.refusal.empty()) out.refusal = fmt::format("at {:g}: {}", value, scenes[scene].refusal);
+    if (out.refusal.empty()) out.refusal = fmt::format("at {:g}: {}", value, scenes[scene].refusal.text);
   }
   if (representative < 0) return out;
   out.refusal.clear();
