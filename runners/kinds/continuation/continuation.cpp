@@ -57,7 +57,7 @@ class ContinuationKind final : public Kind {
   }
   Analysis analysis(StudyResults& results, const answers::Compared& study) const override {
     const SweptColumns swept = swept_columns(results);
-    for (CaseRecord& record : results.cases) describe_continuation(record, swept);
+    describe_continuation(results.cases, swept);
     collect_tables(results, [](const std::string& table) { return table == special_points_type().name; });
     const auto points = std::make_shared<const PointAnalysis>(study);
     points->append_tables(results);

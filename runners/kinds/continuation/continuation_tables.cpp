@@ -162,12 +162,14 @@ TableType<TurnRow> turns_type(const SweptColumns& swept) {
           rows};
 }
 
-void describe_continuation(CaseRecord& record, const SweptColumns& swept) {
+void describe_continuation(std::vector<CaseRecord>& cases, const SweptColumns& swept) {
   constexpr int most_multipliers = 64;
-  for (Table& table : record.tables)
-    for (const Table& head :
-         {branches_type(most_multipliers, swept).head(), special_points_type(swept).head(), turns_type(swept).head()})
-      if (head.name == table.name) describe(table, head);
+  const Table heads[] = {branches_type(most_multipliers, swept).head(), special_points_type(swept).head(),
+                         turns_type(swept).head()};
+  for (CaseRecord& record : cases)
+    for (Table& table : record.tables)
+      for (const Table& head : heads)
+        if (head.name == table.name) describe(table, head);
 }
 
 }  // namespace ricochet

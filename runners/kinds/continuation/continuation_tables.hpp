@@ -62,7 +62,7 @@ struct TurnRow {
 };
 TableType<TurnRow> turns_type(const SweptColumns& swept = {});
 
-/// Gives the tables of a case their meanings, with the units and names that the study gives its parameter.
-void describe_continuation(CaseRecord& record, const SweptColumns& swept);
+/// Gives the tables of cases their meanings, with the units and names that the study gives its parameter.
+void describe_continuation(std::vector<CaseRecord>& cases, const SweptColumns& swept);
 
 }  // namespace ricochet
