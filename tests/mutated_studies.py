@@ -17,8 +17,9 @@ import subprocess
 import sys
 import tempfile
 
+from damaged_stores import ran
+
 STUDIES = pathlib.Path(__file__).resolve().parent.parent / "studies"
-LIMIT = 300  # s, of a command that takes one
 FACTORS = [0.1, 0.5, 0.9, 1.1, 2, 10] * 3 + [0, -1, 1e3, 1e-3, 1e6, 1e-6, 1e12, 1e-12, 1e100, 1e-100, 1e300, 1e-300]
 FORM = ("elements", "samples", "transient", "keep", "steps_per_period", "repeats", "compare", "observe", "outputs", "modes")
 ENDS = {"work-precision": {"repeats": 1, "samples": 20}, "convergence": {"samples": 20}}
@@ -163,10 +164,8 @@ def main():
             file, out = place / "study.json", place / "out"
             file.write_text(json.dumps(study, indent=1))
             shutil.rmtree(out, ignore_errors=True)
-            words = [program, "run", str(file), "--out", str(out)] + dice.choice([[], [], ["--inline"]])
             try:
-                done = subprocess.run(words, capture_output=True, timeout=LIMIT)
-                code, said = done.returncode, (done.stdout + done.stderr).decode("utf-8", "replace")
+                code, said = ran(program, "run", str(file), "--out", str(out), *dice.choice([[], [], ["--inline"]]))
             except subprocess.TimeoutExpired:
                 code, said = "hangs", ""
             codes[code] = codes.get(code, 0) + 1
