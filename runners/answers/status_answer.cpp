@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <set>
-#include <string_view>
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/numbers_in_words.hpp"

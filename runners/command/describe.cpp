@@ -279,8 +279,7 @@ std::vector<Role> roles_asked(const Arguments& arguments) {
 
 }  // namespace
 
-Role role_called(const std::string& word, std::vector<std::string> others) {
-  std::vector<std::string> names = std::move(others);
+Role role_called(const std::string& word, std::vector<std::string> names) {
   for (const Role role : all_roles) {
     if (word == role_name(role)) return role;
     names.emplace_back(role_name(role));

@@ -91,9 +91,9 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
 /// The help of one command, its options included.
 std::string help_text(const Subcommand& command);
 
-/// The role that a word names. Throws UsageError (nearest name) for a word that names none; `others`: words that the
+/// The role that a word names. Throws UsageError (nearest name) for a word that names none; `names`: words that the
 /// caller knows too.
-Role role_called(const std::string& word, std::vector<std::string> others = {});
+Role role_called(const std::string& word, std::vector<std::string> names = {});
 
 // The commands themselves; each returns its exit code.
 int command_run(const Arguments& arguments, std::ostream& out);

@@ -1,9 +1,12 @@
 #include "runners/store/record_values.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <ricochet/contract/said_format.hpp>
 #include <stdexcept>
 
 #include "runners/study/axis_meaning.hpp"
@@ -12,9 +15,7 @@
 namespace ricochet {
 
 std::string CaseRecord::reason() const {
-  std::string text = excluded ? "excluded: " : "";
-  for (const Said& one : reasons) text += (&one == &reasons.front() ? "" : "; ") + one.text;
-  return text;
+  return fmt::format("{}{}", excluded ? "excluded: " : "", fmt::join(reasons, "; "));
 }
 
 bool went_wrong(const CaseRecord& record) {
