@@ -213,6 +213,18 @@ std::string Compared::label(const CaseRecord& record, const std::vector<std::str
   return out;
 }
 
+std::string Compared::words(const CaseRecord& record, const std::vector<std::string>& columns) const {
+  std::string out, last;
+  for (const std::string& column : columns) {
+    const std::string& value = text(record, column);
+    if (value.empty()) continue;
+    const std::string role = axis_role(column);
+    out += (out.empty() ? "" : role == last ? " " : ", ") + value_words(column, value);
+    last = role;
+  }
+  return out;
+}
+
 std::string Compared::name(const CaseRecord& record, const std::vector<std::string>& choices) const {
   std::string scheme, mass, law, rest;
   for (const std::string& choice : choices) {

@@ -45,6 +45,9 @@ class Compared {
   std::string name(const CaseRecord& record) const { return name(record, choices_); }
   std::string name(const CaseRecord& record, const std::vector<std::string>& choices) const;
 
+  /// The case's values of these columns, those of one role together: "singular P1, stiffness 1e8 N/m".
+  std::string words(const CaseRecord& record, const std::vector<std::string>& columns) const;
+
   /// A value of a column in words: "β = ½", "stiffness 1e6 N/m", "viscosity 1e-4 s", "implicit".
   std::string value_words(const std::string& column, const std::string& value) const;
   /// A method's or a mass matrix's own word: "rigid stops" of "signorini".

@@ -86,6 +86,10 @@ std::string type_of(const Field& field) {
       return "word, or a list";
     case Field::Form::starts:
       return "word or object, or a list";
+    case Field::Form::share:
+      return "share or per cent";
+    case Field::Form::levels:
+      return "object of levels";
     case Field::Form::excludes:
       break;
   }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runners/answers/answer.hpp"
+#include "runners/asks/answer_asks.hpp"
 #include "runners/march/case_context.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/report/kind_page.hpp"
@@ -94,8 +95,9 @@ struct ForecastContext {
 struct Analysis {
   /// Its own way to answer, when all tables are there. Empty: methods in tiers, or choices by what they move, in the
   /// observed measures.
-  std::function<answers::Answer(const answers::Compared&)> answer;
-  report::KindPage page;  ///< what its reports show; empty: what every page has
+  std::function<answers::Answer(const answers::Compared&)> answer = {};
+  report::KindPage page = {};  ///< what its reports show; empty: what every page has
+  asks::OwnAnswers verbs = {};  ///< what answers the verbs that its kind declares (StudyKind::verbs)
 };
 
 /// A kind of study, all that the program knows of it.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "runners/answers/compared.hpp"
+#include "runners/asks/answer_asks.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/store/record.hpp"
 
@@ -21,6 +22,7 @@ class AnalysedResults : public StudyResults {
 
   const answers::Compared compared;
   const Analysis analysis;
+  const asks::Asked asked;  ///< what the study asks, with its answers
 };
 
 /// The results with their tables.

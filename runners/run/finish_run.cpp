@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runners/answers/answer.hpp"
+#include "runners/answers/numbers_in_words.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
@@ -25,6 +26,8 @@
 
 namespace ricochet {
 
+constexpr int required_not_met = 6;
+
 void say(std::FILE* out, std::string_view text) {
   say_as_it_is(out, plain_text(text));
 }
@@ -42,7 +45,10 @@ Analysis analysis_of(StudyResults& results, const answers::Compared& study) {
 }  // namespace
 
 AnalysedResults::AnalysedResults(StudyResults results)
-    : StudyResults(std::move(results)), compared(*this), analysis(analysis_of(*this, compared)) {
+    : StudyResults(std::move(results)),
+      compared(*this),
+      analysis(analysis_of(*this, compared)),
+      asked(asks::answer_asks(asks::asks_of(study), asks::Evidence(compared), analysis.verbs)) {
   // The answer says the shares, and stands before them.
   const auto before_shares = static_cast<std::ptrdiff_t>(derived.size());
   const auto add = [&](Table table) {
@@ -51,8 +57,10 @@ AnalysedResults::AnalysedResults(StudyResults results)
   add(effects_table(*this));
   if (!analysis.answer)
     for (Table& table : evidence_tables(compared)) add(std::move(table));
-  if (Table answers = answers_table(compared, analysis); !answers.rows.empty())
+  if (Table answers = asked.any() ? asked_table(compared, asked) : answers_table(compared, analysis);
+      !answers.rows.empty())
     derived.insert(derived.begin() + before_shares, std::move(answers));
+  if (asked.any()) derived.insert(derived.begin() + before_shares, asks::verdicts_table(asked));
   add(reasons_table(*this));
   for (Table& table : report::page_tables(*this, analysis.page)) add(std::move(table));
 }
@@ -80,15 +88,45 @@ std::unique_ptr<const AnalysedResults> write_folder(Store& store, const std::fil
   return results;
 }
 
+namespace {
+
+/// The rows of all answers, each under its sentence; twelve at most for each.
+std::string asked_text(const asks::Asked& asked) {
+  constexpr std::size_t most = 12;
+  std::string out;
+  for (const auto& [ask, answered] : asked.all) {
+    if (answered.rows.size() < 2) continue;
+    TextTable table({fmt::format("{}.", ask.number), "stop", "value", "from", "to", "unit", "verdict"});
+    for (std::size_t k = 0; k < std::min(most, answered.rows.size()); ++k) {
+      const asks::VerdictRow& row = answered.rows[k];
+      const auto number = [](const std::optional<double>& value) {
+        constexpr int digits = 4;
+        return value ? answers::short_number(*value, digits) : "";
+      };
+      table.add({row.level, row.stop, number(row.value), number(row.low), number(row.high), row.unit,
+                 row.value ? row.verdict : row.verdict + (row.reason.empty() ? "" : ": " + row.reason)});
+    }
+    out += table.text(2);
+    if (answered.rows.size() > most)
+      out += fmt::format("  … {} rows in verdicts.csv\n", answered.rows.size());
+  }
+  return out;
+}
+
+}  // namespace
+
 int tell_results(std::FILE* out, const AnalysedResults& results, const std::filesystem::path& folder,
                  const std::string& how, bool table) {
   constexpr int nothing_ran = 3;
   const bool nothing = std::all_of(results.cases.begin(), results.cases.end(),
                                    [](const CaseRecord& one) { return one.status == "refused"; });
-  const std::string rows = evidence_text(results), evidence = rows.empty() ? "" : rows + "\n";
+  const std::string rows = results.asked.any() ? asked_text(results.asked) : evidence_text(results),
+                    evidence = rows.empty() ? "" : rows + "\n";
   const int code = nothing ? nothing_ran : results_exit_code(results);
   say(out, fmt::format("{}{}\n{}{} ({})\nreport: {}\n", table ? case_table(results) + "\n" : "", answer_text(results),
                        evidence, totals_text(results), how, (folder / "report.html").string()));
+  for (const asks::Ask* ask : results.asked.unmet())
+    say(out, fmt::format("exit code {}: ask {} requires a yes and has none\n", required_not_met, ask->number));
   if (nothing)
     say(out, "nothing ran: every case is refused; the reasons above and in the report say what to change\n");
   else if (code != 0)
@@ -97,7 +135,7 @@ int tell_results(std::FILE* out, const AnalysedResults& results, const std::file
                                "a study of each alone\n",
                                code, (folder / "failures").string())
                  : fmt::format("exit code {}: the methods of some cases are in error\n", code));
-  return code;
+  return code == 0 && !results.asked.unmet().empty() ? required_not_met : code;
 }
 
 // What is made of a folder's store alone: its report and tables anew, or the tables elsewhere.
@@ -105,11 +143,10 @@ int tell_results(std::FILE* out, const AnalysedResults& results, const std::file
 namespace {
 
 /// 0, or the code of a store that cannot be used, with its cause said.
-int unless_unusable(const std::function<void()>& work) {
+int unless_unusable(const std::function<int()>& work) {
   constexpr int store_unusable = 5;
   try {
-    work();
-    return 0;
+    return work();
   } catch (const StoreError& error) {
     say(stderr, fmt::format("ricochet: {}\n", error.what()));
     return store_unusable;
@@ -133,6 +170,7 @@ int rebuild_report_with(const RenderReport& render, const std::filesystem::path&
     write_outputs(folder, results, [&] { return render(results); });
     say(stdout, fmt::format("{}\nreport: {}\n", totals_text(results), (folder / "report.html").string()));
     tell_damage(folder, results);
+    return results.asked.unmet().empty() ? 0 : required_not_met;
   });
 }
 
@@ -146,6 +184,7 @@ int export_tables(const std::filesystem::path& folder, const std::filesystem::pa
           fmt::format("curves: not written, for more than {} cases have one; --curves writes them all into one file\n",
                       kMostCurveFiles));
     tell_damage(folder, results);
+    return 0;
   });
 }
 
@@ -182,6 +221,21 @@ Table answers_table(const answers::Compared& study, const Analysis& analysis) {
   // Behind the headline: no sentence that is cut off.
   const std::vector<answers::Sentence> doubts = answers::doubted(study);
   answer.sentences.insert(answer.sentences.begin() + (answer.sentences.empty() ? 0 : 1), doubts.begin(), doubts.end());
+  return answer.table();
+}
+
+Table asked_table(const answers::Compared& study, const asks::Asked& asked) {
+  answers::Answer answer;
+  const auto say = [&](const std::string& text, const char* status) {
+    answer.say(text, answers::Clause{.form = "asked", .status = status});
+  };
+  for (const std::string& one : asked.first) say(one, "first");
+  for (const auto& [ask, answered] : asked.all) say(answered.sentence, answered.verdict.c_str());
+  for (const answers::Sentence& doubt : answers::doubted(study)) answer.say(doubt);
+  for (const auto& [ask, answered] : asked.all)
+    for (const std::string& one : answered.aside)
+      if (std::none_of(answer.sentences.begin(), answer.sentences.end(), [&](const auto& said) { return said.text == one; }))
+        say(one, "aside");
   return answer.table();
 }
 

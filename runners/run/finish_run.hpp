@@ -43,6 +43,9 @@ int tell_results(std::FILE* out, const AnalysedResults& results, const std::file
 /// rows; else one row per choice and observed measure.
 Table answers_table(const answers::Compared& study, const Analysis& analysis = {});
 
+/// The same of a study that asks: what comes first, a sentence for each ask, what is doubtful and what is left out.
+Table asked_table(const answers::Compared& study, const asks::Asked& asked);
+
 /// What an answer by observed measures rests on: limits, refinements and differences of these.
 std::vector<Table> evidence_tables(const answers::Compared& study);
 

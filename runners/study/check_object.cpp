@@ -8,6 +8,7 @@
 #include "runners/json/json_text.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/study/scene_keys.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {
@@ -164,6 +165,35 @@ Json check_starts(const Field& field, const Json& value, const std::string& poin
   return result;
 }
 
+// A share as a number: of 0.05 or "5 %".
+Json check_share(const Json& value, const std::string& pointer) {
+  std::optional<double> share;
+  if (value.is_number()) share = value.get<double>();
+  if (value.is_string()) {
+    std::string text = value.get<std::string>();
+    if (text.ends_with("%")) {
+      text.pop_back();
+      while (text.ends_with(" ")) text.pop_back();
+      constexpr double hundred = 100;
+      if (const auto number = number_in(text)) share = *number / hundred;
+    }
+  }
+  if (!share) throw InputError(pointer, "expected a share, as 0.05 or \"5 %\"; found " + quote(value));
+  constexpr double most = 1000;
+  if (!(*share > 0 && *share <= most))
+    throw InputError(pointer, "expected a share above 0 and at most 1000 (100000 %); found " + quote(value));
+  return *share;
+}
+
+Json check_levels(const Json& value, const std::string& pointer) {
+  if (!value.is_object() || value.empty())
+    throw InputError(pointer, "expected an object of axes and their levels, as {\"step\": 1e-5}; found " + quote(value));
+  for (const auto& [key, level] : value.items())
+    if (!level.is_primitive() || level.is_null())
+      throw InputError(pointer_to(pointer, key), "expected one level, a number or a word; found " + quote(level));
+  return value;
+}
+
 // A list of any length of objects, each of its own name, in the place of one object. An empty one is the key left out.
 Json check_listed(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
   if (value.empty()) return check_object(field.nested.front(), *field.fallback, pointer, axes);
@@ -179,6 +209,9 @@ Json check_objects(const Field& field, const Json& value, const std::string& poi
   if (!value.is_array()) throw InputError(pointer, expected + ", found " + quote(value));
   if (field.count != 0 && value.size() != field.count)
     throw InputError(pointer, expected + ", found " + std::to_string(value.size()));
+  if (field.at_most != 0 && value.size() > field.at_most)
+    throw InputError(pointer, "expected at most " + std::to_string(field.at_most) + " objects, found " +
+                                  std::to_string(value.size()));
   Json result = Json::array();
   for (std::size_t i = 0; i < value.size(); ++i)
     result.push_back(check_object(field.nested.front(), value[i], pointer_to(pointer, i), axes));
@@ -248,6 +281,10 @@ Json check_value(const Field& field, const Json& value, const std::string& point
       return check_words(field, value, pointer);
     case Field::Form::starts:
       return check_starts(field, value, pointer, axes);
+    case Field::Form::share:
+      return check_share(value, pointer);
+    case Field::Form::levels:
+      return check_levels(value, pointer);
     case Field::Form::methods:
     case Field::Form::excludes:
       break;

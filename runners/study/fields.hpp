@@ -45,6 +45,8 @@ struct Field {
     words,     ///< a word or a list of words out of `spec.words` (empty: any names), one value together
     starts,    ///< a word out of `spec.words`, a nested object (at most one), or a list of these, one value together
     excludes,  ///< partial matches with a reason
+    share,     ///< a share above 0, as a number or in per cent: 0.05, "5 %"
+    levels,    ///< an object of any names, each with a number, a word or a truth value
   };
   Form form = Form::scalar;
   ParameterSpec spec;                   ///< key, unit, text; for scalars also type, range, words
@@ -56,6 +58,7 @@ struct Field {
   bool marched = false;                 ///< for references: marched_reference is one as well
   std::vector<ObjectForm> nested;       ///< one entry for Form::object, objects, starts and such formulas
   std::size_t count = 0;                ///< for Form::objects; 3 for Form::numbers: a direction
+  std::size_t at_most = 0;              ///< for Form::objects: so many; 0: any number
   std::vector<ObjectForm> listed = {};  ///< of Form::object: a list of such objects is possible as well, one value
   bool or_flag = false;                 ///< of a word: true and false as well
   bool per_body = false;                ///< of Form::scalar: an object of such numbers by body as well
@@ -90,6 +93,9 @@ inline constexpr const char* marched_reference = "self";
 
 /// The keys of one method as a study writes it: "name" and the plugin's parameters, each of which may be a list.
 ObjectForm method_form(const PluginManual& manual);
+
+/// The ways in which an entry of `ask` may be written, one for each verb. Given by the registry of verbs.
+std::vector<ObjectForm> ask_ways();
 
 /// A default or a bound as JSON.
 Json to_json(const ParameterValue& value);

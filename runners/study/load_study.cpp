@@ -316,6 +316,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   if (kind.add_references) kind.add_references(references, study);
   if (kind.check_cases) kind.check_cases(study);
   check_compare(study);
+  check_asks(study);
   study.axes = axis_meanings(study, registry);
   study.method_words = method_words(study, registry);
   return study;

@@ -157,6 +157,15 @@ ObjectForm study() {
   Field outside =
       of_form(Field::Form::scalar, "outside", Json(false), "Whether files may lie outside the study's folder.");
   outside.spec.type = ParameterSpec::Type::boolean;
+  ObjectForm ask;
+  ask.ways = ask_ways();
+  Field required = of_form(Field::Form::scalar, "require", Json(false), "Exit code 6 where its verdict is not yes.");
+  required.spec.type = ParameterSpec::Type::boolean;
+  ask.fields = {quiet(optional(of_form(Field::Form::words, "stops", Json(nullptr), "Of these stops alone."))),
+                quiet(optional(of_form(Field::Form::levels, "where", Json(nullptr), "Of the cases with these levels alone."))),
+                quiet(std::move(required))};
+  Field asks = quiet(objects("ask", "What the study wants to know, at most eight; each entry has one verb.", std::move(ask)));
+  asks.at_most = 8;
   ObjectForm keys;
   keys.fields = {
       of_form(Field::Form::text, "name", std::nullopt,
@@ -164,6 +173,7 @@ ObjectForm study() {
       of_form(Field::Form::text, "question", Json(""), "The question that the study answers."),
       of_form(Field::Form::text, "compare", Json(""),
               "What the question compares: a role, an axis that varies, or all; empty: every method."),
+      std::move(asks),
       word("kind", kind_names(), std::nullopt, "What is made of each case."),
       object("scene", std::nullopt, "What is simulated, in SI units.", scene()),
       object("mesh", Json{{"elements", 1}}, "The meshes; only an oscillator does without.", mesh),

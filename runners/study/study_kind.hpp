@@ -22,6 +22,12 @@ struct StudyKind {
   std::function<Json(const Json& resolved)> settings;
   /// Refuses with InputError, by pointer, what the keys one by one cannot say; before any plugin is opened.
   std::function<void(const Json& resolved)> check;
+  /// Refuses, at `pointer`, a measure that such a study has not. Empty: any measure of any kind is one.
+  std::function<void(const Json& resolved, const std::string& measure, const std::string& pointer)> check_measure = {};
+  /// The verbs of `ask` that it answers itself.
+  std::vector<std::string> verbs = {};
+  /// Refuses an entry of `ask` with one of these, whose verb stands at `pointer`.
+  std::function<void(const Study& study, const Json& ask, const std::string& pointer)> check_ask = {};
   /// The same once the methods are known. `cases`: number of combinations of the axes; `dofs`: of the coarsest mesh.
   std::function<void(const Json& resolved, const Json& settings, const Registry& registry, double cases, int dofs)>
       check_methods;
@@ -38,6 +44,9 @@ struct StudyKind {
 
 /// The kinds of study that this program has, in the order in which they are told. Given by the registry of kinds.
 std::vector<const StudyKind*> study_kinds();
+
+/// Throws InputError for what a study asks and cannot be asked. Given by the registry of verbs.
+void check_asks(const Study& study);
 
 /// The kind of this name; null where there is none.
 const StudyKind* find_study_kind(const std::string& name);

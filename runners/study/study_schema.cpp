@@ -157,6 +157,8 @@ class SchemaWriter {
                                           {"minProperties", 1}}})}};
         return or_null(field, object(field.nested.front()));
       case Field::Form::objects:
+        if (field.at_most != 0)
+          return {{"type", "array"}, {"items", object(field.nested.front())}, {"maxItems", field.at_most}};
         if (field.count == 0) return {{"type", "array"}, {"items", object(field.nested.front())}};
         return {{"type", "array"},
                 {"items", object(field.nested.front())},
@@ -168,6 +170,13 @@ class SchemaWriter {
         return or_null(field, one_or_list(words(field)));
       case Field::Form::starts:
         return one_or_list(either("object", object(field.nested.front()), scalar(field.spec)));
+      case Field::Form::share:
+        return {{"anyOf", Json::array({{{"type", "number"}, {"exclusiveMinimum", 0}},
+                                       {{"type", "string"}, {"pattern", "^[0-9.eE+-]+ *%$"}}})}};
+      case Field::Form::levels:
+        return {{"type", "object"},
+                {"additionalProperties", {{"type", Json::array({"number", "string", "boolean"})}}},
+                {"minProperties", 1}};
       case Field::Form::methods:
         return methods(field.role, field.marched);
       case Field::Form::excludes:

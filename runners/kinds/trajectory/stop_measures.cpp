@@ -324,28 +324,27 @@ std::string missing_for(const StopMeasure& one, const nlohmann::ordered_json& st
 
 }  // namespace
 
-void check_observed_stops(const nlohmann::ordered_json& study) {
-  const auto observed = study.find("observe");
-  if (observed == study.end() || !observed->is_array()) return;
+void check_stop_measure(const nlohmann::ordered_json& study, const std::string& measure, const std::string& pointer) {
+  const auto parts = parts_of(measure);
+  if (!parts || check_observed_octave(study, parts->first, parts->second, pointer)) return;
   std::vector<std::string> stops;
   if (const auto& list = study.at("scene").at("stops"); list.is_array())
     for (const auto& stop : list) stops.push_back(stop.at("name").get<std::string>());
-  for (std::size_t i = 0; i < observed->size(); ++i) {
-    const auto parts = parts_of((*observed)[i].get<std::string>());
-    if (!parts) continue;
-    if (check_observed_octave(study, parts->first, parts->second, fmt::format("/observe/{}", i))) continue;
-    if (std::find(stops.begin(), stops.end(), parts->second) != stops.end()) {
-      const StopMeasure* one = find_measure(parts->first);
-      if (const std::string missing = one ? missing_for(*one, study, parts->second) : ""; !missing.empty())
-        throw InputError(fmt::format("/observe/{}", i), one->name + (" " + missing));
-      continue;
-    }
-    throw InputError(fmt::format("/observe/{}", i),
-                     stops.empty() ? "the scene has no stops with names; expected a list of stops, or a measure "
-                                     "without a name"
-                                   : fmt::format("no stop \"{}\"; there is: {}{}", parts->second, quoted_list(stops),
-                                                 did_you_mean(parts->second, stops)));
-  }
+  if (std::find(stops.begin(), stops.end(), parts->second) == stops.end())
+    throw InputError(pointer, stops.empty() ? "the scene has no stops with names; expected a list of stops, or a measure "
+                                              "without a name"
+                                            : fmt::format("no stop \"{}\"; there is: {}{}", parts->second,
+                                                          quoted_list(stops), did_you_mean(parts->second, stops)));
+  const StopMeasure* one = find_measure(parts->first);
+  if (const std::string missing = one ? missing_for(*one, study, parts->second) : ""; !missing.empty())
+    throw InputError(pointer, one->name + (" " + missing));
+}
+
+void check_observed_stops(const nlohmann::ordered_json& study) {
+  const auto observed = study.find("observe");
+  if (observed == study.end() || !observed->is_array()) return;
+  for (std::size_t i = 0; i < observed->size(); ++i)
+    check_stop_measure(study, (*observed)[i].get<std::string>(), fmt::format("/observe/{}", i));
 }
 
 Table third_octaves_head() {

@@ -43,6 +43,8 @@ std::vector<Column> all_stop_reading_columns();
 /// Throws InputError where `observe` of a study names a stop that its scene has not. Also where it names a measure of a
 /// stop that the study does not ask for.
 void check_observed_stops(const nlohmann::ordered_json& study);
+/// The same of one measure, at `pointer`.
+void check_stop_measure(const nlohmann::ordered_json& study, const std::string& measure, const std::string& pointer);
 
 /// Adds the levels of one spectrum as measures and as rows of third_octaves.csv.
 void put_third_octaves(CaseRecord& record, Table& table, const std::string& of, bool force,

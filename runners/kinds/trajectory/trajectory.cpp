@@ -1,3 +1,4 @@
+#include "runners/study/check_object.hpp"
 #include "runners/kinds/trajectory/trajectory.hpp"
 
 #include <fmt/format.h>
@@ -294,6 +295,25 @@ StudyKind trajectory_format(const std::vector<MeasureInfo>& measures) {
     check_window(study);
     check_outputs(study);
     check_observed_stops(study);
+  };
+  // A measure of stops may stand without a name, for all of them.
+  format.check_measure = [observe = format.keys.back()](const Json& study, const std::string& measure,
+                                                        const std::string& pointer) {
+    const auto& of_stops = observe.of_each;
+    const Json& stops = study.at("scene").at("stops");
+    if (stops.is_array() && !stops.empty() && std::find(of_stops.begin(), of_stops.end(), measure) != of_stops.end()) {
+      check_stop_measure(study, measure + "[" + stops.front().at("name").get<std::string>() + "]", pointer);
+      return;
+    }
+    std::vector<Axis> none;
+    ObjectForm form;
+    form.fields = {observe};
+    try {
+      check_object(form, {{"observe", measure}}, "", none);
+    } catch (const InputError& error) {
+      throw InputError(pointer, error.what());
+    }
+    check_stop_measure(study, measure, pointer);
   };
   format.settings = [](const nlohmann::ordered_json& resolved) {
     return given_settings(resolved, {"window", "snapshots", "outputs", "budget"});

@@ -1,0 +1,292 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runners/answers/set_names.hpp"
+#include "runners/asks/lines.hpp"
+#include "runners/asks/pairs.hpp"
+#include "runners/asks/verbs.hpp"
+#include "runners/json/json_text.hpp"
+
+namespace ricochet::asks {
+namespace {
+
+/// One combination of all other choices: its levels against each other.
+struct Combination {
+  std::string stop, level;  // of the others
+  std::vector<const Line*> lines;
+};
+
+/// What is told of two levels of one combination.
+struct Told {
+  const Combination* where = nullptr;
+  std::string first, second;
+  std::optional<Pair> pair;
+  Verdict verdict = Verdict::open;
+  std::string reason;
+};
+
+/// Whether the difference is as large as asked. Nothing in both is no agreement.
+void judge(Told& told, double from) {
+  if (!told.pair) {
+    told.reason = "they have no step and mesh in common";
+    return;
+  }
+  const Pair& pair = *told.pair;
+  const double floor = std::max(pair.first->floor, pair.second->floor);
+  if (!pair.share()) {
+    if (std::abs(pair.base + pair.difference) <= floor) {
+      told.reason = "both are zero, or round-off";
+    } else if (!pair.u) {
+      told.reason = pair.unknown;
+    } else if (std::abs(pair.difference) > *pair.u) {
+      told.verdict = Verdict::yes;
+      told.reason = "the first is zero, or round-off";
+    } else {
+      told.reason = "the first is zero, and the second not told from it";
+    }
+    return;
+  }
+  if (!pair.u) {
+    told.reason = pair.unknown.empty() ? "nothing tells how far the difference moves" : pair.unknown;
+    return;
+  }
+  const double size = std::abs(*pair.share()), u = *pair.share_u();
+  if (size - u > from)
+    told.verdict = Verdict::yes;
+  else if (size + u < from)
+    told.verdict = Verdict::no;
+  else
+    told.reason = fmt::format("{} lies within what is open of it", answers::percent(from));
+}
+
+/// "+6.8 ± 0.1 %".
+std::string share_text(const Pair& pair) {
+  const double share = *pair.share();
+  answers::MeasureWords words;
+  words.unit = "%";
+  constexpr double hundred = 100;
+  words.factor = hundred;
+  const std::string value = answers::with_uncertainty(words, std::abs(share), pair.share_u());
+  return (share < 0 ? "−" : "+") + value;
+}
+
+class EffectSpeaker {
+ public:
+  EffectSpeaker(const Ask& ask, const Evidence& evidence)
+      : ask_(ask), evidence_(evidence), own_(evidence.columns_of(ask.subject())), cases_(evidence.cases(ask)) {
+    constexpr double one_per_cent = 0.01;
+    from_ = ask.real("from").value_or(one_per_cent);
+    if (const auto within = ask.real("within")) from_ = *within;
+    agrees_ = ask.has("within");
+    std::vector<std::string> columns = evidence.choices(cases_);
+    std::erase_if(columns, [&](const std::string& one) { return std::find(own_.begin(), own_.end(), one) != own_.end(); });
+    others_ = columns;
+    columns.insert(columns.end(), own_.begin(), own_.end());
+    lines_ = lines_of(ask, evidence, ask.text("on"), columns);
+    combine();
+  }
+
+  Answered answer() {
+    Answered out = begin_answer(lines_);
+    out.figure = figure();
+    if (const std::string why = nothing_known(lines_); !why.empty()) {
+      out.verdict = word(Verdict::open);
+      out.passes = Verdict::open;
+      out.reason = why;
+      out.sentence = fmt::format("Open: no case has a value of {}: {}.", lines_.words.words, why);
+      return out;
+    }
+    for (const Told& one : told_) add_rows(out, one);
+    std::vector<const Told*> yes, no, open;
+    for (const Told* one : widest())
+      (one->verdict == Verdict::yes ? yes : one->verdict == Verdict::no ? no : open).push_back(one);
+    say(out, yes, no, open);
+    return out;
+  }
+
+ private:
+  void combine() {
+    for (const Line& line : lines_.all) {
+      const std::string level = evidence_.level(line.point.first(), others_);
+      auto found = std::find_if(combinations_.begin(), combinations_.end(), [&](const Combination& one) {
+        return one.stop == line.stop && one.level == level;
+      });
+      if (found == combinations_.end()) found = combinations_.insert(combinations_.end(), {line.stop, level, {}});
+      found->lines.push_back(&line);
+    }
+    for (const Combination& one : combinations_)
+      for (std::size_t a = 0; a < one.lines.size(); ++a)
+        for (std::size_t b = a + 1; b < one.lines.size(); ++b) {
+          Told told{&one, own_level(*one.lines[a]), own_level(*one.lines[b]), {}, Verdict::open, ""};
+          for (const Line* line : {one.lines[a], one.lines[b]})
+            if (!line->known() && told.reason.empty()) told.reason = line->point.none;
+          if (told.reason.empty()) {
+            told.pair = pair_of(one.lines[a]->point, one.lines[b]->point);
+            judge(told, from_);
+          }
+          told_.push_back(std::move(told));
+        }
+  }
+
+  std::string own_level(const Line& line) const { return evidence_.level(line.point.first(), own_); }
+
+  /// Of each combination the pair that decides: one that is a yes, else one that is open, else the largest.
+  std::vector<const Told*> widest() const {
+    std::vector<const Told*> out;
+    for (const Combination& one : combinations_) {
+      const Told* best = nullptr;
+      const auto size = [](const Told& told) {
+        return told.pair && told.pair->share() ? std::abs(*told.pair->share()) : told.verdict == Verdict::yes ? INFINITY : 0.0;
+      };
+      const auto rank = [](const Told& told) {
+        return told.verdict == Verdict::yes ? 2 : told.verdict == Verdict::open ? 1 : 0;
+      };
+      for (const Told& told : told_)
+        if (told.where == &one &&
+            (!best || rank(told) > rank(*best) || (rank(told) == rank(*best) && size(told) > size(*best))))
+          best = &told;
+      if (best) out.push_back(best);
+    }
+    return out;
+  }
+
+  void add_rows(Answered& out, const Told& one) const {
+    VerdictRow row;
+    row.measure = ask_.text("on");
+    row.stop = one.where->stop;
+    row.level = one.second + " against " + one.first + (one.where->level.empty() ? "" : ", " + one.where->level);
+    row.unit = "%";
+    constexpr double hundred = 100;
+    if (one.pair && one.pair->share()) {
+      row.value = hundred * *one.pair->share();
+      if (const auto u = one.pair->share_u()) {
+        row.low = *row.value - hundred * *u;
+        row.high = *row.value + hundred * *u;
+      }
+    }
+    const Verdict shown = one.verdict == Verdict::open ? Verdict::open
+                          : (one.verdict == Verdict::yes) != agrees_ ? Verdict::yes
+                                                                     : Verdict::no;
+    row.verdict = word(shown);
+    row.reason = one.reason;
+    if (one.pair) {
+      row.cases = one.pair->first->behind.size() + one.pair->second->behind.size();
+      row.left_out = one.pair->first->cases.size() + one.pair->second->cases.size() - *row.cases;
+    }
+    out.rows.push_back(std::move(row));
+  }
+
+  /// "with penalty 1e8 N/m at end".
+  std::string place(const Told& one) const {
+    return (one.where->level.empty() || combinations_.size() == 1 ? "" : " with " + one.where->level) +
+           (one.where->stop.empty() ? "" : " at " + one.where->stop);
+  }
+  std::string size(const Told& one) const {
+    return one.pair && one.pair->share() ? share_text(*one.pair) : one.reason;
+  }
+  std::string pair_words(const Told& one) const { return one.second + " against " + one.first; }
+
+  /// "+6.8 ± 0.1 to +30 ± 2 %", or the one.
+  std::string sizes(std::vector<const Told*> list) const {
+    std::erase_if(list, [](const Told* one) { return !one->pair || !one->pair->share(); });
+    if (list.empty()) return "";
+    std::sort(list.begin(), list.end(), [](const Told* a, const Told* b) { return *a->pair->share() < *b->pair->share(); });
+    if (list.size() == 1) return "by " + share_text(*list.front()->pair);
+    return fmt::format("by {} to {}", share_text(*list.front()->pair), share_text(*list.back()->pair));
+  }
+
+  void say(Answered& out, const std::vector<const Told*>& yes, const std::vector<const Told*>& no,
+           const std::vector<const Told*>& open) const {
+    const std::string choice = answers::spoken(ask_.subject()), measure = lines_.words.words,
+                      least = answers::percent(from_);
+    const std::size_t all = yes.size() + no.size() + open.size();
+    const Verdict changes = !yes.empty() ? (no.empty() && open.empty() ? Verdict::yes : Verdict::open)
+                            : open.empty() && !no.empty() ? Verdict::no
+                                                          : Verdict::open;
+    const std::string which = own_.size() == 1 || told_.size() == combinations_.size()
+                                  ? fmt::format(" ({})", pair_words(!yes.empty() ? *yes.front() : !no.empty() ? *no.front() : *open.front()))
+                                  : "";
+    const std::string of = all == 1 ? "" : fmt::format(" in all {}", all);
+    if (changes == Verdict::yes) {
+      out.passes = agrees_ ? Verdict::no : Verdict::yes;
+      out.sentence = agrees_ ? fmt::format("No: {} moves {} beyond {}{}: {}{}.", choice, measure, least, of, sizes(yes), which)
+                             : fmt::format("Yes: {} changes {} by {} and more{}: {}{}.", choice, measure, least, of,
+                                           sizes(yes), which);
+    } else if (changes == Verdict::no) {
+      out.passes = agrees_ ? Verdict::yes : Verdict::no;
+      out.sentence = fmt::format("{}: {} changes {} by less than {}{}: {}{}.", agrees_ ? "Yes, they agree" : "No", choice, measure, least, of,
+                                 sizes(no), which);
+    } else if (!yes.empty()) {
+      // A choice that matters somewhere matters; where it does not is told beside it.
+      out.passes = agrees_ ? Verdict::no : Verdict::yes;
+      std::vector<std::string> where;
+      for (const Told* one : yes) where.push_back(place(*one).empty() ? "" : place(*one).substr(1));
+      out.passes = agrees_ ? Verdict::no : no.empty() ? Verdict::open : Verdict::no;
+      out.sentence = fmt::format("{}: {} changes {} by {} and more in {} of {} ({}): {}{}.",
+                                 agrees_ ? "No" : "In part", choice, measure, least, yes.size(), all, some_of(where), sizes(yes),
+                                 open.empty() ? "" : fmt::format("; {} open", open.size()));
+    } else {
+      out.passes = Verdict::open;
+      out.reason = open.front()->reason;
+      const std::string found = open.front()->pair && open.front()->pair->share() ? fmt::format("; it is {}", size(*open.front())) : "";
+      out.sentence = fmt::format("Open{}: whether {} changes {} by {} is not told{}{}: {}.",
+                                 no.empty() ? "" : fmt::format(" in {} of {}", open.size(), all), choice, measure, least, found,
+                                 place(*open.front()), out.reason);
+    }
+    out.verdict = *out.passes == Verdict::open && !yes.empty() ? "in part" : word(*out.passes);
+    if (changes == Verdict::open && !yes.empty() && !agrees_) out.verdict = "in part";
+  }
+
+  Json figure() const {
+    Json rows = Json::array();
+    for (const Combination& one : combinations_)
+      for (const Line* line : one.lines) {
+        const VerdictRow row = lines_.row(*line);
+        Json point = {{"pair", one.level + (one.stop.empty() ? "" : (one.level.empty() ? "" : ", ") + one.stop)},
+                      {"name", own_level(*line)}};
+        if (row.value) point["value"] = *row.value;
+        if (row.low) point["low"] = *row.low, point["high"] = *row.high;
+        rows.push_back(std::move(point));
+      }
+    return {{"form", "pairs"}, {"measure", lines_.words.words}, {"unit", lines_.words.unit}, {"rows", rows}};
+  }
+
+  const Ask& ask_;
+  const Evidence& evidence_;
+  std::vector<std::string> own_, others_;
+  Cases cases_;
+  double from_ = 0;
+  bool agrees_ = false;  // asked whether levels agree, not whether they differ
+  Lines lines_;
+  std::vector<Combination> combinations_;
+  std::vector<Told> told_;
+};
+
+void check_effect(const Ask& ask, const Study& study) {
+  check_choice(ask, study, "effect", ask.subject());
+  check_measure(ask, study, "on", ask.text("on"));
+  if (ask.subject() == seed_axis)
+    throw InputError(ask.pointer(), "seeds are draws of one load, and no choice; ask {\"value\": \"" + ask.text("on") +
+                                        "\"}, whose interval holds them");
+  if (ask.has("from") && ask.has("within"))
+    throw InputError(ask.pointer("within"), "does not go together with \"from\"; expected one of them");
+}
+
+}  // namespace
+
+const Verb& effect_verb() {
+  static const Verb verb{
+      "effect", "Whether a choice changes a measure by a share, all else the same.",
+      {keys::of_form(Field::Form::text, "effect", std::nullopt, "The choice: a role, a parameter, an axis that varies."),
+       keys::of_form(Field::Form::text, "on", std::nullopt, "The measure."),
+       keys::quiet(keys::of_form(Field::Form::share, "from", Json(nullptr), "Whether levels differ by this share; 1 % where absent.")),
+       keys::quiet(keys::of_form(Field::Form::share, "within", Json(nullptr), "Whether levels agree within this share."))},
+      "", check_effect, doubt_of_one_step,
+      [](const Ask& ask, const Evidence& evidence) { return EffectSpeaker(ask, evidence).answer(); }};
+  return verb;
+}
+
+}  // namespace ricochet::asks

@@ -1,0 +1,196 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runners/asks/lines.hpp"
+#include "runners/asks/verbs.hpp"
+#include "runners/store/record_values.hpp"
+
+namespace ricochet::asks {
+namespace {
+
+/// What one line would need for its parts of u to be within a share of its value.
+struct Need {
+  std::optional<double> seeds, duration, step;
+  bool enough = false, known = true;
+  std::string why;
+};
+
+class Enough {
+ public:
+  Enough(const Ask& ask, const Evidence& evidence) : ask_(ask), evidence_(evidence), within_(*ask.real("within")) {
+    lines_ = lines_of(ask, evidence, ask.subject());
+  }
+
+  Answered answer() const {
+    Answered out = begin_answer(lines_);
+    if (const std::string why = nothing_known(lines_); !why.empty()) {
+      out.verdict = word(Verdict::open);
+      out.passes = Verdict::open;
+      out.reason = why;
+      out.sentence = fmt::format("Open: no case has a value of {}: {}.", lines_.words.words, why);
+      return out;
+    }
+    std::vector<std::pair<const Line*, Need>> needs;
+    std::vector<Verdict> verdicts;
+    for (const Line& line : lines_.all) {
+      if (!line.known()) continue;
+      needs.emplace_back(&line, need_of(line));
+      const Need& need = needs.back().second;
+      verdicts.push_back(!need.known ? Verdict::open : need.enough ? Verdict::yes : Verdict::no);
+      add_rows(out, line, need, verdicts.back());
+    }
+    out.passes = all_of(verdicts);
+    out.verdict = word(*out.passes);
+    out.figure = figure(needs);
+    const auto worst = std::max_element(needs.begin(), needs.end(), [&](const auto& a, const auto& b) {
+      return width(*a.first) < width(*b.first);
+    });
+    const auto& [line, need] = *worst;
+    const std::string found = fmt::format("{} is known to ± {}{}", lines_.words.words, answers::percent(width(*line)), line->place());
+    if (*out.passes == Verdict::yes)
+      out.sentence = fmt::format("Yes: {}, within the {} asked.", found, answers::percent(within_));
+    else if (*out.passes == Verdict::open) {
+      const auto open = std::find_if(needs.begin(), needs.end(), [](const auto& one) { return !one.second.known; });
+      out.reason = open->second.why;
+      out.sentence = fmt::format("Open: what {} within {} takes is not told{}: {}.", lines_.words.words, answers::percent(within_),
+                                 open->first->place(), out.reason);
+    } else
+      out.sentence = fmt::format("No: {}; {} would do for {}.", found, remedy(need), answers::percent(within_));
+    return out;
+  }
+
+ private:
+  static double width(const Line& line) {
+    const Estimate& one = line.estimate();
+    return one.u() && one.value != 0 ? *one.u() / std::abs(one.value) : INFINITY;
+  }
+
+  Need need_of(const Line& line) const {
+    const Estimate& one = line.estimate();
+    Need out;
+    if (one.grows || one.value == 0 || !one.u()) {
+      out.known = false;
+      out.why = one.grows ? one.motion : one.value == 0 ? "it is zero" : one.unknown().empty() ? "nothing was refined or drawn" : one.unknown();
+      return out;
+    }
+    const double asked = within_ * std::abs(one.value);
+    out.enough = *one.u() <= asked && one.unknown().empty();
+    if (*one.u() <= asked && !one.unknown().empty()) {
+      out.known = false;
+      out.why = one.unknown();
+      return out;
+    }
+    if (out.enough) return out;
+    // Each part gets an equal share of what may be open.
+    const int parts = (one.step.value_or(0) > 0 ? 1 : 0) + (one.mesh.value_or(0) > 0 ? 1 : 0) + (one.sampling.value_or(0) > 0 ? 1 : 0);
+    const double each = asked / std::max(parts, 1);
+    if (one.sampling.value_or(0) > each) {
+      // A mean of n draws is known to 1/√n of their scatter.
+      const double more = std::pow(*one.sampling / each, 2);
+      if (one.seeds > 1)
+        out.seeds = std::ceil(more * static_cast<double>(one.seeds));
+      else
+        out.duration = more * window();
+    }
+    if (one.step.value_or(0) > each) {
+      constexpr double halves = 1;
+      const double order = std::max(0.5, one.order.value_or(halves));
+      if (!one.motion.empty()) {
+        out.known = false;
+        out.why = "it " + one.motion;
+      } else
+        out.step = line.point.finest->first * std::pow(each / *one.step, 1 / order);
+    }
+    if (one.mesh.value_or(0) > each && !out.seeds && !out.duration && !out.step) {
+      out.known = false;
+      out.why = "the mesh leaves more";
+    }
+    return out;
+  }
+
+  /// s over which a mean is taken.
+  double window() const {
+    const Json& study = evidence_.results().study;
+    if (study.contains("window") && study["window"].is_object())
+      return study["window"]["to"].get<double>() - study["window"]["from"].get<double>();
+    return study.value("duration", 0.0);
+  }
+
+  std::string step_words(double step) const {
+    // Downwards: it is to do.
+    return evidence_.study().step_words(step);
+  }
+
+  std::string remedy(const Need& need) const {
+    std::vector<std::string> parts;
+    if (need.seeds) parts.push_back(fmt::format("{:.0f} seeds", *need.seeds));
+    if (need.duration) parts.push_back(fmt::format("{} s of window", answers::short_number(*need.duration, 2)));
+    if (need.step) parts.push_back(step_words(*need.step));
+    return some_of(parts);
+  }
+
+  void add_rows(Answered& out, const Line& line, const Need& need, Verdict verdict) const {
+    VerdictRow row = lines_.row(line);
+    row.verdict = word(verdict);
+    if (!need.known) row.reason = need.why;
+    out.rows.push_back(row);
+    VerdictRow width_row;
+    width_row.measure = line.measure;
+    width_row.level = line.level;
+    width_row.stop = line.stop;
+    constexpr double hundred = 100;
+    const double own = width(line);
+    if (std::isfinite(own)) width_row.value = hundred * own;
+    width_row.unit = "%";
+    width_row.verdict = "half-width";
+    out.rows.push_back(width_row);
+    const auto add = [&](const std::optional<double>& value, const char* what, const char* unit) {
+      if (!value) return;
+      VerdictRow needed = width_row;
+      needed.value = *value;
+      needed.unit = unit;
+      needed.verdict = what;
+      out.rows.push_back(std::move(needed));
+    };
+    add(need.seeds, "seeds that would do", "1");
+    add(need.duration, "window that would do", "s");
+    add(need.step, "step that would do", "s");
+  }
+
+  Json figure(const std::vector<std::pair<const Line*, Need>>& needs) const {
+    Json rows = Json::array();
+    constexpr double hundred = 100;
+    for (const auto& [line, need] : needs) {
+      const Estimate& one = line->estimate();
+      if (one.value == 0) continue;
+      for (const auto& [part, value] : {std::pair("step", one.step), std::pair("mesh", one.mesh), std::pair("sampling", one.sampling)})
+        if (value) rows.push_back({{"name", line->level + (line->stop.empty() ? "" : " " + line->stop)}, {"part", part}, {"value", hundred * *value / std::abs(one.value)}});
+    }
+    return {{"form", "parts"}, {"measure", lines_.words.words}, {"unit", "%"}, {"rows", rows}, {"at", {hundred * within_}}};
+  }
+
+  const Ask& ask_;
+  const Evidence& evidence_;
+  double within_;
+  Lines lines_;
+};
+
+std::string doubt_enough(const Ask&, const Study& study) {
+  const Planned plan = planned(study);
+  return plan.steps == 1 ? "one step only: which step would do is not told" : "";
+}
+
+}  // namespace
+
+const Verb& enough_verb() {
+  static const Verb verb{"enough", "Whether steps, seeds and window are enough for a share, and what would be.",
+                         {keys::of_form(Field::Form::text, "enough", std::nullopt, "The measure."),
+                          keys::of_form(Field::Form::share, "within", std::nullopt, "The half-width of its interval as a share of it.")},
+                         "", check_subject, doubt_enough,
+                         [](const Ask& ask, const Evidence& evidence) { return Enough(ask, evidence).answer(); }};
+  return verb;
+}
+
+}  // namespace ricochet::asks

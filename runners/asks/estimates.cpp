@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "runners/asks/evidence.hpp"
+
+namespace ricochet::asks {
+
+double half_interval_over_scatter(std::size_t draws) {
+  const auto n = static_cast<double>(draws);
+  constexpr double upper = 0.975;
+  return boost::math::quantile(boost::math::students_t(n - 1), upper) / std::sqrt(n);
+}
+
+std::optional<double> half_interval(const std::vector<double>& draws) {
+  if (draws.size() < 2) return std::nullopt;
+  const auto n = static_cast<double>(draws.size());
+  const double mean = std::accumulate(draws.begin(), draws.end(), 0.0) / n;
+  double squares = 0;
+  for (const double one : draws) squares += (one - mean) * (one - mean);
+  return half_interval_over_scatter(draws.size()) * std::sqrt(squares / (n - 1));
+}
+
+std::string Estimate::unknown() const {
+  return has_step && !step && !grows ? "one step: what it leaves open is not known" : "";
+}
+
+std::optional<double> Estimate::u() const {
+  if (grows || (!step && !mesh && !sampling)) return std::nullopt;
+  return step.value_or(0) + mesh.value_or(0) + sampling.value_or(0);
+}
+
+namespace {
+
+using BySeed = std::map<std::string, double>;
+
+double mean_over(const BySeed& values, const std::set<std::string>& seeds) {
+  double sum = 0;
+  for (const std::string& seed : seeds) sum += values.at(seed);
+  return sum / static_cast<double>(seeds.size());
+}
+
+/// Means over the seeds that all these sizes and the finest have in common.
+std::vector<SizedValue> along(const std::map<Size, BySeed>& values, const Size& finest, bool steps) {
+  std::set<std::string> common;
+  for (const auto& [seed, value] : values.at(finest)) common.insert(seed);
+  std::vector<std::pair<double, const BySeed*>> sizes;
+  for (const auto& [size, by_seed] : values) {
+    if (steps ? size.second != finest.second : size.first != finest.first) continue;
+    std::set<std::string> both;
+    for (const std::string& seed : common)
+      if (by_seed.contains(seed)) both.insert(seed);
+    // A size that shares no seed tells nothing.
+    if (both.empty()) continue;
+    common = std::move(both);
+    sizes.emplace_back(steps ? size.first : 1 / size.second, &by_seed);
+  }
+  std::vector<SizedValue> out;
+  for (const auto& [size, by_seed] : sizes) {
+    if (!std::all_of(common.begin(), common.end(), [&](const auto& seed) { return by_seed->contains(seed); })) continue;
+    out.push_back({size, mean_over(*by_seed, common)});
+  }
+  return out;
+}
+
+std::optional<double> left_by(const std::optional<Limit>& limit) {
+  return limit && limit->uncertainty && std::isfinite(*limit->uncertainty) ? limit->uncertainty : std::nullopt;
+}
+
+/// Half the interval of the mean at one size: of many draws between them, of few what each knows of itself.
+std::optional<double> sampling_of(const BySeed& draws, const BySeed* halves) {
+  std::vector<double> values, own;
+  for (const auto& [seed, value] : draws) {
+    values.push_back(value);
+    if (halves && halves->contains(seed)) own.push_back(halves->at(seed));
+  }
+  constexpr std::size_t few = 4;
+  const bool all = !own.empty() && own.size() == values.size();
+  if (all && values.size() < few) {
+    double squares = 0;
+    for (const double one : own) squares += one * one;
+    return std::sqrt(squares) / static_cast<double>(own.size());
+  }
+  return half_interval(values);
+}
+
+}  // namespace
+
+Limits limits_at(const std::map<Size, BySeed>& values, const Size& finest, double floor) {
+  return {limit_of(along(values, finest, true), floor), limit_of(along(values, finest, false), floor)};
+}
+
+Estimate estimate_of(const std::map<Size, BySeed>& values, const std::map<Size, BySeed>& halves, const Size& finest,
+                     const Limits& limits, bool has_step) {
+  Estimate out;
+  out.has_step = has_step;
+  const BySeed& draws = values.at(finest);
+  for (const auto& [seed, value] : draws) out.value += value / static_cast<double>(draws.size());
+  out.seeds = draws.size();
+  out.steps = limits.step ? limits.step->sizes : 1;
+  out.meshes = limits.mesh ? limits.mesh->sizes : 1;
+  out.step = left_by(limits.step);
+  out.mesh = left_by(limits.mesh);
+  for (const auto& one : {limits.step, limits.mesh})
+    out.grows = out.grows || (one && one->status == LimitStatus::blows_up);
+  for (const auto& [limit, what] : {std::pair(limits.step, "step"), std::pair(limits.mesh, "mesh")})
+    if (limit && limit->restless() && out.motion.empty())
+      out.motion = std::string(limit->trend > 0 ? "still rises" : limit->trend < 0 ? "still falls" : "wanders") +
+                   " with the " + what;
+  if (out.grows) out.motion = "grows without bound";
+  out.order = limits.step ? limits.step->order : std::nullopt;
+  const auto own = halves.find(finest);
+  out.sampling = sampling_of(draws, own == halves.end() ? nullptr : &own->second);
+  return out;
+}
+
+}  // namespace ricochet::asks

@@ -1,0 +1,190 @@
+#include "runners/asks/evidence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runners/answers/measure_answer.hpp"
+#include "runners/store/record_values.hpp"
+#include "runners/study/axis_meaning.hpp"
+#include "runners/table/in_order_met.hpp"
+#include "runners/table/text.hpp"
+
+namespace ricochet::asks {
+
+std::pair<std::string, std::string> split_measure(const std::string& name) {
+  const std::size_t open = name.find('[');
+  if (open == std::string::npos || !name.ends_with("]")) return {name, ""};
+  return {name.substr(0, open), name.substr(open + 1, name.size() - open - 2)};
+}
+
+namespace {
+
+/// Whether a level that a study names is the one of a case: 1e6 and 1000000 are.
+bool same_level(const Json& asked, const Json& own) {
+  return asked.is_number() && own.is_number() ? asked.get<double>() == own.get<double>() : asked == own;
+}
+
+const Json* axis_value(const CaseRecord& record, const std::string& column) {
+  for (const auto& [name, value] : record.axes)
+    if (name == column) return &value;
+  return nullptr;
+}
+
+bool contains(const std::vector<std::string>& list, const std::string& item) {
+  return std::find(list.begin(), list.end(), item) != list.end();
+}
+
+}  // namespace
+
+Cases Evidence::cases(const Ask& ask) const {
+  Cases out;
+  const Json where = ask.keys.value("where", Json::object());
+  for (const CaseRecord& record : results().cases) {
+    if (is_reference(record)) continue;
+    bool inside = true;
+    for (const auto& [column, level] : where.items()) {
+      const Json* own = axis_value(record, column);
+      inside = inside && own && same_level(level, *own);
+    }
+    if (inside) out.push_back(&record);
+  }
+  return out;
+}
+
+std::vector<std::string> Evidence::measures(const Ask& ask, const std::string& name) const {
+  std::vector<std::string> stops;
+  if (ask.has("stops")) stops = ask.keys["stops"].get<std::vector<std::string>>();
+  std::vector<std::string> out;
+  const auto add = [&](const std::string& one) {
+    const auto [base, stop] = split_measure(one);
+    const bool asked = one == name || base == name;
+    if (asked && (stops.empty() || contains(stops, stop)) && !contains(out, one)) out.push_back(one);
+  };
+  for (const CaseRecord& record : results().cases) {
+    for (const auto& [one, value] : record.measures) add(one);
+    // What has no limit under a law has a line all the same.
+    for (const auto& [item, why] : record.left_out) add(item);
+  }
+  if (out.empty()) out.push_back(name);
+  // In the order of the study's stops where it names them.
+  if (!stops.empty())
+    std::stable_sort(out.begin(), out.end(), [&](const std::string& a, const std::string& b) {
+      const auto place = [&](const std::string& one) {
+        return std::find(stops.begin(), stops.end(), split_measure(one).second) - stops.begin();
+      };
+      return place(a) < place(b);
+    });
+  return out;
+}
+
+std::vector<std::string> Evidence::choices(const Cases& cases, const std::vector<std::string>& own) const {
+  std::vector<std::string> out;
+  for (const std::string& column : results().columns) {
+    if (column == seed_axis || contains(own, column) || answers::is_refinement(column)) continue;
+    for (const CaseRecord* record : cases)
+      if (study_.text(*record, column) != study_.text(*cases.front(), column)) {
+        out.push_back(column);
+        break;
+      }
+  }
+  return out;
+}
+
+std::vector<std::string> Evidence::columns_of(const std::string& choice) const {
+  std::vector<std::string> out;
+  if (axis_role(choice) != choice) return {choice};
+  for (const std::string& column : results().columns)
+    if (column == choice || axis_role(column) == choice) out.push_back(column);
+  return out;
+}
+
+std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cases& cases,
+                                    const std::vector<std::string>& columns) const {
+  InOrderMet<std::string, Point> groups;
+  for (const CaseRecord* record : cases) groups[study_.key(*record, columns)].cases.push_back(record);
+  const bool has_step = contains(results().columns, "step") || contains(results().columns, "steps_per_period");
+  const bool refined_here = std::none_of(columns.begin(), columns.end(), [](const std::string& column) {
+    return column == "step" || column == "steps_per_period";
+  });
+  std::vector<Point> out;
+  std::vector<std::optional<Limits>> limits;
+  const auto words = answers::measure_words(measure_of_all);
+  const bool share = words.factor != 1 || words.scale == "1";
+  for (auto& [key, point] : std::move(groups).list()) {
+    double largest = 0;
+    for (const CaseRecord* record : point.cases) {
+      const auto value = record->status == "done" ? measure(*record, measure_of_all) : std::nullopt;
+      if (!value || !std::isfinite(*value)) continue;
+      point.behind.push_back(record);
+      if (!study_.on_finest_mesh(*record)) continue;
+      const Size size{study_.step(*record).value_or(1), study_.elements(*record).value_or(1)};
+      const std::string& seed = study_.text(*record, seed_axis);
+      point.values[size][seed] = *value;
+      if (const auto half = measure(*record, "confidence." + measure_of_all)) point.halves[size][seed] = *half;
+      largest = std::max(largest, std::abs(*value));
+      point.floor = std::max(point.floor, 0x1p-52 * static_cast<double>(record->steps));
+    }
+    point.floor *= share ? 1 : largest;
+    for (const auto& [size, value] : point.values)
+      if (!point.finest || size.second > point.finest->second ||
+          (size.second == point.finest->second && size.first < point.finest->first))
+        point.finest = size;
+    limits.push_back(point.finest ? std::optional(limits_at(point.values, *point.finest, point.floor)) : std::nullopt);
+    if (!point.finest) point.none = left_out(measure_of_all, point.cases).lines.front();
+    out.push_back(std::move(point));
+  }
+  std::vector<Limit*> all;
+  for (auto& one : limits)
+    if (one && one->step) all.push_back(&*one->step);
+  doubt_chance(all);
+  for (std::size_t k = 0; k < out.size(); ++k)
+    if (limits[k])
+      out[k].estimate =
+          estimate_of(out[k].values, out[k].halves, *out[k].finest, *limits[k], has_step && refined_here);
+  return out;
+}
+
+LeftOut Evidence::left_out(const std::string& name, const Cases& cases) const {
+  struct Group {
+    std::size_t count = 0;
+    std::string first;
+  };
+  InOrderMet<std::string, Group> groups;  // reasons that differ in numbers alone are one
+  LeftOut out;
+  for (const CaseRecord* record : cases) {
+    if (record->status == "done" && measure(*record, name)) continue;
+    ++out.count;
+    std::string why, key;
+    if (record->partial) {
+      why = key = "still running";
+    } else if (record->status == "done") {
+      why = "without a value";
+      for (const auto& [item, reason] : record->left_out)
+        if (item == name) why += ": " + reason;
+      key = why;
+    } else {
+      const std::string reason = record->reason();
+      why = record->excluded || reason.empty() ? reason : record->status + ": " + reason;
+      key = record->status;
+      for (const Said& one : record->reasons) key += one.without_numbers();
+    }
+    Group& group = groups[key];
+    if (group.count++ == 0) group.first = why;
+  }
+  for (const auto& [key, group] : groups.list()) out.lines.push_back(fmt::format("{} {}", group.count, group.first));
+  return out;
+}
+
+std::string Evidence::level(const CaseRecord& record, const std::vector<std::string>& columns) const {
+  return study_.words(record, columns);
+}
+
+std::vector<std::string> Evidence::nothing_happened() const {
+  std::vector<std::string> out;
+  if (auto untouched = answers::say_untouched(study_)) out.push_back(untouched->text);
+  return out;
+}
+
+}  // namespace ricochet::asks

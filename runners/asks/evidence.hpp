@@ -1,0 +1,112 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <ricochet/measure/statistics/refinement.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runners/answers/compared.hpp"
+#include "runners/answers/numbers_in_words.hpp"
+#include "runners/asks/ask.hpp"
+
+namespace ricochet::asks {
+
+/// The axis whose levels are draws of one random load: they widen intervals and are no methods.
+inline constexpr const char* seed_axis = "seed";
+
+/// What is known of a number: value ± u, u = step + mesh + sampling.
+struct Estimate {
+  double value = 0;                                   ///< at the finest step and mesh; of seeds their mean
+  std::optional<double> step, mesh;                   ///< what each refinement leaves; nothing of a single size
+  std::optional<double> sampling;                     ///< half the 95 % interval of a mean; nothing where none is drawn
+  bool grows = false;                                 ///< without bound as it is refined
+  std::string motion;                                 ///< "still falls with the step" of what is not settled
+  std::optional<double> order;                        ///< in the step
+  std::size_t steps = 1, meshes = 1, seeds = 1;
+  bool has_step = true;                               ///< whether its study has a step to refine
+  /// What is not known at all: "one step"; "" where u holds all.
+  std::string unknown() const;
+  /// The sum of what is known; nothing where it grows, or where nothing is known.
+  std::optional<double> u() const;
+  double low() const { return value - u().value_or(0); }
+  double high() const { return value + u().value_or(0); }
+};
+
+/// A size of refinement: the step (1 where none varies), the elements (1 likewise).
+using Size = std::pair<double, double>;
+
+/// Cases that agree in all that is chosen: they differ in step, mesh and seed alone.
+struct Point {
+  Cases cases;   ///< all
+  Cases behind;  ///< those with a value
+  std::map<Size, std::map<std::string, double>> values;  ///< by seed, of the finest mesh where modes vary on several
+  std::map<Size, std::map<std::string, double>> halves;  ///< half intervals of these, where known
+  std::optional<Size> finest;
+  double floor = 0;  ///< what round-off makes of a value
+  std::optional<Estimate> estimate;
+  std::string none;  ///< why it has no value
+
+  const CaseRecord& first() const { return *cases.front(); }
+};
+
+/// Why cases are not behind a verdict: "12 refused: …".
+struct LeftOut {
+  std::size_t count = 0;
+  std::vector<std::string> lines;  ///< by reason
+};
+
+/// The results of a study as verbs look at them.
+class Evidence {
+ public:
+  explicit Evidence(const answers::Compared& study) : study_(study) {}
+
+  const answers::Compared& study() const { return study_; }
+  const StudyResults& results() const { return study_.results(); }
+
+  /// The cases that an ask speaks of: those of its `where`, without references.
+  Cases cases(const Ask& ask) const;
+  /// The measures of an ask by name, "peak_force[gap]": of a measure of stops one for each stop that it names, or all.
+  /// The name as it is where no case has any.
+  std::vector<std::string> measures(const Ask& ask, const std::string& name) const;
+  /// Columns that vary among these cases, but those of refinement, seeds, and `own`.
+  std::vector<std::string> choices(const Cases& cases, const std::vector<std::string>& own = {}) const;
+  /// The columns of a choice: of a role all that vary, else the one.
+  std::vector<std::string> columns_of(const std::string& choice) const;
+
+  /// Cases as points, told apart by these columns.
+  std::vector<Point> points(const std::string& measure, const Cases& cases,
+                            const std::vector<std::string>& columns) const;
+  /// What is left out of these points, by reason.
+  LeftOut left_out(const std::string& measure, const Cases& cases) const;
+
+  /// The levels of a case in these columns, in words: "hrz, 1e8 N/m". "" of none.
+  std::string level(const CaseRecord& record, const std::vector<std::string>& columns) const;
+  /// What the whole of the cases shows before any number: no stop touched, nothing moved. Sentences.
+  std::vector<std::string> nothing_happened() const;
+
+ private:
+  const answers::Compared& study_;
+};
+
+/// The name of a measure without its stop, and the stop; "" where it has none.
+std::pair<std::string, std::string> split_measure(const std::string& name);
+
+/// What a step and a mesh leave, each at the finest of the other.
+struct Limits {
+  std::optional<Limit> step, mesh;
+};
+/// Of values by size and seed: means over the seeds that sizes have in common.
+Limits limits_at(const std::map<Size, std::map<std::string, double>>& values, const Size& finest, double floor);
+
+/// The estimate at the finest size. `has_step`: whether there is a step to refine.
+Estimate estimate_of(const std::map<Size, std::map<std::string, double>>& values,
+                     const std::map<Size, std::map<std::string, double>>& halves, const Size& finest,
+                     const Limits& limits, bool has_step);
+
+/// Half the 95 % interval of the mean of draws, t₀.₉₇₅(n−1) s/√n; nothing of fewer than two.
+std::optional<double> half_interval(const std::vector<double>& draws);
+/// The same over the standard deviation s of n ≥ 2 draws.
+double half_interval_over_scatter(std::size_t n);
+
+}  // namespace ricochet::asks

@@ -1,0 +1,47 @@
+#include "runners/asks/verbs.hpp"
+#include "runners/json/json_text.hpp"
+
+// Verbs that kinds of study answer: what they are, here; what answers them, in the kinds.
+namespace ricochet::asks {
+
+const Verb& cheapest_verb() {
+  static const Verb verb{
+      "cheapest", "Which method reaches an error for the least time.",
+      {keys::of_form(Field::Form::text, "cheapest", std::nullopt, "The error."),
+       keys::of_form(Field::Form::share, "within", std::nullopt, "The error to reach, as a share of the reference.")},
+      "only one that has a reference can: kind work-precision"};
+  return verb;
+}
+
+const Verb& order_verb() {
+  static const Verb verb{"order", "Which order of convergence an error has.",
+                         {keys::of_form(Field::Form::text, "order", std::nullopt, "The error.")},
+                         "only one that has a reference can: kind convergence"};
+  return verb;
+}
+
+const Verb& motions_verb() {
+  static const Verb verb{"motions", "Which motions there are, where they change, and their shares.",
+                         {keys::of_form(Field::Form::text, "motions", std::nullopt,
+                                        "The parameter of a sweep, or \"share\" of the starts of basins.")},
+                         "only one that finds motions can: kinds bifurcation and basins"};
+  return verb;
+}
+
+const Verb& points_verb() {
+  static const Verb verb = [] {
+    Field kinds = keys::of_form(Field::Form::words, "points", std::nullopt, "Kinds of special points; \"all\": every kind.");
+    return Verb{"points", "Where branches touch, fold and change their stability.", {std::move(kinds)},
+                "only one that follows orbits can: kind continuation"};
+  }();
+  return verb;
+}
+
+const Verb& steps_verb() {
+  static const Verb verb{"steps", "Which step is allowed, and what bounds it.",
+                         {keys::word("steps", {"limit"}, std::nullopt, "\"limit\".")},
+                         "only one of kind stability can"};
+  return verb;
+}
+
+}  // namespace ricochet::asks

@@ -1,0 +1,189 @@
+#include "runners/asks/lines.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "runners/answers/set_names.hpp"
+#include "runners/answers/uncertainty.hpp"
+#include "runners/json/json_text.hpp"
+#include "runners/store/record_values.hpp"
+#include "runners/study/axis_meaning.hpp"
+
+namespace ricochet::asks {
+
+std::string Line::place() const {
+  return (level.empty() ? "" : " with " + level) + (stop.empty() ? "" : " at " + stop);
+}
+
+std::vector<const Line*> Lines::known() const {
+  std::vector<const Line*> out;
+  for (const Line& line : all)
+    if (line.known()) out.push_back(&line);
+  return out;
+}
+
+std::string Lines::text(const Estimate& estimate) const {
+  return answers::with_uncertainty(words, estimate.value, estimate.u());
+}
+
+std::string Lines::number(double value, std::optional<double> u) const {
+  return answers::value_text(words, value, u);
+}
+
+VerdictRow Lines::row(const Line& line) const {
+  VerdictRow out;
+  out.measure = line.measure;
+  out.level = line.level;
+  out.stop = line.stop;
+  out.unit = words.unit;
+  out.cases = line.point.behind.size();
+  out.left_out = line.point.cases.size() - line.point.behind.size();
+  if (!line.known()) {
+    out.reason = line.point.none;
+    return out;
+  }
+  const Estimate& one = line.estimate();
+  out.value = words.factor * one.value;
+  if (one.u()) {
+    out.low = words.factor * one.low();
+    out.high = words.factor * one.high();
+  }
+  out.reason = one.grows ? one.motion : one.unknown();
+  return out;
+}
+
+namespace {
+
+/// The words of a measure without its stop.
+answers::MeasureWords words_of(const std::string& measure) {
+  answers::MeasureWords words = answers::measure_words(measure);
+  const std::string stop = split_measure(measure).second, place = " at " + stop;
+  if (const std::size_t at = words.words.find(place); !stop.empty() && at != std::string::npos)
+    words.words.erase(at, place.size());
+  return words;
+}
+
+}  // namespace
+
+Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure) {
+  return lines_of(ask, evidence, measure, evidence.choices(evidence.cases(ask)));
+}
+
+Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure,
+               const std::vector<std::string>& columns) {
+  Lines out;
+  out.columns = columns;
+  const Cases cases = evidence.cases(ask);
+  const std::vector<std::string> names = evidence.measures(ask, measure);
+  out.words = words_of(names.front());
+  double largest = 0;
+  std::set<std::string> told;
+  for (const std::string& name : names) {
+    for (Point& point : evidence.points(name, cases, columns)) {
+      Line line{split_measure(name).first, split_measure(name).second, "", std::move(point)};
+      line.level = evidence.level(line.point.first(), columns);
+      if (line.known()) largest = std::max(largest, std::abs(line.estimate().value));
+      out.cases += line.point.behind.size();
+      out.left_out += line.point.cases.size() - line.point.behind.size();
+      out.all.push_back(std::move(line));
+    }
+    for (const std::string& why : evidence.left_out(name, cases).lines)
+      if (told.insert(why).second) out.aside.push_back("Left out: " + why + ".");
+  }
+  // One stop needs no name.
+  if (names.size() == 1) out.words.words = answers::measure_words(names.front()).words;
+  out.words = answers::prefixed(out.words, largest);
+  return out;
+}
+
+Answered begin_answer(const Lines& lines) {
+  Answered out;
+  out.cases = lines.cases;
+  out.left_out = lines.left_out;
+  out.aside = lines.aside;
+  return out;
+}
+
+std::string nothing_known(const Lines& lines) {
+  if (!lines.known().empty()) return "";
+  std::vector<std::string> reasons;
+  for (const Line& line : lines.all)
+    if (std::find(reasons.begin(), reasons.end(), line.point.none) == reasons.end()) reasons.push_back(line.point.none);
+  return some_of(reasons);
+}
+
+std::string some_of(const std::vector<std::string>& names, std::size_t most) {
+  if (names.size() <= most + 1) return answers::and_list(names);
+  std::vector<std::string> first(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(most));
+  return fmt::format("{} and {} more", fmt::join(first, ", "), names.size() - most);
+}
+
+void check_measure(const Ask& ask, const Study& study, const std::string& key, const std::string& measure) {
+  const StudyKind& kind = *find_study_kind(study.kind);
+  const std::string pointer = ask.pointer(key);
+  if (kind.check_measure) {
+    kind.check_measure(study.resolved, measure, pointer);
+    return;
+  }
+  std::vector<std::string> names;
+  for (const MeasureInfo& info : all_measures()) names.emplace_back(info.name);
+  if (std::find(names.begin(), names.end(), measure) == names.end() && !measure_info(measure))
+    throw InputError(pointer, "no measure is called " + quote(measure) + did_you_mean(measure, names));
+}
+
+void check_subject(const Ask& ask, const Study& study) {
+  check_measure(ask, study, ask.verb->name, ask.subject());
+}
+
+void check_choice(const Ask& ask, const Study& study, const std::string& key, const std::string& choice) {
+  std::vector<std::string> varying, fixed;
+  for (const std::string& column : study.columns) {
+    std::set<std::string> levels;
+    for (const StudyCase& one : study.cases)
+      for (const auto& [axis, value] : one.axes)
+        if (axis == column) levels.insert(value.dump());
+    for (const std::string& name : {axis_role(column), column}) {
+      std::vector<std::string>& list = levels.size() > 1 ? varying : fixed;
+      if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
+    }
+  }
+  if (std::find(varying.begin(), varying.end(), choice) != varying.end()) return;
+  const std::string expected =
+      varying.empty() ? "; no choice of this study varies" : "; expected one of " + quoted_list(varying);
+  if (std::find(fixed.begin(), fixed.end(), choice) != fixed.end())
+    throw InputError(ask.pointer(key), quote(choice) + " has one level in this study" + expected);
+  throw InputError(ask.pointer(key), "no choice of this study is called " + quote(choice) + expected +
+                                         did_you_mean(choice, varying));
+}
+
+Planned planned(const Study& study) {
+  std::set<std::string> steps, meshes, seeds;
+  for (const StudyCase& one : study.cases)
+    for (const auto& [axis, value] : one.axes) {
+      if (axis == "step" || axis == "steps_per_period") steps.insert(value.dump());
+      if (axis == "elements" || axis == "modes") meshes.insert(axis + value.dump());
+      if (axis == seed_axis) seeds.insert(value.dump());
+    }
+  return {steps.size(), meshes.size(), seeds.size()};
+}
+
+std::string doubt_of_one_step(const Ask&, const Study& study) {
+  return planned(study).steps == 1 ? "one step only: no interval, so no yes and no no" : "";
+}
+
+Json bars(const Lines& lines, const std::vector<double>& at) {
+  Json rows = Json::array();
+  for (const Line& line : lines.all) {
+    const VerdictRow row = lines.row(line);
+    rows.push_back({{"name", line.level}, {"group", line.stop}});
+    if (row.value) rows.back()["value"] = *row.value;
+    if (row.low) rows.back()["low"] = *row.low, rows.back()["high"] = *row.high;
+  }
+  return {{"form", "bars"}, {"measure", lines.words.words}, {"unit", lines.words.unit}, {"rows", rows}, {"at", at}};
+}
+
+}  // namespace ricochet::asks

@@ -1,0 +1,70 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "runners/asks/evidence.hpp"
+
+/// \file
+/// What verbs on measures have in common: a line for each stop and each combination of levels.
+namespace ricochet::asks {
+
+/// One measure of one stop in one combination of levels.
+struct Line {
+  std::string measure, stop, level;
+  Point point;
+
+  bool known() const { return point.estimate.has_value(); }
+  const Estimate& estimate() const { return *point.estimate; }
+  /// "with hrz, stiffness 1e8 N/m at end": what tells it from the other lines; "".
+  std::string place() const;
+};
+
+/// All lines of an ask, in one unit.
+struct Lines {
+  answers::MeasureWords words;  ///< of the measure without its stops
+  std::vector<Line> all;
+  std::vector<std::string> columns;  ///< that tell levels apart
+  std::size_t cases = 0, left_out = 0;
+  std::vector<std::string> aside;  ///< what is left out, by reason
+
+  std::vector<const Line*> known() const;
+  /// A value of this measure in words, with its unit.
+  std::string text(const Estimate& estimate) const;
+  std::string number(double value, std::optional<double> u = {}) const;
+  /// The line as a row, without a verdict.
+  VerdictRow row(const Line& line) const;
+};
+
+/// `columns`: that tell levels apart; those that vary where not given.
+Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure);
+Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure,
+               const std::vector<std::string>& columns);
+
+/// What becomes an answer of such lines: counts and what is left out.
+Answered begin_answer(const Lines& lines);
+
+/// Why nothing is known, of lines without a value; "" where some has one.
+std::string nothing_known(const Lines& lines);
+
+/// "a, b and 3 more".
+std::string some_of(const std::vector<std::string>& names, std::size_t most = 2);
+
+/// Refuses a measure that this study has not, by the pointer of `key`.
+void check_measure(const Ask& ask, const Study& study, const std::string& key, const std::string& measure);
+/// The same of the measure after the verb.
+void check_subject(const Ask& ask, const Study& study);
+/// Refuses a choice or an axis that does not vary.
+void check_choice(const Ask& ask, const Study& study, const std::string& key, const std::string& choice);
+
+/// Steps, meshes and seeds of a study, as they were planned.
+struct Planned {
+  std::size_t steps = 0, meshes = 0, seeds = 0;
+};
+Planned planned(const Study& study);
+/// "One step only: no interval, and no verdict."; "".
+std::string doubt_of_one_step(const Ask& ask, const Study& study);
+
+/// A figure of bars with intervals, one for each line; `at`: a line across, in the unit of the rows.
+Json bars(const Lines& lines, const std::vector<double>& at = {});
+
+}  // namespace ricochet::asks

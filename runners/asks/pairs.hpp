@@ -1,0 +1,30 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runners/asks/evidence.hpp"
+
+/// \file
+/// Differences of cases that agree in all else.
+namespace ricochet::asks {
+
+/// Two levels of a choice, all else the same.
+struct Pair {
+  const Point *first = nullptr, *second = nullptr;
+  double difference = 0;  ///< second less first, at the finest step and mesh that both have
+  double base = 0;        ///< of the first there: what the difference is a share of
+  std::optional<double> u = {};  ///< of the difference, as of an Estimate; nothing where it is not known
+  std::string unknown = {};      ///< why it is not: "one step: …"
+  std::size_t seeds = 1;
+
+  /// The difference as a share of the first; nothing where that is not told from zero.
+  std::optional<double> share() const;
+  std::optional<double> share_u() const;
+};
+
+/// What refinement and draws leave of the difference of two points: what moves both alike cancels. Seeds are paired.
+/// Nothing where they have no step and mesh in common.
+std::optional<Pair> pair_of(const Point& first, const Point& second);
+
+}  // namespace ricochet::asks

@@ -1,0 +1,206 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runners/answers/set_names.hpp"
+#include "runners/asks/lines.hpp"
+#include "runners/asks/verbs.hpp"
+#include "runners/json/json_text.hpp"
+#include "runners/study/axis_meaning.hpp"
+#include "runners/table/in_order_met.hpp"
+
+namespace ricochet::asks {
+namespace {
+
+constexpr const char* over_stops = "stops";
+
+/// What is ranked, in one combination of all else, the largest first.
+struct Order {
+  std::string level;
+  std::vector<const Line*> lines;
+  std::vector<std::string> names;
+  /// Groups of neighbours that are not told apart, as places in `lines`.
+  std::vector<std::vector<std::size_t>> groups;
+};
+
+/// Whether the intervals of two touch; what has none is told from nothing.
+bool touch(const Line& larger, const Line& smaller) {
+  const Estimate &a = larger.estimate(), &b = smaller.estimate();
+  if (!a.u() || !b.u() || !a.unknown().empty() || !b.unknown().empty()) return true;
+  return a.low() <= b.high();
+}
+
+std::vector<std::vector<std::size_t>> grouped(const std::vector<const Line*>& lines) {
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    if (k == 0 || !touch(*lines[k - 1], *lines[k])) groups.emplace_back();
+    groups.back().push_back(k);
+  }
+  return groups;
+}
+
+class Ranking {
+ public:
+  Ranking(const Ask& ask, const Evidence& evidence) : ask_(ask), evidence_(evidence), over_(ask.text("over")) {
+    const Cases cases = evidence.cases(ask);
+    std::vector<std::string> columns = evidence.choices(cases), own;
+    if (over_ != over_stops) own = evidence.columns_of(over_);
+    std::erase_if(columns, [&](const auto& one) { return std::find(own.begin(), own.end(), one) != own.end(); });
+    others_ = columns;
+    columns.insert(columns.end(), own.begin(), own.end());
+    lines_ = lines_of(ask, evidence, ask.subject(), columns);
+    InOrderMet<std::string, Order> orders;
+    for (const Line& line : lines_.all) {
+      const bool stops = over_ == over_stops;
+      const std::string level = evidence.level(line.point.first(), others_), stop = stops ? "" : line.stop;
+      Order& order = orders[level + '\n' + stop];
+      order.level = level + (stop.empty() ? "" : (level.empty() ? "" : ", ") + stop);
+      if (!line.known()) {
+        ++without_;
+        continue;
+      }
+      order.lines.push_back(&line);
+    }
+    orders_ = std::move(orders).list();
+    for (auto& [key, order] : orders_) {
+      std::stable_sort(order.lines.begin(), order.lines.end(),
+                       [](const Line* a, const Line* b) { return a->estimate().value > b->estimate().value; });
+      for (const Line* line : order.lines)
+        order.names.push_back(over_ == over_stops ? line->stop : evidence.level(line->point.first(), own));
+      order.groups = grouped(order.lines);
+    }
+    std::erase_if(orders_, [](const auto& one) { return one.second.lines.empty(); });
+  }
+
+  Answered answer() const {
+    Answered out = begin_answer(lines_);
+    out.figure = bars(lines_);
+    out.figure["sorted"] = true;
+    if (orders_.empty()) {
+      out.verdict = "no value";
+      out.reason = nothing_known(lines_);
+      out.sentence = fmt::format("No case has a value of {}: {}.", lines_.words.words, out.reason);
+      return out;
+    }
+    for (const auto& [key, order] : orders_) add_rows(out, order);
+    const Order& first = orders_.front().second;
+    const bool firm = first.groups.size() == first.lines.size();
+    std::vector<std::string> turned = turns();
+    out.verdict = !turned.empty() ? "turned round" : firm ? "told apart" : first.groups.size() > 1 ? "in part" : "not told apart";
+    if (!firm && !first.lines.empty()) out.reason = first.lines.front()->estimate().unknown();
+    std::string said = capitalised_order(first);
+    if (orders_.size() > 1)
+      said += turned.empty() ? fmt::format("; the same order in all {} combinations", orders_.size())
+                             : fmt::format("; with {} another is largest: {}", some_of(turned), turned_to_);
+    if (!out.reason.empty()) said += "; " + out.reason;
+    out.sentence = said + ".";
+    return out;
+  }
+
+ private:
+  /// "Largest wear power: p2, 3.1 ± 0.2 mW, then p1, 1.2 ± 0.1 mW; p3 and p4 are not told apart".
+  std::string capitalised_order(const Order& order) const {
+    constexpr std::size_t most = 3;
+    std::vector<std::string> parts;
+    for (std::size_t g = 0; g < std::min(order.groups.size(), most); ++g) {
+      const std::vector<std::size_t>& group = order.groups[g];
+      std::vector<std::string> names;
+      for (const std::size_t k : group) names.push_back(order.names[k]);
+      const Estimate& top = order.lines[group.front()]->estimate();
+      parts.push_back(group.size() == 1 ? fmt::format("{} ({})", names.front(), lines_.text(top))
+                                        : fmt::format("{}, not told apart (to {})", some_of(names), lines_.text(top)));
+    }
+    const std::size_t more = order.groups.size() > most ? order.groups.size() - most : 0;
+    return fmt::format("Largest {}{}: {}{}", lines_.words.words, order.level.empty() ? "" : " with " + order.level,
+                       fmt::join(parts, ", then "), more > 0 ? fmt::format(", then {} more", more) : "");
+  }
+
+  /// The levels of all else with which another is surely the largest.
+  std::vector<std::string> turns() const {
+    std::vector<std::string> out;
+    const Order& first = orders_.front().second;
+    for (const auto& [key, order] : orders_) {
+      if (order.names.front() == first.names.front()) continue;
+      const auto place = std::find(order.names.begin(), order.names.end(), first.names.front());
+      const bool together = place != order.names.end() &&
+                            std::any_of(order.groups.front().begin(), order.groups.front().end(), [&](std::size_t k) {
+                              return order.names[k] == first.names.front();
+                            });
+      if (together) continue;
+      if (out.empty()) turned_to_ = order.names.front();
+      out.push_back(order.level);
+    }
+    return out;
+  }
+
+  void add_rows(Answered& out, const Order& order) const {
+    std::size_t place = 1;
+    for (const std::vector<std::size_t>& group : order.groups) {
+      for (const std::size_t k : group) {
+        VerdictRow row = lines_.row(*order.lines[k]);
+        row.verdict = group.size() == 1 ? std::to_string(place) : fmt::format("{} to {}", place, place + group.size() - 1);
+        if (group.size() > 1 && row.reason.empty()) row.reason = "its interval touches that of a neighbour";
+        out.rows.push_back(std::move(row));
+      }
+      place += group.size();
+    }
+  }
+
+  const Ask& ask_;
+  const Evidence& evidence_;
+  std::string over_;
+  std::vector<std::string> others_;
+  Lines lines_;
+  std::vector<std::pair<std::string, Order>> orders_;
+  std::size_t without_ = 0;
+  mutable std::string turned_to_;
+};
+
+void check_rank(const Ask& ask, const Study& study) {
+  const std::string over = ask.text("over");
+  if (over == over_stops) {
+    const Json& stops = study.resolved.at("scene").at("stops");
+    constexpr std::size_t two = 2;
+    if (!stops.is_array() || stops.size() < two)
+      throw InputError(ask.pointer("over"), "nothing to rank: the scene has fewer than two stops with names");
+    if (split_measure(ask.subject()).second != "")
+      throw InputError(ask.pointer(), "a measure of one stop is not ranked over stops; expected " +
+                                          quote(split_measure(ask.subject()).first));
+    const auto named = ask.has("stops") ? ask.keys["stops"] : Json::array();
+    if (ask.has("stops") && named.size() < two)
+      throw InputError(ask.pointer("stops"), "nothing to rank: one stop; expected two or more");
+    check_measure(ask, study, "rank", ask.subject() + "[" + stops.front().at("name").get<std::string>() + "]");
+    return;
+  }
+  check_subject(ask, study);
+  check_choice(ask, study, "over", over);
+  if (over == seed_axis)
+    throw InputError(ask.pointer("over"), "seeds are draws of one load and are not ranked; ask {\"value\": \"" +
+                                              ask.subject() + "\"}, whose interval holds them");
+}
+
+std::string doubt_rank(const Ask&, const Study& study) {
+  const Planned plan = planned(study);
+  if (plan.steps == 1) return "one step only: no intervals, so nothing is told apart";
+  constexpr std::size_t few = 8;
+  if (plan.seeds > 1 && plan.seeds < few)
+    return fmt::format("{} seeds: the interval of a mean is ± {} times the scatter between them", plan.seeds,
+                       answers::short_number(half_interval_over_scatter(plan.seeds), 2));
+  return "";
+}
+
+}  // namespace
+
+const Verb& rank_verb() {
+  static const Verb verb{
+      "rank", "Which stop or level has the largest value, and how surely.",
+      {keys::of_form(Field::Form::text, "rank", std::nullopt, "The measure."),
+       keys::of_form(Field::Form::text, "over", std::nullopt, "\"stops\", a choice or an axis.")},
+      "", check_rank, doubt_rank,
+      [](const Ask& ask, const Evidence& evidence) { return Ranking(ask, evidence).answer(); }};
+  return verb;
+}
+
+}  // namespace ricochet::asks

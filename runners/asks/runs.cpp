@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runners/answers/answer.hpp"
+#include "runners/asks/lines.hpp"
+#include "runners/asks/verbs.hpp"
+#include "runners/store/record_values.hpp"
+#include "runners/table/in_order_met.hpp"
+
+namespace ricochet::asks {
+namespace {
+
+struct Ending {
+  std::string status, reason;
+  std::vector<const CaseRecord*> cases;
+};
+
+/// How cases ended, by status and reason; those that differ in numbers alone are one.
+std::vector<Ending> endings(const Cases& cases) {
+  InOrderMet<std::string, Ending> out;
+  for (const CaseRecord* record : cases) {
+    const std::string status = record->partial ? "running" : record->status;
+    std::string key = status;
+    const bool done = status == "done";
+    if (!done)
+      for (const Said& one : record->reasons) key += one.without_numbers();
+    Ending& ending = out[key];
+    if (ending.cases.empty()) ending = {status, done ? "" : record->reason(), {}};
+    ending.cases.push_back(record);
+  }
+  std::vector<Ending> list;
+  for (auto& [key, one] : std::move(out).list()) list.push_back(std::move(one));
+  return list;
+}
+
+Answered answer_runs(const Ask& ask, const Evidence& evidence) {
+  const Cases cases = evidence.cases(ask);
+  Answered out;
+  out.cases = cases.size();
+  std::size_t done = 0, wrong = 0;
+  std::vector<std::string> others;
+  for (const Ending& one : endings(cases)) {
+    VerdictRow row;
+    row.level = one.status;
+    row.value = static_cast<double>(one.cases.size());
+    row.unit = "1";
+    row.verdict = one.status;
+    row.reason = one.reason;
+    row.cases = one.cases.size();
+    out.rows.push_back(std::move(row));
+    if (one.status == "done")
+      done += one.cases.size();
+    else {
+      const std::string reason = one.reason.substr(0, one.reason.find(": "));
+      others.push_back(fmt::format("{} {} ({})", one.cases.size(), one.status, reason));
+      wrong += went_wrong(*one.cases.front()) ? one.cases.size() : 0;
+    }
+  }
+  VerdictRow all;
+  all.level = "all";
+  all.value = static_cast<double>(cases.size());
+  all.unit = "1";
+  all.cases = cases.size();
+  out.rows.push_back(std::move(all));
+  out.passes = done == cases.size() ? Verdict::yes : wrong > 0 ? Verdict::no : Verdict::open;
+  // What is refused was never to run.
+  out.verdict = done == cases.size() ? "yes" : wrong > 0 ? "no" : "some refused";
+  out.sentence = done == cases.size() ? fmt::format("Yes: all {} cases run.", done)
+                                      : fmt::format("{} of {} cases run; {}.", done, cases.size(), some_of(others));
+  Json rows = Json::array();
+  for (const VerdictRow& row : out.rows)
+    if (row.level != "all") rows.push_back({{"name", row.level + (row.reason.empty() ? "" : ": " + row.reason)}, {"group", ""}, {"value", *row.value}});
+  out.figure = nullptr;
+  return out;
+}
+
+}  // namespace
+
+const Verb& runs_verb() {
+  static const Verb verb = [] {
+    Field key = keys::of_form(Field::Form::scalar, "runs", std::nullopt, "true.");
+    key.spec.type = ParameterSpec::Type::boolean;
+    return Verb{"runs", "What becomes of the cases, and why.", {std::move(key)}, "", {}, {}, answer_runs};
+  }();
+  return verb;
+}
+
+}  // namespace ricochet::asks

@@ -1,0 +1,239 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runners/asks/lines.hpp"
+#include "runners/asks/verbs.hpp"
+#include "runners/json/json_text.hpp"
+#include "runners/table/in_order_met.hpp"
+#include "runners/table/text.hpp"
+
+namespace ricochet::asks {
+namespace {
+
+/// What is asked of the measure.
+struct Condition {
+  std::optional<double> is, below, above;
+  bool holds(double value) const {
+    return is ? value == *is : below ? value < *below : value > *above;
+  }
+  std::string text(const Lines& lines) const {
+    return is ? "is " + lines.number(*is) : below ? "is below " + lines.number(*below) : "is above " + lines.number(*above);
+  }
+};
+
+/// Yes or no where every case on every step and mesh says so, and so does the interval of what is no count.
+Verdict state(const Line& line, const Condition& condition, bool counts) {
+  if (!line.known()) return Verdict::open;
+  std::size_t holds = 0, all = 0;
+  for (const auto& [size, by_seed] : line.point.values)
+    for (const auto& [seed, value] : by_seed) {
+      holds += condition.holds(value) ? 1 : 0;
+      ++all;
+    }
+  const Estimate& one = line.estimate();
+  if (!one.unknown().empty() || one.grows) return Verdict::open;
+  if (counts || condition.is) return holds == all ? Verdict::yes : holds == 0 ? Verdict::no : Verdict::open;
+  const bool low = condition.holds(one.low()), high = condition.holds(one.high());
+  return low && high ? Verdict::yes : !low && !high && !condition.holds(one.value) ? Verdict::no : Verdict::open;
+}
+
+/// One series along the axis: all else the same.
+struct Series {
+  std::string level, stop;
+  std::vector<std::pair<double, const Line*>> points;  // ascending
+  std::vector<Verdict> states;
+  /// Where it changes: between which values; nothing where it does not.
+  std::optional<std::pair<double, double>> between;
+  bool becomes = true;    // from no to yes as the axis grows
+  bool monotone = true;
+  std::string what = {};  // of one without a threshold: "always", "never", "not told"
+};
+
+void find_change(Series& series) {
+  std::vector<std::size_t> firm;
+  for (std::size_t k = 0; k < series.states.size(); ++k)
+    if (series.states[k] != Verdict::open) firm.push_back(k);
+  if (firm.empty()) {
+    series.what = "not told";
+    return;
+  }
+  std::size_t changes = 0, at = 0;
+  for (std::size_t k = 1; k < firm.size(); ++k)
+    if (series.states[firm[k]] != series.states[firm[k - 1]]) ++changes, at = k;
+  if (changes == 0) {
+    const bool all = firm.size() == series.states.size();
+    series.what = !all ? "not told" : series.states[firm.front()] == Verdict::yes ? "always" : "never";
+    return;
+  }
+  series.monotone = changes == 1;
+  series.becomes = series.states[firm[at]] == Verdict::yes;
+  series.between = {series.points[firm[at - 1]].first, series.points[firm[at]].first};
+}
+
+class Threshold {
+ public:
+  Threshold(const Ask& ask, const Evidence& evidence) : ask_(ask), along_(ask.text("along")) {
+    condition_ = {ask.real("is"), ask.real("below"), ask.real("above")};
+    const Cases cases = evidence.cases(ask);
+    std::vector<std::string> columns = evidence.choices(cases, {along_}), others = columns;
+    columns.push_back(along_);
+    lines_ = lines_of(ask, evidence, ask.subject(), columns);
+    unit_ = evidence.study().unit_of(along_);
+    bool counts = true;
+    for (const Line& line : lines_.all)
+      for (const auto& [size, by_seed] : line.point.values)
+        for (const auto& [seed, value] : by_seed) counts = counts && std::floor(value) == value;
+    InOrderMet<std::string, Series> all;
+    for (const Line& line : lines_.all) {
+      const std::string level = evidence.level(line.point.first(), others);
+      Series& series = all[level + '\n' + line.stop];
+      series.level = level;
+      series.stop = line.stop;
+      if (const auto x = number_in(evidence.study().text(line.point.first(), along_))) series.points.emplace_back(*x, &line);
+    }
+    for (auto& [key, series] : std::move(all).list()) {
+      std::stable_sort(series.points.begin(), series.points.end(),
+                       [](const auto& a, const auto& b) { return a.first < b.first; });
+      for (const auto& [x, line] : series.points) series.states.push_back(state(*line, condition_, counts));
+      find_change(series);
+      series_.push_back(std::move(series));
+    }
+  }
+
+  Answered answer() const {
+    Answered out = begin_answer(lines_);
+    out.figure = figure();
+    if (const std::string why = nothing_known(lines_); !why.empty() || series_.empty()) {
+      out.verdict = word(Verdict::open);
+      out.reason = why;
+      out.sentence = fmt::format("Open: no case has a value of {}: {}.", lines_.words.words, why);
+      return out;
+    }
+    for (const Series& series : series_) add_rows(out, series);
+    std::vector<const Series*> with, not_monotone, without;
+    for (const Series& series : series_)
+      (!series.between ? without : series.monotone ? with : not_monotone).push_back(&series);
+    const std::string what = condition_.text(lines_);
+    const std::string name = answers::capitalised(lines_.words.words);
+    const auto place = [&](const Series& one) {
+      return (one.level.empty() || series_.size() == 1 ? "" : " with " + one.level) + (one.stop.empty() ? "" : " at " + one.stop);
+    };
+    if (!not_monotone.empty()) {
+      out.verdict = "not monotone";
+      out.sentence = fmt::format("Not monotone: {} {} in several ranges of {}{}{}.", lines_.words.words, what, axis_words(),
+                                 place(*not_monotone.front()),
+                                 not_monotone.size() < series_.size()
+                                     ? fmt::format(" ({} of {})", not_monotone.size(), series_.size()) : "");
+      return out;
+    }
+    if (with.empty()) {
+      const Series& first = *without.front();
+      const bool same = std::all_of(without.begin(), without.end(), [&](const Series* one) { return one->what == first.what; });
+      out.verdict = same ? first.what : word(Verdict::open);
+      if (first.what == "not told") {
+        for (const auto& [x, line] : first.points)
+          if (out.reason.empty()) out.reason = !line->known() ? line->point.none : line->estimate().unknown();
+        if (out.reason.empty()) out.reason = "steps and meshes disagree";
+      }
+      out.sentence = !same ? fmt::format("No change of state is seen along {}: with some always, with others never.", axis_words())
+                     : first.what == "not told"
+                         ? fmt::format("Open: where along {} {} {} is not told: {}.", axis_words(), lines_.words.words, what, out.reason)
+                         : fmt::format("{} {} {}, from {} to {}.", name, first.what, what, x_text(first.points.front().first),
+                                       x_text(first.points.back().first));
+      return out;
+    }
+    double low = with.front()->between->first, high = with.front()->between->second;
+    bool one_bracket = true;
+    for (const Series* one : with) {
+      one_bracket = one_bracket && one->between == with.front()->between && one->becomes == with.front()->becomes;
+      low = std::min(low, one->between->first);
+      high = std::max(high, one->between->second);
+    }
+    out.verdict = without.empty() ? "told" : "in part";
+    const std::string turn = with.front()->becomes ? "from" : "up to";
+    out.sentence = fmt::format(
+        "Between {} and {}: {} {} {} there{}{}.", x_text(low), x_text(high), lines_.words.words, what, turn,
+        one_bracket ? (with.size() > 1 ? fmt::format(", with all {} methods", with.size()) : "")
+                    : fmt::format("; methods differ, {} between {} and {}", place(*with.front()).empty() ? "the first" : place(*with.front()).substr(1),
+                                  x_text(with.front()->between->first), x_text(with.front()->between->second)),
+        without.empty() ? "" : fmt::format("; {} of {} have no threshold", without.size(), series_.size()));
+    return out;
+  }
+
+ private:
+  std::string x_text(double x) const { return answers::short_number(x) + unit_; }
+  std::string axis_words() const { return answers::spoken(along_); }
+
+  void add_rows(Answered& out, const Series& series) const {
+    for (std::size_t k = 0; k < series.points.size(); ++k) {
+      VerdictRow row = lines_.row(*series.points[k].second);
+      row.verdict = word(series.states[k]);
+      out.rows.push_back(std::move(row));
+    }
+    VerdictRow row;
+    row.measure = along_;
+    row.level = series.level;
+    row.stop = series.stop;
+    row.unit = unit_.empty() ? "" : unit_.substr(1);
+    row.verdict = series.between ? (series.monotone ? "threshold" : "not monotone") : series.what;
+    if (series.between) row.low = series.between->first, row.high = series.between->second;
+    out.rows.push_back(std::move(row));
+  }
+
+  Json figure() const {
+    Json rows = Json::array();
+    for (const Series& series : series_)
+      for (const auto& [x, line] : series.points) {
+        const VerdictRow row = lines_.row(*line);
+        Json point = {{"series", series.level + (series.stop.empty() ? "" : " " + series.stop)}, {"x", x}};
+        if (row.value) point["value"] = *row.value;
+        if (row.low) point["low"] = *row.low, point["high"] = *row.high;
+        rows.push_back(std::move(point));
+      }
+    std::vector<double> at;
+    for (const auto& bound : {condition_.is, condition_.below, condition_.above})
+      if (bound) at.push_back(*bound * lines_.words.factor);
+    Json between = Json::array();
+    for (const Series& series : series_)
+      if (series.between) between.push_back({series.between->first, series.between->second});
+    return {{"form", "along"}, {"measure", lines_.words.words}, {"unit", lines_.words.unit}, {"along", axis_words()},
+            {"along_unit", unit_.empty() ? "" : unit_.substr(1)}, {"rows", rows}, {"at", at}, {"between", between}};
+  }
+
+  const Ask& ask_;
+  std::string along_, unit_;
+  Condition condition_;
+  Lines lines_;
+  std::vector<Series> series_;
+};
+
+void check_threshold(const Ask& ask, const Study& study) {
+  check_subject(ask, study);
+  const std::string along = ask.text("along");
+  check_choice(ask, study, "along", along);
+  for (const StudyCase& one : study.cases)
+    for (const auto& [axis, value] : one.axes)
+      if (axis == along && !value.is_number())
+        throw InputError(ask.pointer("along"), quote(along) + " has words as levels; a threshold lies between numbers");
+  const int given = (ask.has("is") ? 1 : 0) + (ask.has("below") ? 1 : 0) + (ask.has("above") ? 1 : 0);
+  if (given != 1) throw InputError(ask.pointer(), "a threshold needs one of \"is\", \"below\" and \"above\"");
+}
+
+}  // namespace
+
+const Verb& threshold_verb() {
+  static const Verb verb{
+      "threshold", "From which value of an axis on a measure is, is below or is above a value.",
+      {keys::of_form(Field::Form::text, "threshold", std::nullopt, "The measure."),
+       keys::of_form(Field::Form::text, "along", std::nullopt, "The axis, whose levels are numbers."),
+       keys::quiet(keys::optional(keys::real("is", "", keys::any, std::nullopt, "It is this value."))),
+       keys::quiet(keys::optional(keys::real("below", "", keys::any, std::nullopt, "It is below this value."))),
+       keys::quiet(keys::optional(keys::real("above", "", keys::any, std::nullopt, "It is above this value.")))},
+      "", check_threshold, doubt_of_one_step,
+      [](const Ask& ask, const Evidence& evidence) { return Threshold(ask, evidence).answer(); }};
+  return verb;
+}
+
+}  // namespace ricochet::asks

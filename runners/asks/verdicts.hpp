@@ -1,0 +1,41 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runners/table/row_type.hpp"
+
+namespace ricochet::asks {
+
+/// A verdict where the question has a yes or a no.
+enum class Verdict { yes, no, open };
+const char* word(Verdict verdict);
+/// Yes where all are, no where none is yes and none open; open otherwise.
+Verdict all_of(const std::vector<Verdict>& verdicts);
+
+/// One row of `verdicts`: what is known of one level, or, with a sentence, the answer of an ask.
+struct VerdictRow {
+  std::size_t ask = 0;
+  std::string verb = {}, measure = {}, level = {}, stop = {};
+  std::optional<double> value = {}, low = {}, high = {};
+  std::string unit = {}, verdict = {}, reason = {};
+  std::optional<std::size_t> cases = {}, left_out = {};
+  std::string sentence = {};
+};
+const TableType<VerdictRow>& verdicts_type();
+
+/// What answers one ask. The rows hold every number that the sentence says.
+struct Answered {
+  std::string sentence;               ///< at most thirty words, yes or no first where it has one
+  std::string verdict;                ///< of the whole
+  std::optional<Verdict> passes;      ///< of an ask that has a yes or a no
+  std::string reason = {};            ///< why it is open, or has no value
+  std::vector<VerdictRow> rows = {};  ///< one for each level
+  std::vector<std::string> aside = {};  ///< what was left out and what warns, a sentence each
+  std::size_t cases = 0, left_out = 0;
+  /// What is drawn beside the sentence: {"form", …}; null: nothing.
+  nlohmann::ordered_json figure = nullptr;
+};
+
+}  // namespace ricochet::asks
