@@ -219,6 +219,11 @@ std::string Compared::words(const CaseRecord& record, const std::vector<std::str
     const std::string& value = text(record, column);
     if (value.empty()) continue;
     const std::string role = axis_role(column);
+    // A parameter that cases of one method share says nothing beside the method's name.
+    const auto found = differs_in_.find(column);
+    if (role != column && std::find(columns.begin(), columns.end(), role) != columns.end() &&
+        (found == differs_in_.end() || !found->second.contains(text(record, role))))
+      continue;
     out += (out.empty() ? "" : role == last ? " " : ", ") + value_words(column, value);
     last = role;
   }

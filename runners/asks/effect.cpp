@@ -36,7 +36,7 @@ void judge(Told& told, double from) {
   }
   const Pair& pair = *told.pair;
   const double floor = std::max(pair.first->floor, pair.second->floor);
-  if (!pair.share()) {
+  if (!pair.share) {
     if (std::abs(pair.base + pair.difference) <= floor) {
       told.reason = "both are zero, or round-off";
     } else if (!pair.u) {
@@ -49,11 +49,11 @@ void judge(Told& told, double from) {
     }
     return;
   }
-  if (!pair.u) {
-    told.reason = pair.unknown.empty() ? "nothing tells how far the difference moves" : pair.unknown;
+  if (!pair.share_u) {
+    told.reason = pair.unknown;
     return;
   }
-  const double size = std::abs(*pair.share()), u = *pair.share_u();
+  const double size = std::abs(*pair.share), u = *pair.share_u;
   if (size - u > from)
     told.verdict = Verdict::yes;
   else if (size + u < from)
@@ -64,12 +64,12 @@ void judge(Told& told, double from) {
 
 /// "+6.8 ± 0.1 %".
 std::string share_text(const Pair& pair) {
-  const double share = *pair.share();
+  const double share = *pair.share;
   answers::MeasureWords words;
   words.unit = "%";
   constexpr double hundred = 100;
   words.factor = hundred;
-  const std::string value = answers::with_uncertainty(words, std::abs(share), pair.share_u());
+  const std::string value = answers::with_uncertainty(words, std::abs(share), pair.share_u);
   return (share < 0 ? "−" : "+") + value;
 }
 
@@ -139,7 +139,7 @@ class EffectSpeaker {
     for (const Combination& one : combinations_) {
       const Told* best = nullptr;
       const auto size = [](const Told& told) {
-        return told.pair && told.pair->share() ? std::abs(*told.pair->share()) : told.verdict == Verdict::yes ? INFINITY : 0.0;
+        return told.pair && told.pair->share ? std::abs(*told.pair->share) : told.verdict == Verdict::yes ? INFINITY : 0.0;
       };
       const auto rank = [](const Told& told) {
         return told.verdict == Verdict::yes ? 2 : told.verdict == Verdict::open ? 1 : 0;
@@ -160,9 +160,9 @@ class EffectSpeaker {
     row.level = one.second + " against " + one.first + (one.where->level.empty() ? "" : ", " + one.where->level);
     row.unit = "%";
     constexpr double hundred = 100;
-    if (one.pair && one.pair->share()) {
-      row.value = hundred * *one.pair->share();
-      if (const auto u = one.pair->share_u()) {
+    if (one.pair && one.pair->share) {
+      row.value = hundred * *one.pair->share;
+      if (const auto u = one.pair->share_u) {
         row.low = *row.value - hundred * *u;
         row.high = *row.value + hundred * *u;
       }
@@ -185,15 +185,15 @@ class EffectSpeaker {
            (one.where->stop.empty() ? "" : " at " + one.where->stop);
   }
   std::string size(const Told& one) const {
-    return one.pair && one.pair->share() ? share_text(*one.pair) : one.reason;
+    return one.pair && one.pair->share ? share_text(*one.pair) : one.reason;
   }
   std::string pair_words(const Told& one) const { return one.second + " against " + one.first; }
 
   /// "+6.8 ± 0.1 to +30 ± 2 %", or the one.
   std::string sizes(std::vector<const Told*> list) const {
-    std::erase_if(list, [](const Told* one) { return !one->pair || !one->pair->share(); });
+    std::erase_if(list, [](const Told* one) { return !one->pair || !one->pair->share; });
     if (list.empty()) return "";
-    std::sort(list.begin(), list.end(), [](const Told* a, const Told* b) { return *a->pair->share() < *b->pair->share(); });
+    std::sort(list.begin(), list.end(), [](const Told* a, const Told* b) { return *a->pair->share < *b->pair->share; });
     if (list.size() == 1) return "by " + share_text(*list.front()->pair);
     return fmt::format("by {} to {}", share_text(*list.front()->pair), share_text(*list.back()->pair));
   }
@@ -231,7 +231,7 @@ class EffectSpeaker {
     } else {
       out.passes = Verdict::open;
       out.reason = open.front()->reason;
-      const std::string found = open.front()->pair && open.front()->pair->share() ? fmt::format("; it is {}", size(*open.front())) : "";
+      const std::string found = open.front()->pair && open.front()->pair->share ? fmt::format("; it is {}", size(*open.front())) : "";
       out.sentence = fmt::format("Open{}: whether {} changes {} by {} is not told{}{}: {}.",
                                  no.empty() ? "" : fmt::format(" in {} of {}", open.size(), all), choice, measure, least, found,
                                  place(*open.front()), out.reason);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runners/answers/limits.hpp"
 #include "runners/answers/measure_answer.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
@@ -100,8 +101,16 @@ std::vector<std::string> Evidence::columns_of(const std::string& choice) const {
   return out;
 }
 
+bool Evidence::has_shares(const std::string& name, const Cases& cases) const {
+  const answers::MeasureWords words = answers::measure_words(name);
+  return words.scale == "energy_brought_in" &&
+         std::all_of(cases.begin(), cases.end(), [&](const CaseRecord* record) {
+           return record->status != "done" || !measure(*record, name) || answers::scaled_value(words, *record);
+         });
+}
+
 std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cases& cases,
-                                    const std::vector<std::string>& columns) const {
+                                    const std::vector<std::string>& columns, bool shares) const {
   InOrderMet<std::string, Point> groups;
   for (const CaseRecord* record : cases) groups[study_.key(*record, columns)].cases.push_back(record);
   const bool has_step = contains(results().columns, "step") || contains(results().columns, "steps_per_period");
@@ -111,11 +120,13 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
   std::vector<Point> out;
   std::vector<std::optional<Limits>> limits;
   const auto words = answers::measure_words(measure_of_all);
-  const bool share = words.factor != 1 || words.scale == "1";
+  const bool share = shares || words.scale == "1";
   for (auto& [key, point] : std::move(groups).list()) {
     double largest = 0;
     for (const CaseRecord* record : point.cases) {
-      const auto value = record->status == "done" ? measure(*record, measure_of_all) : std::nullopt;
+      const auto value = record->status != "done" ? std::nullopt
+                         : shares                 ? answers::scaled_value(words, *record)
+                                                  : measure(*record, measure_of_all);
       if (!value || !std::isfinite(*value)) continue;
       point.behind.push_back(record);
       if (!study_.on_finest_mesh(*record)) continue;

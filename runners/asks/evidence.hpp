@@ -74,9 +74,12 @@ class Evidence {
   /// The columns of a choice: of a role all that vary, else the one.
   std::vector<std::string> columns_of(const std::string& choice) const;
 
-  /// Cases as points, told apart by these columns.
-  std::vector<Point> points(const std::string& measure, const Cases& cases,
-                            const std::vector<std::string>& columns) const;
+  /// Cases as points, told apart by these columns. `shares`: values over the scale of their measure, as
+  /// has_shares() allows.
+  std::vector<Point> points(const std::string& measure, const Cases& cases, const std::vector<std::string>& columns,
+                            bool shares) const;
+  /// Whether a measure of energy is told as a share of what was brought in: every case with a value has such a share.
+  bool has_shares(const std::string& measure, const Cases& cases) const;
   /// What is left out of these points, by reason.
   LeftOut left_out(const std::string& measure, const Cases& cases) const;
 

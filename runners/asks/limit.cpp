@@ -35,7 +35,7 @@ Verdict verdict_of(const Line& line, const Bounds& bounds) {
 }
 
 Answered answer_limit(const Ask& ask, const Evidence& evidence) {
-  const Lines lines = lines_of(ask, evidence, ask.subject());
+  const Lines lines = lines_of(ask, evidence, ask.subject(), true);
   Answered out = begin_answer(lines);
   const Bounds bounds{ask.real("below"), ask.real("above")};
   std::vector<Verdict> verdicts;

@@ -16,7 +16,7 @@
 namespace ricochet::asks {
 
 std::string Line::place() const {
-  return (level.empty() ? "" : " with " + level) + (stop.empty() ? "" : " at " + stop);
+  return (level.empty() ? "" : " with " + level) + (stop.empty() || one_stop ? "" : " at " + stop);
 }
 
 std::vector<const Line*> Lines::known() const {
@@ -69,21 +69,29 @@ answers::MeasureWords words_of(const std::string& measure) {
 
 }  // namespace
 
-Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure) {
-  return lines_of(ask, evidence, measure, evidence.choices(evidence.cases(ask)));
+Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure, bool as_stored) {
+  return lines_of(ask, evidence, measure, evidence.choices(evidence.cases(ask)), as_stored);
 }
 
 Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure,
-               const std::vector<std::string>& columns) {
+               const std::vector<std::string>& columns, bool as_stored) {
   Lines out;
   out.columns = columns;
   const Cases cases = evidence.cases(ask);
   const std::vector<std::string> names = evidence.measures(ask, measure);
   out.words = words_of(names.front());
+  const bool shares = !as_stored && std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+    return evidence.has_shares(name, cases);
+  });
+  if (!shares && out.words.scale == "energy_brought_in") {
+    const MeasureInfo* info = measure_info(names.front());
+    out.words.factor = 1;
+    out.words.unit = info ? info->unit : "";
+  }
   double largest = 0;
   std::set<std::string> told;
   for (const std::string& name : names) {
-    for (Point& point : evidence.points(name, cases, columns)) {
+    for (Point& point : evidence.points(name, cases, columns, shares)) {
       Line line{split_measure(name).first, split_measure(name).second, "", std::move(point)};
       line.level = evidence.level(line.point.first(), columns);
       if (line.known()) largest = std::max(largest, std::abs(line.estimate().value));
@@ -95,7 +103,10 @@ Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& meas
       if (told.insert(why).second) out.aside.push_back("Left out: " + why + ".");
   }
   // One stop needs no name.
-  if (names.size() == 1) out.words.words = answers::measure_words(names.front()).words;
+  if (names.size() == 1) {
+    out.words.words = answers::measure_words(names.front()).words;
+    for (Line& line : out.all) line.one_stop = true;
+  }
   out.words = answers::prefixed(out.words, largest);
   return out;
 }

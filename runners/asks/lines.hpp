@@ -12,6 +12,7 @@ namespace ricochet::asks {
 struct Line {
   std::string measure, stop, level;
   Point point;
+  bool one_stop = false;  ///< whether all lines are of this stop, which the measure's words name
 
   bool known() const { return point.estimate.has_value(); }
   const Estimate& estimate() const { return *point.estimate; }
@@ -36,9 +37,10 @@ struct Lines {
 };
 
 /// `columns`: that tell levels apart; those that vary where not given.
-Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure);
+/// `as_stored`: in the unit of cases.csv, as limits are given; else what is a share of the energy brought in is told so.
+Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure, bool as_stored = false);
 Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure,
-               const std::vector<std::string>& columns);
+               const std::vector<std::string>& columns, bool as_stored = false);
 
 /// What becomes an answer of such lines: counts and what is left out.
 Answered begin_answer(const Lines& lines);

@@ -5,17 +5,6 @@
 
 namespace ricochet::asks {
 
-std::optional<double> Pair::share() const {
-  // A value that is round-off, or within what is open of it, is no measure of a difference.
-  if (std::abs(base) <= std::max(first->floor, second->floor)) return std::nullopt;
-  return difference / std::abs(base);
-}
-
-std::optional<double> Pair::share_u() const {
-  if (!u || !share()) return std::nullopt;
-  return *u / std::abs(base);
-}
-
 std::optional<Pair> pair_of(const Point& first, const Point& second) {
   if (!first.finest || !second.finest) return std::nullopt;
   std::map<Size, std::map<std::string, double>> differences;
@@ -59,6 +48,22 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
   // Never less sure than both together.
   if (out.u && first.estimate && second.estimate && first.estimate->u() && second.estimate->u())
     out.u = std::min(*out.u, std::max(floor, *first.estimate->u() + *second.estimate->u()));
+  if (std::abs(out.base) <= floor) return out;
+  // Both may move with the step while one stays the same share of the other.
+  std::map<Size, std::map<std::string, double>> shares, share_halves;
+  for (const auto& [size, by_seed] : differences) {
+    double base = 0;
+    for (const auto& [seed, difference] : by_seed) base += first.values.at(size).at(seed) / static_cast<double>(by_seed.size());
+    if (std::abs(base) <= floor) continue;
+    for (const auto& [seed, difference] : by_seed) shares[size][seed] = difference / std::abs(base);
+    if (const auto own = halves.find(size); own != halves.end())
+      for (const auto& [seed, half] : own->second) share_halves[size][seed] = half / std::abs(base);
+  }
+  const double round_off = floor / std::abs(out.base);
+  const Estimate share = estimate_of(shares, share_halves, *finest, limits_at(shares, *finest, round_off), has_step);
+  out.share = share.value;
+  out.unknown = share.grows ? "the difference grows without bound" : share.unknown();
+  if (out.unknown.empty()) out.share_u = std::max(round_off, share.u().value_or(0));
   return out;
 }
 

@@ -17,10 +17,9 @@ struct Pair {
   std::optional<double> u = {};  ///< of the difference, as of an Estimate; nothing where it is not known
   std::string unknown = {};      ///< why it is not: "one step: …"
   std::size_t seeds = 1;
-
-  /// The difference as a share of the first; nothing where that is not told from zero.
-  std::optional<double> share() const;
-  std::optional<double> share_u() const;
+  /// The difference as a share of the first at the same step and mesh, and what is open of that; nothing where the
+  /// first is zero or round-off.
+  std::optional<double> share = {}, share_u = {};
 };
 
 /// What refinement and draws leave of the difference of two points: what moves both alike cancels. Seeds are paired.

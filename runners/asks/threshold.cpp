@@ -79,7 +79,7 @@ class Threshold {
     const Cases cases = evidence.cases(ask);
     std::vector<std::string> columns = evidence.choices(cases, {along_}), others = columns;
     columns.push_back(along_);
-    lines_ = lines_of(ask, evidence, ask.subject(), columns);
+    lines_ = lines_of(ask, evidence, ask.subject(), columns, true);
     unit_ = evidence.study().unit_of(along_);
     bool counts = true;
     for (const Line& line : lines_.all)
