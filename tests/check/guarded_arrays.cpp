@@ -34,7 +34,7 @@ class Trespasser final : public ContactLaw {
   DentedStop inner_;
 };
 
-int numbers(const ReducedProblem& problem) {
+[[maybe_unused]] int numbers(const ReducedProblem& problem) {
   return problem.points * problem.lanes;
 }
 
