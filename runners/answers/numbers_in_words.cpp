@@ -88,6 +88,8 @@ std::string short_number(double value, int digits) {
   const int whole =
       std::abs(value) >= 1 && std::abs(value) < many ? static_cast<int>(std::log10(std::abs(value))) + 1 : 0;
   std::string text = fmt::format("{:.{}g}", value, std::max(digits, whole));
+  // 9.98 in one digit is 10.
+  if (whole > 0 && text.find('e') != std::string::npos) text = fmt::format("{:.{}g}", value, std::max(digits, whole) + 1);
   if (const std::size_t at = text.find('e'); at != std::string::npos) {
     const double exponent = number_in(text.substr(at + 1)).value_or(0);
     text = fmt::format("{}e{}", text.substr(0, at), exponent);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <sstream>
 
 namespace ricochet::asks {
 
@@ -36,6 +38,17 @@ const TableType<VerdictRow>& verdicts_type() {
     return TableType<VerdictRow>{"verdicts", "What the study asks: one row for each answer, then one for each of its levels.", rows};
   }();
   return all;
+}
+
+std::string in_thirty_words(std::string must, const std::vector<std::string>& rest) {
+  constexpr std::size_t most = 30;
+  const auto words = [](const std::string& text) {
+    std::istringstream in(text);
+    return static_cast<std::size_t>(std::distance(std::istream_iterator<std::string>(in), {}));
+  };
+  for (const std::string& part : rest)
+    if (words(must + part) <= most) must += part;
+  return must + ".";
 }
 
 std::vector<const Ask*> Asked::unmet() const {

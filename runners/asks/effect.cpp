@@ -59,7 +59,7 @@ void judge(Told& told, double from) {
   else if (size + u < from)
     told.verdict = Verdict::no;
   else
-    told.reason = fmt::format("{} lies within what is open of it", answers::percent(from));
+    told.reason = "that lies within what is open of it";
 }
 
 /// "+6.8 ± 0.1 %".
@@ -99,9 +99,17 @@ class EffectSpeaker {
       out.sentence = fmt::format("Open: no case has a value of {}: {}.", lines_.words.words, why);
       return out;
     }
-    for (const Told& one : told_) add_rows(out, one);
     std::vector<const Told*> yes, no, open;
-    for (const Told* one : widest())
+    const std::vector<const Told*> decide = widest();
+    for (const Told* one : decide) add_rows(out, *one);
+    for (const Told& one : told_)
+      if (std::find(decide.begin(), decide.end(), &one) == decide.end()) add_rows(out, one);
+    for (const Line& line : lines_.all) {
+      VerdictRow row = lines_.row(line);
+      row.verdict = "value";
+      out.rows.push_back(std::move(row));
+    }
+    for (const Told* one : decide)
       (one->verdict == Verdict::yes ? yes : one->verdict == Verdict::no ? no : open).push_back(one);
     say(out, yes, no, open);
     return out;
@@ -138,9 +146,7 @@ class EffectSpeaker {
     std::vector<const Told*> out;
     for (const Combination& one : combinations_) {
       const Told* best = nullptr;
-      const auto size = [](const Told& told) {
-        return told.pair && told.pair->share ? std::abs(*told.pair->share) : told.verdict == Verdict::yes ? INFINITY : 0.0;
-      };
+      const auto size = [](const Told& told) { return told.pair ? std::abs(told.pair->difference) : 0.0; };
       const auto rank = [](const Told& told) {
         return told.verdict == Verdict::yes ? 2 : told.verdict == Verdict::open ? 1 : 0;
       };
@@ -182,20 +188,53 @@ class EffectSpeaker {
   /// "with penalty 1e8 N/m at end".
   std::string place(const Told& one) const {
     return (one.where->level.empty() || combinations_.size() == 1 ? "" : " with " + one.where->level) +
-           (one.where->stop.empty() ? "" : " at " + one.where->stop);
+           (one.where->stop.empty() || lines_.all.front().one_stop ? "" : " at " + one.where->stop);
   }
-  std::string size(const Told& one) const {
-    return one.pair && one.pair->share ? share_text(*one.pair) : one.reason;
-  }
-  std::string pair_words(const Told& one) const { return one.second + " against " + one.first; }
 
-  /// "+6.8 ± 0.1 to +30 ± 2 %", or the one.
+  /// Whether a share says it: not of what is nothing, nor of what is many times as large.
+  static bool as_share(const Told& one) {
+    constexpr double times = 10, nearly_all = 0.9;
+    return one.pair && one.pair->share && std::abs(*one.pair->share) < times && *one.pair->share > -nearly_all;
+  }
+
+  const Line& line_of(const Combination& combination, const std::string& level) const {
+    return **std::find_if(combination.lines.begin(), combination.lines.end(),
+                          [&](const Line* line) { return own_level(*line) == level; });
+  }
+  /// "from 0 with Dumont–Paoli to 3.4 ± 0.2 with Newmark".
+  std::string values(const Told& one) const {
+    return fmt::format("from {} with {} to {} with {}", lines_.text(line_of(*one.where, one.first).estimate()), one.first,
+                       lines_.text(line_of(*one.where, one.second).estimate()), one.second);
+  }
+
+  /// How much these differ: "by +6.8 ± 0.1 % to +30 ± 2 % (hrz against consistent)"; of what no share says, the values.
   std::string sizes(std::vector<const Told*> list) const {
-    std::erase_if(list, [](const Told* one) { return !one->pair || !one->pair->share; });
+    std::erase_if(list, [](const Told* one) { return !one->pair; });
     if (list.empty()) return "";
-    std::sort(list.begin(), list.end(), [](const Told* a, const Told* b) { return *a->pair->share < *b->pair->share; });
-    if (list.size() == 1) return "by " + share_text(*list.front()->pair);
-    return fmt::format("by {} to {}", share_text(*list.front()->pair), share_text(*list.back()->pair));
+    const auto odd = std::find_if(list.begin(), list.end(), [](const Told* one) { return !as_share(*one); });
+    if (odd != list.end()) return values(**odd) + place(**odd);
+    const auto by_share = [](const Told* a, const Told* b) { return *a->pair->share < *b->pair->share; };
+    const auto [least, most] = std::minmax_element(list.begin(), list.end(), by_share);
+    const bool one_pair = std::all_of(list.begin(), list.end(), [&](const Told* one) {
+      return one->first == list.front()->first && one->second == list.front()->second;
+    });
+    if (one_pair) {
+      const std::string which = fmt::format(" ({} against {})", list.front()->second, list.front()->first);
+      return list.size() == 1 ? "by " + share_text(*list.front()->pair) + which
+                              : fmt::format("by {} to {}{}", share_text(*(*least)->pair), share_text(*(*most)->pair), which);
+    }
+    const Told& largest = std::abs(*(*least)->pair->share) > std::abs(*(*most)->pair->share) ? **least : **most;
+    return fmt::format("by up to {} ({} against {}{})", share_text(*largest.pair), largest.second, largest.first,
+                       place(largest).empty() ? "" : "," + place(largest));
+  }
+
+  /// The combinations of these, by name where they have one: " with stiffness 1e8 N/m", " in 2 of 6".
+  std::string in_these(const std::vector<const Told*>& list, std::size_t all) const {
+    if (list.size() == all) return all == 1 ? "" : fmt::format(" in all {}", all);
+    std::vector<const Line*> lines;
+    for (const Told* one : list) lines.insert(lines.end(), one->where->lines.begin(), one->where->lines.end());
+    if (const std::string name = set_name(lines_, lines); !name.empty() && lines.size() > 1) return " " + name;
+    return fmt::format(" in {} of {}", list.size(), all);
   }
 
   void say(Answered& out, const std::vector<const Told*>& yes, const std::vector<const Told*>& no,
@@ -203,41 +242,35 @@ class EffectSpeaker {
     const std::string choice = answers::spoken(ask_.subject()), measure = lines_.words.words,
                       least = answers::percent(from_);
     const std::size_t all = yes.size() + no.size() + open.size();
-    const Verdict changes = !yes.empty() ? (no.empty() && open.empty() ? Verdict::yes : Verdict::open)
-                            : open.empty() && !no.empty() ? Verdict::no
-                                                          : Verdict::open;
-    const std::string which = own_.size() == 1 || told_.size() == combinations_.size()
-                                  ? fmt::format(" ({})", pair_words(!yes.empty() ? *yes.front() : !no.empty() ? *no.front() : *open.front()))
-                                  : "";
-    const std::string of = all == 1 ? "" : fmt::format(" in all {}", all);
-    if (changes == Verdict::yes) {
-      out.passes = agrees_ ? Verdict::no : Verdict::yes;
-      out.sentence = agrees_ ? fmt::format("No: {} moves {} beyond {}{}: {}{}.", choice, measure, least, of, sizes(yes), which)
-                             : fmt::format("Yes: {} changes {} by {} and more{}: {}{}.", choice, measure, least, of,
-                                           sizes(yes), which);
-    } else if (changes == Verdict::no) {
-      out.passes = agrees_ ? Verdict::yes : Verdict::no;
-      out.sentence = fmt::format("{}: {} changes {} by less than {}{}: {}{}.", agrees_ ? "Yes, they agree" : "No", choice, measure, least, of,
-                                 sizes(no), which);
-    } else if (!yes.empty()) {
-      // A choice that matters somewhere matters; where it does not is told beside it.
-      out.passes = agrees_ ? Verdict::no : Verdict::yes;
-      std::vector<std::string> where;
-      for (const Told* one : yes) where.push_back(place(*one).empty() ? "" : place(*one).substr(1));
-      out.passes = agrees_ ? Verdict::no : no.empty() ? Verdict::open : Verdict::no;
-      out.sentence = fmt::format("{}: {} changes {} by {} and more in {} of {} ({}): {}{}.",
-                                 agrees_ ? "No" : "In part", choice, measure, least, yes.size(), all, some_of(where), sizes(yes),
-                                 open.empty() ? "" : fmt::format("; {} open", open.size()));
-    } else {
-      out.passes = Verdict::open;
-      out.reason = open.front()->reason;
-      const std::string found = open.front()->pair && open.front()->pair->share ? fmt::format("; it is {}", size(*open.front())) : "";
-      out.sentence = fmt::format("Open{}: whether {} changes {} by {} is not told{}{}: {}.",
-                                 no.empty() ? "" : fmt::format(" in {} of {}", open.size(), all), choice, measure, least, found,
-                                 place(*open.front()), out.reason);
+    const std::string rest = !open.empty() && !yes.empty() ? fmt::format("; open in {} of {}", open.size(), all)
+                             : !no.empty() && !yes.empty() ? "; elsewhere by less"
+                                                           : "";
+    if (!yes.empty()) {
+      // A choice that matters somewhere matters: of the others the rows tell.
+      const bool everywhere = yes.size() == all;
+      out.passes = agrees_ ? Verdict::no : everywhere ? Verdict::yes : open.empty() ? Verdict::no : Verdict::open;
+      out.verdict = agrees_ ? "no" : everywhere ? "yes" : "in part";
+      out.sentence = in_thirty_words(fmt::format("{}: {} changes {} by {} and more{}",
+                                                 agrees_ ? "No" : everywhere ? "Yes" : "In part", choice, measure, least,
+                                                 in_these(yes, all)),
+                                     {": " + sizes(yes), rest});
+      return;
     }
-    out.verdict = *out.passes == Verdict::open && !yes.empty() ? "in part" : word(*out.passes);
-    if (changes == Verdict::open && !yes.empty() && !agrees_) out.verdict = "in part";
+    if (open.empty()) {
+      out.passes = agrees_ ? Verdict::yes : Verdict::no;
+      out.verdict = word(*out.passes);
+      out.sentence = in_thirty_words(fmt::format("{}: {} changes {} by less than {}{}", agrees_ ? "Yes, they agree" : "No",
+                                                 choice, measure, least, in_these(no, all)),
+                                     {": " + sizes(no)});
+      return;
+    }
+    const Told& first = *open.front();
+    out.passes = Verdict::open;
+    out.verdict = word(Verdict::open);
+    out.reason = first.reason;
+    out.sentence = in_thirty_words(
+        fmt::format("Open{}: whether {} changes {} by {} is not told", in_these(open, all), choice, measure, least),
+        {first.pair ? "; it does " + sizes({&first}) : "", ": " + first.reason});
   }
 
   Json figure() const {

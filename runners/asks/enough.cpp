@@ -48,16 +48,18 @@ class Enough {
       return width(*a.first) < width(*b.first);
     });
     const auto& [line, need] = *worst;
-    const std::string found = fmt::format("{} is known to ± {}{}", lines_.words.words, answers::percent(width(*line)), line->place());
+    const std::string found = fmt::format("{} is known to ± {}", lines_.words.words, answers::percent(width(*line)));
     if (*out.passes == Verdict::yes)
-      out.sentence = fmt::format("Yes: {}, within the {} asked.", found, answers::percent(within_));
+      out.sentence = in_thirty_words(fmt::format("Yes: {}, within the {} asked", found, answers::percent(within_)), {});
     else if (*out.passes == Verdict::open) {
       const auto open = std::find_if(needs.begin(), needs.end(), [](const auto& one) { return !one.second.known; });
       out.reason = open->second.why;
-      out.sentence = fmt::format("Open: what {} within {} takes is not told{}: {}.", lines_.words.words, answers::percent(within_),
-                                 open->first->place(), out.reason);
+      out.sentence = in_thirty_words(
+          fmt::format("Open: what {} within {} takes is not told: {}", lines_.words.words, answers::percent(within_), out.reason),
+          {open->first->place()});
     } else
-      out.sentence = fmt::format("No: {}; {} would do for {}.", found, remedy(need), answers::percent(within_));
+      out.sentence = in_thirty_words(fmt::format("No: {}; {} would do for {}", found, remedy(need), answers::percent(within_)),
+                                     {line->place()});
     return out;
   }
 

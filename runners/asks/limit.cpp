@@ -72,15 +72,19 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
   };
   if (*out.passes == Verdict::yes) {
     const Line worst = nearest(yes);
-    out.sentence = fmt::format("Yes: {} stays {}; it is {}{}{}.", name, range, lines.all.size() > 1 ? (bounds.below ? "at most " : "at least ") : "",
-                               lines.text(worst.estimate()), worst.place());
+    const char* at_most = lines.all.size() == 1 ? "" : bounds.below ? "at most " : "at least ";
+    out.sentence = in_thirty_words(
+        fmt::format("Yes: {} stays {}; it is {}{}", name, range, at_most, lines.text(worst.estimate())), {worst.place()});
   } else if (*out.passes == Verdict::no) {
     const Line worst = nearest(no);
+    const std::string where = set_name(lines, no);
     const bool some = no.size() < lines.all.size();
-    out.sentence =
-        fmt::format("No: {} is not {}{}; it is {}{}.", name, range,
-                    some ? fmt::format(" in {} of {}", no.size(), lines.all.size()) : "", lines.text(worst.estimate()),
-                    worst.place());
+    const std::string in_these = !some           ? ""
+                                 : where.empty() ? fmt::format(" in {} of {}", no.size(), lines.all.size())
+                                                 : " " + where;
+    out.sentence = in_thirty_words(
+        fmt::format("No: {} is not {}{}; it is {}", name, range, in_these, lines.text(worst.estimate())),
+        {no.size() == 1 ? "" : worst.place()});
   } else if (!nothing_known(lines).empty()) {
     out.reason = nothing_known(lines);
     out.sentence = fmt::format("Open: no case has a value of {}: {}.", name, out.reason);
@@ -91,9 +95,10 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
     const Line* first = known.empty() ? open.front() : known.front();
     out.reason = first->known() ? (first->estimate().unknown().empty() ? "the limit lies within its interval" : first->estimate().unknown())
                                 : first->point.none;
-    out.sentence = fmt::format("Open{}: whether {} stays {} is not told; {}{}: {}.",
-                               open.size() < lines.all.size() ? fmt::format(" in {} of {}", open.size(), lines.all.size()) : "",
-                               name, range, first->known() ? "it is " + lines.text(first->estimate()) : "no value", first->place(), out.reason);
+    const std::string which = open.size() < lines.all.size() ? fmt::format(" in {} of {}", open.size(), lines.all.size()) : "";
+    const std::string found = first->known() ? "it is " + lines.text(first->estimate()) : "no value";
+    out.sentence = in_thirty_words(fmt::format("Open{}: whether {} stays {} is not told", which, name, range),
+                                   {"; " + found + first->place(), ": " + out.reason});
   }
   return out;
 }

@@ -94,6 +94,8 @@ Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& meas
     for (Point& point : evidence.points(name, cases, columns, shares)) {
       Line line{split_measure(name).first, split_measure(name).second, "", std::move(point)};
       line.level = evidence.level(line.point.first(), columns);
+      for (const std::string& column : columns) line.attributes.push_back(evidence.level(line.point.first(), {column}));
+      line.attributes.push_back(line.stop);
       if (line.known()) largest = std::max(largest, std::abs(line.estimate().value));
       out.cases += line.point.behind.size();
       out.left_out += line.point.cases.size() - line.point.behind.size();
@@ -109,6 +111,30 @@ Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& meas
   }
   out.words = answers::prefixed(out.words, largest);
   return out;
+}
+
+std::string set_name(const Lines& lines, const std::vector<const Line*>& set) {
+  if (set.empty() || set.size() == lines.all.size()) return "";
+  if (set.size() == 1) return set.front()->place().empty() ? "" : set.front()->place().substr(1);
+  const std::size_t count = set.front()->attributes.size();
+  // What they share and others do not.
+  std::vector<std::size_t> shared;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::string& own = set.front()->attributes[k];
+    const auto same = [&](const Line* line) { return line->attributes[k] == own; };
+    const bool in_all = std::all_of(lines.all.begin(), lines.all.end(), [&](const Line& line) { return same(&line); });
+    if (!own.empty() && !in_all && std::all_of(set.begin(), set.end(), same)) shared.push_back(k);
+  }
+  const auto picked = std::count_if(lines.all.begin(), lines.all.end(), [&](const Line& line) {
+    return std::all_of(shared.begin(), shared.end(),
+                       [&](std::size_t k) { return line.attributes[k] == set.front()->attributes[k]; });
+  });
+  if (shared.empty() || static_cast<std::size_t>(picked) != set.size()) return "";
+  std::string levels, stop;
+  for (const std::size_t k : shared)
+    (k + 1 == count ? stop : levels) += (k + 1 == count ? " at " : levels.empty() ? "with " : ", ") + set.front()->attributes[k];
+  if (levels.empty() && !stop.empty()) return stop.substr(1);
+  return levels + stop;
 }
 
 Answered begin_answer(const Lines& lines) {

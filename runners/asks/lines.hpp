@@ -12,6 +12,7 @@ namespace ricochet::asks {
 struct Line {
   std::string measure, stop, level;
   Point point;
+  std::vector<std::string> attributes = {};  ///< its levels one by one and its stop, in words; all lines alike
   bool one_stop = false;  ///< whether all lines are of this stop, which the measure's words name
 
   bool known() const { return point.estimate.has_value(); }
@@ -41,6 +42,10 @@ struct Lines {
 Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure, bool as_stored = false);
 Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure,
                const std::vector<std::string>& columns, bool as_stored = false);
+
+/// The name of a set of lines out of all: what these have in common and no other has, "with stiffness 1e8 N/m at mid";
+/// of a single one its place; "" where there is no such name, and of all.
+std::string set_name(const Lines& lines, const std::vector<const Line*>& set);
 
 /// What becomes an answer of such lines: counts and what is left out.
 Answered begin_answer(const Lines& lines);

@@ -32,9 +32,9 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
       const auto own = sized->second.find(seed);
       return own == sized->second.end() ? std::nullopt : std::optional(own->second);
     };
-    // Means of two motions under one load: no surer than if they were drawn apart.
+    // One draw: no surer than if the two were drawn apart. Of several, differences under one load tell.
     const auto a = half(first), b = half(second);
-    if (a && b) halves[*finest][seed] = std::hypot(*a, *b);
+    if (a && b && draws.size() == 1) halves[*finest][seed] = std::hypot(*a, *b);
   }
   const double floor = std::max(first.floor, second.floor);
   const bool has_step = first.estimate && first.estimate->has_step;

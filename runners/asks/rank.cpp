@@ -90,12 +90,12 @@ class Ranking {
     std::vector<std::string> turned = turns();
     out.verdict = !turned.empty() ? "turned round" : firm ? "told apart" : first.groups.size() > 1 ? "in part" : "not told apart";
     if (!firm && !first.lines.empty()) out.reason = first.lines.front()->estimate().unknown();
-    std::string said = capitalised_order(first);
+    std::vector<std::string> rest;
+    if (!out.reason.empty()) rest.push_back("; " + out.reason);
     if (orders_.size() > 1)
-      said += turned.empty() ? fmt::format("; the same order in all {} combinations", orders_.size())
-                             : fmt::format("; with {} another is largest: {}", some_of(turned), turned_to_);
-    if (!out.reason.empty()) said += "; " + out.reason;
-    out.sentence = said + ".";
+      rest.push_back(turned.empty() ? fmt::format("; the same first in all {} combinations", orders_.size())
+                                    : fmt::format("; {} is first with {}", turned_to_, some_of(turned, 1)));
+    out.sentence = in_thirty_words(capitalised_order(first), rest);
     return out;
   }
 

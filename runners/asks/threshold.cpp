@@ -152,13 +152,16 @@ class Threshold {
       high = std::max(high, one->between->second);
     }
     out.verdict = without.empty() ? "told" : "in part";
-    const std::string turn = with.front()->becomes ? "from" : "up to";
-    out.sentence = fmt::format(
-        "Between {} and {}: {} {} {} there{}{}.", x_text(low), x_text(high), lines_.words.words, what, turn,
-        one_bracket ? (with.size() > 1 ? fmt::format(", with all {} methods", with.size()) : "")
-                    : fmt::format("; methods differ, {} between {} and {}", place(*with.front()).empty() ? "the first" : place(*with.front()).substr(1),
-                                  x_text(with.front()->between->first), x_text(with.front()->between->second)),
-        without.empty() ? "" : fmt::format("; {} of {} have no threshold", without.size(), series_.size()));
+    const Series& first = *with.front();
+    std::vector<std::string> rest;
+    if (!without.empty()) rest.push_back(fmt::format("; {} of {} have no threshold", without.size(), series_.size()));
+    if (one_bracket && with.size() > 1) rest.push_back(fmt::format(", with all {} methods", with.size()));
+    if (!one_bracket)
+      rest.push_back(fmt::format("; methods differ: {} and {}{}", x_text(first.between->first), x_text(first.between->second),
+                                 place(first)));
+    out.sentence = in_thirty_words(fmt::format("Between {} and {}: {} {} {} there", x_text(low), x_text(high),
+                                               lines_.words.words, what, first.becomes ? "from" : "up to"),
+                                   rest);
     return out;
   }
 

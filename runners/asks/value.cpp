@@ -42,6 +42,7 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
   out.verdict = unsettled > 0 ? "not settled" : without > 0 ? "open" : "known";
   constexpr std::size_t few = 3;
   std::string said;
+  std::vector<std::string> rest;
   if (known.size() <= few) {
     std::vector<std::string> parts;
     for (const Line* line : known) parts.push_back(told(lines, line->estimate()) + line->place());
@@ -50,8 +51,8 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
     const auto by_value = [](const Line* a, const Line* b) { return a->estimate().value < b->estimate().value; };
     const Line &least = **std::min_element(known.begin(), known.end(), by_value),
                &most = **std::max_element(known.begin(), known.end(), by_value);
-    said = fmt::format("{}: from {}{} to {}{}", name, told(lines, least.estimate()), least.place(),
-                       told(lines, most.estimate()), most.place());
+    said = fmt::format("{}: from {} to {}", name, told(lines, least.estimate()), told(lines, most.estimate()));
+    rest = {fmt::format(" (least{}, most{})", least.place(), most.place())};
   }
   if (unsettled > 0) {
     const Line* first = *std::find_if(known.begin(), known.end(), [](const Line* l) { return !l->estimate().motion.empty(); });
@@ -62,7 +63,7 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
     out.reason = known.front()->estimate().unknown();
     said += "; what the step leaves open is not known";
   }
-  out.sentence = said + ".";
+  out.sentence = in_thirty_words(said, rest);
   return out;
 }
 

@@ -38,4 +38,7 @@ struct Answered {
   nlohmann::ordered_json figure = nullptr;
 };
 
+/// What must be said, and of the rest as much as thirty words hold: each part begins with its own mark, "; …".
+std::string in_thirty_words(std::string must, const std::vector<std::string>& rest);
+
 }  // namespace ricochet::asks

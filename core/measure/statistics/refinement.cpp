@@ -6,6 +6,9 @@
 namespace ricochet {
 namespace {
 
+// Of what is left by an order that three sizes show (Roache, 1994).
+constexpr double safety = 1.25;
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double orders_agree = 0.6, steepest_order = 4.5;
 constexpr double grows = 1.5, grown = 3;
@@ -57,9 +60,13 @@ Limit plain_limit(const std::vector<SizedValue>& values, double floor) {
   // Falls to zero.
   if (std::abs(v3.value) <= last && std::min({std::abs(v1.value), std::abs(v2.value), std::abs(v3.value)}) > floor) {
     const auto before = slope(v1, v2), now = slope(v2, v3);
-    if (before && now && std::min(*before, *now) >= lowest_order) {
+    // What passes zero on its way to a limit beyond falls as well, and has more left than itself.
+    constexpr double beyond = 1.5;
+    const auto order = order_of(v1.size, v2.size, v3.size, d[d.size() - 2], d.back());
+    const double rest = order && *order > 0 ? last / (std::pow(v2.size / v3.size, *order) - 1) : 0;
+    if (before && now && std::min(*before, *now) >= lowest_order && rest <= beyond * std::abs(v3.value)) {
       out.status = LimitStatus::vanishes;
-      out.uncertainty = std::abs(out.value);
+      out.uncertainty = std::max(std::abs(out.value), safety * rest);
       out.low = std::min(0.0, out.value);
       out.high = std::max(0.0, out.value);
       out.order = now;
@@ -83,7 +90,7 @@ Limit plain_limit(const std::vector<SizedValue>& values, double floor) {
   const bool one_sign = before * d.back() > 0;
   if (order && *order >= lowest_order) {
     // What is left of h^p after the last difference; two orders that agree are needed for less than the difference.
-    const double rest = last / (std::pow(v2.size / v3.size, *order) - 1);
+    const double rest = safety * last / (std::pow(v2.size / v3.size, *order) - 1);
     double u = std::max(last, rest);
     if (n >= 4 && one_sign && d[d.size() - 3] * before > 0) {
       const auto earlier = order_of(values[n - 4].size, v1.size, v2.size, d[d.size() - 3], before);

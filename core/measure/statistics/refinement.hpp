@@ -21,7 +21,7 @@ enum class LimitStatus {
   two,            ///< two sizes: nothing tells how the difference goes on
   settles,        ///< the last three values converge with order 0.5 or more
   reaches_truth,  ///< the distance to the known exact value falls with order 0.5 or more, or is round-off
-  vanishes,       ///< |v| itself falls to zero with order 0.5 or more
+  vanishes,       ///< |v| itself falls to zero with order 0.5 or more, and its limit is not beyond
   moves,          ///< the last differences have one sign and do not shrink fast enough
   wanders,        ///< none of these
   blows_up        ///< |v| grows with every refinement
@@ -55,7 +55,7 @@ inline constexpr double lowest_order = 0.5;
 /// the exact value where one is known. Nothing of no values.
 ///
 /// With the differences d of values from coarse to fine and the ratio r of the last sizes, the rest is
-/// |d_last|/(rᵖ − 1). The uncertainty u is the larger of |d_last| and the rest. Where two orders p in a row agree
+/// 1.25 |d_last|/(rᵖ − 1) (Roache, 1994, for three sizes). The uncertainty u is the larger of |d_last| and the rest. Where two orders p in a row agree
 /// within 0.6, u is the rest alone, at least a tenth of |d_last|. Of two sizes u is |d_last|, of what moves 2 |d_last|,
 /// of what wanders the range of the last three values.
 std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std::optional<double> truth = {});

@@ -1,0 +1,55 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "runners/asks/answer_asks.hpp"
+#include "tests/runners/answers/small_studies.hpp"
+
+/// \file
+/// Tables of cases whose truth is known: values with an error in the step, draws that scatter, cases that are missing.
+namespace ricochet::asks {
+
+/// How the cases of a made study come about.
+struct Made {
+  std::vector<synthetic::Choice> choices;
+  std::vector<double> steps = {4e-3, 2e-3, 1e-3, 5e-4};
+  std::function<double(const std::vector<std::size_t>& at)> truth;
+  double error = 0, order = 1, second = 0;  ///< value = truth (1 + error hᵖ/h₁ᵖ + second h²ᵖ/h₁²ᵖ)
+  double scatter = 0;                       ///< of draws, as a share of the truth
+  std::string measure = "impulse";
+
+  StudyResults results() const {
+    return synthetic::full_factorial(
+        choices, steps,
+        [&](const std::vector<std::size_t>& at, double h) {
+          const double part = std::pow(h / steps.front(), order);
+          // One draw for all steps of a case and for all methods: its seed's.
+          double draw = 0;
+          for (std::size_t k = 0; k < choices.size(); ++k)
+            if (choices[k].column == seed_axis) {
+              std::mt19937 of_seed(static_cast<unsigned>(at[k]) * 7919 + first_seed);
+              draw = scatter * std::normal_distribution<double>()(of_seed);
+            }
+          return truth(at) * (1 + error * part + second * part * part + draw);
+        },
+        measure);
+  }
+  unsigned first_seed = 1;
+};
+
+/// What a made study answers to one ask.
+inline Answered answer_of(const StudyResults& results, const Json& ask) {
+  const answers::Compared compared(results);
+  return answer_asks({ask_of(ask, 1)}, Evidence(compared), {}).all.front().second;
+}
+
+inline std::size_t words_in(const std::string& sentence) {
+  std::istringstream in(sentence);
+  return static_cast<std::size_t>(std::distance(std::istream_iterator<std::string>(in), {}));
+}
+
+}  // namespace ricochet::asks

@@ -1,0 +1,257 @@
+// Verdicts on made tables whose truth is known: no wrong yes, no wrong no; what does not matter changes nothing.
+#include <catch2/catch.hpp>
+
+#include "tests/runners/asks/made_tables.hpp"
+
+using namespace ricochet;
+using namespace ricochet::asks;
+
+namespace {
+
+constexpr int tries = 2000;
+
+double uniform(std::mt19937& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+/// Two methods with random limits near each other, and random errors in the step.
+Made random_methods(std::mt19937& random, std::size_t levels) {
+  Made made;
+  synthetic::Choice mass{"mass", {}};
+  std::vector<double> truths;
+  for (std::size_t k = 0; k < levels; ++k) {
+    mass.levels.push_back("m" + std::to_string(k));
+    truths.push_back(uniform(random, 0.5, 1.5));
+  }
+  made.choices = {mass};
+  const std::size_t steps = 3 + random() % 3;
+  made.steps.clear();
+  for (std::size_t k = 0; k < steps; ++k) made.steps.push_back(4e-3 * std::pow(0.5, static_cast<double>(k)));
+  made.truth = [truths](const std::vector<std::size_t>& at) { return truths[at[0]]; };
+  // Errors that one term rules: what three sizes can show.
+  made.error = uniform(random, -0.3, 0.3);
+  made.order = uniform(random, 0.7, 2.5);
+  made.second = uniform(random, -0.1, 0.1) * made.error;
+  return made;
+}
+
+}  // namespace
+
+TEST_CASE("asks: a limit is never said to hold, or to be broken, against the truth") {
+  std::mt19937 random(1);
+  std::size_t yes = 0, no = 0, open = 0;
+  for (int k = 0; k < tries; ++k) {
+    const Made made = random_methods(random, 1);
+    const double truth = made.truth({0}), bound = truth * uniform(random, 0.7, 1.3);
+    const Answered answered = answer_of(made.results(), {{"limit", "impulse"}, {"below", bound}});
+    INFO("limit " << truth << ", asked below " << bound << ", error " << made.error << ", order " << made.order << "\n"
+                  << answered.sentence);
+    if (*answered.passes == Verdict::yes) {
+      CHECK(truth < bound);
+      ++yes;
+    } else if (*answered.passes == Verdict::no) {
+      CHECK(truth >= bound);
+      ++no;
+    } else {
+      ++open;
+    }
+    CHECK(words_in(answered.sentence) <= 30);
+  }
+  // It does say something.
+  CHECK(yes > tries / 5);
+  CHECK(no > tries / 5);
+  CHECK(open > 0);
+}
+
+TEST_CASE("asks: an effect is as large as asked, or smaller, in truth") {
+  std::mt19937 random(2);
+  std::size_t yes = 0, no = 0;
+  for (int k = 0; k < tries; ++k) {
+    Made made = random_methods(random, 2);
+    // Methods may err in their own ways.
+    const double other = uniform(random, -0.3, 0.3), base = made.truth({0}), second = base * (1 + uniform(random, -0.2, 0.2));
+    made.truth = [=](const std::vector<std::size_t>& at) { return at[0] == 0 ? base : second; };
+    StudyResults results = made.results();
+    for (CaseRecord& record : results.cases)
+      if (record.axes[0].second == "m1") {
+        const double part = std::pow(record.axes[1].second.get<double>() / made.steps.front(), made.order);
+        record.measures[0].second = second * (1 + other * part);
+      }
+    const double from = uniform(random, 0.001, 0.2), share = std::abs(second - base) / base;
+    const Answered answered = answer_of(results, {{"effect", "mass"}, {"on", "impulse"}, {"from", from}});
+    INFO("share " << share << ", asked " << from << "\n" << answered.sentence);
+    if (*answered.passes == Verdict::yes) {
+      CHECK(share > from);
+      ++yes;
+    } else if (*answered.passes == Verdict::no) {
+      CHECK(share < from);
+      ++no;
+    }
+    const Answered turned = answer_of(results, {{"effect", "mass"}, {"on", "impulse"}, {"within", from}});
+    CHECK((*turned.passes == Verdict::open) == (*answered.passes == Verdict::open));
+    CHECK((*turned.passes == Verdict::yes) == (*answered.passes == Verdict::no));
+    CHECK(words_in(answered.sentence) <= 30);
+  }
+  CHECK(yes > tries / 10);
+  CHECK(no > tries / 10);
+}
+
+TEST_CASE("asks: what is ranked apart is apart in truth") {
+  std::mt19937 random(3);
+  std::size_t apart = 0;
+  for (int k = 0; k < tries; ++k) {
+    const Made made = random_methods(random, 2 + random() % 4);
+    const StudyResults results = made.results();
+    const Answered answered = answer_of(results, {{"rank", "impulse"}, {"over", "mass"}});
+    double before = INFINITY;
+    double group_least = INFINITY;
+    std::string place;
+    for (const VerdictRow& row : answered.rows) {
+      const double truth = made.truth({static_cast<std::size_t>(row.level.back() - '0')});
+      if (row.verdict != place) {
+        if (!place.empty()) ++apart;
+        before = group_least;
+        group_least = INFINITY;
+        place = row.verdict;
+      }
+      INFO(answered.sentence << "\n" << row.level << " " << truth << " after " << before);
+      CHECK(truth <= before);
+      group_least = std::min(group_least, truth);
+    }
+  }
+  CHECK(apart > tries);
+}
+
+TEST_CASE("asks: a threshold lies between the levels that are told") {
+  std::mt19937 random(4);
+  std::size_t told = 0;
+  for (int k = 0; k < tries / 2; ++k) {
+    Made made = random_methods(random, 1);
+    synthetic::Choice axis{"stops.upper", {}};
+    std::vector<double> xs;
+    for (int level = 0; level < 8; ++level) xs.push_back(0.1 * (level + 1));
+    const double at = uniform(random, 0.05, 0.95);
+    made.choices = {{"stops.upper", {}}};
+    for (const double x : xs) made.choices[0].levels.push_back(fmt::format("{}", x));
+    made.truth = [=](const std::vector<std::size_t>& level) { return 1 + (at - xs[level[0]]); };
+    StudyResults results = made.results();
+    for (CaseRecord& record : results.cases) record.axes[0].second = std::stod(record.axes[0].second.get<std::string>());
+    const Answered answered = answer_of(results, {{"threshold", "impulse"}, {"below", 1}, {"along", "stops.upper"}});
+    const VerdictRow& last = answered.rows.back();
+    INFO("at " << at << ": " << answered.sentence);
+    if (last.low) {
+      CHECK(*last.low <= at);
+      CHECK(at <= *last.high);
+      ++told;
+    }
+    if (answered.verdict == "always") CHECK(at <= xs.front());
+    if (answered.verdict == "never") CHECK(at >= xs.back());
+    CHECK(words_in(answered.sentence) <= 30);
+  }
+  CHECK(told > tries / 5);
+}
+
+TEST_CASE("asks: the interval of a mean over seeds holds the truth as often as it says") {
+  std::mt19937 random(5);
+  int held = 0, all = 0;
+  for (int k = 0; k < tries / 2; ++k) {
+    Made made = random_methods(random, 1);
+    made.choices.push_back({seed_axis, {"1", "2", "3", "4", "5", "6"}});
+    made.scatter = uniform(random, 0.01, 0.3);
+    made.first_seed = random();
+    made.error = 0;
+    made.second = 0;
+    const Answered answered = answer_of(made.results(), {{"value", "impulse"}});
+    REQUIRE(answered.rows.size() == 1);
+    const VerdictRow& row = answered.rows.front();
+    REQUIRE(row.low);
+    ++all;
+    held += *row.low <= made.truth({0}) && made.truth({0}) <= *row.high ? 1 : 0;
+  }
+  // 95 %, three deviations of a binomial either way.
+  const double share = static_cast<double>(held) / all, deviation = std::sqrt(0.95 * 0.05 / all);
+  CHECK(share > 0.95 - 3 * deviation);
+  CHECK(share < 0.95 + 3 * deviation);
+}
+
+TEST_CASE("asks: the order of cases, their ids and a level that is not asked change no verdict") {
+  std::mt19937 random(6);
+  for (int k = 0; k < tries / 10; ++k) {
+    Made made = random_methods(random, 3);
+    StudyResults results = made.results();
+    const std::vector<Json> asks = {{{"value", "impulse"}},
+                                    {{"limit", "impulse"}, {"below", 1}},
+                                    {{"effect", "mass"}, {"on", "impulse"}, {"from", 0.1}},
+                                    {{"rank", "impulse"}, {"over", "mass"}},
+                                    {{"enough", "impulse"}, {"within", 0.01}}};
+    std::vector<Answered> before;
+    for (const Json& ask : asks) before.push_back(answer_of(results, ask));
+    StudyResults shuffled = results;
+    std::shuffle(shuffled.cases.begin(), shuffled.cases.end(), random);
+    for (CaseRecord& record : shuffled.cases) record.id = "x" + record.id;
+    for (std::size_t a = 0; a < asks.size(); ++a) {
+      const Answered after = answer_of(shuffled, asks[a]);
+      INFO(before[a].sentence << "\n" << after.sentence);
+      CHECK(after.passes == before[a].passes);
+      CHECK(after.cases == before[a].cases);
+      // The first level is the one that others are compared with: the study's order is part of an effect's sign.
+      if (!asks[a].contains("effect")) CHECK(after.verdict == before[a].verdict);
+    }
+    // One more level, asked of the first three alone.
+    Made more = made;
+    more.choices.push_back({"contact", {"a", "b"}});
+    more.truth = [&](const std::vector<std::size_t>& at) { return made.truth(at) * (at[1] == 0 ? 1 : 3); };
+    const StudyResults larger = more.results();
+    for (std::size_t a = 0; a < asks.size(); ++a) {
+      Json narrowed = asks[a];
+      narrowed["where"] = {{"contact", "a"}};
+      CHECK(answer_of(larger, narrowed).sentence == before[a].sentence);
+    }
+  }
+}
+
+TEST_CASE("asks: a case that is missing is counted and its reason said") {
+  std::mt19937 random(7);
+  for (int k = 0; k < tries / 10; ++k) {
+    const Made made = random_methods(random, 3);
+    StudyResults results = made.results();
+    const std::size_t which = random() % results.cases.size();
+    results.cases[which].status = "diverged";
+    results.cases[which].reasons = {"step 3 is too large"};
+    results.cases[which].measures.clear();
+    for (const Json& ask : std::vector<Json>{{{"value", "impulse"}},
+                                             {{"limit", "impulse"}, {"below", 1}},
+                                             {{"effect", "mass"}, {"on", "impulse"}},
+                                             {{"rank", "impulse"}, {"over", "mass"}}}) {
+      const Answered answered = answer_of(results, ask);
+      CHECK(answered.left_out == 1);
+      CHECK(answered.cases == results.cases.size() - 1);
+      REQUIRE(answered.aside.size() == 1);
+      CHECK(answered.aside.front() == "Left out: 1 diverged: step 3 is too large.");
+    }
+  }
+}
+
+TEST_CASE("asks: one step tells neither yes nor no, whatever its value") {
+  std::mt19937 random(8);
+  Made made = random_methods(random, 2);
+  made.steps = {1e-3};
+  const StudyResults results = made.results();
+  for (const Json& ask : std::vector<Json>{{{"limit", "impulse"}, {"below", 100}},
+                                           {{"limit", "impulse"}, {"below", 0.1}},
+                                           {{"effect", "mass"}, {"on", "impulse"}, {"from", 1e-6}}}) {
+    const Answered answered = answer_of(results, ask);
+    INFO(answered.sentence);
+    CHECK(answered.passes == Verdict::open);
+    CHECK(answered.reason == "one step: what it leaves open is not known");
+  }
+}
+
+TEST_CASE("asks: nothing on both sides is no agreement") {
+  std::mt19937 random(9);
+  Made made = random_methods(random, 2);
+  made.truth = [](const std::vector<std::size_t>&) { return 0.0; };
+  const Answered answered = answer_of(made.results(), {{"effect", "mass"}, {"on", "impulse"}, {"from", 0.05}});
+  CHECK(answered.passes == Verdict::open);
+  CHECK(answered.reason == "both are zero, or round-off");
+}
