@@ -44,17 +44,11 @@ std::vector<Doubt> doubts_of(const StudyResults& results);
 /// The same, a sentence each: "Doubtful: 2 of 3 cases (…): …"; of more than four kinds three.
 std::vector<Sentence> doubted(const Compared& study);
 
-/// What becomes of the cases: who runs, who does not, and why.
-std::vector<Sentence> status(const Compared& study);
+/// That no case touched a stop, with the largest displacement against the gap. Nothing where one did, or has no stops.
+std::optional<Sentence> say_untouched(const Compared& study);
 
-/// The answer of a study that observes measures: methods in tiers, or choices by what they move.
-Answer measure_answer(const Compared& study, const std::vector<std::string>& measures, bool status_first);
-
-/// What the headline measure of a study rests on, for a terminal: at most twelve lines; "" without values.
-std::string evidence_text(const Compared& study, const std::string& measure);
-
-/// The same as a table of a page: the methods best first, or what each choice moves.
-std::string evidence_html(const Compared& study);
+/// Why a case that ran has no value of a measure; "" where that is not known.
+std::string why_without(const std::string& measure, const CaseRecord& record);
 
 /// One row of `limits`: a method and a measure.
 struct MeasureLimit {

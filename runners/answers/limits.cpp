@@ -4,7 +4,6 @@
 #include <cmath>
 #include <ricochet/measure/statistics/quantiles.hpp>
 
-#include "runners/answers/set_names.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/text.hpp"
@@ -170,19 +169,6 @@ bool keeps_energy(const StudyResults& results, const Cases& cases_of_study) {
   return true;
 }
 
-bool in_tiers(const Compared& study, const MeasureLimits& limits) {
-  constexpr std::size_t a_dozen = 12, many = 120;
-  const auto have = limits.with_limit();
-  if (have.size() <= 1) return true;
-  if (!study.asked().empty()) return false;
-  if (limits.words.decades) return true;
-  const std::vector<std::string> scene = study.scene_columns();
-  const std::string first = study.key(have.front()->first(), scene);
-  const bool one_scene = std::all_of(have.begin(), have.end(),
-                                     [&](const Method* method) { return study.key(method->first(), scene) == first; });
-  return one_scene && have.size() <= (limits.words.direction != 0 ? many : a_dozen);
-}
-
 double scale_of(const MeasureWords& words, const std::vector<const Method*>& methods) {
   if (words.scale == "1" || words.scale == "energy_brought_in") return 1;
   double scale = 0;
@@ -236,26 +222,6 @@ Matters ChoiceRow::matters() const {
   return difference - u > tolerance ? Matters::yes : difference + u <= tolerance ? Matters::no : Matters::open;
 }
 
-namespace {
-
-/// Names the combinations in which a choice matters; "" where they have no short name.
-std::string place_of_effect(const Compared& study, const ChoiceEffect& effect, const std::vector<std::string>& others) {
-  if (effect.matters == 0 || effect.matters == effect.rows.size() || effect.rows.size() < 2) return "";
-  Cases combinations;
-  Members inside;
-  for (std::size_t k = 0; k < effect.rows.size(); ++k) {
-    combinations.push_back(effect.rows[k].combination);
-    if (effect.rows[k].matters() == Matters::yes) inside.push_back(k);
-  }
-  const SetNames names(study, combinations, others);
-  const SetNames::Name name = names.found(inside);
-  if (name.exact && name.text.find(", and ") == std::string::npos) return " with " + name.text;
-  const std::string near = name.text.starts_with("mostly ") ? name.text : names.mostly(inside);
-  return near.starts_with("mostly ") ? ", mostly with " + near.substr(7, near.rfind(" (") - 7) : "";
-}
-
-}  // namespace
-
 ChoiceEffect choice_effect(const Compared& study, const MeasureLimits& limits, const std::string& choice,
                            const std::vector<std::string>& own) {
   ChoiceEffect out;
@@ -304,7 +270,6 @@ ChoiceEffect choice_effect(const Compared& study, const MeasureLimits& limits, c
   };
   out.most = usual(most);
   out.least = usual(least);
-  out.where = place_of_effect(study, out, others);
   return out;
 }
 

@@ -66,10 +66,9 @@ bool keeps_energy(const StudyResults& results);
 /// The same of some of its cases.
 bool keeps_energy(const StudyResults& results, const Cases& cases);
 
-/// Whether the methods are told in tiers: always a single one, never where something is asked to be compared. Else they
-/// are where the measure is one of decades. So are at most a dozen methods in one scene, 120 where one direction is
-/// better. Otherwise choices are told by what they move.
-bool in_tiers(const Compared& study, const MeasureLimits& limits);
+/// The tier of each method that has a limit, 1 the best, or the least where no direction is better; 0 of those that
+/// grow, gain energy or belong to none. None of methods in several scenes, and of more than 120.
+std::vector<std::size_t> tier_places(const Compared& study, const MeasureLimits& limits);
 
 /// What differences are shares of, one number for all methods that are compared. It is 1 where the measure is a share
 /// (of 1, or of the energy brought in). Else it is the largest magnitude of the scale measure, or, without one, of the
@@ -109,7 +108,6 @@ struct ChoiceEffect {
   std::optional<double> typical_uncertainty;
   std::size_t matters = 0, matters_not = 0;
   std::string most, least;  ///< where the same level is an end in four of five combinations in which it matters
-  std::string where;        ///< the combinations in which it matters, where these have a name: "with viscosity 0"
 };
 
 /// What these columns of a choice move, over all combinations of the others. What gains energy is left out; the scale

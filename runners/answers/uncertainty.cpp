@@ -7,7 +7,6 @@
 #include <set>
 
 #include "runners/answers/limits.hpp"
-#include "runners/answers/measure_answer.hpp"
 
 namespace ricochet::answers {
 namespace {
@@ -24,7 +23,7 @@ struct Spread {
   double low(double margin) const { return either_sign ? least - margin : std::max(0.0, least - margin); }
   std::optional<double> margin() const {
     if (!step || !std::isfinite(*step)) return std::nullopt;
-    const double all = std::max({*step, mesh.value_or(0), sampling.value_or(0)});
+    const double all = *step + mesh.value_or(0) + sampling.value_or(0);
     return std::isfinite(all) ? std::optional(all) : std::nullopt;
   }
 };
@@ -71,7 +70,8 @@ const char* verdict(const Spread& spread) {
   if (!margin) return "unknown";
   if (spread.size() + 2 * *margin <= tolerance * spread.scale()) return "settled";
   if (spread.size() > 2 * *margin) return "methods";
-  return *margin == *spread.step ? "step" : *margin == spread.mesh.value_or(-1) ? "mesh" : "sampling";
+  const double most = std::max({*spread.step, spread.mesh.value_or(0), spread.sampling.value_or(0)});
+  return most == *spread.step ? "step" : most == spread.mesh.value_or(-1) ? "mesh" : "sampling";
 }
 
 }  // namespace
@@ -91,83 +91,31 @@ MeasureWords prefixed(MeasureWords words, double scale) {
 
 namespace {
 
-Clause number_clause(const MeasureWords& words, const std::string& choice, double value) {
-  Clause out{.form = "value", .measure = words.measure, .choice = choice};
-  out.value = value;
-  out.unit = words.unit;
-  return out;
-}
-
-// The choice that most of the spread is due to, and what each of its levels gives, as far as `margin` tells.
-std::string decider(const Compared& study, const MeasureLimits& limits, const MeasureWords& words, double margin,
-                    std::vector<Clause>& clauses) {
-  const std::vector<ChoiceEffect> effects = choice_effects(study, limits);
-  const auto lead = std::max_element(effects.begin(), effects.end(), [](const ChoiceEffect& a, const ChoiceEffect& b) {
-    return a.typical < b.typical;
-  });
-  if (lead == effects.end() || !(lead->typical > 0)) return "";
-  const std::string said = spoken(lead->choice);
-  std::optional<Sentence> levels = apart_levels(study, limits, lead->choice);
-  if (!levels) return fmt::format("{} moves it most", said);
-  std::string values;
-  for (Clause& one : levels->clauses) {
-    const double own = limits.words.factor;
-    const std::string low = value_text(words, *one.low / own, margin, false),
-                      high = value_text(words, *one.high / own, margin, false);
-    values += fmt::format("{}{} with {}", values.empty() ? "" : ", ", low == high ? low : low + " to " + high, one.who);
-    clauses.push_back(std::move(one));
-  }
-  return fmt::format("{} decides it ({})", said, values);
-}
-
-// "rms force at bar-a: 0.17 to 0.19 N; methods differ by 0.02; the step leaves 4e-4, the mesh 2e-4". Where a choice
-// decides it, its levels stand in place of the difference: "the contact law decides it (0.17 with penalty, 0.19 with
-// rigid stops)".
-Sentence interval_sentence(const Compared& study, const MeasureLimits& limits, const Spread& spread) {
+// "rms force at bar-a: 0.17 to 0.19 N; methods differ by 0.02; the step leaves 4e-4, the mesh 2e-4".
+std::string interval_text(const Compared& study, const MeasureLimits& limits, const Spread& spread) {
   const MeasureWords words = prefixed(limits.words, spread.scale());
   const std::string name = capitalised(words.words);
-  Sentence out;
-  Clause range{.form = "value", .measure = words.measure};
-  range.unit = limits.words.unit;
-  const auto ends = [&](double low, double high) {
-    range.low = low * limits.words.factor;
-    range.high = high * limits.words.factor;
-    out.clauses.push_back(range);
-    return range_text(words, low, high);
-  };
   const std::optional<double> margin = spread.margin();
-  if (!margin) {
-    out.text = fmt::format("{}: {}; what the step leaves open is not known.", name, ends(spread.least, spread.largest));
-    return out;
-  }
-  out.text = fmt::format("{}: {}", name, ends(spread.low(*margin), spread.largest + *margin));
+  if (!margin)
+    return fmt::format("{}: {}; what the step leaves open is not known.", name,
+                       range_text(words, spread.least, spread.largest));
+  std::string out =
+      fmt::format("{}: {}", name, range_text(words, spread.low(*margin), spread.largest + *margin));
   // What is below it is round-off, or nothing beside the interval.
   const double floor = std::max(1e-9 * spread.scale(), 1e-3 * *margin);
-  std::string parts;
-  if (spread.methods > 1 && spread.size() > floor) {
-    const std::string verdict_word = verdict(spread);
-    parts = verdict_word == "methods" ? decider(study, limits, words, *margin, out.clauses) : "";
-    if (parts.empty()) {
-      MeasureWords bare = words;
-      bare.unit.clear();
-      parts = "methods differ by " + uncertainty_text(bare, spread.size());
-      out.clauses.push_back(number_clause(limits.words, "methods", spread.size() * limits.words.factor));
-    }
-  }
+  MeasureWords bare = words;
+  bare.unit.clear();
+  if (spread.methods > 1 && spread.size() > floor) out += "; methods differ by " + uncertainty_text(bare, spread.size());
   std::string left;
   const auto add = [&](const char* what, const std::optional<double>& by) {
     if (!by || !(*by > floor)) return;
-    MeasureWords bare = words;
-    bare.unit.clear();
     left += fmt::format("{} {} {}", left.empty() ? ";" : ",", what + std::string(left.empty() ? " leaves" : ""),
                         uncertainty_text(bare, *by));
-    out.clauses.push_back(number_clause(limits.words, what, *by * limits.words.factor));
   };
   add("the step", spread.step);
   add(study.varies("modes") ? "the number of modes" : "the mesh", spread.mesh);
   add("sampling", spread.sampling);
-  out.text += (parts.empty() ? "" : "; " + parts) + left + ".";
-  return out;
+  return out + left + ".";
 }
 
 Spread signed_spread(Spread spread, const std::string& measure) {
@@ -193,10 +141,10 @@ const TableType<StopRange>& uncertainty_type() {
         .add({"sampling", "", "Half the 95 % interval of a mean over the parts of the window, the largest."},
              &StopRange::sampling)
         .add({"low", "",
-              "The least less the largest of the three, 0 where none is below 0; empty where that of the step is not "
+              "The least less the sum of the three, 0 where none is below 0; empty where that of the step is not "
               "known."},
              &StopRange::low)
-        .add({"high", "", "The largest and the largest of the three."}, &StopRange::high)
+        .add({"high", "", "The largest and the sum of the three."}, &StopRange::high)
         .add({"verdict", "",
               "settled: within 1 %; methods, step, mesh, sampling: what leaves it open; unknown: a single step."},
              &StopRange::verdict)
@@ -235,29 +183,10 @@ Table uncertainty_table(const Compared& study) {
       row.high = factor * (spread.largest + *margin);
     }
     row.verdict = verdict(spread);
-    row.sentence = interval_sentence(study, limits, spread).text;
+    row.sentence = interval_text(study, limits, spread);
     rows.push_back(std::move(row));
   }
   return uncertainty_type().with(rows);
-}
-
-namespace {
-
-std::optional<Sentence> sentence_of_stop(const Compared& study, const MeasureLimits& limits, bool with_margin) {
-  const auto named = measure_of_stop(limits.words.measure);
-  const std::optional<Spread> spread = named ? spread_of(limits) : std::nullopt;
-  if (!spread || spread->methods < 2 || spread->margin().has_value() != with_margin) return std::nullopt;
-  return interval_sentence(study, limits, signed_spread(*spread, named->first));
-}
-
-}  // namespace
-
-std::optional<Sentence> uncertainty_sentence(const Compared& study, const MeasureLimits& limits) {
-  return sentence_of_stop(study, limits, true);
-}
-
-std::optional<Sentence> values_sentence(const Compared& study, const MeasureLimits& limits) {
-  return sentence_of_stop(study, limits, false);
 }
 
 }  // namespace ricochet::answers

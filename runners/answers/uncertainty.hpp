@@ -19,7 +19,7 @@ const TableType<StopRange>& uncertainty_type();
 
 /// uncertainty: one row per measure of a stop that has a name, what all methods and refinements together leave of it.
 ///
-///     d = max(step gap, mesh gap, sampling),     interval [least − d, largest + d]
+///     d = step gap + mesh gap + sampling,     interval [least − d, largest + d]
 ///
 /// over the methods, each at its finest step and mesh. Gaps are the largest u that a method's refinement leaves,
 /// sampling half the 95 % interval of a mean over the parts of a window. The interval is blank of a single step.
@@ -28,12 +28,5 @@ Table uncertainty_table(const Compared& study);
 /// Words whose numbers are thousandths or millionths where the unit is W or m: mW below 0.1 W, µW below 1e-4 W. `scale`
 /// is the largest value, in the unit.
 MeasureWords prefixed(MeasureWords words, double scale);
-
-/// The sentence of that row: the interval, the choice that decides it with what its levels give, and what step, mesh
-/// and sampling leave open. Nothing for measures of whole cases, a single method, or a single step.
-std::optional<Sentence> uncertainty_sentence(const Compared& study, const MeasureLimits& limits);
-
-/// The sentence of that row where the interval is blank: the values, and that what the step leaves open is not known.
-std::optional<Sentence> values_sentence(const Compared& study, const MeasureLimits& limits);
 
 }  // namespace ricochet::answers

@@ -61,7 +61,7 @@ std::vector<const Ask*> Asked::unmet() const {
 Asked answer_asks(const std::vector<Ask>& asks, const Evidence& evidence, const OwnAnswers& own) {
   Asked out;
   if (asks.empty()) return out;
-  out.first = evidence.nothing_happened();
+  out.first = evidence.warnings();
   for (const Ask& ask : asks) {
     const auto found = own.find(verb_of_kind(ask));
     Answered answered = found != own.end() ? found->second(ask, evidence)

@@ -15,6 +15,7 @@ using OwnAnswers = std::map<std::string, std::function<Answered(const Ask&, cons
 struct Asked {
   std::vector<std::string> first;  ///< what comes before all answers: that nothing happened
   std::vector<std::pair<Ask, Answered>> all;
+  std::vector<std::string> proposed = {};  ///< of a study that asks nothing: what it could ask, as JSON
   bool any() const { return !all.empty(); }
   /// Those that must be yes and are not.
   std::vector<const Ask*> unmet() const;

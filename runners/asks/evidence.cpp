@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runners/answers/answer.hpp"
 #include "runners/answers/limits.hpp"
-#include "runners/answers/measure_answer.hpp"
+#include "runners/answers/set_names.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
@@ -171,10 +172,8 @@ LeftOut Evidence::left_out(const std::string& name, const Cases& cases) const {
     if (record->partial) {
       why = key = "still running";
     } else if (record->status == "done") {
-      why = "without a value";
-      for (const auto& [item, reason] : record->left_out)
-        if (item == name) why += ": " + reason;
-      key = why;
+      const std::string reason = answers::why_without(name, *record);
+      why = key = "without a value" + (reason.empty() ? "" : ": " + reason);
     } else {
       const std::string reason = record->reason();
       why = record->excluded || reason.empty() ? reason : record->status + ": " + reason;
@@ -192,9 +191,35 @@ std::string Evidence::level(const CaseRecord& record, const std::vector<std::str
   return study_.words(record, columns);
 }
 
-std::vector<std::string> Evidence::nothing_happened() const {
+namespace {
+
+/// Which methods end with more energy than was brought in; "" where none does.
+std::string energy_made(const answers::Compared& study) {
+  const StudyResults& results = study.results();
+  const answers::MeasureLimits limits =
+      answers::limits_of(study, "energy_left", answers::keeps_energy(results), all_cases(results));
+  Cases firsts;
+  Members making;
+  double most = 0;
+  for (const answers::Method& method : limits.methods) {
+    if (method.gains) {
+      making.push_back(firsts.size());
+      for (const answers::Valued& one : method.done) most = std::max(most, one.value);
+    }
+    firsts.push_back(&method.first());
+  }
+  if (making.empty()) return "";
+  const std::string who = making.size() == firsts.size() ? "every method" : answers::SetNames(study, firsts).of(making);
+  return fmt::format("Energy is made with {}: it ends with up to {} times what was brought in.", who,
+                     answers::short_number(most, 2));
+}
+
+}  // namespace
+
+std::vector<std::string> Evidence::warnings() const {
   std::vector<std::string> out;
   if (auto untouched = answers::say_untouched(study_)) out.push_back(untouched->text);
+  if (const std::string made = energy_made(study_); !made.empty()) out.push_back(made);
   return out;
 }
 

@@ -85,8 +85,8 @@ class Evidence {
 
   /// The levels of a case in these columns, in words: "hrz, 1e8 N/m". "" of none.
   std::string level(const CaseRecord& record, const std::vector<std::string>& columns) const;
-  /// What the whole of the cases shows before any number: no stop touched, nothing moved. Sentences.
-  std::vector<std::string> nothing_happened() const;
+  /// What comes before any number, a sentence each: that no stop was touched, who makes energy.
+  std::vector<std::string> warnings() const;
 
  private:
   const answers::Compared& study_;

@@ -8,6 +8,7 @@
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/numbers_in_words.hpp"
+#include "runners/asks/default_asks.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
@@ -44,11 +45,39 @@ Analysis analysis_of(StudyResults& results, const answers::Compared& study) {
 
 }  // namespace
 
+namespace {
+
+constexpr const char* status_asked = "status";
+
+std::vector<std::string> observed_by_name(const StudyResults& results) {
+  const auto given = results.study.find("observe");
+  const bool list = given != results.study.end() && given->is_array();
+  return list ? given->get<std::vector<std::string>>() : std::vector<std::string>{};
+}
+
+/// What the study asks, or what its kind asks where it asks nothing.
+asks::Asked asked_of(const StudyResults& results, const answers::Compared& compared, const Analysis& analysis) {
+  const asks::Evidence evidence(compared);
+  const std::vector<asks::Ask> given = asks::asks_of(results.study);
+  if (!given.empty()) return asks::answer_asks(given, evidence, analysis.verbs);
+  const Kind* kind = find_kind(results.kind);
+  if (kind && kind->format.default_asks)
+    return asks::answer_asks(asks::asks_of_list(kind->format.default_asks(results.study)), evidence, analysis.verbs);
+  if (analysis.answer) return {};
+  const std::vector<std::string> names = observed_by_name(results), measures = observed_measures(results);
+  const bool runs = std::find(names.begin(), names.end(), status_asked) != names.end() || measures.empty();
+  asks::Asked out = asks::answer_asks(asks::asks_of_measures(evidence, measures, runs), evidence, analysis.verbs);
+  out.proposed = asks::proposals(evidence, measures);
+  return out;
+}
+
+}  // namespace
+
 AnalysedResults::AnalysedResults(StudyResults results)
     : StudyResults(std::move(results)),
       compared(*this),
       analysis(analysis_of(*this, compared)),
-      asked(asks::answer_asks(asks::asks_of(study), asks::Evidence(compared), analysis.verbs)) {
+      asked(asked_of(*this, compared, analysis)) {
   // The answer says the shares, and stands before them.
   const auto before_shares = static_cast<std::ptrdiff_t>(derived.size());
   const auto add = [&](Table table) {
@@ -110,6 +139,7 @@ std::string asked_text(const asks::Asked& asked) {
     if (answered.rows.size() > most)
       out += fmt::format("  … {} rows in verdicts.csv\n", answered.rows.size());
   }
+  if (!asked.proposed.empty()) out += fmt::format("  it could ask: {}\n", fmt::join(asked.proposed, "\n                "));
   return out;
 }
 
@@ -120,8 +150,7 @@ int tell_results(std::FILE* out, const AnalysedResults& results, const std::file
   constexpr int nothing_ran = 3;
   const bool nothing = std::all_of(results.cases.begin(), results.cases.end(),
                                    [](const CaseRecord& one) { return one.status == "refused"; });
-  const std::string rows = results.asked.any() ? asked_text(results.asked) : evidence_text(results),
-                    evidence = rows.empty() ? "" : rows + "\n";
+  const std::string rows = asked_text(results.asked), evidence = rows.empty() ? "" : rows + "\n";
   const int code = nothing ? nothing_ran : results_exit_code(results);
   say(out, fmt::format("{}{}\n{}{} ({})\nreport: {}\n", table ? case_table(results) + "\n" : "", answer_text(results),
                        evidence, totals_text(results), how, (folder / "report.html").string()));
@@ -188,20 +217,8 @@ int export_tables(const std::filesystem::path& folder, const std::filesystem::pa
   });
 }
 
-namespace {
-
-constexpr const char* status_asked = "status";
-
-std::vector<std::string> asked(const StudyResults& results) {
-  const auto given = results.study.find("observe");
-  const bool list = given != results.study.end() && given->is_array();
-  return list ? given->get<std::vector<std::string>>() : std::vector<std::string>{};
-}
-
-}  // namespace
-
 std::vector<std::string> observed_measures(const StudyResults& results) {
-  std::vector<std::string> names = asked(results);
+  std::vector<std::string> names = observed_by_name(results);
   std::erase(names, status_asked);
   const Kind* kind = find_kind(results.kind);
   if (names.empty() && kind) names = kind->observed(results);
@@ -213,11 +230,7 @@ std::vector<std::string> observed_measures(const StudyResults& results) {
 }
 
 Table answers_table(const answers::Compared& study, const Analysis& analysis) {
-  const std::vector<std::string> names = asked(study.results());
-  const bool status_first = !names.empty() && names.front() == status_asked;
-  answers::Answer answer = analysis.answer
-                               ? analysis.answer(study)
-                               : answers::measure_answer(study, observed_measures(study.results()), status_first);
+  answers::Answer answer = analysis.answer(study);
   // Behind the headline: no sentence that is cut off.
   const std::vector<answers::Sentence> doubts = answers::doubted(study);
   answer.sentences.insert(answer.sentences.begin() + (answer.sentences.empty() ? 0 : 1), doubts.begin(), doubts.end());
@@ -243,12 +256,6 @@ std::vector<Table> evidence_tables(const answers::Compared& study) {
   const std::vector<std::string> measures = observed_measures(study.results());
   return {answers::limits_table(study, measures), answers::refinements_table(study, measures),
           answers::differences_table(study, measures)};
-}
-
-std::string evidence_text(const AnalysedResults& results) {
-  const std::vector<std::string> measures =
-      results.analysis.answer ? std::vector<std::string>{} : observed_measures(results);
-  return measures.empty() ? "" : answers::evidence_text(results.compared, measures.front());
 }
 
 namespace {

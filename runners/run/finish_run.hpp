@@ -39,19 +39,14 @@ std::unique_ptr<const AnalysedResults> write_folder(Store& store, const std::fil
 int tell_results(std::FILE* out, const AnalysedResults& results, const std::filesystem::path& folder,
                  const std::string& how, bool table = false);
 
-/// answers: what the study says to its question, in the order in which it is read. Of a kind that answers itself its
-/// rows; else one row per choice and observed measure.
-Table answers_table(const answers::Compared& study, const Analysis& analysis = {});
+/// answers: what a kind that answers itself says to a study's question, in the order in which it is read.
+Table answers_table(const answers::Compared& study, const Analysis& analysis);
 
 /// The same of a study that asks: what comes first, a sentence for each ask, what is doubtful and what is left out.
 Table asked_table(const answers::Compared& study, const asks::Asked& asked);
 
 /// What an answer by observed measures rests on: limits, refinements and differences of these.
 std::vector<Table> evidence_tables(const answers::Compared& study);
-
-/// The same for a terminal, of the measure that is observed first: at most twelve lines. "" of a kind that answers
-/// itself.
-std::string evidence_text(const AnalysedResults& results);
 
 /// The measures that a study observes: its key "observe", else what its kind asks of such results; those that some
 /// finished case has.

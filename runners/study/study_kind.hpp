@@ -26,6 +26,8 @@ struct StudyKind {
   std::function<void(const Json& resolved, const std::string& measure, const std::string& pointer)> check_measure = {};
   /// The verbs of `ask` that it answers itself.
   std::vector<std::string> verbs = {};
+  /// What a study that asks nothing is asked. Empty: the measures that it observes, by their values.
+  std::function<Json(const Json& resolved)> default_asks = {};
   /// Refuses an entry of `ask` with one of these, whose verb stands at `pointer`.
   std::function<void(const Study& study, const Json& ask, const std::string& pointer)> check_ask = {};
   /// The same once the methods are known. `cases`: number of combinations of the axes; `dofs`: of the coarsest mesh.

@@ -46,10 +46,11 @@ inline StudyResults full_factorial(const std::vector<Choice>& choices, const std
   return results;
 }
 
+/// What a study says, a sentence a line.
 inline std::string sentences(const StudyResults& results) {
-  const Table answers = answers_table(answers::Compared(results));
+  const AnalysedResults analysed(results);
   std::string all;
-  const TableReader rows(answers);
+  const TableReader rows(*find_table(analysed.derived, "answers"));
   for (std::size_t row = 0; row < rows.size(); ++row) all += rows.text(row, "sentence") + "\n";
   return all;
 }

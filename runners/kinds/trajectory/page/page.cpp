@@ -21,9 +21,7 @@ KindPage trajectory_page() {
   page.tables = {"energy_changes", "shock_points", "orbit_points", "spectrum_bands"};
   page.curves = {"energy", "tip_displacement", "contact_force_peak"};
   page.derived = {energy_changes, shock_points, orbit_points, spectrum_bands};
-  page.answer = [](const CaseView& view) {
-    return answers::evidence_html(answers::Compared(view.results())) + stops_html(view);
-  };
+  page.answer = stops_html;
   page.summary = summary_measures_html;
   return page;
 }

@@ -1,0 +1,52 @@
+#include "runners/asks/default_asks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runners/store/record_values.hpp"
+#include "runners/table/text.hpp"
+
+namespace ricochet::asks {
+
+std::vector<Ask> asks_of_list(const Json& list) {
+  std::vector<Ask> out;
+  for (const Json& keys : list) {
+    out.push_back(ask_of(keys, out.size() + 1));
+    out.back().given = false;
+  }
+  return out;
+}
+
+std::vector<Ask> asks_of_measures(const Evidence& evidence, const std::vector<std::string>& measures, bool runs) {
+  constexpr std::size_t most = 4;
+  Json list = Json::array();
+  if (runs) list.push_back({{"runs", true}});
+  for (std::size_t k = 0; k < std::min(measures.size(), most); ++k) list.push_back({{"value", measures[k]}});
+  const std::string& compared = evidence.study().asked();
+  if (!compared.empty() && compared != "all" && !measures.empty())
+    list.push_back({{"effect", compared}, {"on", measures.front()}});
+  return asks_of_list(list);
+}
+
+std::vector<std::string> proposals(const Evidence& evidence, const std::vector<std::string>& measures) {
+  std::vector<std::string> out;
+  if (measures.empty()) return out;
+  const std::string& first = measures.front();
+  const auto [base, stop] = split_measure(first);
+  const Cases cases = evidence.cases(ask_of({{"value", first}}, 1));
+  const std::vector<std::string> choices = evidence.choices(cases);
+  if (!choices.empty()) out.push_back(Json({{"effect", choices.front()}, {"on", first}, {"from", "5 %"}}).dump());
+  const Json& stops = evidence.results().study.value("/scene/stops"_json_pointer, Json());
+  if (!stop.empty() && stops.is_array() && stops.size() > 1)
+    out.push_back(Json({{"rank", base}, {"over", "stops"}}).dump());
+  double largest = 0;
+  for (const CaseRecord* record : cases) largest = std::max(largest, std::abs(measure(*record, first).value_or(0)));
+  constexpr double above = 1.1;
+  if (largest > 0) out.push_back(Json({{"limit", first}, {"below", to_digits(above * largest, 2)}}).dump());
+  out.push_back(Json({{"enough", first}, {"within", "5 %"}}).dump());
+  constexpr std::size_t three = 3;
+  out.resize(std::min(out.size(), three));
+  return out;
+}
+
+}  // namespace ricochet::asks
