@@ -164,7 +164,7 @@ std::string uncertainty_text(const MeasureWords& measure, double uncertainty) {
   const double u = measure.factor * uncertainty;
   constexpr double begins_with_one = 1.95;
   const int digits = u > 0 && u / magnitude(u) < begins_with_one ? 2 : 1;
-  return short_number(u, digits) + unit_after(measure);
+  return short_number(to_digits(u, digits), digits) + unit_after(measure);
 }
 
 std::string with_uncertainty(const MeasureWords& measure, double value, std::optional<double> uncertainty) {

@@ -40,14 +40,18 @@ const TableType<VerdictRow>& verdicts_type() {
   return all;
 }
 
-std::string in_thirty_words(std::string must, const std::vector<std::string>& rest) {
+std::string in_thirty_words(std::string must, const std::vector<std::vector<std::string>>& rest) {
   constexpr std::size_t most = 30;
   const auto words = [](const std::string& text) {
     std::istringstream in(text);
     return static_cast<std::size_t>(std::distance(std::istream_iterator<std::string>(in), {}));
   };
-  for (const std::string& part : rest)
-    if (words(must + part) <= most) must += part;
+  for (const std::vector<std::string>& part : rest)
+    for (const std::string& wording : part)
+      if (words(must + wording) <= most) {
+        must += wording;
+        break;
+      }
   return must + ".";
 }
 

@@ -70,7 +70,7 @@ std::string share_text(const Pair& pair) {
   constexpr double hundred = 100;
   words.factor = hundred;
   const std::string value = answers::with_uncertainty(words, std::abs(share), pair.share_u);
-  return (share < 0 ? "−" : "+") + value;
+  return (value.starts_with("0 ") ? "" : share < 0 ? "−" : "+") + value;
 }
 
 class EffectSpeaker {
@@ -228,6 +228,20 @@ class EffectSpeaker {
                        place(largest).empty() ? "" : "," + place(largest));
   }
 
+  /// The same in few words: "by up to +30 ± 2 %", "from 0 to 3.4 ± 0.2".
+  std::string short_sizes(std::vector<const Told*> list) const {
+    std::erase_if(list, [](const Told* one) { return !one->pair; });
+    if (list.empty()) return "";
+    const auto odd = std::find_if(list.begin(), list.end(), [](const Told* one) { return !as_share(*one); });
+    if (odd != list.end())
+      return fmt::format("from {} to {}", lines_.text(line_of(*(*odd)->where, (*odd)->first).estimate()),
+                         lines_.text(line_of(*(*odd)->where, (*odd)->second).estimate()));
+    const auto largest = std::max_element(list.begin(), list.end(), [](const Told* a, const Told* b) {
+      return std::abs(*a->pair->share) < std::abs(*b->pair->share);
+    });
+    return (list.size() == 1 ? "by " : "by up to ") + share_text(*(*largest)->pair);
+  }
+
   /// The combinations of these, by name where they have one: " with stiffness 1e8 N/m", " in 2 of 6".
   std::string in_these(const std::vector<const Told*>& list, std::size_t all) const {
     if (list.size() == all) return all == 1 ? "" : fmt::format(" in all {}", all);
@@ -253,7 +267,7 @@ class EffectSpeaker {
       out.sentence = in_thirty_words(fmt::format("{}: {} changes {} by {} and more{}",
                                                  agrees_ ? "No" : everywhere ? "Yes" : "In part", choice, measure, least,
                                                  in_these(yes, all)),
-                                     {": " + sizes(yes), rest});
+                                     {{": " + sizes(yes), ": " + short_sizes(yes)}, {rest}});
       return;
     }
     if (open.empty()) {
@@ -261,7 +275,7 @@ class EffectSpeaker {
       out.verdict = word(*out.passes);
       out.sentence = in_thirty_words(fmt::format("{}: {} changes {} by less than {}{}", agrees_ ? "Yes, they agree" : "No",
                                                  choice, measure, least, in_these(no, all)),
-                                     {": " + sizes(no)});
+                                     {{": " + sizes(no), ": " + short_sizes(no)}});
       return;
     }
     const Told& first = *open.front();
@@ -270,7 +284,9 @@ class EffectSpeaker {
     out.reason = first.reason;
     out.sentence = in_thirty_words(
         fmt::format("Open{}: whether {} changes {} by {} is not told", in_these(open, all), choice, measure, least),
-        {first.pair ? "; it does " + sizes({&first}) : "", ": " + first.reason});
+        {{first.pair ? "; it does " + sizes({&first}) : "", first.pair ? "; it does " + short_sizes({&first}) : ""},
+         {": " + first.reason, ": " + short_reason(first.reason)},
+         {no.empty() ? "" : fmt::format("; less in the other {}", no.size())}});
   }
 
   Json figure() const {

@@ -56,10 +56,10 @@ class Enough {
       out.reason = open->second.why;
       out.sentence = in_thirty_words(
           fmt::format("Open: what {} within {} takes is not told: {}", lines_.words.words, answers::percent(within_), out.reason),
-          {open->first->place()});
+          {{open->first->place()}});
     } else
       out.sentence = in_thirty_words(fmt::format("No: {}; {} would do for {}", found, remedy(need), answers::percent(within_)),
-                                     {line->place()});
+                                     {{line->place()}});
     return out;
   }
 

@@ -59,16 +59,23 @@ std::vector<std::string> Evidence::measures(const Ask& ask, const std::string& n
   std::vector<std::string> stops;
   if (ask.has("stops")) stops = ask.keys["stops"].get<std::vector<std::string>>();
   std::vector<std::string> out;
-  const auto add = [&](const std::string& one) {
-    const auto [base, stop] = split_measure(one);
-    const bool asked = one == name || base == name;
-    if (asked && (stops.empty() || contains(stops, stop)) && !contains(out, one)) out.push_back(one);
+  const auto gather = [&](bool whole) {
+    const auto add = [&](const std::string& one) {
+      const auto [base, stop] = split_measure(one);
+      const bool asked = whole ? one == name : base == name && !stop.empty();
+      if (asked && (stops.empty() || contains(stops, stop)) && !contains(out, one)) out.push_back(one);
+    };
+    for (const CaseRecord& record : results().cases) {
+      for (const auto& [one, value] : record.measures) add(one);
+      // What has no limit under a law has a line all the same.
+      for (const auto& [item, why] : record.left_out) add(item);
+    }
   };
-  for (const CaseRecord& record : results().cases) {
-    for (const auto& [one, value] : record.measures) add(one);
-    // What has no limit under a law has a line all the same.
-    for (const auto& [item, why] : record.left_out) add(item);
-  }
+  // Of a measure that all stops have together, that one, where no stop is named.
+  const bool by_stop = !stops.empty() || ask.text("over") == "stops";
+  if (!by_stop) gather(true);
+  if (out.empty()) gather(false);
+  if (out.empty() && by_stop) gather(true);
   if (out.empty()) out.push_back(name);
   // In the order of the study's stops where it names them.
   if (!stops.empty())
@@ -115,9 +122,9 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
   InOrderMet<std::string, Point> groups;
   for (const CaseRecord* record : cases) groups[study_.key(*record, columns)].cases.push_back(record);
   const bool has_step = contains(results().columns, "step") || contains(results().columns, "steps_per_period");
-  const bool refined_here = std::none_of(columns.begin(), columns.end(), [](const std::string& column) {
-    return column == "step" || column == "steps_per_period";
-  });
+  // A refinement that is a choice refines nothing.
+  const bool steps_chosen = contains(columns, "step") || contains(columns, "steps_per_period"),
+             mesh_chosen = contains(columns, "elements") || contains(columns, "modes");
   std::vector<Point> out;
   std::vector<std::optional<Limits>> limits;
   const auto words = answers::measure_words(measure_of_all);
@@ -130,8 +137,9 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
                                                   : measure(*record, measure_of_all);
       if (!value || !std::isfinite(*value)) continue;
       point.behind.push_back(record);
-      if (!study_.on_finest_mesh(*record)) continue;
-      const Size size{study_.step(*record).value_or(1), study_.elements(*record).value_or(1)};
+      if (!mesh_chosen && !study_.on_finest_mesh(*record)) continue;
+      const Size size{steps_chosen ? 1 : study_.step(*record).value_or(1),
+                      mesh_chosen ? 1 : study_.elements(*record).value_or(1)};
       const std::string& seed = study_.text(*record, seed_axis);
       point.values[size][seed] = *value;
       if (const auto half = measure(*record, "confidence." + measure_of_all)) point.halves[size][seed] = *half;
@@ -154,7 +162,7 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
   for (std::size_t k = 0; k < out.size(); ++k)
     if (limits[k])
       out[k].estimate =
-          estimate_of(out[k].values, out[k].halves, *out[k].finest, *limits[k], has_step && refined_here);
+          estimate_of(out[k].values, out[k].halves, *out[k].finest, *limits[k], has_step && !steps_chosen);
   return out;
 }
 

@@ -74,7 +74,7 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
     const Line worst = nearest(yes);
     const char* at_most = lines.all.size() == 1 ? "" : bounds.below ? "at most " : "at least ";
     out.sentence = in_thirty_words(
-        fmt::format("Yes: {} stays {}; it is {}{}", name, range, at_most, lines.text(worst.estimate())), {worst.place()});
+        fmt::format("Yes: {} stays {}; it is {}{}", name, range, at_most, lines.text(worst.estimate())), {{worst.place()}});
   } else if (*out.passes == Verdict::no) {
     const Line worst = nearest(no);
     const std::string where = set_name(lines, no);
@@ -84,7 +84,7 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
                                                  : " " + where;
     out.sentence = in_thirty_words(
         fmt::format("No: {} is not {}{}; it is {}", name, range, in_these, lines.text(worst.estimate())),
-        {no.size() == 1 ? "" : worst.place()});
+        {{no.size() == 1 ? "" : worst.place()}});
   } else if (!nothing_known(lines).empty()) {
     out.reason = nothing_known(lines);
     out.sentence = fmt::format("Open: no case has a value of {}: {}.", name, out.reason);
@@ -98,7 +98,7 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
     const std::string which = open.size() < lines.all.size() ? fmt::format(" in {} of {}", open.size(), lines.all.size()) : "";
     const std::string found = first->known() ? "it is " + lines.text(first->estimate()) : "no value";
     out.sentence = in_thirty_words(fmt::format("Open{}: whether {} stays {} is not told", which, name, range),
-                                   {"; " + found + first->place(), ": " + out.reason});
+                                   {{"; " + found + first->place(), "; " + found}, {": " + out.reason, ": " + short_reason(out.reason)}});
   }
   return out;
 }

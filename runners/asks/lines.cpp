@@ -153,6 +153,10 @@ std::string nothing_known(const Lines& lines) {
   return some_of(reasons);
 }
 
+std::string short_reason(const std::string& reason) {
+  return reason.substr(0, reason.find(": "));
+}
+
 std::string some_of(const std::vector<std::string>& names, std::size_t most) {
   if (names.size() <= most + 1) return answers::and_list(names);
   std::vector<std::string> first(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(most));

@@ -53,6 +53,9 @@ Answered begin_answer(const Lines& lines);
 /// Why nothing is known, of lines without a value; "" where some has one.
 std::string nothing_known(const Lines& lines);
 
+/// A reason without what its first colon explains: "2 refused".
+std::string short_reason(const std::string& reason);
+
 /// "a, b and 3 more".
 std::string some_of(const std::vector<std::string>& names, std::size_t most = 2);
 

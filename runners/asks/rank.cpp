@@ -90,11 +90,13 @@ class Ranking {
     std::vector<std::string> turned = turns();
     out.verdict = !turned.empty() ? "turned round" : firm ? "told apart" : first.groups.size() > 1 ? "in part" : "not told apart";
     if (!firm && !first.lines.empty()) out.reason = first.lines.front()->estimate().unknown();
-    std::vector<std::string> rest;
-    if (!out.reason.empty()) rest.push_back("; " + out.reason);
+    std::vector<std::vector<std::string>> rest;
+    if (!out.reason.empty()) rest.push_back({"; " + out.reason, "; " + short_reason(out.reason)});
     if (orders_.size() > 1)
-      rest.push_back(turned.empty() ? fmt::format("; the same first in all {} combinations", orders_.size())
-                                    : fmt::format("; {} is first with {}", turned_to_, some_of(turned, 1)));
+      rest.push_back({turned.empty() ? fmt::format("; the same first in all {} combinations", orders_.size())
+                                     : fmt::format("; {} is first with {}", turned_to_, some_of(turned, 1)),
+                      turned.empty() ? fmt::format("; with all {} the same", orders_.size())
+                                     : fmt::format("; {} is first with others", turned_to_)});
     out.sentence = in_thirty_words(capitalised_order(first), rest);
     return out;
   }

@@ -153,12 +153,13 @@ class Threshold {
     }
     out.verdict = without.empty() ? "told" : "in part";
     const Series& first = *with.front();
-    std::vector<std::string> rest;
-    if (!without.empty()) rest.push_back(fmt::format("; {} of {} have no threshold", without.size(), series_.size()));
-    if (one_bracket && with.size() > 1) rest.push_back(fmt::format(", with all {} methods", with.size()));
+    std::vector<std::vector<std::string>> rest;
+    if (!without.empty()) rest.push_back({fmt::format("; {} of {} have no threshold", without.size(), series_.size())});
+    if (one_bracket && with.size() > 1) rest.push_back({fmt::format(", with all {} methods", with.size())});
     if (!one_bracket)
-      rest.push_back(fmt::format("; methods differ: {} and {}{}", x_text(first.between->first), x_text(first.between->second),
-                                 place(first)));
+      rest.push_back({fmt::format("; methods differ: {} and {}{}", x_text(first.between->first),
+                                  x_text(first.between->second), place(first)),
+                      "; methods differ"});
     out.sentence = in_thirty_words(fmt::format("Between {} and {}: {} {} {} there", x_text(low), x_text(high),
                                                lines_.words.words, what, first.becomes ? "from" : "up to"),
                                    rest);

@@ -42,7 +42,7 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
   out.verdict = unsettled > 0 ? "not settled" : without > 0 ? "open" : "known";
   constexpr std::size_t few = 3;
   std::string said;
-  std::vector<std::string> rest;
+  std::vector<std::vector<std::string>> rest;
   if (known.size() <= few) {
     std::vector<std::string> parts;
     for (const Line* line : known) parts.push_back(told(lines, line->estimate()) + line->place());
@@ -52,7 +52,7 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
     const Line &least = **std::min_element(known.begin(), known.end(), by_value),
                &most = **std::max_element(known.begin(), known.end(), by_value);
     said = fmt::format("{}: from {} to {}", name, told(lines, least.estimate()), told(lines, most.estimate()));
-    rest = {fmt::format(" (least{}, most{})", least.place(), most.place())};
+    rest = {{fmt::format(" (least{}, most{})", least.place(), most.place()), fmt::format(" (most{})", most.place())}};
   }
   if (unsettled > 0) {
     const Line* first = *std::find_if(known.begin(), known.end(), [](const Line* l) { return !l->estimate().motion.empty(); });

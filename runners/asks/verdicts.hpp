@@ -38,7 +38,8 @@ struct Answered {
   nlohmann::ordered_json figure = nullptr;
 };
 
-/// What must be said, and of the rest as much as thirty words hold: each part begins with its own mark, "; …".
-std::string in_thirty_words(std::string must, const std::vector<std::string>& rest);
+/// What must be said, and of the rest as much as thirty words hold. Each part begins with its own mark, "; …"; of its
+/// wordings the first that fits is taken.
+std::string in_thirty_words(std::string must, const std::vector<std::vector<std::string>>& rest);
 
 }  // namespace ricochet::asks
