@@ -85,6 +85,9 @@ std::string short_number(double value, int digits) {
     }
     return with_minus(fmt::format("{}e{}", mantissa, number_in(text.substr(at + 1)).value_or(0)));
   }
+  // Of the rounded one: 9.9 to one digit is 10, not 1e1.
+  value =
+      to_digits(value, std::max(digits, std::abs(value) >= 1 ? static_cast<int>(std::log10(std::abs(value))) + 1 : 0));
   const int whole =
       std::abs(value) >= 1 && std::abs(value) < many ? static_cast<int>(std::log10(std::abs(value))) + 1 : 0;
   std::string text = fmt::format("{:.{}g}", value, std::max(digits, whole));

@@ -131,6 +131,7 @@ Commands result_commands() {
                      "the page that lists several folders (default: index.html in the folder that holds them all); "
                      "NAME.md: questions and answers in Markdown",
                      &Args::out};
+  const Option json{"json", "", "print what the study asks with its verdicts as JSON (of one folder)", &Args::json};
   const Option merged{"out", "DIR",
                       "the folder that is made, whole or not at all: a new or an empty one (required). Folders that "
                       "one run would not have left are refused: of another study, program, plugin or arithmetic, or "
@@ -144,11 +145,11 @@ Commands result_commands() {
                       &Args::curves};
   return {
       {"report",
-       "DIR… [--out FILE]",
+       "DIR… [--out FILE] [--json]",
        "Rebuild the report and the tables of a results folder; of several, also a page that lists them.",
        1,
        1000,
-       {index},
+       {index, json},
        command_report},
       {"merge",
        "DIR DIR… --out DIR",

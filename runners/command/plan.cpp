@@ -5,6 +5,7 @@
 #include <map>
 #include <ostream>
 
+#include "runners/asks/ask.hpp"
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/run/plan_cases.hpp"
@@ -194,6 +195,16 @@ StudyPlan plan_study(const Study& study, CasePlanner& planner) {
   return all;
 }
 
+/// What each ask could leave open, known before anything runs.
+void print_doubts(const Study& study, std::ostream& out) {
+  for (const asks::Ask& ask : asks::asks_of(study.resolved)) {
+    const std::string doubt = ask.verb->doubt ? ask.verb->doubt(ask, study) : "";
+    if (doubt.empty()) continue;
+    const std::string subject = ask.subject();
+    out << fmt::format("ask {} ({}{}): {}\n", ask.number, ask.verb->name, subject.empty() ? "" : " " + subject, doubt);
+  }
+}
+
 /// Leaves of the study the cases of one part.
 void keep_part(Study& study, const StudyPart& part, CasePlanner& planner) {
   check_part(study, part);
@@ -246,6 +257,7 @@ int command_plan(const Arguments& arguments, std::ostream& out) {
                        study.cases.front().duration > 0 ? fmt::format(", duration {} s", study.cases.front().duration)
                                                         : std::string());
     print_axes(axes, out);
+    print_doubts(study, out);
     print_costs(all.costs, costs, cores, out);
     if (arguments.workers > 0) print_workers(arguments.workers, all.costs, costs, out);
     print_reasons(all.reasons, out);

@@ -117,8 +117,9 @@ std::string as_link(const std::filesystem::path& path) {
 int command_report(const Arguments& arguments, std::ostream& out) {
   if (arguments.operands.size() == 1) {
     if (arguments.out) throw UsageError("--out is for the page that lists several folders; only one was given");
-    return rebuild_report(arguments.operands.front());
+    return rebuild_report(arguments.operands.front(), arguments.json);
   }
+  if (arguments.json) throw UsageError("--json is for one folder; several were given");
   std::vector<std::filesystem::path> folders;
   for (const std::string& operand : arguments.operands) {
     if (const int code = rebuild_report(operand); code != exit_done) return code;

@@ -40,6 +40,7 @@ struct Arguments {
   bool fresh = false;                            ///< --fresh
   bool table = false;                            ///< --table
   bool cases = false;                            ///< --cases
+  bool json = false;                             ///< --json
   bool isolate = false;                          ///< --isolate
   bool here = false;                             ///< --inline
   bool curves = false;                           ///< --curves

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <regex>
 #include <stdexcept>
 
 #include "runners/report/assets.hpp"
@@ -67,6 +68,16 @@ std::string escape(std::string_view text) {
     }
   }
   return out;
+}
+
+std::string emphasised(const std::string& sentence) {
+  static const std::string digits = "[−+]?[0-9][0-9.]*(?:e-?[0-9]+)?",
+                           unit = "(?:%|times|N s|m/s|rad/s|N/m|ms|µs|s|m|N|J|W|mW|µW|mm|µm)";
+  static const std::regex number("(^|[ (])(" + digits + "(?: ± " + digits + ")?(?: to " + digits + ")?(?: " + unit +
+                                 "(?![A-Za-z/]))?)(?=[ ,.;:)]|$)");
+  // The numbers of orders and parameters are no results.
+  static const std::regex plain("(order |= )<strong>([^<]*)</strong>");
+  return std::regex_replace(std::regex_replace(escape(sentence), number, "$1<strong>$2</strong>"), plain, "$1$2");
 }
 
 std::string script_json(const nlohmann::ordered_json& value) {
@@ -139,7 +150,7 @@ std::string count_text(size_t count, std::string_view singular, std::string_view
 
 namespace {
 
-constexpr std::size_t most_rows = 100, tall_rows = 24;
+constexpr std::size_t tall_rows = 24;
 
 /// ` name="value"`, escaped; nothing for an empty value.
 std::string attribute(const char* name, std::string_view value) {
@@ -185,7 +196,7 @@ HtmlTable& HtmlTable::absent(bool number, std::string_view text) {
   return cell(escape(text), attribute("class", number ? "number absent" : "absent"));
 }
 
-std::string HtmlTable::html() const {
+std::string HtmlTable::html(std::size_t most) const {
   if (rows_.empty()) return "";
   // One without a caption stands in something that folds.
   const bool folded = rows_.size() > tall_rows && !caption_.empty();
@@ -201,10 +212,10 @@ std::string HtmlTable::html() const {
                        attribute("title", head.tooltip), head.colour.empty() ? "" : swatch(head.colour),
                        escape(head.text));
   out += "</tr></thead>\n<tbody>\n";
-  for (std::size_t k = 0; k < std::min(rows_.size(), most_rows); ++k) out += "<tr>" + rows_[k] + "</tr>\n";
+  for (std::size_t k = 0; k < std::min(rows_.size(), most); ++k) out += "<tr>" + rows_[k] + "</tr>\n";
   out += "</tbody></table></div>\n";
-  if (rows_.size() > most_rows)
-    out += fmt::format("<p class=\"fine\">{} more rows are in the table's CSV file.</p>\n", rows_.size() - most_rows);
+  if (rows_.size() > most)
+    out += fmt::format("<p class=\"fine\">{} more rows are in the table's CSV file.</p>\n", rows_.size() - most);
   return out + (folded ? "</details>\n" : "");
 }
 

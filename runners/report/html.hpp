@@ -17,6 +17,9 @@ std::string filled(std::string_view name, const Fill& with);
 /// Text as HTML text or as a quoted attribute: & < > " ' escaped, bytes that are no UTF-8 replaced by U+FFFD.
 std::string escape(std::string_view text);
 
+/// A sentence as HTML with its numbers in bold, so that the eye finds them.
+std::string emphasised(const std::string& sentence);
+
 /// JSON that may stand inside a <script> element: no '<' appears raw, so neither "</script" nor "<!--" can.
 std::string script_json(const nlohmann::ordered_json& value);
 
@@ -77,8 +80,8 @@ class HtmlTable {
   HtmlTable& cell(std::string_view html, std::string_view attributes = "");
 
   std::size_t size() const { return rows_.size(); }
-  /// "" without rows; more than 24 fold under their caption; at most 100, and how many more its CSV file has.
-  std::string html() const;
+  /// "" without rows; more than 24 fold under their caption; so many at most, and how many more its CSV file has.
+  std::string html(std::size_t most = 100) const;
 
  private:
   std::string caption_;

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runners/report/asked_part.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/curve_data.hpp"
 
@@ -28,7 +29,8 @@ struct KindPage {
   /// What the scripts read beside tables, under this key; large columns of numbers go to the blocks.
   std::string data_key;
   std::function<nlohmann::ordered_json(const CaseView&, CurveData& blocks)> data;
-  bool masses = true;  ///< colours tell the mass matrices apart
+  bool masses = true;       ///< colours tell the mass matrices apart
+  AskedAnswers asked = {};  ///< of a study that asks: its first screen; `answer` goes beneath it
 };
 
 /// The scripts of these names: files NAME.js of the kinds' folders. Throws std::logic_error for one that is not there.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <regex>
 #include <set>
 #include <unordered_set>
 
@@ -73,17 +72,6 @@ std::string script(const std::string& attributes, const std::string& content) {
   return "<script" + attributes + ">" + content + "</script>\n";
 }
 
-/// A sentence with its numbers in bold, so that the eye finds them.
-std::string emphasised(const std::string& sentence) {
-  static const std::string digits = "(?:−)?[0-9][0-9.]*(?:e-?[0-9]+)?",
-                           unit = "(?:%|times|N s|m/s|rad/s|N/m|ms|µs|s|m|N|J|W|mW|µW|mm|µm)";
-  static const std::regex number("(^|[ (])(" + digits + "(?: ± " + digits + ")?(?: to " + digits + ")?(?: " + unit +
-                                 "(?![A-Za-z/]))?)(?=[ ,.;:)]|$)");
-  // The numbers of orders and parameters are no results.
-  static const std::regex plain("(order |= )<strong>([^<]*)</strong>");
-  return std::regex_replace(std::regex_replace(escape(sentence), number, "$1<strong>$2</strong>"), plain, "$1$2");
-}
-
 /// The answer: its first sentence large, the others below it; more of them fold.
 std::string answer_sentences(const StudyResults& results) {
   const std::vector<std::string> lines = answer_lines(results);
@@ -102,6 +90,7 @@ std::string answer_sentences(const StudyResults& results) {
 
 std::string answer_html(const CaseView& view, const KindPage& kind) {
   if (view.results().cases.empty()) return "<p>No case has run yet.</p>\n";
+  if (kind.asked.any()) return asked_html(kind.asked);
   // A script puts the figure that shows the answer beside its sentences.
   const std::string said = answer_sentences(view.results()), more = kind.answer ? kind.answer(view) : "";
   const std::string answer =
@@ -131,6 +120,8 @@ std::string render_page(const StudyResults& results, const KindPage& kind, std::
   page.set("counts", counts_text(results));
   page.set("banners", banners(results));
   page.set("answer", answer_html(view, kind));
+  if (const std::string beneath = kind.asked.any() && kind.answer ? kind.answer(view) : ""; !beneath.empty())
+    page.set("beneath", html_section(beneath));
   page.set("charts", truth(!library.empty()));
   page.set("masses", truth(kind.masses));
   if (!data.thinning.empty()) page.set("thinning", data.thinning);

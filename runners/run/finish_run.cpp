@@ -13,6 +13,7 @@
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/summary_page.hpp"
+#include "runners/run/asked_text.hpp"
 #include "runners/run/choice_effects.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/store/atomic_file.hpp"
@@ -117,45 +118,18 @@ std::unique_ptr<const AnalysedResults> write_folder(Store& store, const std::fil
   return results;
 }
 
-namespace {
-
-/// The rows of all answers, each under its sentence; twelve at most for each.
-std::string asked_text(const asks::Asked& asked) {
-  constexpr std::size_t most = 12;
-  std::string out;
-  for (const auto& [ask, answered] : asked.all) {
-    if (answered.rows.size() < 2) continue;
-    TextTable table({fmt::format("{}.", ask.number), "stop", "value", "from", "to", "unit", "verdict"});
-    for (std::size_t k = 0; k < std::min(most, answered.rows.size()); ++k) {
-      const asks::VerdictRow& row = answered.rows[k];
-      const auto number = [](const std::optional<double>& value) {
-        constexpr int digits = 4;
-        return value ? answers::short_number(*value, digits) : "";
-      };
-      table.add({row.level, row.stop, number(row.value), number(row.low), number(row.high), row.unit,
-                 row.value ? row.verdict : row.verdict + (row.reason.empty() ? "" : ": " + row.reason)});
-    }
-    out += table.text(2);
-    if (answered.rows.size() > most)
-      out += fmt::format("  … {} rows in verdicts.csv\n", answered.rows.size());
-  }
-  if (!asked.proposed.empty()) out += fmt::format("  it could ask: {}\n", fmt::join(asked.proposed, "\n                "));
-  return out;
-}
-
-}  // namespace
-
 int tell_results(std::FILE* out, const AnalysedResults& results, const std::filesystem::path& folder,
                  const std::string& how, bool table) {
   constexpr int nothing_ran = 3;
   const bool nothing = std::all_of(results.cases.begin(), results.cases.end(),
                                    [](const CaseRecord& one) { return one.status == "refused"; });
-  const std::string rows = asked_text(results.asked), evidence = rows.empty() ? "" : rows + "\n";
+  const std::string answer = results.asked.any() ? asked_text(results) : answer_text(results);
   const int code = nothing ? nothing_ran : results_exit_code(results);
-  say(out, fmt::format("{}{}\n{}{} ({})\nreport: {}\n", table ? case_table(results) + "\n" : "", answer_text(results),
-                       evidence, totals_text(results), how, (folder / "report.html").string()));
+  say(out, fmt::format("{}{}\n{} ({})\nreport: {}\n", table ? case_table(results) + "\n" : "", answer,
+                       totals_text(results), how, (folder / "report.html").string()));
   for (const asks::Ask* ask : results.asked.unmet())
-    say(out, fmt::format("exit code {}: ask {} requires a yes and has none\n", required_not_met, ask->number));
+    say(out, fmt::format("{}ask {} requires a yes and has none\n",
+                         code == 0 ? fmt::format("exit code {}: ", required_not_met) : "", ask->number));
   if (nothing)
     say(out, "nothing ran: every case is refused; the reasons above and in the report say what to change\n");
   else if (code != 0)
@@ -193,11 +167,12 @@ void tell_damage(const std::filesystem::path& folder, const StudyResults& result
 
 }  // namespace
 
-int rebuild_report_with(const RenderReport& render, const std::filesystem::path& folder) {
+int rebuild_report_with(const RenderReport& render, const std::filesystem::path& folder, bool json) {
   return unless_unusable([&] {
     const AnalysedResults results(read_what_is_whole(folder));
     write_outputs(folder, results, [&] { return render(results); });
-    say(stdout, fmt::format("{}\nreport: {}\n", totals_text(results), (folder / "report.html").string()));
+    say(stdout, json ? asked_json(results).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"
+                     : fmt::format("{}\nreport: {}\n", totals_text(results), (folder / "report.html").string()));
     tell_damage(folder, results);
     return results.asked.unmet().empty() ? 0 : required_not_met;
   });
@@ -247,7 +222,8 @@ Table asked_table(const answers::Compared& study, const asks::Asked& asked) {
   for (const answers::Sentence& doubt : answers::doubted(study)) answer.say(doubt);
   for (const auto& [ask, answered] : asked.all)
     for (const std::string& one : answered.aside)
-      if (std::none_of(answer.sentences.begin(), answer.sentences.end(), [&](const auto& said) { return said.text == one; }))
+      if (std::none_of(answer.sentences.begin(), answer.sentences.end(),
+                       [&](const auto& said) { return said.text == one; }))
         say(one, "aside");
   return answer.table();
 }

@@ -8,6 +8,7 @@
 #include "runners/march/study_identity.hpp"
 #include "runners/report/report.hpp"
 #include "runners/run/analysed_results.hpp"
+#include "runners/run/asked_text.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/merge_folders.hpp"
 #include "runners/run/study_runner.hpp"
@@ -18,7 +19,7 @@ namespace ricochet {
 namespace {
 
 std::string render(const AnalysedResults& results) {
-  return render_report(results, results.analysis.page);
+  return render_report(results, page_of_study(results));
 }
 
 constexpr double short_run = 1;          // s
@@ -88,8 +89,8 @@ int merge_folders(const std::vector<std::filesystem::path>& folders, const std::
   return merge_folders_with(render, folders, out, plugins, stdout);
 }
 
-int rebuild_report(const std::filesystem::path& folder) {
-  return rebuild_report_with(render, folder);
+int rebuild_report(const std::filesystem::path& folder, bool json) {
+  return rebuild_report_with(render, folder, json);
 }
 
 }  // namespace ricochet

@@ -35,8 +35,9 @@ std::filesystem::path default_folder(const std::string& study, const StudyPart& 
 /// PartRefused (study_cases.hpp).
 int run_study(const Study& study, const Catalogue& catalogue, const Registry& registry, const RunOptions& options);
 
-/// Rebuilds report.html (and cases.csv, curves/) from results.sqlite. Returns the exit code.
-int rebuild_report(const std::filesystem::path& folder);
+/// Rebuilds report.html (and cases.csv, curves/) from results.sqlite; `json`: prints what the study asks with its
+/// verdicts in place of words. Returns the exit code.
+int rebuild_report(const std::filesystem::path& folder, bool json = false);
 
 /// merge_folders_with() (merge_folders.hpp), with the reports of this program.
 int merge_folders(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out,

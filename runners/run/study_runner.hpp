@@ -38,7 +38,7 @@ struct StudyRunner {
 int run_study_with(const StudyRunner& runner, const Study& study, const RunOptions& options);
 
 /// rebuild_report() with the report's author given.
-int rebuild_report_with(const RenderReport& render, const std::filesystem::path& folder);
+int rebuild_report_with(const RenderReport& render, const std::filesystem::path& folder, bool json = false);
 
 /// A pending case, its predicted cost, and what tells whether it is still the same in a later run.
 struct PendingCase {

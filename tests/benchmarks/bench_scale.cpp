@@ -30,6 +30,7 @@
 #include "runners/march/study_identity.hpp"
 #include "runners/report/report.hpp"
 #include "runners/run/analysed_results.hpp"
+#include "runners/run/asked_text.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/store.hpp"
@@ -171,7 +172,7 @@ void coordinator(int side, double from, const fs::path& folder) {
   double reported = 0;
   runner.render = [&](const AnalysedResults& results) {
     const double begin = processor_seconds();
-    std::string page = render_report(results, results.analysis.page);
+    std::string page = render_report(results, page_of_study(results));
     reported += processor_seconds() - begin;
     return page;
   };

@@ -13,22 +13,24 @@
   for (const name of ["touchstart", "touchmove", "touchend", "touchcancel"])
     document.addEventListener(name, ofPage, {capture: true, passive: true});
 
-  // Says of a box whether its table is wider than it, and whether there is more to the right. Such a box can be reached
-  // and scrolled by keys. All boxes are measured before any is changed: a page is laid out once for all of them.
+  // Says of a box whether it holds more than it shows, and whether there is more to the right or below. Such a box can
+  // be reached and scrolled by keys. All boxes are measured before any is changed: a page is laid out once for all of them.
   const resized = new Set(), widths = new ResizeObserver((entries) => entries.forEach(({target}) => lookAt(target)));
   function lookAt(box) {
     if (!resized.size)
       requestAnimationFrame(() => {
-        const found = Array.from(resized, (one) => [one, one.scrollWidth - one.clientWidth, one.scrollLeft]);
+        const found = Array.from(resized, (one) => [one, [
+                                   ["wide", one.scrollWidth - one.clientWidth, one.scrollLeft],
+                                   ["tall", one.scrollHeight - one.clientHeight, one.scrollTop]
+                                 ]]);
         resized.clear();
-        for (const [one, more, at] of found) {
-          if (more > 1) {
-            one.dataset.wide = at < more - 1 ? "more" : "all";
-            one.tabIndex = 0;
-          } else {
-            delete one.dataset.wide;
-            one.removeAttribute("tabindex");
+        for (const [one, ways] of found) {
+          for (const [way, more, at] of ways) {
+            if (more > 1) one.dataset[way] = at < more - 1 ? "more" : "all";
+            else delete one.dataset[way];
           }
+          if (ways.some(([, more]) => more > 1)) one.tabIndex = 0;
+          else one.removeAttribute("tabindex");
         }
       });
     resized.add(box);

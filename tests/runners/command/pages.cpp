@@ -141,6 +141,34 @@ TEST_CASE("pages: every study key is written down as the program has it") {
   CHECK(written == keys.str());
 }
 
+TEST_CASE("pages: the reader of verdicts in Python prints every sentence") {
+  if (std::system("python3 -c '' >/dev/null 2>&1") != 0) {
+    WARN("not tried: there is no python3");
+    return;
+  }
+  const ScratchFolder folder;
+  write_text(folder / "rod.json", R"({
+    "name": "rod", "kind": "trajectory", "duration": 1, "samples": 10, "step": [0.01, 0.005],
+    "ask": [{"runs": true}, {"value": "energy_end"}],
+    "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1}, "stops": {"upper": 0.1, "at": "tip"},
+              "initial": {"velocity": "1"}},
+    "methods": {"mass": "consistent", "contact": {"name": "penalty", "stiffness": 1e3}, "time": "newmark"}})");
+  for (const Block& block : blocks_of(root / "runners/README.md")) {
+    if (block.info != "python") continue;
+    std::string script;
+    for (const std::string& line : block.lines) script += line + "\n";
+    write_text(folder / "read.py", script);
+  }
+  const std::string line = "cd '" + folder.path().string() + "' && RICOCHET_PLUGIN_PATH= '" + tests::places().command +
+                           "' run rod.json >run.txt 2>&1 && PYTHONIOENCODING=utf-8 python3 read.py >said.txt 2>&1";
+  CHECK(std::system(line.c_str()) == 0);
+  const std::vector<std::string> said = lines_of(read_text(folder / "said.txt"));
+  CAPTURE(read_text(folder / "run.txt"), read_text(folder / "said.txt"));
+  REQUIRE(said.size() == 2);
+  CHECK_THAT(said[0], Catch::Contains("1 yes Yes: "));
+  CHECK_THAT(said[1], Catch::StartsWith("2 "));
+}
+
 TEST_CASE("pages: the scripts of own structures write what the studies beside them read") {
   std::string python;
   for (const std::string one : {"python3", "/usr/bin/python3"})

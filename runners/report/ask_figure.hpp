@@ -1,0 +1,19 @@
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace ricochet::report {
+
+/// What stands beside the answer of an ask, as SVG that needs no script; "" where nothing is to be drawn. By `form`:
+/// - "bars": `rows` of `name`, `group`, `value`, `low`, `high`: a dot with its interval in each row, groups under
+///   headings; `at`: lines across; `sorted`: the largest first in each group;
+/// - "pairs": `rows` of `pair`, `name`, `value`, `low`, `high`: a row for each pair, its levels connected;
+/// - "along": `rows` of `series`, `x`, `value`, `low`, `high`: values along an axis `along` in `along_unit`, `at` as
+///   lines, ranges `between` shaded;
+/// - "parts": `rows` of `name`, `part`, `value`: parts of a whole, stacked from zero; `at` as lines;
+/// - "curves": `series` of `name`, `points` [x, y] and `floor`, over `x` and `y`, in logarithms where `log`; `at` as
+///   lines of y.
+/// The value axis is `measure` in `unit`. A row without a value says so.
+std::string figure_svg(const nlohmann::ordered_json& figure);
+
+}  // namespace ricochet::report

@@ -1,0 +1,26 @@
+#pragma once
+#include <string>
+
+#include "runners/report/kind_page.hpp"
+#include "runners/run/analysed_results.hpp"
+
+namespace ricochet {
+
+/// The rows of one answer: values with as many digits as their uncertainty allows, in their unit where all have one;
+/// columns that are empty throughout are left out.
+report::AskedTable asked_rows(const asks::Answered& answered);
+
+/// What a study asks, answered, as its page and a terminal show it.
+report::AskedAnswers asked_answers(const AnalysedResults& results);
+
+/// What the page of a study shows: what its kind does, behind what it asks.
+report::KindPage page_of_study(const AnalysedResults& results);
+
+/// The question, what warns, then the sentence of each ask, each above its rows, twelve at most.
+std::string asked_text(const AnalysedResults& results);
+
+/// The same for programs: {"question", "first", "verdicts"}, each of these with the columns of verdicts.csv by name;
+/// what a row has not is null.
+nlohmann::ordered_json asked_json(const AnalysedResults& results);
+
+}  // namespace ricochet
