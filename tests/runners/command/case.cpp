@@ -11,10 +11,9 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-using Json = nlohmann::json;
 
-Json study(const std::string& kind) {
-  Json out = Json::parse(R"({
+nlohmann::json study(const std::string& kind) {
+  nlohmann::json out = nlohmann::json::parse(R"({
     "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.1,
                             "force": {"amplitude": 1, "pulsation": 2.6}},
               "stops": {"lower": -2, "upper": [0.05, 0.1], "at": "tip"}},
@@ -24,20 +23,20 @@ Json study(const std::string& kind) {
   return out;
 }
 
-Json trajectory() {
-  Json out = study("trajectory");
-  out.update(Json{{"step", {0.01, 0.005}}, {"duration", 10}, {"samples", 50}});
+nlohmann::json trajectory() {
+  nlohmann::json out = study("trajectory");
+  out.update(nlohmann::json{{"step", {0.01, 0.005}}, {"duration", 10}, {"samples", 50}});
   return out;
 }
 
-Json convergence() {
-  Json out = study("convergence");
-  out.update(Json{{"step", {0.02, 0.01}}, {"duration", 4}, {"samples", 50}, {"reference", "exact"}});
+nlohmann::json convergence() {
+  nlohmann::json out = study("convergence");
+  out.update(nlohmann::json{{"step", {0.02, 0.01}}, {"duration", 4}, {"samples", 50}, {"reference", "exact"}});
   return out;
 }
 
 /// The study is run into the folder `there`; the id of its `row`th case.
-std::string run(const ScratchFolder& here, const Json& text, std::size_t row = 0) {
+std::string run(const ScratchFolder& here, const nlohmann::json& text, std::size_t row = 0) {
   write_text(here / "study.json", text.dump(1));
   const CommandOutput said = say(here, "run study.json --out there --jobs 1");
   INFO(said.err);
@@ -106,8 +105,8 @@ TEST_CASE("A case of a comparison is compared with its reference again") {
 
 TEST_CASE("A case of stability prints its rows, and orbits are sent to point") {
   const ScratchFolder here;
-  Json stability = study("stability");
-  stability.update(Json{{"steps", {{"from", 0.01}, {"to", 1}, {"count", 4}}}});
+  nlohmann::json stability = study("stability");
+  stability.update(nlohmann::json{{"steps", {{"from", 0.01}, {"to", 1}, {"count", 4}}}});
   const std::string id = run(here, stability);
   const CommandOutput again = say(here, "case there " + id);
   CHECK_THAT(again.out, Contains("stability:") && Contains("as stored to the last bit"));
@@ -116,9 +115,9 @@ TEST_CASE("A case of stability prints its rows, and orbits are sent to point") {
   CHECK_THAT(curve.err, Contains("more than one integration"));
 
   const ScratchFolder other;
-  Json sweep = study("bifurcation");
+  nlohmann::json sweep = study("bifurcation");
   sweep["scene"]["stops"]["upper"] = 0.25;
-  sweep.update(Json::parse(R"({"parameter": {"pointer": "/scene/stops/upper", "from": 0.1, "to": 0.3, "count": 2},
+  sweep.update(nlohmann::json::parse(R"({"parameter": {"pointer": "/scene/stops/upper", "from": 0.1, "to": 0.3, "count": 2},
                                "steps_per_period": 64, "start": ["rest"],
                                "transient": {"periods": 4, "at_most": 4}, "keep": 16})"));
   const std::string orbits = run(other, sweep);
@@ -126,7 +125,7 @@ TEST_CASE("A case of stability prints its rows, and orbits are sent to point") {
   CHECK(refused.code == 2);
   CHECK_THAT(refused.err, Contains("ricochet point there " + orbits));
   CHECK(say(other, "case there " + orbits + " --study > one.json").code == 0);
-  CHECK(Json::parse(read_text(other / "one.json")).at("kind") == "bifurcation");
+  CHECK(nlohmann::json::parse(read_text(other / "one.json")).at("kind") == "bifurcation");
 }
 
 TEST_CASE("Snapshots of a case are kept beside it, and the next report has its film") {

@@ -10,11 +10,10 @@
 namespace doubts_told_tests {
 
 using Catch::Matchers::Contains;
-using Json = nlohmann::json;
 
 /// A study of an oscillator with one stop or two, run at these steps.
-Json oscillator(const Json& steps) {
-  Json study = Json::parse(R"({
+nlohmann::json oscillator(const nlohmann::json& steps) {
+  nlohmann::json study = nlohmann::json::parse(R"({
     "name": "told", "question": "What does it do?", "kind": "trajectory",
     "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 100}, "stops": {"upper": 0.05}},
     "methods": {"mass": "consistent", "contact": "signorini", "time": "newmark"}, "duration": 1})");
@@ -26,7 +25,7 @@ Json oscillator(const Json& steps) {
 struct FirstScreen {
   std::string terminal, page;
 };
-FirstScreen first_screen(const Json& study) {
+FirstScreen first_screen(const nlohmann::json& study) {
   const ScratchFolder here;
   write_text(here / "study.json", study.dump(1));
   const CommandOutput ran = say(here, "run study.json --inline --out out");
@@ -46,7 +45,7 @@ void check_both(const FirstScreen& screen, const std::string& text) {
 }
 
 TEST_CASE("doubts: a pulse that is shorter than a step is told on the first screen, with the cases that miss it") {
-  Json study = oscillator({2e-3, 1e-3, 1e-5});
+  nlohmann::json study = oscillator({2e-3, 1e-3, 1e-5});
   study["scene"]["load"] = "t > 0.3004 && t < 0.3006 ? 5000 : 0";
   check_both(first_screen(study), "Doubtful: 2 of 3 cases (");
   const FirstScreen screen = first_screen(study);
@@ -57,7 +56,7 @@ TEST_CASE("doubts: a pulse that is shorter than a step is told on the first scre
 }
 
 TEST_CASE("doubts: a step that takes a point further than its gap, and a penetration of more than it, are told") {
-  Json study = oscillator(Json::array({0.01}));
+  nlohmann::json study = oscillator(nlohmann::json::array({0.01}));
   study["scene"]["stops"] = {{"lower", -1e-3}, {"upper", 1e-3}};
   study["scene"]["initial"] = {{"velocity", "1"}};
   check_both(first_screen(study), "Doubtful: 1 of 1 case: a step of 0.01 s takes a point further than the gap");
@@ -67,7 +66,7 @@ TEST_CASE("doubts: a step that takes a point further than its gap, and a penetra
 }
 
 TEST_CASE("doubts: of a diagram as well, whose load is shorter than a step of its period") {
-  Json study = Json::parse(R"({
+  nlohmann::json study = nlohmann::json::parse(R"({
     "name": "told", "question": "Which motions?", "kind": "bifurcation",
     "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.2,
                             "force": {"amplitude": 1, "pulsation": 2}},
@@ -79,7 +78,7 @@ TEST_CASE("doubts: of a diagram as well, whose load is shorter than a step of it
 }
 
 TEST_CASE("doubts: cells of basins that begin beyond a stop are told once, and no share counts them") {
-  Json study = Json::parse(R"({
+  nlohmann::json study = nlohmann::json::parse(R"({
     "name": "told", "question": "Where does it end?", "kind": "basins",
     "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.2,
                             "force": {"amplitude": 1, "pulsation": 2}}, "stops": {"upper": 0.4}},

@@ -129,14 +129,4 @@ TEST_CASE("cases that gave no result are told by what sets them apart, where all
   CHECK_THAT(ended_in(results),
              Catch::Contains("The reference exact does not apply to 11 of 12 cases: "));
   for (CaseRecord& record : results.cases) record.notes.clear();
-  // Of several methods one alone.
-  StudyResults one = study([](int, int, double step) { return 0.6 + step; }, {4e-4, 2e-4, 1e-4}, 1);
-  for (CaseRecord& record : one.cases)
-    if (record.axes[0].second == "light") record.status = "refused";
-  CHECK_THAT(said(answers_table(answers::Compared(one))),
-             Catch::StartsWith("Only the heavy mass runs: the energy left is 60.01 "));
-  // What becomes of cases, first.
-  results.study = {{"observe", {"status", "energy_left"}}};
-  CHECK_THAT(ended_in(results),
-             Catch::StartsWith("Everything that applies runs: 9 of 12 cases"));
 }
