@@ -36,8 +36,7 @@ std::vector<std::string> proposals(const Evidence& evidence, const std::vector<s
   const Cases cases = evidence.cases(ask_of({{"value", first}}, 1));
   const std::vector<std::string> choices = evidence.choices(cases);
   if (!choices.empty()) out.push_back(Json({{"effect", choices.front()}, {"on", first}, {"from", "5 %"}}).dump());
-  const Json& stops = evidence.results().study.value("/scene/stops"_json_pointer, Json());
-  if (!stop.empty() && stops.is_array() && stops.size() > 1)
+  if (!stop.empty() && evidence.measures(ask_of({{"rank", base}, {"over", "stops"}}, 1), base).size() > 1)
     out.push_back(Json({{"rank", base}, {"over", "stops"}}).dump());
   double largest = 0;
   for (const CaseRecord* record : cases) largest = std::max(largest, std::abs(measure(*record, first).value_or(0)));

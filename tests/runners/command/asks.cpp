@@ -35,13 +35,13 @@ TEST_CASE("plan says of each ask what could stay open, before anything runs", "[
   const ScratchFolder here;
   write_text(
       here / "one.json",
-      study({{{"runs", true}}, {{"value", "peak_force"}}, {{"rank", "peak_force"}, {"over", "contact"}}}, 0.01).dump());
+      study({{{"runs", true}}, {{"value", "peak_contact_force"}}, {{"rank", "peak_contact_force"}, {"over", "contact"}}}, 0.01).dump());
   const CommandOutput one = say(here, "plan one.json");
   INFO(one.err);
   CHECK(one.code == 0);
-  CHECK_THAT(one.out, Contains("\nask 2 (value peak_force): one step only") &&
-                          Contains("\nask 3 (rank peak_force): one step only") && !Contains("ask 1"));
-  write_text(here / "three.json", study({{{"value", "peak_force"}}}, {0.01, 0.005, 0.0025}).dump());
+  CHECK_THAT(one.out, Contains("\nask 2 (value peak_contact_force): one step only") &&
+                          Contains("\nask 3 (rank peak_contact_force): one step only") && !Contains("ask 1"));
+  write_text(here / "three.json", study({{{"value", "peak_contact_force"}}}, {0.01, 0.005, 0.0025}).dump());
   CHECK_THAT(say(here, "plan three.json").out, !Contains("ask 1"));
 }
 
@@ -49,7 +49,7 @@ TEST_CASE("run says each sentence above its rows, twelve at most; a yes that is 
           "[asks]") {
   const ScratchFolder here;
   write_text(here / "study.json",
-             study({{{"value", "peak_force"}}, {{"limit", "peak_force"}, {"below", 1e-3}, {"require", true}}},
+             study({{{"value", "peak_contact_force"}}, {{"limit", "peak_contact_force"}, {"below", 1e-3}, {"require", true}}},
                    {0.01, 0.005, 0.0025})
                  .dump());
   const CommandOutput ran = say(here, "run study.json --out out");

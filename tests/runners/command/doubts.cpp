@@ -36,7 +36,11 @@ FirstScreen first_screen(const nlohmann::json& study) {
   REQUIRE(answer != std::string::npos);
   REQUIRE(figures != std::string::npos);
   const std::size_t blank = ran.out.find("\n\n");
-  return {ran.out.substr(0, blank), page.substr(answer, figures - answer)};
+  // Numbers of the page are in bold.
+  std::string section = page.substr(answer, figures - answer);
+  for (const char* mark : {"<strong>", "</strong>"})
+    for (std::size_t at = 0; (at = section.find(mark, at)) != std::string::npos;) section.erase(at, std::string(mark).size());
+  return {ran.out.substr(0, blank), section};
 }
 
 void check_both(const FirstScreen& screen, const std::string& text) {

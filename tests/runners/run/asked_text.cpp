@@ -37,7 +37,7 @@ TEST_CASE("values have as many digits as their uncertainty allows", "[asks]") {
                    row("e", 0, 0, "N", "known")};
   const report::AskedTable table = asked_rows(answered);
   CHECK(table.heads == Texts{"level", "value (N)", "verdict"});
-  CHECK(values_of(table) == Texts{"90.85 ± 0.06", "2310 ± 75", "1.44 ± 0.13", "3 ± 10", "0"});
+  CHECK(values_of(table) == Texts{"90.85 ± 0.06", "2310 ± 80", "1.44 ± 0.13", "3 ± 10", "0"});
 }
 
 TEST_CASE("units that differ have a column, and a reason follows its verdict", "[asks]") {
