@@ -13,6 +13,7 @@ namespace {
 
 constexpr double smallest_percent = 1e-9;  // as a share
 constexpr double many = 1e5;
+constexpr double begins_with_one = 1.95;  // an uncertainty that does has two digits
 
 double magnitude(double value) {
   return std::pow(10, std::floor(std::log10(std::abs(value))));
@@ -21,7 +22,6 @@ double magnitude(double value) {
 /// Decimal places that an uncertainty leaves: to its first digit, to the second where that is a 1 and `fine`.
 int decimals(double uncertainty, bool fine) {
   int exponent = static_cast<int>(std::floor(std::log10(uncertainty)));
-  constexpr double begins_with_one = 1.95;
   if (fine && uncertainty / std::pow(10, exponent) < begins_with_one) --exponent;
   constexpr int most = 8;
   return std::clamp(-exponent, 0, most);
@@ -91,8 +91,6 @@ std::string short_number(double value, int digits) {
   const int whole =
       std::abs(value) >= 1 && std::abs(value) < many ? static_cast<int>(std::log10(std::abs(value))) + 1 : 0;
   std::string text = fmt::format("{:.{}g}", value, std::max(digits, whole));
-  // 9.98 in one digit is 10.
-  if (whole > 0 && text.find('e') != std::string::npos) text = fmt::format("{:.{}g}", value, std::max(digits, whole) + 1);
   if (const std::size_t at = text.find('e'); at != std::string::npos) {
     const double exponent = number_in(text.substr(at + 1)).value_or(0);
     text = fmt::format("{}e{}", text.substr(0, at), exponent);
@@ -140,7 +138,7 @@ std::string value_to(const MeasureWords& measure, double value, std::optional<do
   constexpr int most = 6;
   places = std::min(places, most);
   if (u >= 10 && std::abs(v) >= 10) {
-    const double digit = magnitude(u);
+    const double digit = magnitude(u) / (fine && u < begins_with_one * magnitude(u) ? 10 : 1);
     return fixed(std::round(v / digit) * digit, 0) + unit;
   }
   return fixed(v, places) + unit;
@@ -165,8 +163,8 @@ std::string range_text(const MeasureWords& measure, double low, double high, std
 
 std::string uncertainty_text(const MeasureWords& measure, double uncertainty) {
   const double u = measure.factor * uncertainty;
-  constexpr double begins_with_one = 1.95;
-  const int digits = u > 0 && u / magnitude(u) < begins_with_one ? 2 : 1;
+  const int digits = u > 0 && u < begins_with_one * magnitude(u) ? 2 : 1;
+  // As the value: 159 of two digits is 160.
   return short_number(to_digits(u, digits), digits) + unit_after(measure);
 }
 

@@ -45,18 +45,17 @@ class Ranking {
  public:
   Ranking(const Ask& ask, const Evidence& evidence) : ask_(ask), evidence_(evidence), over_(ask.text("over")) {
     const Cases cases = evidence.cases(ask);
-    std::vector<std::string> columns = evidence.choices(cases), own;
-    if (over_ != over_stops) own = evidence.columns_of(over_);
-    std::erase_if(columns, [&](const auto& one) { return std::find(own.begin(), own.end(), one) != own.end(); });
+    std::vector<std::string> columns = evidence.choices(cases);
+    if (over_ != over_stops) own_ = evidence.columns_of(over_);
+    std::erase_if(columns, [&](const auto& one) { return std::find(own_.begin(), own_.end(), one) != own_.end(); });
     others_ = columns;
-    columns.insert(columns.end(), own.begin(), own.end());
+    columns.insert(columns.end(), own_.begin(), own_.end());
     lines_ = lines_of(ask, evidence, ask.subject(), columns);
     InOrderMet<std::string, Order> orders;
     for (const Line& line : lines_.all) {
-      const bool stops = over_ == over_stops;
-      const std::string level = evidence.level(line.point.first(), others_), stop = stops ? "" : line.stop;
-      Order& order = orders[level + '\n' + stop];
-      order.level = level + (stop.empty() ? "" : (level.empty() ? "" : ", ") + stop);
+      const std::string level = level_of(line);
+      Order& order = orders[level];
+      order.level = level;
       if (!line.known()) {
         ++without_;
         continue;
@@ -67,8 +66,7 @@ class Ranking {
     for (auto& [key, order] : orders_) {
       std::stable_sort(order.lines.begin(), order.lines.end(),
                        [](const Line* a, const Line* b) { return a->estimate().value > b->estimate().value; });
-      for (const Line* line : order.lines)
-        order.names.push_back(over_ == over_stops ? line->stop : evidence.level(line->point.first(), own));
+      for (const Line* line : order.lines) order.names.push_back(name_of(*line));
       order.groups = grouped(order.lines);
     }
     std::erase_if(orders_, [](const auto& one) { return one.second.lines.empty(); });
@@ -76,8 +74,7 @@ class Ranking {
 
   Answered answer() const {
     Answered out = begin_answer(lines_);
-    out.figure = bars(lines_);
-    out.figure["sorted"] = true;
+    out.figure = figure();
     if (orders_.empty()) {
       out.verdict = "no value";
       out.reason = nothing_known(lines_);
@@ -102,6 +99,26 @@ class Ranking {
   }
 
  private:
+  /// All else, "HRZ, end"; what is ranked.
+  std::string level_of(const Line& line) const {
+    const std::string level = evidence_.level(line.point.first(), others_), stop = over_ == over_stops ? "" : line.stop;
+    return level + (stop.empty() ? "" : (level.empty() ? "" : ", ") + stop);
+  }
+  std::string name_of(const Line& line) const {
+    return over_ == over_stops ? line.stop : evidence_.level(line.point.first(), own_);
+  }
+
+  /// A group of bars for each combination of all else.
+  Json figure() const {
+    Json out = bars(lines_);
+    out["sorted"] = true;
+    for (std::size_t k = 0; k < lines_.all.size(); ++k) {
+      out["rows"][k]["name"] = name_of(lines_.all[k]);
+      out["rows"][k]["group"] = level_of(lines_.all[k]);
+    }
+    return out;
+  }
+
   /// "Largest wear power: p2, 3.1 ± 0.2 mW, then p1, 1.2 ± 0.1 mW; p3 and p4 are not told apart".
   std::string capitalised_order(const Order& order) const {
     constexpr std::size_t most = 3;
@@ -153,7 +170,7 @@ class Ranking {
   const Ask& ask_;
   const Evidence& evidence_;
   std::string over_;
-  std::vector<std::string> others_;
+  std::vector<std::string> own_, others_;
   Lines lines_;
   std::vector<std::pair<std::string, Order>> orders_;
   std::size_t without_ = 0;

@@ -11,9 +11,13 @@ namespace ricochet::report {
 /// - "along": `rows` of `series`, `x`, `value`, `low`, `high`: values along an axis `along` in `along_unit`, `at` as
 ///   lines, ranges `between` shaded;
 /// - "parts": `rows` of `name`, `part`, `value`: parts of a whole, stacked from zero; `at` as lines;
-/// - "curves": `series` of `name`, `points` [x, y] and `floor`, over `x` and `y`, in logarithms where `log`; `at` as
-///   lines of y.
-/// The value axis is `measure` in `unit`. A row without a value says so.
+/// - "ranges": `rows` of `name`, `motion`, `from`, `to`: stretches of `x` in `x_unit`, a row for each name;
+/// - "curves": `series` of `name`, `points` [x, y] and `floor`, over `x` and `y` with `x_unit` and `y_unit`, in
+///   logarithms where `log`; `at` as lines of y;
+/// - "branches": `series` of `name` and `points` [x, y, stable], what is not stable broken, and `marks` of `kind`,
+///   `name`, `branch`, `value` and `tip`.
+/// The value axis is `measure` in `unit`, of logarithms where `log`, or where a linear one hides the small values. A
+/// row without a value says so.
 std::string figure_svg(const nlohmann::ordered_json& figure);
 
 }  // namespace ricochet::report

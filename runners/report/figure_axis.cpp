@@ -91,7 +91,8 @@ void FigureAxis::round_logarithms(int most) {
   const int first = static_cast<int>(std::floor(std::log10(low_) + 1e-9)),
             last = static_cast<int>(std::ceil(std::log10(high_) - 1e-9));
   // Every decade with 1, 2 and 5, every decade, or every so many of them.
-  if (3 * (last - first) <= most) {
+  const double decades = std::log10(high_ / low_);
+  if (3 * decades <= most + 1) {
     for (int k = first; k <= last; ++k)
       for (const double digit : {1.0, 2.0, 5.0}) add(digit * std::pow(ten, k));
   } else {

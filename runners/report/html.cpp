@@ -71,7 +71,7 @@ std::string escape(std::string_view text) {
 }
 
 std::string emphasised(const std::string& sentence) {
-  static const std::string digits = "[−+]?[0-9][0-9.]*(?:e-?[0-9]+)?",
+  static const std::string digits = "(?:−|[+])?[0-9]+(?:[.][0-9]+)?(?:e-?[0-9]+)?",
                            unit = "(?:%|times|N s|m/s|rad/s|N/m|ms|µs|s|m|N|J|W|mW|µW|mm|µm)";
   static const std::regex number("(^|[ (])(" + digits + "(?: ± " + digits + ")?(?: to " + digits + ")?(?: " + unit +
                                  "(?![A-Za-z/]))?)(?=[ ,.;:)]|$)");

@@ -157,9 +157,10 @@
     startFigures();
     // With the names of the study.
     document.querySelectorAll("#answer .first ul.answer").forEach(ricochet.shortenLines);
-    for (const id of ["answer", "methods"]) {
+    for (const id of ["answer", "beneath", "methods"]) {
       const section = document.getElementById(id);
-      if (section) ricochet.explainWords(section);
+      // Answers of asks say what they mean.
+      if (section && !section.querySelector(".asked")) ricochet.explainWords(section);
     }
     startSummary();
     ricochet.theme.paint();

@@ -17,9 +17,10 @@ Json study(const Json& ask, const Json& steps) {
           {"kind", "trajectory"},
           {"ask", ask},
           {"scene",
-           {{"structure", {{"type", "oscillator"}, {"mass", 1}, {"stiffness", 1}}},
-            {"stops", {{"upper", 0.1}, {"at", "tip"}}},
-            {"initial", {{"velocity", "1"}}}}},
+           {{"structure", {{"type", "bar"}, {"length", 1}, {"EA", 10}, {"rhoA", 1}, {"fixed", "left"}}},
+            {"stops", Json::array({Json{{"name", "wall"}, {"at", {{"x", 1}}}, {"upper", 0.1}}})},
+            {"initial", {{"velocity", "x"}}}}},
+          {"mesh", {{"elements", 4}}},
           {"methods",
            {{"mass", "consistent"},
             {"contact", {{"name", "penalty"}, {"stiffness", {10, 100, 1000, 1e4, 2e4, 5e4, 1e5}}}},
@@ -35,13 +36,14 @@ TEST_CASE("plan says of each ask what could stay open, before anything runs", "[
   const ScratchFolder here;
   write_text(
       here / "one.json",
-      study({{{"runs", true}}, {{"value", "peak_contact_force"}}, {{"rank", "peak_contact_force"}, {"over", "contact"}}}, 0.01).dump());
+      study(Json::parse(R"([{"runs": true}, {"value": "peak_force"}, {"rank": "peak_force", "over": "time"}])"), 0.01)
+          .dump());
   const CommandOutput one = say(here, "plan one.json");
   INFO(one.err);
   CHECK(one.code == 0);
-  CHECK_THAT(one.out, Contains("\nask 2 (value peak_contact_force): one step only") &&
-                          Contains("\nask 3 (rank peak_contact_force): one step only") && !Contains("ask 1"));
-  write_text(here / "three.json", study({{{"value", "peak_contact_force"}}}, {0.01, 0.005, 0.0025}).dump());
+  CHECK_THAT(one.out, Contains("\nask 2 (value peak_force): one step only") &&
+                          Contains("\nask 3 (rank peak_force): one step only") && !Contains("ask 1"));
+  write_text(here / "three.json", study(Json::parse(R"([{"value": "peak_force"}])"), {0.01, 0.005, 0.0025}).dump());
   CHECK_THAT(say(here, "plan three.json").out, !Contains("ask 1"));
 }
 
@@ -49,7 +51,7 @@ TEST_CASE("run says each sentence above its rows, twelve at most; a yes that is 
           "[asks]") {
   const ScratchFolder here;
   write_text(here / "study.json",
-             study({{{"value", "peak_contact_force"}}, {{"limit", "peak_contact_force"}, {"below", 1e-3}, {"require", true}}},
+             study({{{"value", "peak_force"}}, {{"limit", "peak_force"}, {"below", 1e-3}, {"require", true}}},
                    {0.01, 0.005, 0.0025})
                  .dump());
   const CommandOutput ran = say(here, "run study.json --out out");

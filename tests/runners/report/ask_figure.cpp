@@ -16,6 +16,7 @@
 using namespace ricochet;
 using namespace ricochet::report;
 
+namespace ask_figure_tests {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -419,6 +420,79 @@ TEST_CASE("curves of logarithms leave out what has none, and hold their floors",
   }
 }
 
+TEST_CASE("stretches of an axis are boxes between their ends, motions have a colour each", "[report][asks]") {
+  Random random(8);
+  for (int trial = 0; trial < trials; ++trial) {
+    random.next();
+    Json figure = {{"form", "ranges"}, {"x", "pulsation"}, {"x_unit", "rad/s"}, {"rows", Json::array()}};
+    const int names = random.whole(1, 12);
+    std::vector<std::pair<double, double>> ends;
+    std::vector<std::string> all;
+    for (int k = 0; k < names; ++k) {
+      all.push_back(random.name(k));
+      double from = random.scale() * random.real(1, 2);
+      for (int part = random.whole(1, 4); part > 0; --part) {
+        const double to = from + random.scale() * random.real(0.1, 1);
+        ends.emplace_back(from, to);
+        figure["rows"].push_back(
+            {{"name", all.back()}, {"motion", "period " + std::to_string(part)}, {"from", from}, {"to", to}});
+        from = to;
+      }
+    }
+    INFO(figure.dump());
+    const Drawn drawn = read(figure_svg(figure));
+    check_within(drawn);
+    check_apart(drawn);
+    for (const std::string& name : all) check_named(drawn, name);
+    check_named(drawn, "pulsation (rad/s)");
+    std::vector<Line> parts = drawn.boxes;
+    REQUIRE(parts.size() >= ends.size());
+    parts.erase(parts.begin(), parts.end() - static_cast<std::ptrdiff_t>(ends.size()));  // behind the legend
+    const auto scale = told(drawn, false, false);
+    for (std::size_t k = 0; scale && k < ends.size(); ++k) {
+      CHECK(parts[k].x1 == Approx(scale->at(ends[k].first)).margin(0.1));
+      CHECK(parts[k].x2 == Approx(scale->at(ends[k].second)).margin(0.1));
+    }
+  }
+}
+
+TEST_CASE("what is not stable of a branch is broken, every special point has its mark", "[report][asks]") {
+  Json points = Json::array();
+  for (int k = 0; k < 30; ++k) points.push_back({0.1 * k, std::sin(0.1 * k), k < 10 || k >= 20});
+  Json figure = {
+      {"form", "branches"},
+      {"x", "amplitude"},
+      {"x_unit", "m"},
+      {"y", "displacement"},
+      {"y_unit", "m"},
+      {"series",
+       {{{"name", "fine"}, {"points", points}}, {{"name", "coarse"}, {"points", {{0, 0.2, false}, {1, -0.4, false}}}}}},
+      {"marks",
+       {{{"name", "fine"}, {"kind", "fold"}, {"branch", "a"}, {"value", 1.0}, {"tip", 0.84}},
+        {{"name", "fine"}, {"kind", "graze"}, {"branch", "a"}, {"value", 5.0}, {"tip", 2.0}},
+        {{"name", "fine"}, {"kind", "graze"}, {"branch", "a"}, {"value", 5.0}}}}};
+  const std::string svg = figure_svg(figure);
+  const Drawn drawn = read(svg);
+  check_within(drawn);
+  check_apart(drawn);
+  CHECK(all_of(svg, "class=\"branch s0\"").size() == 2);
+  CHECK(all_of(svg, "class=\"branch s0 unstable\"").size() == 1);
+  CHECK(all_of(svg, "class=\"branch s1 unstable\"").size() == 1);
+  CHECK(all_of(svg, "<title>fold: a at 1<").size() == 1);
+  CHECK(all_of(svg, "<title>graze: a at 5<").size() == 1);
+  for (const char* one : {"fine", "coarse", "fold", "graze", "amplitude (m)", "displacement (m)"})
+    check_named(drawn, one);
+}
+
+TEST_CASE("bars of steps are logarithmic where they are asked to be", "[report][asks]") {
+  Json figure = {{"form", "bars"},      {"measure", "largest step"},
+                 {"unit", "s"},         {"log", true},
+                 {"at", Json::array()}, {"rows", {{{"name", "a"}, {"value", 0.1}}, {{"name", "b"}, {"value", 0.3}}}}};
+  CHECK(in_logarithms(read(figure_svg(figure))));
+  figure["rows"][0]["value"] = 0.0;
+  CHECK_FALSE(in_logarithms(read(figure_svg(figure))));
+}
+
 TEST_CASE("figures without anything to draw are none, and odd values are let be", "[report][asks]") {
   CHECK(figure_svg(nullptr).empty());
   CHECK(figure_svg({{"form", "own"}}).empty());
@@ -471,3 +545,5 @@ TEST_CASE("axes hold their values between round ends", "[report][asks]") {
     }
   }
 }
+
+}  // namespace ask_figure_tests

@@ -9,14 +9,9 @@
 using namespace ricochet;
 using namespace ricochet::report;
 using Catch::Matchers::Contains;
+using synthetic::count;
 
 namespace {
-
-std::size_t times_in(const std::string& text, const std::string& part) {
-  std::size_t out = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++out;
-  return out;
-}
 
 AskedPart part_of(std::size_t number, std::size_t rows) {
   AskedPart out;
@@ -38,7 +33,7 @@ TEST_CASE("every row of an answer is on its page, in a box of its own", "[report
   const std::string html = asked_html({{}, {part_of(1, 240)}});
   for (int k = 0; k < 240; ++k) CHECK_THAT(html, Contains(">level" + std::to_string(k) + ".</th>"));
   CHECK_THAT(html, !Contains("more") && !Contains("<details") && Contains("<div class=\"scroll"));
-  CHECK(times_in(html, "<svg class=\"ask-figure\"") == 1);
+  CHECK(count(html, "<svg class=\"ask-figure\"") == 1);
   CHECK_THAT(html, Contains("<td class=\"number absent\">–</td>"));
 }
 
@@ -52,7 +47,7 @@ TEST_CASE("what warns stands above the sentence that it touches, once", "[report
   CHECK(at("Left out: <strong>2</strong>") < at("sentence <strong>1</strong>"));
   CHECK(at("sentence <strong>1</strong>") < at("Left out: <strong>3</strong>"));
   CHECK(at("Left out: <strong>3</strong>") < at("sentence <strong>2</strong>"));
-  CHECK(times_in(html, "<strong>2</strong> diverged") == 1);
+  CHECK(count(html, "<strong>2</strong> diverged") == 1);
   CHECK_THAT(html, Contains("&lt;b&gt;"));
 }
 
@@ -64,11 +59,11 @@ TEST_CASE("the chart of the kind stands beside the ask that it answers", "[repor
   CHECK_THAT(asked_html(asked), !Contains("answer-figure"));
   asked.parts[1].figure = nullptr;
   std::string html = asked_html(asked);
-  CHECK(times_in(html, "answer-figure") == 1);
+  CHECK(count(html, "answer-figure") == 1);
   CHECK(html.find("answer-figure") < html.find("id=\"ask-2\""));
   asked.parts[1].figure = {{"form", "own"}};
   html = asked_html(asked);
-  CHECK(times_in(html, "answer-figure") == 1);
+  CHECK(count(html, "answer-figure") == 1);
   CHECK(html.find("answer-figure") > html.find("id=\"ask-2\""));
 }
 

@@ -13,9 +13,9 @@ using namespace ricochet::browser;
 
 namespace {
 
-const char* const asked_width = "document.documentElement.scrollWidth";
+const char* const width_of_page = "document.documentElement.scrollWidth";
 // What passes the right edge, but for what lies in a box that scrolls.
-const char* const beyond_asked =
+const char* const beyond_answer =
     "Array.from(document.querySelectorAll('#answer *')).filter((e) => !e.closest('.scroll, svg') && "
     "e.getClientRects().length && e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.tagName + ' ' + "
     "e.className)";
@@ -54,7 +54,7 @@ TEST_CASE("every row of an answer can be reached, on a phone as on a wide screen
     return browser::Json{
         {"name", name},   {"page", page},
         {"width", width}, {"height", 900},
-        {"dark", dark},   {"evaluate", {asked_width, beyond_asked, boxes, rows_reached, figures, colours}}};
+        {"dark", dark},   {"evaluate", {width_of_page, beyond_answer, boxes, rows_reached, figures, colours}}};
   };
   const browser::Json said = driven(
       "asks",
