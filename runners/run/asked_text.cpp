@@ -44,10 +44,11 @@ std::string value_cell(const VerdictRow& row) {
 }  // namespace
 
 report::AskedTable asked_rows(const asks::Answered& answered) {
-  std::set<std::string> units, measures;
+  std::set<std::string> units, measures, stops;
   for (const VerdictRow& row : answered.rows) {
     if (row.value || row.low) units.insert(unit_of(row));
     if (!row.measure.empty()) measures.insert(row.measure);
+    stops.insert(row.stop);
   }
   const bool one_unit = units.size() == 1;
   report::AskedTable out;
@@ -56,7 +57,7 @@ report::AskedTable asked_rows(const asks::Answered& answered) {
                "unit",  "verdict"};
   constexpr std::size_t values = 3;
   for (const VerdictRow& row : answered.rows)
-    out.rows.push_back({row.level, row.stop,
+    out.rows.push_back({row.level, stops.size() > 1 ? row.stop : "",
                         measures.size() > 1 && !row.measure.empty() ? answers::measure_words(row.measure).words : "",
                         value_cell(row), one_unit ? "" : unit_of(row),
                         row.verdict + (row.reason.empty() ? "" : (row.verdict.empty() ? "" : ": ") + row.reason)});
