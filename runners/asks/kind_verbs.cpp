@@ -1,3 +1,9 @@
+#include "runners/asks/kind_verbs.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <sstream>
+
 #include "runners/asks/verbs.hpp"
 #include "runners/json/json_text.hpp"
 
@@ -6,7 +12,8 @@ namespace ricochet::asks {
 
 const Verb& cheapest_verb() {
   static const Verb verb{
-      "cheapest", "Which method reaches an error for the least time.",
+      "cheapest",
+      "Which method reaches an error for the least time.",
       {keys::of_form(Field::Form::text, "cheapest", std::nullopt, "The error."),
        keys::of_form(Field::Form::share, "within", std::nullopt, "The error to reach, as a share of the reference.")},
       "only one that has a reference can: kind work-precision"};
@@ -14,14 +21,16 @@ const Verb& cheapest_verb() {
 }
 
 const Verb& order_verb() {
-  static const Verb verb{"order", "Which order of convergence an error has.",
+  static const Verb verb{"order",
+                         "Which order of convergence an error has.",
                          {keys::of_form(Field::Form::text, "order", std::nullopt, "The error.")},
                          "only one that has a reference can: kind convergence"};
   return verb;
 }
 
 const Verb& motions_verb() {
-  static const Verb verb{"motions", "Which motions there are, where they change, and their shares.",
+  static const Verb verb{"motions",
+                         "Which motions there are, where they change, and their shares.",
                          {keys::of_form(Field::Form::text, "motions", std::nullopt,
                                         "The parameter of a sweep, or \"share\" of the starts of basins.")},
                          "only one that finds motions can: kinds bifurcation and basins"};
@@ -30,18 +39,56 @@ const Verb& motions_verb() {
 
 const Verb& points_verb() {
   static const Verb verb = [] {
-    Field kinds = keys::of_form(Field::Form::words, "points", std::nullopt, "Kinds of special points; \"all\": every kind.");
-    return Verb{"points", "Where branches touch, fold and change their stability.", {std::move(kinds)},
+    Field kinds =
+        keys::of_form(Field::Form::words, "points", std::nullopt, "Kinds of special points; \"all\": every kind.");
+    return Verb{"points",
+                "Where branches touch, fold and change their stability.",
+                {std::move(kinds)},
                 "only one that follows orbits can: kind continuation"};
   }();
   return verb;
 }
 
 const Verb& steps_verb() {
-  static const Verb verb{"steps", "Which step is allowed, and what bounds it.",
+  static const Verb verb{"steps",
+                         "Which step is allowed, and what bounds it.",
                          {keys::word("steps", {"limit"}, std::nullopt, "\"limit\".")},
                          "only one of kind stability can"};
   return verb;
+}
+
+std::string fitting(const std::vector<std::string>& sentences) {
+  constexpr std::ptrdiff_t most = 30;
+  for (const std::string& one : sentences) {
+    std::istringstream words(one);
+    if (std::distance(std::istream_iterator<std::string>(words), {}) <= most) return one;
+  }
+  return sentences.back();
+}
+
+Ask ask_at(const Json& keys, const std::string& pointer) {
+  const Json::json_pointer place(pointer);
+  return ask_of(keys, std::stoul(place.parent_pointer().back()) + 1);
+}
+
+void refuse_stops(const Ask& ask) {
+  if (ask.has("stops"))
+    throw InputError(ask.pointer("stops"),
+                     quote(std::string(ask.verb->name)) + " speaks of no single stop; leave it out");
+}
+
+std::vector<std::string> varying(const Evidence& evidence, const Cases& cases) {
+  std::vector<std::string> out;
+  for (const std::string& column : evidence.results().columns)
+    if (std::any_of(cases.begin(), cases.end(), [&](const CaseRecord* one) {
+          return evidence.study().text(*one, column) != evidence.study().text(*cases.front(), column);
+        }))
+      out.push_back(column);
+  return out;
+}
+
+void leave_out(Answered& out, const std::vector<std::string>& reasons) {
+  for (const std::string& why : reasons) out.aside.push_back("Left out: " + why + ".");
 }
 
 }  // namespace ricochet::asks

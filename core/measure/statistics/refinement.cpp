@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <ricochet/measure/statistics/refinement.hpp>
 
@@ -12,6 +13,7 @@ constexpr double safety = 1.25;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double orders_agree = 0.6, steepest_order = 4.5;
 constexpr double grows = 1.5, grown = 3;
+constexpr double falls = 0.35, width = 0.6;
 
 /// Orders of |e| between sizes that follow each other; nothing where one is zero.
 std::optional<double> slope(const SizedValue& coarse, const SizedValue& fine) {
@@ -265,6 +267,22 @@ const char* word(OrderRun::Verdict verdict) {
   return "";
 }
 
+bool OrderRun::clean() const {
+  constexpr double narrow = 0.15, wide = 0.3;  // shares of the order
+  if (verdict != Verdict::order || in_passing || beyond.size() > 1) return false;
+  std::size_t falling = 0, like = 0;
+  for (std::size_t k = 0; k < slopes.size(); ++k) {
+    const bool inside = k >= first && k < first + length;
+    falling += slopes[k] >= falls;
+    like += inside || (slopes[k] >= falls && std::abs(slopes[k] - order) <= width);
+  }
+  if (length == 2) return like == falling && most - least <= narrow * order;
+  const auto begin = slopes.begin() + static_cast<std::ptrdiff_t>(first),
+             end = begin + static_cast<std::ptrdiff_t>(length);
+  const bool flattens = std::is_sorted(begin, end, std::greater<>()) && most - least > wide * order;
+  return 2 * like >= falling && !flattens;
+}
+
 std::optional<OrderRun> order_run(std::vector<SizedValue> errors, double floor) {
   if (errors.empty()) return std::nullopt;
   std::stable_sort(errors.begin(), errors.end(),
@@ -274,7 +292,7 @@ std::optional<OrderRun> order_run(std::vector<SizedValue> errors, double floor) 
   out.last_size = errors.back().size;
   out.smallest = out.last;
   for (const SizedValue& one : errors) out.smallest = std::min(out.smallest, one.value);
-  constexpr double floors = 3, falls = 0.35, least_slope = 0.4, width = 0.6;
+  constexpr double floors = 3, least_slope = 0.4;
   std::vector<SizedValue> points;
   for (const SizedValue& one : errors)
     if (one.value > floors * floor && one.value > 0) points.push_back(one);
@@ -282,7 +300,7 @@ std::optional<OrderRun> order_run(std::vector<SizedValue> errors, double floor) 
     out.verdict = points.size() < 2 && errors.size() >= 3 ? OrderRun::Verdict::below_floor : OrderRun::Verdict::too_few;
     return out;
   }
-  std::vector<double> slopes;
+  std::vector<double>& slopes = out.slopes;
   for (std::size_t k = 0; k + 1 < points.size(); ++k)
     slopes.push_back(std::log(points[k].value / points[k + 1].value) / std::log(points[k].size / points[k + 1].size));
   std::size_t from = 0, length = 0;
@@ -299,10 +317,17 @@ std::optional<OrderRun> order_run(std::vector<SizedValue> errors, double floor) 
   const bool stays = slopes.back() < falls;
   if (length >= 2) {
     out.verdict = OrderRun::Verdict::order;
+    out.first = from;
+    out.length = length;
     const SizedValue &first = points[from], &last = points[from + length];
     out.order = std::log(first.value / last.value) / std::log(first.size / last.size);
     const auto begin = slopes.begin() + static_cast<std::ptrdiff_t>(from);
     const auto [least, most] = std::minmax_element(begin, begin + static_cast<std::ptrdiff_t>(length));
+    constexpr double flatter = 0.8;  // on the way to a level that is reached each slope is well below the one before it
+    for (std::size_t k = from + length; k < slopes.size(); ++k)
+      if (slopes[k] >= falls && std::abs(slopes[k] - out.order) > width &&
+          !(stays && slopes[k] < flatter * slopes[k - 1]))
+        out.beyond.push_back(slopes[k]);
     out.least = *least;
     out.most = *most;
     out.from = first.size;

@@ -55,9 +55,9 @@ inline constexpr double lowest_order = 0.5;
 /// the exact value where one is known. Nothing of no values.
 ///
 /// With the differences d of values from coarse to fine and the ratio r of the last sizes, the rest is
-/// 1.25 |d_last|/(rᵖ − 1) (Roache, 1994, for three sizes). The uncertainty u is the larger of |d_last| and the rest. Where two orders p in a row agree
-/// within 0.6, u is the rest alone, at least a tenth of |d_last|. Of two sizes u is |d_last|, of what moves 2 |d_last|,
-/// of what wanders the range of the last three values.
+/// 1.25 |d_last|/(rᵖ − 1) (Roache, 1994, for three sizes). The uncertainty u is the larger of |d_last| and the rest.
+/// Where two orders p in a row agree within 0.6, u is the rest alone, at least a tenth of |d_last|. Of two sizes u is
+/// |d_last|, of what moves 2 |d_last|, of what wanders the range of the last three values.
 std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std::optional<double> truth = {});
 
 /// The limit over two refinements, at the finest of both: uncertainties are added, the status is the worse of the two.
@@ -94,9 +94,17 @@ struct OrderRun {
   /// Whether it may be one of chance. Then it has two slopes alone, half of all at most, and ends before the finest
   /// error above the floor.
   bool in_passing = false;
-  std::optional<double> stops_at;  ///< the error at which the fall ends: the smallest that was seen
-  double last = 0, last_size = 0;  ///< the error at the finest size
-  double smallest = 0;             ///< of all errors
+  std::optional<double> stops_at;     ///< the error at which the fall ends: the smallest that was seen
+  double last = 0, last_size = 0;     ///< the error at the finest size
+  double smallest = 0;                ///< of all errors
+  std::vector<double> slopes;         ///< all, from the coarsest size on
+  std::size_t first = 0, length = 0;  ///< the run among them
+  /// Slopes ≥ 0.35 beyond the run and more than 0.6 from its order, not on the way to a level that is reached.
+  std::vector<double> beyond;
+  /// Whether the run is what the error does: no chance, at least half of the slopes that fall are like it, one beyond
+  /// it at most is not. Slopes that fall off by 0.3 of the order approach a level. Two slopes alone agree to 0.15 of
+  /// it, and no other falls.
+  bool clean() const;
 };
 /// "order", "stops", "does not fall", "no steady order", "at the floor", "too few".
 const char* word(OrderRun::Verdict verdict);

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <ricochet/measure/attractors/basin_grid.hpp>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,9 @@ struct BasinAnalysis {
   std::vector<FractionRow> fractions = {};
   std::vector<BasinDifferenceRow> differences = {};
   std::vector<UncertaintyRow> uncertainty = {};
+  bool of_states = true;                        ///< whether cells are starts; else they are scenes
+  std::vector<const CaseRecord*> records = {};  ///< cases with a grid
+  std::vector<BasinGrid> grids = {};            ///< theirs
 };
 
 /// Compares the cases, and appends the tables of kind `basins` to results.derived: cells, attractors, basin_fractions,

@@ -90,6 +90,7 @@ class BasinCases {
 
   bool empty() const { return images_.empty(); }
 
+  /// To be asked last: the grids go.
   BasinAnalysis analysis() {
     BasinAnalysis out;
     out.fractions = fractions();
@@ -106,6 +107,9 @@ class BasinCases {
     put_images(out);
     out.xs = std::move(xs_);
     out.ys = std::move(ys_);
+    out.of_states = grid_of_ == GridOf::initial_states;
+    for (const Image& image : images_) out.records.push_back(image.record);
+    out.grids = std::move(grids_);
     return out;
   }
 
@@ -349,9 +353,9 @@ namespace ricochet {
 BasinAnalysis analyse_basins(StudyResults& results) {
   dynamics::BasinCases cases(results);
   if (cases.empty()) return {};
-  BasinAnalysis out = cases.analysis();
   results.derived.push_back(cases.cells());
   results.derived.push_back(cases.attractors());
+  BasinAnalysis out = cases.analysis();
   results.derived.push_back(rows_of_cases(results, basin_fractions_type(), out.fractions));
   results.derived.push_back(basin_differences_type().with(out.differences));
   results.derived.push_back(rows_of_cases(results, basin_uncertainty_type(), out.uncertainty));

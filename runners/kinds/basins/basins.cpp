@@ -48,7 +48,7 @@ class BasinsKind final : public SweepKind {
  public:
   BasinsKind()
       : SweepKind("basins", "Each case goes through a grid of two parameters: where the orbit of each cell ends.",
-                  basins_keys()) {}
+                  basins_keys(), {"motions", "effect on motions"}, check_basin_ask) {}
   CasePlan plan(const StudyCase& study_case, const Registry& registry) const override {
     return plan_basins(study_case, registry);
   }
@@ -63,8 +63,14 @@ class BasinsKind final : public SweepKind {
   }
   Analysis derive(StudyResults& results) const override {
     const auto basins = std::make_shared<const BasinAnalysis>(analyse_basins(results));
-    return {[basins](const answers::Compared& study) { return basins_answer(study, *basins); },
-            report::basins_page(basins)};
+    return {
+        [basins](const answers::Compared& study) { return basins_answer(study, *basins); },
+        report::basins_page(basins),
+        {{"motions", [basins](const asks::Ask& ask,
+                              const asks::Evidence& evidence) { return motions_of_basins(ask, evidence, *basins); }},
+         {"effect on motions", [basins](const asks::Ask& ask, const asks::Evidence& evidence) {
+            return effect_on_basins(ask, evidence, *basins);
+          }}}};
   }
 };
 

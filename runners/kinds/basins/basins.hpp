@@ -2,6 +2,7 @@
 #include <ricochet/contract/registry.hpp>
 
 #include "runners/answers/answer.hpp"
+#include "runners/asks/evidence.hpp"
 #include "runners/march/case_context.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/store/record.hpp"
@@ -30,5 +31,11 @@ CaseRecord run_basins(const StudyCase& study_case, const Registry& registry, con
 /// What a study of basins says: which share of the starts ends in which motion, whether methods move the border, and
 /// whether it is fractal.
 answers::Answer basins_answer(const answers::Compared& study, const BasinAnalysis& basins);
+
+/// Which share of the starts ends in which motion, method by method.
+asks::Answered motions_of_basins(const asks::Ask& ask, const asks::Evidence& evidence, const BasinAnalysis& basins);
+/// How many cells a choice changes.
+asks::Answered effect_on_basins(const asks::Ask& ask, const asks::Evidence& evidence, const BasinAnalysis& basins);
+void check_basin_ask(const Study& study, const Json& ask, const std::string& pointer);
 
 }  // namespace ricochet

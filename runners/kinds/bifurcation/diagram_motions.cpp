@@ -26,12 +26,6 @@ constexpr std::size_t most_stretches = 6, most_speeds = 6;
 
 }  // namespace
 
-std::string motion_words(std::string motion) {
-  if (motion.starts_with("periodic ")) return "period " + motion.substr(9);
-  if (motion.starts_with("chattering ")) return "period " + motion.substr(11) + " with chatter";
-  return motion == "chaotic" ? "chaos" : motion;
-}
-
 std::string DiagramSpeaker::runs_text(const std::vector<MotionRun>& runs) const {
   std::string out;
   for (const MotionRun& run : runs)

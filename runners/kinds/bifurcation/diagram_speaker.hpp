@@ -8,12 +8,10 @@
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/numbers_in_words.hpp"
+#include "runners/kinds/sweep/motion_asks.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 
 namespace ricochet {
-
-/// "period 2" of "periodic 2", "chaos" of "chaotic".
-std::string motion_words(std::string motion);
 
 /// How a case compares with the reference.
 struct Likeness {

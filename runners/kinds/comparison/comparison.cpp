@@ -208,21 +208,24 @@ std::vector<MeasureInfo> comparison_measures() {
 
 namespace {
 
-StudyKind comparison_format(const char* name, const char* text, std::vector<Field> keys) {
+StudyKind comparison_format(const char* name, const char* text, std::vector<Field> keys,
+                            std::vector<std::string> verbs) {
   StudyKind format;
   format.name = name;
   format.text = text;
   format.keys = std::move(keys);
   format.settings = comparison_settings;
   format.check = check_comparison;
+  format.verbs = std::move(verbs);
+  format.check_ask = check_error_ask;
   return format;
 }
 
 }  // namespace
 
 ComparisonKind::ComparisonKind(const char* name, const char* text, std::vector<Field> keys,
-                               std::vector<MeasureInfo> of_cases)
-    : Kind(comparison_format(name, text, std::move(keys)), std::move(of_cases)) {}
+                               std::vector<MeasureInfo> of_cases, std::vector<std::string> verbs)
+    : Kind(comparison_format(name, text, std::move(keys), std::move(verbs)), std::move(of_cases)) {}
 
 CasePlan ComparisonKind::plan(const StudyCase& study_case, const Registry& registry) const {
   return plan_case(study_case, registry);

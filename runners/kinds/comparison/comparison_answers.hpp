@@ -6,6 +6,7 @@
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/compared.hpp"
+#include "runners/asks/evidence.hpp"
 
 namespace ricochet {
 
@@ -28,9 +29,27 @@ struct MethodRun {
   const CaseRecord* finest = nullptr;
   OrderRun run;
   std::optional<double> declared, motion;  ///< what the scheme declares; what a motion at rest would err by
+  std::vector<SizedValue> errors = {};     ///< the coarsest first
+  double floor = 0;
 };
 
-/// Of every method with two sizes or more. `refined`: "step" or "elements".
+/// Of every method with two sizes or more, among these cases. `refined`: "step" or "elements".
+std::vector<MethodRun> runs_of(const answers::Compared& study, const Cases& cases, const std::string& error,
+                               const std::string& refined);
+/// Among all cases.
 std::vector<MethodRun> runs_of(const answers::Compared& study, const std::string& error, const std::string& refined);
+
+/// "the error of the impact times"; "impact times" alone, where that says which error it is; its quantity in any case.
+std::string error_words(const std::string& error);
+std::string short_error_words(const std::string& error);
+std::string quantity_words(const std::string& error);
+
+/// What answers `order` and `cheapest`.
+asks::Answered order_ask(const asks::Ask& ask, const asks::Evidence& evidence);
+asks::Answered cheapest_ask(const asks::Ask& ask, const asks::Evidence& evidence);
+/// Refuses an error that the study does not compute, and orders of fewer than three sizes.
+void check_error_ask(const Study& study, const Json& ask, const std::string& pointer);
+/// The error of an ask by its own name: "impact-times" of "impact_times" and of "error.impact-times".
+std::string error_name(std::string asked);
 
 }  // namespace ricochet

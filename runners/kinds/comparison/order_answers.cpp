@@ -26,24 +26,6 @@ std::string headline(const std::vector<std::string>& errors) {
   return mean || errors.empty() ? "tip-l2" : errors.front();
 }
 
-std::string error_words(const std::string& error) {
-  if (error == "tip-linf") return "the largest error of the tip";
-  if (error == "tip-l2") return "the root mean square error of the tip";
-  if (error == "displacement-l2") return "the error of the displacement";
-  if (error == "displacement-h2") return "the error of the curvature";
-  if (error == "velocity-l2") return "the error of the velocity";
-  if (error == "impact-times") return "the error of the impact times";
-  if (error == "impulse") return "the error of the impulse";
-  if (error == "energy") return "the error of the energy";
-  return "the error of " + error;
-}
-
-std::string quantity_words(const std::string& error) {
-  std::string words = error_words(error);
-  const std::size_t of = words.rfind(" of the ");
-  return of == std::string::npos ? words : words.substr(of + 8);
-}
-
 std::string error_unit(const std::string& error) {
   if (error.starts_with("tip")) return "m";
   if (error == "energy") return "J";

@@ -10,8 +10,13 @@ namespace ricochet {
 using namespace answers;
 
 std::vector<MethodRun> runs_of(const Compared& study, const std::string& error, const std::string& refined) {
+  return runs_of(study, all_cases(study.results()), error, refined);
+}
+
+std::vector<MethodRun> runs_of(const Compared& study, const Cases& all, const std::string& error,
+                               const std::string& refined) {
   InOrderMet<std::string, Cases> methods;
-  for (const CaseRecord& record : study.results().cases) methods[study.key(record)].push_back(&record);
+  for (const CaseRecord* record : all) methods[study.key(*record)].push_back(record);
   const bool step = refined == "step";
   const auto size = [&](const CaseRecord& record) {
     return step                     ? study.step(record)
@@ -39,6 +44,10 @@ std::vector<MethodRun> runs_of(const Compared& study, const std::string& error, 
       if (!one.finest || *at < *size(*one.finest)) one.finest = record;
     }
     if (errors.size() < 2) continue;
+    std::stable_sort(errors.begin(), errors.end(),
+                     [](const SizedValue& a, const SizedValue& b) { return a.size > b.size; });
+    one.errors = errors;
+    one.floor = floor;
     one.cases = cases;
     one.run = *order_run(errors, floor);
     if (step) one.declared = measure(*one.finest, "declared_order");

@@ -26,6 +26,8 @@ StudyKind continuation_format() {
   format.complete = mark_sweep;
   format.check_cases = check_continued_cases;
   format.add_references = add_reference_cases;
+  format.verbs = {"points"};
+  format.check_ask = check_points_ask;
   return format;
 }
 
@@ -62,7 +64,10 @@ class ContinuationKind final : public Kind {
     const auto points = std::make_shared<const PointAnalysis>(study);
     points->append_tables(results);
     return {[points](const answers::Compared& of) { return continuation_answer(of, *points); },
-            report::continuation_page(points)};
+            report::continuation_page(points),
+            {{"points", [points](const asks::Ask& ask, const asks::Evidence& evidence) {
+                return points_ask(ask, evidence, *points);
+              }}}};
   }
   bool has_points() const override { return true; }
   bool only_points() const override { return false; }

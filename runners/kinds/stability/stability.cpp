@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include "runners/asks/kind_verbs.hpp"
 #include "runners/kinds/all_kinds.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
@@ -101,6 +103,10 @@ StudyKind stability_format() {
   format.keys = stability_keys();
   format.settings = [](const Json& resolved) { return given_settings(resolved, {"steps", "observe", "budget"}); };
   format.check = check_stability;
+  format.verbs = {"steps"};
+  format.check_ask = [](const Study&, const Json& ask, const std::string& pointer) {
+    asks::refuse_stops(asks::ask_at(ask, pointer));
+  };
   return format;
 }
 
@@ -120,11 +126,16 @@ class StabilityKind final : public Kind {
   Analysis analysis(StudyResults& results, const answers::Compared&) const override {
     for (CaseRecord& record : results.cases) describe_stability(record);
     collect_tables(results);
-    results.derived.push_back(step_limits_table(results));
+    const auto limits = std::make_shared<const std::vector<LimitRow>>(step_limit_rows(results));
+    results.derived.push_back(step_limits_table(results, *limits));
     results.derived.push_back(step_limit_agreement_table(results.derived.back()));
     for (Table table : {stability_cells_table(results), stability_disagreements_table(results)})
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
-    return {stability_answer, report::stability_page()};
+    return {stability_answer,
+            report::stability_page(),
+            {{"steps", [limits](const asks::Ask& ask, const asks::Evidence& evidence) {
+                return steps_ask(ask, evidence, *limits);
+              }}}};
   }
   std::string outcome(const CaseRecord& record) const override { return limits_text(record); }
   std::string contradiction(const CaseRecord& record) const override {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runners/answers/answer.hpp"
+#include "runners/asks/evidence.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
@@ -47,6 +48,11 @@ CaseRecord run_stability(const StudyCase& study_case, const Registry& registry, 
 /// What a stability study says: who has no largest step, and the largest step of each scheme with the level that has
 /// it. Then what a closed contact changes, and whether marches agree.
 answers::Answer stability_answer(const answers::Compared& study);
+
+struct LimitRow;
+
+/// Which step each scheme is allowed on each mesh and with each law, and whether the mesh or the closed stop bounds it.
+asks::Answered steps_ask(const asks::Ask& ask, const asks::Evidence& evidence, const std::vector<LimitRow>& limits);
 
 }  // namespace ricochet
 

@@ -8,6 +8,7 @@
 #include <ricochet/measure/stability/stability.hpp>
 
 #include "runners/store/record_values.hpp"
+#include "runners/store/rows_of_cases.hpp"
 
 namespace ricochet {
 namespace {
@@ -326,9 +327,8 @@ TableType<LimitRow> step_limits_type() {
   return {"step_limits", "One case with its contact open or closed: the step limits that its cells come to.", rows};
 }
 
-Table step_limits_table(const StudyResults& results) {
-  const TableType<LimitRow> type = step_limits_type();
-  Table table = table_of_cases(results, type.head());
+std::vector<LimitRow> step_limit_rows(const StudyResults& results) {
+  std::vector<LimitRow> rows;
   const Cases counted = counted_open(results);
   for (const bool closed : {false, true})
     for (const CaseRecord& record : results.cases) {
@@ -353,9 +353,13 @@ Table step_limits_table(const StudyResults& results) {
         row.grows = grows->reason.substr(0, grows->reason.find("; "));
         row.refused = grows->status == "refused";
       }
-      add_row(table, place_of(results, record), type.rows.row(row));
+      rows.push_back(std::move(row));
     }
-  return table;
+  return rows;
+}
+
+Table step_limits_table(const StudyResults& results, const std::vector<LimitRow>& rows) {
+  return rows_of_cases(results, step_limits_type(), rows);
 }
 
 Table step_limit_agreement_table(const Table& step_limits) {

@@ -120,12 +120,13 @@ struct LimitRow {
   std::optional<bool> refused;
 };
 TableType<LimitRow> step_limits_type();
+std::vector<LimitRow> step_limit_rows(const StudyResults& results);
 
-/// step_limits: one row per case and contact state, open before closed. A scene is open as well as closed: the limit
-/// expected of it is the smaller of both predictions. A cell is expected to grow where either radius exceeds one. The
-/// open structure does not depend on the contact law: of cases that differ in it alone one is `counted`, the first that
-/// was done.
-Table step_limits_table(const StudyResults& results);
+/// step_limits of such rows: one per case and contact state, open before closed. A scene is open as well as closed: the
+/// limit expected of it is the smaller of both predictions. A cell is expected to grow where either radius exceeds one.
+/// The open structure does not depend on the contact law: of cases that differ in it alone one is `counted`, the first
+/// that was done.
+Table step_limits_table(const StudyResults& results, const std::vector<LimitRow>& rows);
 
 /// step_limit_agreement: how many of the counted ranges agree, for the open structure, for closed contact, and for
 /// both together.

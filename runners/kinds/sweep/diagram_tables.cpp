@@ -46,9 +46,9 @@ bool derived_as_dynamics(const std::string& table) {
   return table == "values" || table == "bifurcations" || table == "cells";
 }
 
-void derive_dynamics(StudyResults& results) {
+SweptMotions derive_dynamics(StudyResults& results) {
   StudyDiagram study = read_diagram(results);
-  if (study.sources.empty()) return;
+  if (study.sources.empty()) return {};
   Table distances = find_attractors(study);
   std::vector<Table> tables = {values_table(study),  bifurcations_table(study), attractors_table(study),
                                std::move(distances), verdicts_table(study),     agreement_table(study),
@@ -58,6 +58,10 @@ void derive_dynamics(StudyResults& results) {
        {class_counts_table(study), grazing_ranges_table(results, study.swept), numerical_viscosity_table(study)})
     tables.push_back(std::move(table));
   for (Table& table : tables) results.derived.push_back(std::move(table));
+  SweptMotions out;
+  for (std::size_t c = 0; c < study.sources.size(); ++c) out.records.push_back(&study.record(c));
+  out.diagram = std::move(study.diagram);
+  return out;
 }
 
 }  // namespace ricochet

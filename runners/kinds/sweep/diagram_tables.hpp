@@ -148,8 +148,14 @@ namespace ricochet {
 /// Whether a table of the cases is among those that are collected.
 bool derived_as_dynamics(const std::string& table);
 
+/// The motions of a sweep, as asks look at them.
+struct SweptMotions {
+  Diagram diagram;                         ///< its attractors numbered
+  std::vector<const CaseRecord*> records;  ///< of its cases
+};
+
 /// Appends the tables of a bifurcation diagram to results.derived; an unfinished study has partial ones. Failed values
 /// make no attractor.
-void derive_dynamics(StudyResults& results);
+SweptMotions derive_dynamics(StudyResults& results);
 
 }  // namespace ricochet

@@ -45,7 +45,8 @@ Field swept_pointer() {
 
 namespace {
 
-StudyKind sweep_format(const char* name, const char* text, std::vector<Field> keys) {
+StudyKind sweep_format(const char* name, const char* text, std::vector<Field> keys, std::vector<std::string> verbs,
+                       std::function<void(const Study&, const Json&, const std::string&)> check_ask) {
   StudyKind format;
   format.name = name;
   format.text = text;
@@ -55,13 +56,17 @@ StudyKind sweep_format(const char* name, const char* text, std::vector<Field> ke
   format.marches_another = some_value_possible;
   format.complete = mark_sweep;
   format.check_cases = check_values;
+  format.verbs = std::move(verbs);
+  format.check_ask = std::move(check_ask);
   return format;
 }
 
 }  // namespace
 
-SweepKind::SweepKind(const char* name, const char* text, std::vector<Field> keys, std::vector<MeasureInfo> of_cases)
-    : Kind(sweep_format(name, text, std::move(keys)), std::move(of_cases)) {}
+SweepKind::SweepKind(const char* name, const char* text, std::vector<Field> keys, std::vector<std::string> verbs,
+                     std::function<void(const Study&, const Json&, const std::string&)> check_ask,
+                     std::vector<MeasureInfo> of_cases)
+    : Kind(sweep_format(name, text, std::move(keys), std::move(verbs), std::move(check_ask)), std::move(of_cases)) {}
 
 CaseRunner SweepKind::start(const RunContext& context) const {
   const auto checkpoints = std::make_shared<CheckpointStore>();

@@ -30,7 +30,10 @@ class SweepKind : public Kind {
   bool has_points() const override { return true; }
 
  protected:
-  SweepKind(const char* name, const char* text, std::vector<Field> keys, std::vector<MeasureInfo> of_cases = {});
+  /// `verbs`: of `ask`, that it answers itself, checked by `check_ask`.
+  SweepKind(const char* name, const char* text, std::vector<Field> keys, std::vector<std::string> verbs,
+            std::function<void(const Study& study, const Json& ask, const std::string& pointer)> check_ask,
+            std::vector<MeasureInfo> of_cases = {});
 
  private:
   /// Runs a case, with the context at which it keeps what would be lost if it were killed.

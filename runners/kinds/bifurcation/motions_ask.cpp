@@ -1,0 +1,351 @@
+// The verb `motions` of a sweep: which motions there are along the parameter, where they change, what is undecided.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "runners/answers/numbers_in_words.hpp"
+#include "runners/answers/set_names.hpp"
+#include "runners/asks/kind_verbs.hpp"
+#include "runners/json/json_text.hpp"
+#include "runners/kinds/bifurcation/bifurcation.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
+#include "runners/kinds/sweep/motion_asks.hpp"
+#include "runners/kinds/sweep/page/orbits.hpp"
+#include "runners/report/case_view.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr double much_open = 0.25;  // share of the range that is told first
+
+/// What one case shows at one value: the motions of its starts.
+struct ValueMotions {
+  std::set<std::pair<std::string, int>> motions = {};  ///< each attractor once
+  std::size_t decided = 0, open = 0;                   ///< starts
+  /// "two of period 1 and no contact"; "" where nothing is decided.
+  std::string text() const {
+    std::map<std::string, std::size_t> counts;
+    for (const auto& [motion, attractor] : motions) ++counts[motion];
+    std::vector<std::string> words;
+    for (const auto& [motion, count] : counts) {
+      static const char* const spoken[] = {"", "", "two of ", "three of ", "four of "};
+      words.push_back((count < std::size(spoken) ? spoken[count] : std::to_string(count) + " of ") + motion);
+    }
+    return answers::and_list(words);
+  }
+};
+
+/// Neighbouring values with one set of motions; "" of undecided ones.
+struct MotionStretch {
+  double from = 0, to = 0;
+  std::string motion;
+};
+
+/// Between the last value of one set of motions and the first of the next.
+struct MotionChange {
+  double low = 0, high = 0;
+  std::string from, to;
+  bool open_between = false;  ///< undecided values lie there
+};
+
+struct CaseMotions {
+  const CaseRecord* record = nullptr;
+  std::string level;
+  std::map<double, ValueMotions> at = {};
+  std::vector<MotionStretch> stretches = {};
+  std::vector<MotionChange> changes = {};
+  double undecided = 0;  ///< share of the range
+};
+
+/// Of each value the part of the range that is nearest to it.
+std::map<double, double> widths_of(const std::set<double>& values) {
+  std::map<double, double> out;
+  if (values.empty()) return out;
+  const double range = *values.rbegin() - *values.begin();
+  for (auto one = values.begin(); one != values.end(); ++one) {
+    const double before = one == values.begin() ? *one : *std::prev(one),
+                 after = std::next(one) == values.end() ? *one : *std::next(one);
+    out[*one] = range > 0 ? 0.5 * (after - before) / range : 1;
+  }
+  return out;
+}
+
+class MotionsAlong {
+ public:
+  MotionsAlong(const asks::Ask& ask, const asks::Evidence& evidence, const SweptMotions& swept)
+      : evidence_(evidence),
+        study_(evidence.study()),
+        cases_(evidence.cases(ask)),
+        columns_(asks::varying(evidence, cases_)),
+        parameter_(report::swept_parameter(evidence.results())) {
+    parameter_.unit = report::shown_unit(parameter_.unit);
+    for (std::size_t c = 0; c < swept.records.size(); ++c)
+      if (std::find(cases_.begin(), cases_.end(), swept.records[c]) != cases_.end())
+        read(*swept.records[c], swept.diagram.cases[c]);
+    judge();
+    find_heads();
+  }
+
+  asks::Answered answer() const {
+    asks::Answered out;
+    out.cases = told_.size();
+    out.left_out = cases_.size() - told_.size();
+    for (const CaseRecord* one : cases_)
+      if (std::none_of(told_.begin(), told_.end(), [&](const CaseMotions& two) { return two.record == one; }))
+        out.aside.push_back(fmt::format("Left out: {}: {}.", evidence_.level(*one, columns_),
+                                        one->reason().empty() ? one->status : one->status + ": " + one->reason()));
+    Json drawn = Json::array();
+    add_row(out, "", "undecided", "of the range, over all cases", asks::per_cent * undecided_, {}, {}, "%");
+    for (const CaseMotions& one : told_) {
+      add_row(out, one.level, "undecided", "of the range", asks::per_cent * one.undecided, {}, {}, "%");
+      for (const MotionStretch& part : one.stretches) {
+        const std::string motion = part.motion.empty() ? "undecided" : part.motion;
+        add_row(out, one.level, motion, "", {}, part.from, part.to, parameter_.unit);
+        drawn.push_back({{"name", one.level}, {"motion", motion}, {"from", part.from}, {"to", part.to}});
+      }
+      for (const MotionChange& change : one.changes)
+        add_row(out, one.level, change.from + " to " + change.to,
+                std::string("changes between these") + (change.open_between ? "; undecided values between" : ""), {},
+                change.low, change.high, parameter_.unit);
+    }
+    say(out);
+    out.figure = {{"form", "ranges"}, {"x", parameter_.name}, {"x_unit", parameter_.unit}, {"rows", drawn}};
+    return out;
+  }
+
+ private:
+  void read(const CaseRecord& record, const DiagramCase& of) {
+    CaseMotions& out = told_.emplace_back();
+    out.record = &record;
+    out.level = evidence_.level(record, columns_);
+    for (const DiagramRun& run : of.runs) {
+      if (!std::isfinite(run.parameter)) continue;
+      ValueMotions& at = out.at[run.parameter];
+      run.decided() ? ++at.decided : ++at.open;
+      if (run.decided()) at.motions.emplace(motion_words(run.motion), run.attractor);
+    }
+    std::set<double> values;
+    for (const auto& [value, at] : out.at) values.insert(value);
+    for (const auto& [value, width] : widths_of(values)) {
+      const ValueMotions& at = out.at[value];
+      out.undecided += width * static_cast<double>(at.open) / static_cast<double>(at.open + at.decided);
+      if (!out.stretches.empty() && out.stretches.back().motion == at.text())
+        out.stretches.back().to = value;
+      else
+        out.stretches.push_back({value, value, at.text()});
+    }
+    const MotionStretch* known = nullptr;
+    bool open = false;
+    for (const MotionStretch& part : out.stretches) {
+      if (part.motion.empty()) {
+        open = true;
+        continue;
+      }
+      if (known && known->motion != part.motion)
+        out.changes.push_back({known->to, part.from, known->motion, part.motion, open});
+      known = &part;
+      open = false;
+    }
+  }
+
+  /// The share of the range of which the cases together leave open what it does: none decides, or those that do agree
+  /// and others are open.
+  void judge() {
+    std::map<double, std::size_t> speak;
+    for (const CaseMotions& one : told_)
+      for (const auto& [value, at] : one.at) ++speak[value];
+    std::size_t most = 0;
+    for (const auto& [value, count] : speak) most = std::max(most, count);
+    std::set<double> values;
+    // A value that one case refined is no place to compare.
+    for (const auto& [value, count] : speak)
+      if (2 * count >= most) values.insert(value);
+    for (const auto& [value, width] : widths_of(values)) {
+      std::set<std::string> met;
+      bool open = false;
+      for (const CaseMotions& one : told_)
+        if (const auto at = one.at.find(value); at != one.at.end()) {
+          if (at->second.decided > 0) met.insert(at->second.text());
+          open = open || at->second.decided == 0 || 2 * at->second.open > at->second.decided + at->second.open;
+        }
+      if (met.size() < 2 && open) undecided_ += width;
+    }
+  }
+
+  /// The finest case of each method.
+  void find_heads() {
+    std::vector<std::string> methods = columns_;
+    std::erase_if(methods, [](const std::string& one) { return answers::is_refinement(one); });
+    std::map<std::string, std::size_t> place;
+    for (const CaseMotions& one : told_) {
+      const auto [at, fresh] = place.emplace(study_.key(*one.record, methods), heads_.size());
+      if (fresh)
+        heads_.push_back(&one);
+      else if (study_.finer(*one.record, *heads_[at->second]->record))
+        heads_[at->second] = &one;
+    }
+  }
+
+  void add_row(asks::Answered& out, const std::string& level, const std::string& verdict, const std::string& reason,
+               std::optional<double> value, std::optional<double> low, std::optional<double> high,
+               const std::string& unit) const {
+    asks::VerdictRow row;
+    row.measure = parameter_.name;
+    row.level = level;
+    row.value = value;
+    row.low = low;
+    row.high = high;
+    row.unit = unit;
+    row.verdict = verdict;
+    row.reason = reason;
+    row.cases = level.empty() ? told_.size() : 1;
+    row.left_out = level.empty() ? cases_.size() - told_.size() : 0;
+    out.rows.push_back(std::move(row));
+  }
+
+  /// Whether another method has the same change: of the same motions, at values that are not apart.
+  static bool has(const CaseMotions& one, const MotionChange& change) {
+    return std::any_of(one.changes.begin(), one.changes.end(), [&](const MotionChange& other) {
+      return other.from == change.from && other.to == change.to && other.low <= change.high && change.low <= other.high;
+    });
+  }
+
+  static std::string change_text(const MotionChange& change, const std::string& unit) {
+    const std::string period = "period ", low = answers::short_number(change.low, 5),
+                      high = answers::short_number(change.high, 5);
+    const bool both = change.from.starts_with(period) && change.to.starts_with(period);
+    return fmt::format("{} to {} ({}–{}{})", change.from, both ? change.to.substr(period.size()) : change.to, low, high,
+                       unit);
+  }
+
+  void say(asks::Answered& out) const {
+    const std::string unit = parameter_.unit.empty() ? "" : " " + parameter_.unit;
+    const bool open = undecided_ > much_open;
+    out.passes = open || told_.empty() ? asks::Verdict::open : asks::Verdict::yes;
+    out.verdict = open ? "undecided" : "decided";
+    const std::string share = answers::percent(undecided_) + " of the range is undecided";
+    if (open) out.reason = share;
+    if (told_.empty() || std::all_of(told_.begin(), told_.end(), [](const CaseMotions& one) {
+          return std::all_of(one.stretches.begin(), one.stretches.end(),
+                             [](const auto& part) { return part.motion.empty(); });
+        })) {
+      out.passes = asks::Verdict::open;
+      out.verdict = "undecided";
+      out.reason = told_.empty() ? "no case has a diagram" : "no orbit is decided";
+      out.sentence = "Open: " + out.reason + ".";
+      return;
+    }
+    // Of changes those that every method has, at its finest step; where none is, those of the first.
+    const CaseMotions& first = *heads_.front();
+    std::vector<MotionChange> shared, own = first.changes;
+    for (const MotionChange& change : own)
+      if (std::all_of(heads_.begin(), heads_.end(), [&](const CaseMotions* one) { return has(*one, change); }))
+        shared.push_back(change);
+    std::size_t others = 0;
+    for (const CaseMotions* one : heads_)
+      others += static_cast<std::size_t>(
+          std::count_if(one->changes.begin(), one->changes.end(), [&](const MotionChange& change) {
+            return std::none_of(shared.begin(), shared.end(), [&](const MotionChange& of_all) {
+              return of_all.from == change.from && of_all.to == change.to && of_all.low <= change.high &&
+                     change.low <= of_all.high;
+            });
+          }));
+    const bool several = heads_.size() > 1, none_shared = shared.empty();
+    const std::vector<MotionChange>& said = none_shared ? own : shared;
+    const std::string whose = !several      ? ""
+                              : none_shared ? " with " + study_.name(*first.record)
+                                            : " with every method";
+    const std::string before = open ? share + "; " : "";
+    const std::string after = open || undecided_ == 0 ? "" : "; " + share;
+    std::vector<std::string> texts;
+    if (said.empty()) {
+      std::set<std::string> motions;
+      for (const CaseMotions* one : heads_)
+        for (const MotionStretch& part : one->stretches)
+          if (!part.motion.empty()) motions.insert(part.motion);
+      texts.push_back(fmt::format("{}{} {} no change{}{}.", before, fmt::join(motions, ", "),
+                                  motions.size() == 1 ? "throughout:" : "and", several ? " that methods share" : "",
+                                  after));
+    }
+    for (std::size_t count = said.size(); count-- > 0;) {
+      std::vector<std::string> parts;
+      for (std::size_t k = 0; k <= count; ++k) parts.push_back(change_text(said[k], k == count ? unit : ""));
+      const std::string more = count + 1 < said.size() ? fmt::format(", {} more", said.size() - count - 1) : "";
+      texts.push_back(
+          fmt::format("{}the motion changes{} from {}{}{}.", before, whose, fmt::join(parts, ", "), more, after));
+    }
+    for (std::string& one : texts) one = answers::capitalised(one);
+    out.sentence = asks::fitting(texts);
+    if (several && others > 0 && !none_shared)
+      out.aside.push_back(fmt::format("{} more changes are not those of every method.", others));
+    if (several && none_shared && others > 0) out.aside.emplace_back("No change is that of every method.");
+  }
+
+  const asks::Evidence& evidence_;
+  const answers::Compared& study_;
+  Cases cases_;
+  std::vector<std::string> columns_;
+  report::Quantity parameter_;
+  std::vector<CaseMotions> told_;
+  std::vector<const CaseMotions*> heads_;
+  double undecided_ = 0;
+};
+
+/// "/scene/support/pulsation": "scene.support.pulsation", "support.pulsation", "pulsation", and itself.
+std::vector<std::string> names_of(const std::string& pointer) {
+  std::vector<std::string> out;
+  std::string rest = pointer.starts_with("/") ? pointer.substr(1) : pointer;
+  std::replace(rest.begin(), rest.end(), '/', '.');
+  for (;;) {
+    out.push_back(rest);
+    const std::size_t dot = rest.find('.');
+    if (dot == std::string::npos) break;
+    rest.erase(0, dot + 1);
+  }
+  out.push_back(pointer);
+  return out;
+}
+
+}  // namespace
+
+asks::Answered motions_of_sweep(const asks::Ask& ask, const asks::Evidence& evidence, const SweptMotions& swept) {
+  return MotionsAlong(ask, evidence, swept).answer();
+}
+
+asks::Answered effect_on_sweep(const asks::Ask& ask, const asks::Evidence& evidence, const SweptMotions& swept) {
+  std::vector<std::vector<GridCell>> places;
+  for (const DiagramCase& one : swept.diagram.cases) {
+    std::vector<GridCell>& cells = places.emplace_back();
+    for (int value = 0; value < swept.diagram.value_count(); ++value)
+      for (int start = 0; start < swept.diagram.start_count(); ++start) {
+        const int at = one.at[static_cast<std::size_t>(value * swept.diagram.start_count() + start)];
+        GridCell& cell = cells.emplace_back();
+        if (at < 0) continue;
+        const DiagramRun& run = one.runs[static_cast<std::size_t>(at)];
+        cell.present = true;
+        cell.motion = run.motion;
+        cell.attractor = run.attractor - 1;
+      }
+  }
+  const MotionsOf motions = [&](const CaseRecord& record) -> const std::vector<GridCell>* {
+    const auto found = std::find(swept.records.begin(), swept.records.end(), &record);
+    return found == swept.records.end() ? nullptr : &places[static_cast<std::size_t>(found - swept.records.begin())];
+  };
+  return effect_on_motions(ask, evidence, motions, swept.diagram.start_count() > 1 ? "orbits" : "values");
+}
+
+void check_sweep_ask(const Study& study, const Json& keys, const std::string& pointer) {
+  const asks::Ask ask = asks::ask_at(keys, pointer);
+  asks::refuse_stops(ask);
+  if (ask.has("effect")) return check_effect_on_motions(study, keys, pointer);
+  const std::vector<std::string> names = names_of(study.resolved.at("parameter").at("pointer").get<std::string>());
+  if (std::find(names.begin(), names.end(), ask.subject()) == names.end())
+    throw InputError(pointer, "this study goes through " + quote(names.front()) + " and not through " +
+                                  quote(ask.subject()) + did_you_mean(ask.subject(), names));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,72 @@
+// The errors that asks name.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "runners/asks/kind_verbs.hpp"
+#include "runners/json/json_text.hpp"
+#include "runners/kinds/comparison/comparison.hpp"
+#include "runners/kinds/comparison/comparison_answers.hpp"
+
+namespace ricochet {
+
+std::string error_words(const std::string& error) {
+  if (error == "tip-linf") return "the largest error of the tip";
+  if (error == "tip-l2") return "the root mean square error of the tip";
+  if (error == "displacement-l2") return "the error of the displacement";
+  if (error == "displacement-h2") return "the error of the curvature";
+  if (error == "velocity-l2") return "the error of the velocity";
+  if (error == "impact-times") return "the error of the impact times";
+  if (error == "impulse") return "the error of the impulse";
+  if (error == "energy") return "the error of the energy";
+  return "the error of " + error;
+}
+
+std::string short_error_words(const std::string& error) {
+  const std::string words = error_words(error), plain = "the error of ", the = "the ";
+  const std::string rest = words.substr(words.starts_with(plain) ? plain.size() : 0);
+  return rest.starts_with(the) ? rest.substr(the.size()) : rest;
+}
+
+std::string quantity_words(const std::string& error) {
+  std::string words = error_words(error);
+  const std::size_t of = words.rfind(" of the ");
+  return of == std::string::npos ? words : words.substr(of + 8);
+}
+std::string error_name(std::string asked) {
+  if (asked.starts_with("error.")) asked.erase(0, 6);
+  std::replace(asked.begin(), asked.end(), '_', '-');
+  return asked;
+}
+
+void check_error_ask(const Study& study, const Json& keys, const std::string& pointer) {
+  const asks::Ask ask = asks::ask_at(keys, pointer);
+  asks::refuse_stops(ask);
+  const std::string error = error_name(ask.subject());
+  const auto computed = study.resolved.at("errors").get<std::vector<std::string>>();
+  const auto among = [&](const std::vector<std::string>& list) {
+    return std::find(list.begin(), list.end(), error) != list.end();
+  };
+  if (!among(computed))
+    throw InputError(pointer, (among(error_names())
+                                   ? fmt::format("{} is no error of this study; add it to \"errors\", or ask one of {}",
+                                                 quote(error), quoted_list(computed))
+                                   : fmt::format("no error is called {}; expected one of {}", quote(ask.subject()),
+                                                 quoted_list(computed))) +
+                                  did_you_mean(error, computed));
+  if (ask.verb->name != std::string("order")) return;
+  std::set<double> steps;
+  std::set<int> meshes;
+  for (const StudyCase& one : study.cases) {
+    steps.insert(one.step);
+    meshes.insert(one.elements);
+  }
+  constexpr std::size_t least = 3;
+  if (steps.size() < least && meshes.size() < least)
+    throw InputError(pointer,
+                     fmt::format("an order shows from three steps or three meshes on; this study has {} and {}",
+                                 steps.size(), meshes.size()));
+}
+
+}  // namespace ricochet

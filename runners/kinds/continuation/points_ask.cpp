@@ -1,0 +1,373 @@
+// The verb `points`: special points in the order of their branches, what is stable beside them, how far branches went.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "runners/answers/numbers_in_words.hpp"
+#include "runners/answers/set_names.hpp"
+#include "runners/asks/kind_verbs.hpp"
+#include "runners/json/json_text.hpp"
+#include "runners/kinds/continuation/continuation.hpp"
+#include "runners/kinds/continuation/point_speaker.hpp"
+#include "runners/kinds/sweep/page/orbits.hpp"
+#include "runners/report/case_view.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet {
+namespace {
+
+/// Kinds by the names that asks may use.
+std::string point_kind(std::string asked) {
+  std::replace(asked.begin(), asked.end(), '_', ' ');
+  std::replace(asked.begin(), asked.end(), '-', ' ');
+  if (asked == "lift off") return "lift-off";
+  return asked == "grazing" ? "first contact" : asked;
+}
+
+const std::vector<std::string>& askable_kinds() {
+  static const std::vector<std::string> kinds = {"all",           "fold",    "torus",    "symmetry", "flip",
+                                                 "first contact", "grazing", "lift-off", "contact"};
+  return kinds;
+}
+
+/// What becomes of a branch, in words; "" of one that ends for a reason of its own.
+std::string end_words(const std::string& ended) {
+  static const std::map<std::string, std::string> words = {{"range", "reaches an end of the range"},
+                                                           {"closed", "closes"},
+                                                           {"joined", "joins another branch"},
+                                                           {"asked", "stops at a point of stop_at"}};
+  const auto found = words.find(ended);
+  return found == words.end() ? "" : found->second;
+}
+
+/// One branch of a case.
+struct Followed {
+  std::string name;
+  std::vector<BranchRow> rows = {};
+  double from = INFINITY, to = -INFINITY;  ///< of the parameter
+  const SpecialRow* end = nullptr;
+};
+
+/// A point of a method's finest case.
+struct Told {
+  const StudyPoint* point = nullptr;
+  double value = 0;
+  std::optional<double> half = {};
+  bool refined = false;
+  std::string below = {}, above = {};  ///< stable orbits on each side
+};
+
+/// A method: its finest case.
+struct Followers {
+  std::size_t owner = 0;
+  const CaseRecord* record = nullptr;
+  std::vector<Followed> branches = {};
+  std::vector<Told> points = {};
+};
+
+class PointsAsk {
+ public:
+  PointsAsk(const asks::Ask& ask, const asks::Evidence& evidence, const PointAnalysis& of)
+      : evidence_(evidence),
+        study_(evidence.study()),
+        of_(of),
+        cases_(evidence.cases(ask)),
+        columns_(asks::varying(evidence, cases_)),
+        parameter_(report::swept_parameter(evidence.results())) {
+    parameter_.unit = report::shown_unit(parameter_.unit);
+    for (const Json& one : ask.keys.at("points")) kinds_.insert(point_kind(one.get<std::string>()));
+    all_ = kinds_.contains("all");
+    const Cases& owners = of.points.cases();
+    std::map<std::string, std::size_t> best;
+    std::vector<std::string> order;
+    std::vector<std::string> methods = columns_;
+    std::erase_if(methods, [](const std::string& one) { return answers::is_refinement(one); });
+    for (std::size_t c = 0; c < owners.size(); ++c) {
+      if (std::find(cases_.begin(), cases_.end(), owners[c]) == cases_.end()) continue;
+      followed_.insert(owners[c]);
+      const std::string key = study_.key(*owners[c], methods);
+      const auto [at, fresh] = best.emplace(key, c);
+      if (fresh)
+        order.push_back(key);
+      else if (study_.finer(*owners[c], *owners[at->second]))
+        at->second = c;
+    }
+    for (const std::string& key : order) read(best.at(key));
+  }
+
+  asks::Answered answer() const {
+    asks::Answered out;
+    out.cases = followed_.size();
+    out.left_out = cases_.size() - followed_.size();
+    for (const CaseRecord* one : cases_)
+      if (!followed_.contains(one))
+        out.aside.push_back(
+            fmt::format("Left out: {}: {}.", evidence_.level(*one, columns_),
+                        one->reason().empty() ? "it left no branch" : one->status + ": " + one->reason()));
+    Json drawn = Json::array(), marks = Json::array();
+    for (const Followers& one : methods_) {
+      for (const Told& told : one.points) {
+        add_point(out, one, told);
+        marks.push_back({{"name", level(one)},
+                         {"kind", point_words(told.point->kind).thing},
+                         {"branch", told.point->row.branch},
+                         {"value", told.value},
+                         {"tip", told.point->displacement}});
+      }
+      for (const Followed& branch : one.branches) {
+        add_end(out, one, branch);
+        Json points = Json::array();
+        for (const BranchRow& row : branch.rows)
+          if (row.tip_displacement)
+            points.push_back({*row.parameter, *row.tip_displacement, row.stable.value_or(false)});
+        drawn.push_back(
+            {{"name", level(one).empty() ? branch.name : level(one) + ", " + branch.name}, {"points", points}});
+      }
+    }
+    say(out);
+    out.figure = {{"form", "branches"},
+                  {"x", parameter_.name},
+                  {"x_unit", parameter_.unit},
+                  {"y", "displacement of the tip"},
+                  {"y_unit", "m"},
+                  {"series", drawn},
+                  {"marks", marks}};
+    return out;
+  }
+
+ private:
+  std::string level(const Followers& one) const { return evidence_.level(*one.record, columns_); }
+
+  void read(std::size_t owner) {
+    Followers& out = methods_.emplace_back();
+    out.owner = owner;
+    out.record = of_.points.cases()[owner];
+    for (BranchRow& row : branch_rows_in(*find_table(out.record->tables, branches_name))) {
+      if (!row.parameter) continue;
+      auto branch = std::find_if(out.branches.begin(), out.branches.end(),
+                                 [&](const Followed& one) { return one.name == row.branch; });
+      if (branch == out.branches.end()) branch = out.branches.insert(out.branches.end(), {row.branch});
+      branch->from = std::min(branch->from, *row.parameter);
+      branch->to = std::max(branch->to, *row.parameter);
+      branch->rows.push_back(std::move(row));
+    }
+    // A turn that a step may have invented is no fold.
+    const double least = of_.points.least_fold().value_or(0);
+    for (const StudyPoint& point : of_.points.points()) {
+      if (point.owner != owner) continue;
+      if (point.row.kind == "end") {
+        for (Followed& branch : out.branches)
+          if (branch.name == point.row.branch && !point.row.ended.empty() && point.row.ended != "missing")
+            branch.end = &point.row;
+        continue;
+      }
+      if (!is_point_kind(point.kind) || std::isnan(point.parameter) || !(all_ || kinds_.contains(point.kind))) continue;
+      if (point.kind == "fold" && point.name < 0 && point.prominence < least) continue;
+      Told told{&point, point.parameter};
+      if (point.half > 0) told.half = point.half;
+      if (point.name >= 0)
+        for (const PointLimitRow& row : of_.limits)
+          if (row.name == of_.points.names()[static_cast<std::size_t>(point.name)].text && row.id == out.record->id &&
+              row.limit && row.low && row.high) {
+            told.value = *row.limit;
+            told.half = 0.5 * (*row.high - *row.low);
+            told.refined = true;
+          }
+      out.points.push_back(std::move(told));
+    }
+    std::stable_sort(out.points.begin(), out.points.end(), [](const Told& a, const Told& b) {
+      return std::pair(a.point->branch, a.point->arc) < std::pair(b.point->branch, b.point->arc);
+    });
+    for (Told& told : out.points) {
+      constexpr double beside = 0.005;  // of the range; further than the point is uncertain by
+      const double away = std::max(beside * of_.points.range(), 2 * told.point->half);
+      told.below = stable_at(out, told.point->parameter - away);
+      told.above = stable_at(out, told.point->parameter + away);
+    }
+  }
+
+  /// The stable orbits that branches have at a value of the parameter: "period 1 and period 2"; "none", or "" where no
+  /// branch goes.
+  static std::string stable_at(const Followers& one, double value) {
+    std::set<std::string> stable;
+    bool any = false;
+    for (const Followed& branch : one.branches)
+      for (std::size_t k = 0; k + 1 < branch.rows.size(); ++k) {
+        const BranchRow &a = branch.rows[k], &b = branch.rows[k + 1];
+        const auto [low, high] = std::minmax(*a.parameter, *b.parameter);
+        if (value < low || value > high || !a.stable || !b.stable) continue;
+        any = true;
+        if (*a.stable && *b.stable) stable.insert(fmt::format("period {}", a.period));
+      }
+    return stable.empty() ? (any ? "none" : "") : fmt::format("{}", fmt::join(stable, " and "));
+  }
+
+  void add_point(asks::Answered& out, const Followers& one, const Told& told) const {
+    asks::VerdictRow row;
+    row.measure = point_words(told.point->kind).thing;
+    row.level = (level(one).empty() ? "" : level(one) + ", ") + told.point->row.branch;
+    row.value = told.value;
+    if (told.half) {
+      row.low = told.value - *told.half;
+      row.high = told.value + *told.half;
+    }
+    row.unit = parameter_.unit;
+    row.verdict =
+        fmt::format("{} {}", fmt::format("period {}", told.point->period), point_words(told.point->kind).does);
+    std::vector<std::string> parts;
+    const auto side = [](const std::string& stable) { return stable.empty() ? "not followed" : stable; };
+    parts.push_back(fmt::format("stable below: {}, above: {}", side(told.below), side(told.above)));
+    if (!told.refined) parts.emplace_back("no second case confirms it");
+    if (told.point->name >= 0)
+      for (const PointOrderRow& order : of_.orders)
+        if (order.name == of_.points.names()[static_cast<std::size_t>(told.point->name)].text &&
+            order.method == one.record->id && order.verdict == order_told)
+          parts.push_back(fmt::format("order {} in {}", answers::short_number(*order.order, 2), order.refined));
+    for (const PointLimitRow& limit : of_.limits)
+      if (told.point->name >= 0 && limit.id == one.record->id && limit.reference &&
+          limit.name == of_.points.names()[static_cast<std::size_t>(told.point->name)].text)
+        parts.push_back(fmt::format("reference {}", answers::short_number(*limit.reference, 7)));
+    row.reason = fmt::format("{}", fmt::join(parts, "; "));
+    row.cases = 1;
+    row.left_out = 0;
+    out.rows.push_back(std::move(row));
+  }
+
+  void add_end(asks::Answered& out, const Followers& one, const Followed& branch) const {
+    asks::VerdictRow row;
+    row.measure = "end of the branch";
+    row.level = (level(one).empty() ? "" : level(one) + ", ") + branch.name;
+    row.unit = parameter_.unit;
+    row.low = branch.from;
+    row.high = branch.to;
+    row.cases = 1;
+    row.left_out = 0;
+    if (branch.end) {
+      row.value = branch.end->parameter;
+      const std::string words = end_words(branch.end->ended);
+      row.verdict = words.empty() ? "stops inside the range" : words;
+      row.reason = words.empty() ? branch.end->note : "";
+    } else {
+      row.verdict = "has no end that is told";
+    }
+    out.rows.push_back(std::move(row));
+  }
+
+  /// "folds at 0.1006 ± 3e-5".
+  static std::string place(const Told& told) {
+    return fmt::format("{} at {}", point_words(told.point->kind).does, point_value(told.value, told.half));
+  }
+
+  void say(asks::Answered& out) const {
+    std::size_t branches = 0, known = 0, inside = 0, points = 0;
+    const Followed* stopped = nullptr;
+    for (const Followers& one : methods_) {
+      points += one.points.size();
+      for (const Followed& branch : one.branches) {
+        ++branches;
+        known += branch.end != nullptr;
+        if (!branch.end || !end_words(branch.end->ended).empty()) continue;
+        ++inside;
+        if (!stopped) stopped = &branch;
+      }
+    }
+    const std::string unit = parameter_.unit.empty() ? "" : " " + parameter_.unit;
+    if (branches == 0) {
+      out.passes = asks::Verdict::open;
+      out.verdict = "open";
+      out.reason = nothing();
+      out.sentence = asks::fitting(
+          {"Open: no periodic orbit was found: " + out.reason + ".", "Open: no periodic orbit was found."});
+      return;
+    }
+    out.passes = points > 0 ? asks::Verdict::yes : inside > 0 ? asks::Verdict::open : asks::Verdict::no;
+    out.verdict = points > 0 ? "found" : inside > 0 ? "open" : "none";
+    std::string ends = known == 0    ? "no end of a branch is told"
+                       : inside == 0 ? fmt::format("all {} branches end at the range, closed or joined", known)
+                                     : fmt::format("{} of {} branches stop inside the range", inside, branches);
+    if (branches == 1 && stopped)
+      ends = fmt::format("the branch stops inside the range at {}{}",
+                         answers::short_number(stopped->end->parameter.value_or(stopped->to), 6), unit);
+    if (const SpecialRow* end = methods_.front().branches.front().end; branches == 1 && !stopped && end)
+      ends = "the branch " + end_words(end->ended);
+    if (stopped) out.reason = stopped->end->note;
+    // Of the first method that has points; those at one place once.
+    const auto first =
+        std::find_if(methods_.begin(), methods_.end(), [](const Followers& one) { return !one.points.empty(); });
+    if (first == methods_.end()) {
+      const std::string asked = all_ ? "special point" : kinds_text();
+      out.sentence = asks::fitting({fmt::format("{}: no {} was met; {}.", inside > 0 ? "Open" : "No", asked, ends)});
+      return;
+    }
+    std::vector<const Told*> list;
+    for (const Told& told : first->points)
+      if (std::none_of(list.begin(), list.end(),
+                       [&](const Told* other) { return at_one_place(*told.point, *other->point); }))
+        list.push_back(&told);
+    std::vector<std::string> texts;
+    const std::string who = methods_.size() > 1 ? "with " + study_.name(*first->record) + ", " : "";
+    for (const bool named : {true, false})
+      for (std::size_t count = list.size(); count > 0; --count) {
+        if (named && count < list.size() && count < 2) continue;
+        std::string text;
+        int period = 0;
+        for (std::size_t k = 0; k < count; ++k) {
+          const Told& told = *list[k];
+          const bool same = told.point->period == period;
+          text += (k == 0 ? "" : ", ") +
+                  (same ? place(told) : fmt::format("period {} {}", told.point->period, place(told)));
+          period = told.point->period;
+        }
+        text += unit;
+        if (count < list.size()) text += fmt::format(", {} more", list.size() - count);
+        texts.push_back(answers::capitalised((named ? who : "") + text + "; " + ends + "."));
+      }
+    out.sentence = asks::fitting(texts);
+  }
+
+  std::string kinds_text() const {
+    std::vector<std::string> names(kinds_.begin(), kinds_.end());
+    return fmt::format("{}", fmt::join(names, " or "));
+  }
+
+  std::string nothing() const {
+    for (const CaseRecord* one : cases_)
+      for (const SpecialRow& row : special_points_type().read(one->tables))
+        if (!row.note.empty()) return row.note;
+    return "no case left a branch";
+  }
+
+  const asks::Evidence& evidence_;
+  const answers::Compared& study_;
+  const PointAnalysis& of_;
+  Cases cases_;
+  std::set<const CaseRecord*> followed_;
+  std::vector<std::string> columns_;
+  report::Quantity parameter_;
+  std::set<std::string> kinds_;
+  bool all_ = false;
+  std::vector<Followers> methods_;
+};
+
+}  // namespace
+
+asks::Answered points_ask(const asks::Ask& ask, const asks::Evidence& evidence, const PointAnalysis& points) {
+  return PointsAsk(ask, evidence, points).answer();
+}
+
+void check_points_ask(const Study&, const Json& keys, const std::string& pointer) {
+  asks::refuse_stops(asks::ask_at(keys, pointer));
+  const Json& asked = keys.at("points");
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    const std::string kind = asked[k].get<std::string>();
+    if (kind != "all" && !is_point_kind(point_kind(kind)))
+      throw InputError(pointer_to(pointer, k), "no kind of point is called " + quote(kind) + "; expected one of " +
+                                                   quoted_list(askable_kinds()) + did_you_mean(kind, askable_kinds()));
+  }
+}
+
+}  // namespace ricochet

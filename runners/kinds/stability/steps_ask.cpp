@@ -1,0 +1,252 @@
+// The verb `steps`: which step is allowed, and whether the mesh or the closed stop bounds it.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "runners/answers/numbers_in_words.hpp"
+#include "runners/answers/set_names.hpp"
+#include "runners/asks/kind_verbs.hpp"
+#include "runners/kinds/stability/stability.hpp"
+#include "runners/kinds/stability/stability_tables.hpp"
+
+namespace ricochet {
+namespace {
+
+/// What bounds the step of a case.
+enum class Bound { stop, mesh, none, everywhere, unknown };
+
+const char* bound_word(Bound bound) {
+  constexpr const char* words[] = {"the stop", "the mesh", "no limit", "no step is stable", "open"};
+  return words[static_cast<int>(bound)];
+}
+
+struct StepLimit {
+  const CaseRecord* record = nullptr;
+  LimitRow open, closed;
+  Bound bound = Bound::unknown;
+  std::optional<double> step = {}, low = {}, high = {};  ///< s: allowed; the same as marched and as predicted
+  std::string reason = {};
+};
+
+/// A stop adds its stiffness over its mass to ω² of the mesh: h_c⁻² ≤ h_o⁻² + h_s⁻². It bounds the step where its part
+/// is the larger one, h_c < h_o/√2.
+bool by_the_stop(double open, double closed) {
+  return 2 * closed * closed < open * open;
+}
+
+class StepsAsk {
+ public:
+  StepsAsk(const asks::Ask& ask, const asks::Evidence& evidence, const std::vector<LimitRow>& rows)
+      : evidence_(evidence),
+        study_(evidence.study()),
+        cases_(evidence.cases(ask)),
+        columns_(asks::varying(evidence, cases_)) {
+    std::map<std::string, StepLimit> by_id;
+    for (const LimitRow& row : rows) (row.closed ? by_id[row.id].closed : by_id[row.id].open) = row;
+    for (const CaseRecord* one : cases_)
+      if (const auto found = by_id.find(one->id); found != by_id.end() && !found->second.open.id.empty()) {
+        StepLimit limit = found->second;
+        limit.record = one;
+        judge(limit);
+        limits_.push_back(std::move(limit));
+      }
+    const Json range =
+        evidence.results().study.is_object() ? evidence.results().study.value("steps", Json::object()) : Json::object();
+    range_ = fmt::format("{} to {} s", answers::short_number(range.value("from", 0.0)),
+                         answers::short_number(range.value("to", 0.0)));
+    for (const RootRow& row : stability_roots_type().read(evidence.results().derived))
+      if (row.twofold) double_roots_.insert(row.id);
+  }
+
+  asks::Answered answer() const {
+    asks::Answered out;
+    out.cases = limits_.size();
+    out.left_out = cases_.size() - limits_.size();
+    for (const CaseRecord* one : cases_)
+      if (std::none_of(limits_.begin(), limits_.end(), [&](const StepLimit& two) { return two.record == one; }))
+        out.aside.push_back(fmt::format("Left out: {}: {}.", evidence_.level(*one, columns_),
+                                        one->reason().empty() ? one->status : one->status + ": " + one->reason()));
+    Json bars = Json::array();
+    std::size_t unlike = 0;
+    for (const StepLimit& one : limits_) {
+      asks::VerdictRow row;
+      row.measure = "step";
+      row.level = level(one);
+      row.value = one.step;
+      row.low = one.low;
+      row.high = one.high;
+      row.unit = "s";
+      row.verdict = bound_word(one.bound);
+      row.reason = one.reason;
+      row.cases = 1;
+      row.left_out = 0;
+      bars.push_back({{"name", row.level}, {"group", row.verdict}});
+      if (one.step) bars.back().update({{"value", *one.step}, {"low", *one.low}, {"high", *one.high}});
+      out.rows.push_back(std::move(row));
+      unlike += apart(one);
+    }
+    out.figure = {{"form", "bars"}, {"measure", "largest step"}, {"unit", "s"},
+                  {"rows", bars},   {"at", Json::array()},       {"log", true}};
+    if (unlike > 0)
+      out.aside.push_back(
+          fmt::format("Marches have another limit than the spectrum with {} of {}: contacts open and close.", unlike,
+                      limits_.size()));
+    say_gains(out);
+    if (!double_roots_.empty())
+      out.aside.push_back(
+          fmt::format("A double root on the unit circle grows linearly, though no limit shows, in {} of {}.",
+                      members([&](const StepLimit& one) { return double_roots_.contains(one.record->id); }).size(),
+                      limits_.size()));
+    say(out);
+    return out;
+  }
+
+ private:
+  std::string level(const StepLimit& one) const { return evidence_.level(*one.record, columns_); }
+
+  /// What is marched is the scene, open as well as closed: it may have either limit.
+  static bool apart(const StepLimit& one) {
+    const LimitRow& row = one.closed.id.empty() ? one.open : one.closed;
+    return row.agrees == false;
+  }
+
+  void judge(StepLimit& out) const {
+    const LimitRow &open = out.open, &closed = out.closed;
+    std::vector<std::string> parts;
+    const bool has_closed = !closed.id.empty() && !closed.prediction.empty();
+    if (open.prediction == "below the range" || (has_closed && closed.prediction == "below the range")) {
+      out.bound = Bound::everywhere;
+      parts.emplace_back(open.prediction == "below the range"
+                             ? "unstable at every step of the range"
+                             : "unstable with the stop closed at every step of the range");
+    } else if (open.prediction.empty()) {
+      parts.emplace_back("no prediction was made");
+    } else {
+      std::optional<double> step = open.predicted;
+      out.bound = step ? Bound::mesh : Bound::none;
+      if (has_closed && closed.predicted) {
+        if (!step || by_the_stop(*step, *closed.predicted)) out.bound = Bound::stop;
+        step = step ? std::min(*step, *closed.predicted) : *closed.predicted;
+      }
+      out.step = step;
+      if (step) {
+        const LimitRow& own = has_closed ? closed : open;
+        out.low = out.high = step;
+        if (own.observed) {
+          out.low = std::min(*step, *own.observed);
+          out.high = std::max(*step, *own.observed);
+          parts.push_back(fmt::format("marched {} s", answers::short_number(*own.observed, 3)));
+        }
+        if (has_closed && open.predicted)
+          parts.push_back(fmt::format("without contact {} s", answers::short_number(*open.predicted, 3)));
+        if (!closed.id.empty() && closed.prediction.empty()) parts.emplace_back("the closed stop was not predicted");
+      } else {
+        parts.push_back("every step of the range is stable");
+      }
+    }
+    out.reason = fmt::format("{}", fmt::join(parts, "; "));
+  }
+
+  template <class Holds>
+  Members members(Holds holds) const {
+    Members out;
+    for (std::size_t k = 0; k < limits_.size(); ++k)
+      if (holds(limits_[k])) out.push_back(k);
+    return out;
+  }
+
+  void say_gains(asks::Answered& out) const {
+    const Members gain = members([](const StepLimit& one) {
+      return one.closed.prediction == "none" && one.closed.disagreeing > 0 && !one.closed.observation.empty() &&
+             one.closed.observation != "none";
+    });
+    if (!gain.empty())
+      out.aside.push_back(fmt::format("Impacts make energy though every spectrum is stable in {} of {}: {}.",
+                                      gain.size(), limits_.size(), names().of(gain)));
+  }
+
+  answers::SetNames names() const {
+    Cases records;
+    for (const StepLimit& one : limits_) records.push_back(one.record);
+    return answers::SetNames(study_, records, columns_);
+  }
+
+  /// "3.54e-5 s", or the range of them.
+  std::string steps(const Members& of) const {
+    double low = INFINITY, high = 0;
+    for (const std::size_t k : of) {
+      low = std::min(low, *limits_[k].step);
+      high = std::max(high, *limits_[k].step);
+    }
+    const std::string a = answers::short_number(low, 3), b = answers::short_number(high, 3);
+    return a == b ? a + " s" : a + " to " + b + " s";
+  }
+
+  void say(asks::Answered& out) const {
+    std::map<Bound, Members> bounds;
+    for (std::size_t k = 0; k < limits_.size(); ++k) bounds[limits_[k].bound].push_back(k);
+    out.passes = limits_.empty() || bounds.contains(Bound::unknown) ? asks::Verdict::open
+                 : bounds.contains(Bound::everywhere)               ? asks::Verdict::no
+                                                                    : asks::Verdict::yes;
+    out.verdict = limits_.empty() ? "open" : bounds.size() == 1 ? bound_word(bounds.begin()->first) : "by level";
+    if (limits_.empty()) {
+      out.reason = "no case has a spectrum";
+      out.sentence = "Open: " + out.reason + ".";
+      return;
+    }
+    const answers::SetNames sets = names();
+    std::vector<std::string> texts;
+    for (const int brief : {0, 1, 2}) {
+      std::vector<std::string> parts;
+      // The largest group needs no name beside the others.
+      std::size_t largest = 0;
+      for (const auto& [bound, of] : bounds) largest = std::max(largest, of.size());
+      std::string verb = " bounds the step";  // once
+      for (const auto& [bound, of] : bounds) {
+        const std::string who = of.size() == limits_.size() ? (limits_.size() == 1 ? "" : " with every case")
+                                : brief == 2 ? fmt::format(" in {} of {} cases", of.size(), limits_.size())
+                                : brief == 1 && of.size() == largest && bounds.size() > 1 ? " elsewhere"
+                                                                                          : " with " + sets.of(of);
+        switch (bound) {
+          case Bound::stop:
+          case Bound::mesh:
+            parts.push_back(fmt::format("{}{}{} ({})", bound == Bound::stop ? "the closed stop" : "the mesh", verb, who,
+                                        steps(of)));
+            verb.clear();
+            break;
+          case Bound::none:
+            parts.push_back(fmt::format("no limit{} from {}", who, range_));
+            break;
+          case Bound::everywhere:
+            parts.push_back("no stable step" + who);
+            break;
+          case Bound::unknown:
+            parts.push_back("open" + who);
+            break;
+        }
+      }
+      texts.push_back(answers::capitalised(fmt::format("{}.", fmt::join(parts, "; "))));
+    }
+    out.sentence = asks::fitting(texts);
+  }
+
+  const asks::Evidence& evidence_;
+  const answers::Compared& study_;
+  Cases cases_;
+  std::vector<std::string> columns_;
+  std::vector<StepLimit> limits_;
+  std::string range_;
+  std::set<std::string> double_roots_;
+};
+
+}  // namespace
+
+asks::Answered steps_ask(const asks::Ask& ask, const asks::Evidence& evidence, const std::vector<LimitRow>& limits) {
+  return StepsAsk(ask, evidence, limits).answer();
+}
+
+}  // namespace ricochet

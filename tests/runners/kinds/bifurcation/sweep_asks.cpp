@@ -1,0 +1,145 @@
+// The verbs `motions` and `effect` on motions of made diagrams: changes lie where they were made, whatever the order.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "runners/asks/kind_verbs.hpp"
+#include "runners/kinds/bifurcation/bifurcation.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
+#include "runners/kinds/sweep/motion_asks.hpp"
+
+namespace ricochet::tests_of_sweep_asks {
+
+using Catch::Matchers::Contains;
+
+namespace {
+
+const MotionClass one{Regime::periodic, 1}, two{Regime::periodic, 2}, three{Regime::periodic, 3},
+    open{Regime::undecided, 0};
+
+struct Made {
+  StudyResults results;
+  SweptMotions swept;
+};
+
+/// Cases of two schemes or more, each with its motions at 1, 2, 3, …
+Made study_of(const std::vector<std::vector<MotionClass>>& cases, std::mt19937* random = nullptr) {
+  Made out;
+  out.results.kind = "bifurcation";
+  out.results.columns = {"time"};
+  out.results.study = {{"parameter", {{"pointer", "/scene/support/pulsation"}}}};
+  out.swept.diagram.starts = {{"rest", false}};
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    CaseRecord& record = out.results.cases.emplace_back();
+    record.id = "c" + std::to_string(c);
+    record.status = "done";
+    record.axes = {{"time", "scheme" + std::to_string(c + 1)}};
+    DiagramCase& of = out.swept.diagram.cases.emplace_back();
+    for (std::size_t k = 0; k < cases[c].size(); ++k) {
+      DiagramRun run;
+      run.parameter = static_cast<double>(k + 1);
+      run.motion = cases[c][k];
+      run.settled = true;
+      run.attractor = run.motion.decided() ? static_cast<int>(10 * c) + run.motion.period : 0;
+      of.runs.push_back(run);
+    }
+    if (random) std::shuffle(of.runs.begin(), of.runs.end(), *random);
+  }
+  out.swept.diagram.number_values();
+  for (const CaseRecord& record : out.results.cases) out.swept.records.push_back(&record);
+  return out;
+}
+
+asks::Answered ask(const Made& made, const Json& keys) {
+  const answers::Compared compared(made.results);
+  const asks::Evidence evidence(compared);
+  const asks::Ask asked = asks::ask_of(keys, 1);
+  return asked.has("effect") ? effect_on_sweep(asked, evidence, made.swept)
+                             : motions_of_sweep(asked, evidence, made.swept);
+}
+
+const Json motions = {{"motions", "support.pulsation"}};
+
+}  // namespace
+
+TEST_CASE("motions are told in the order of the parameter, changes between the values where they lie", "[asks]") {
+  const asks::Answered out = ask(study_of({{one, one, two, two, three}, {one, one, two, two, three}}), motions);
+  INFO(out.sentence);
+  CHECK_THAT(out.sentence, Contains("with every method from period 1 to 2 (2–3), period 2 to 3 (4–5"));
+  CHECK(out.passes == asks::Verdict::yes);
+  std::size_t changes = 0;
+  for (const asks::VerdictRow& row : out.rows)
+    changes += row.verdict == "period 1 to period 2" && row.low == 2 && row.high == 3;
+  CHECK(changes == 2);
+}
+
+TEST_CASE("a change of one method alone is not that of every method", "[asks]") {
+  const asks::Answered out = ask(study_of({{one, one, two, two, two}, {one, one, two, two, three}}), motions);
+  CHECK_THAT(out.sentence, Contains("period 1 to 2 (2–3") && !Contains("2 to 3"));
+  REQUIRE_FALSE(out.aside.empty());
+  CHECK_THAT(out.aside.front(), Contains("1 more"));
+}
+
+TEST_CASE("what is undecided stands first above a quarter, and behind it below", "[asks]") {
+  asks::Answered out = ask(study_of({{one, two, open, open, open}}), motions);
+  INFO(out.sentence);
+  // Values stand for the range that is nearest to them: half an interval at an end.
+  CHECK_THAT(out.sentence, Catch::Matchers::StartsWith("62 % of the range is undecided") ||
+                               Catch::Matchers::StartsWith("63 % of the range is undecided"));
+  CHECK(*out.rows.front().value == Approx(62.5));
+  CHECK(out.passes == asks::Verdict::open);
+  CHECK_THAT(out.sentence, Contains("period 1 to 2 (1–2"));
+  out = ask(study_of({{one, two, two, two, open}}), motions);
+  CHECK_THAT(out.sentence, Catch::Matchers::EndsWith("12 % of the range is undecided.") ||
+                               Catch::Matchers::EndsWith("13 % of the range is undecided."));
+  CHECK(out.passes == asks::Verdict::yes);
+  // Two cases that differ are not undecided; one that is open beside one that is not leaves it open.
+  out = ask(study_of({{one, one, two, open, open}, {one, two, two, two, open}}), motions);
+  CHECK(*out.rows.front().value == Approx(37.5));
+  out = ask(study_of({{open, open, open}}), motions);
+  CHECK_THAT(out.sentence, Catch::Matchers::StartsWith("Open: no orbit is decided"));
+}
+
+TEST_CASE("motions beside each other are counted by attractor", "[asks]") {
+  Made made = study_of({{one, one, two}});
+  made.swept.diagram.starts = {{"rest", false}, {"up", false}};
+  std::vector<DiagramRun>& runs = made.swept.diagram.cases.front().runs;
+  for (int k = 0; k < 3; ++k) {
+    DiagramRun run = runs[static_cast<std::size_t>(k)];
+    run.start = 1;
+    run.attractor += k == 1 ? 100 : 0;
+    runs.push_back(run);
+  }
+  made.swept.diagram.number_values();
+  const asks::Answered out = ask(made, motions);
+  CHECK_THAT(out.sentence, Contains("period 1 to two of period 1 (1–2), two of period 1 to period 2 (2–3"));
+}
+
+TEST_CASE("rows in another order change no verdict", "[asks]") {
+  std::mt19937 random(11);
+  for (int draw = 0; draw < 30; ++draw) {
+    const MotionClass some[] = {one, two, three, open};
+    std::vector<std::vector<MotionClass>> cases(2);
+    for (std::vector<MotionClass>& list : cases)
+      for (int k = 0; k < 9; ++k) list.push_back(some[random() % 4]);
+    const asks::Answered before = ask(study_of(cases), motions), after = ask(study_of(cases, &random), motions);
+    CHECK(before.sentence == after.sentence);
+    REQUIRE(before.rows.size() == after.rows.size());
+    for (std::size_t k = 0; k < before.rows.size(); ++k) {
+      CHECK(before.rows[k].verdict == after.rows[k].verdict);
+      CHECK(before.rows[k].low == after.rows[k].low);
+    }
+  }
+}
+
+TEST_CASE("a choice changes the motion at the values where class or period differ", "[asks]") {
+  const Json effect = {{"effect", "time"}, {"on", "motions"}, {"from", 0.2}};
+  asks::Answered out = ask(study_of({{one, one, two, two, three}, {one, two, two, two, two}}), effect);
+  CHECK(out.sentence == "Yes: the time scheme changes the motion of 2 of 5 values (scheme2 against scheme1).");
+  out = ask(study_of({{one, one, two, two, three}, {one, one, two, two, three}}), effect);
+  CHECK(out.passes == asks::Verdict::no);
+  out = ask(study_of({{one, one, two, two, open}, {one, one, two, open, open}}), effect);
+  CHECK(out.passes == asks::Verdict::open);
+}
+
+}  // namespace ricochet::tests_of_sweep_asks

@@ -1,0 +1,106 @@
+// Asks that a kind of study cannot answer: refused by pointer, with the nearest name or the remedy.
+#include <catch2/catch.hpp>
+#include <ricochet/loader/catalogue.hpp>
+
+#include "runners/study/load_study.hpp"
+#include "tests/places.hpp"
+
+namespace ricochet::tests_of_refused_asks {
+
+using Catch::Matchers::Contains;
+
+namespace {
+
+Json oscillator(const std::string& kind) {
+  Json study = Json::parse(R"({
+    "name": "asks",
+    "scene": {
+      "structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.04,
+                    "force": {"amplitude": 0.25, "pulsation": 1.3}},
+      "stops": {"upper": 0.5, "at": "tip"}
+    },
+    "methods": {"mass": "consistent", "contact": {"name": "penalty", "stiffness": 100},
+                "time": ["newmark", "bathe"]}
+  })");
+  study["kind"] = kind;
+  if (kind == "convergence" || kind == "work-precision") {
+    study["step"] = {0.01, 0.005, 0.0025};
+    study["duration"] = 1;
+    study["reference"] = "self";
+    study["errors"] = {"impulse", "tip-l2"};
+  } else if (kind == "bifurcation") {
+    study["parameter"] = {{"pointer", "/scene/structure/force/pulsation"}, {"from", 1}, {"to", 2}, {"count", 3}};
+    study["steps_per_period"] = 100;
+  } else if (kind == "basins") {
+    study["scene"]["initial"] = {{"displacement", "0"}, {"velocity", "0"}};
+    study["axes"] = {{{"pointer", "/scene/initial/displacement"}, {"from", -1}, {"to", 0}, {"count", 3}},
+                     {{"pointer", "/scene/initial/velocity"}, {"from", -1}, {"to", 1}, {"count", 3}}};
+    study["steps_per_period"] = 100;
+  } else if (kind == "stability") {
+    study["steps"] = {{"from", 1e-3}, {"to", 1}};
+  } else {
+    study["step"] = {0.01, 0.005};
+    study["duration"] = 1;
+  }
+  return study;
+}
+
+/// What is refused, "POINTER: message"; "" where nothing is.
+std::string refused(Json study, const Json& ask) {
+  study["ask"] = Json::array({ask});
+  static Catalogue catalogue(tests::places().plugins, {}, {});
+  static Registry registry;
+  try {
+    parse_study(study.dump(), catalogue, registry);
+  } catch (const InputError& error) {
+    return error.pointer() + ": " + error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("errors that a study does not compute are refused with the nearest name", "[asks]") {
+  const Json study = oscillator("convergence");
+  for (const char* name : {"impulse", "error.impulse", "tip_l2", "tip-l2"})
+    CHECK(refused(study, {{"order", name}}) == "");
+  CHECK_THAT(refused(study, {{"order", "impulsee"}}),
+             Contains("/ask/0/order: ") && Contains("did you mean \"impulse\"?"));
+  CHECK_THAT(refused(study, {{"order", "impact_times"}}), Contains("add it to \"errors\""));
+  Json two = study;
+  two["step"] = {0.01, 0.005};
+  CHECK_THAT(refused(two, {{"order", "impulse"}}), Contains("three steps or three meshes") && Contains("has 2 and 1"));
+  const Json cheapest = {{"cheapest", "impulse"}, {"within", "5 %"}};
+  CHECK(refused(oscillator("work-precision"), cheapest) == "");
+  CHECK_THAT(refused(study, cheapest), Contains("/ask/0/cheapest: ") && Contains("kind work-precision"));
+  CHECK_THAT(refused(oscillator("trajectory"), {{"order", "impulse"}}), Contains("kind convergence"));
+}
+
+TEST_CASE("a sweep is asked for its own parameter, basins for shares", "[asks]") {
+  const Json sweep = oscillator("bifurcation");
+  for (const char* name : {"/scene/structure/force/pulsation", "scene.structure.force.pulsation",
+                           "structure.force.pulsation", "force.pulsation"})
+    CHECK(refused(sweep, {{"motions", name}}) == "");
+  CHECK_THAT(refused(sweep, {{"motions", "structure.force.amplitude"}}),
+             Contains("/ask/0/motions: ") && Contains("scene.structure.force.pulsation"));
+  const Json basins = oscillator("basins");
+  CHECK(refused(basins, {{"motions", "share"}}) == "");
+  CHECK_THAT(refused(basins, {{"motions", "shares"}}), Contains("expected \"share\""));
+  for (const Json& study : {sweep, basins}) {
+    CHECK(refused(study, {{"effect", "time"}, {"on", "motions"}}) == "");
+    CHECK_THAT(refused(study, {{"effect", "mass"}, {"on", "motions"}}), Contains("has one level"));
+    CHECK_THAT(refused(study, {{"effect", "time"}, {"on", "motions"}, {"from", 0.1}, {"within", 0.1}}),
+               Contains("/ask/0/within"));
+  }
+  CHECK_THAT(refused(oscillator("trajectory"), {{"effect", "time"}, {"on", "motions"}}), Contains("finds no motions"));
+  CHECK_THAT(refused(oscillator("trajectory"), {{"motions", "share"}}), Contains("kinds bifurcation and basins"));
+}
+
+TEST_CASE("points and steps are asked of their kinds alone", "[asks]") {
+  CHECK(refused(oscillator("stability"), {{"steps", "limit"}}) == "");
+  CHECK(refused(oscillator("bifurcation"), {{"effect", "time"}, {"on", "motions"}, {"from", "10 %"}}) == "");
+  CHECK_THAT(refused(oscillator("stability"), {{"points", "all"}}), Contains("kind continuation"));
+  CHECK_THAT(refused(oscillator("convergence"), {{"steps", "limit"}}), Contains("kind stability"));
+}
+
+}  // namespace ricochet::tests_of_refused_asks

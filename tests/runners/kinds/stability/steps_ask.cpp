@@ -1,0 +1,90 @@
+// The verb `steps` on made limits: by Weyl's inequality the stop bounds the step where its part of ω² is the larger.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "runners/asks/kind_verbs.hpp"
+#include "runners/kinds/stability/stability.hpp"
+#include "runners/kinds/stability/stability_tables.hpp"
+
+namespace ricochet::tests_of_steps_asks {
+
+using Catch::Matchers::Contains;
+
+namespace {
+
+struct Spring {
+  int elements;
+  double open, stop;  ///< s: limit of the mesh; of the stop alone
+};
+
+/// Limits of a stop beside a mesh, one over the square of each added.
+asks::Answered ask(const std::vector<Spring>& springs, const std::function<void(LimitRow&, LimitRow&)>& change = {}) {
+  StudyResults results;
+  results.kind = "stability";
+  results.columns = {"elements"};
+  results.study = {{"steps", {{"from", 1e-7}, {"to", 1e-3}}}};
+  std::vector<LimitRow> rows;
+  for (const Spring& one : springs) {
+    CaseRecord& record = results.cases.emplace_back();
+    record.id = "c" + std::to_string(one.elements);
+    record.status = "done";
+    record.axes = {{"elements", one.elements}};
+    LimitRow open, closed;
+    open.id = closed.id = record.id;
+    closed.closed = true;
+    open.prediction = closed.prediction = open.observation = closed.observation = "limit";
+    open.predicted = open.observed = one.open;
+    closed.predicted = closed.observed = 1 / std::sqrt(1 / (one.open * one.open) + 1 / (one.stop * one.stop));
+    closed.agrees = true;
+    if (change) change(open, closed);
+    rows.push_back(open);
+    rows.push_back(closed);
+  }
+  const answers::Compared compared(results);
+  return steps_ask(asks::ask_of({{"steps", "limit"}}, 1), asks::Evidence(compared), rows);
+}
+
+}  // namespace
+
+TEST_CASE("the stop bounds the step where it alone has the smaller limit, and the mesh elsewhere", "[asks]") {
+  const std::vector<Spring> springs = {
+      {4, 2.3e-4, 3.5e-5}, {8, 5.7e-5, 2.8e-5}, {16, 1.4e-5, 6.5e-5}, {32, 1e-5, 1.001e-5}};
+  const asks::Answered out = ask(springs);
+  INFO(out.sentence);
+  REQUIRE(out.rows.size() == springs.size());
+  for (std::size_t k = 0; k < springs.size(); ++k) {
+    CHECK(out.rows[k].verdict == (springs[k].stop < springs[k].open ? "the stop" : "the mesh"));
+    CHECK(*out.rows[k].value < std::min(springs[k].open, springs[k].stop));
+  }
+  CHECK_THAT(out.rows.front().level, Contains("4 elements"));
+  CHECK_THAT(out.sentence, Contains("The closed stop bounds the step") && Contains("; the mesh "));
+  CHECK(out.passes == asks::Verdict::yes);
+}
+
+TEST_CASE("what has no limit, no stable step or another limit in marches is told so", "[asks]") {
+  asks::Answered out = ask({{4, 1e-4, 1e-3}}, [](LimitRow& open, LimitRow& closed) {
+    open.prediction = closed.prediction = "none";
+    open.predicted = closed.predicted = {};
+  });
+  CHECK(out.rows.front().verdict == "no limit");
+  CHECK_FALSE(out.rows.front().value);
+  CHECK(out.sentence == "No limit from 1e-7 to 0.001 s.");
+  out = ask({{4, 1e-4, 1e-3}}, [](LimitRow& open, LimitRow&) { open.prediction = "below the range"; });
+  CHECK(out.passes == asks::Verdict::no);
+  CHECK_FALSE(out.rows.front().value);
+  // A closed stop may have a limit where the structure has none.
+  out = ask({{4, 1e-4, 1e-3}}, [](LimitRow& open, LimitRow&) {
+    open.prediction = "none";
+    open.predicted.reset();
+  });
+  CHECK(out.rows.front().verdict == "the stop");
+  out = ask({{4, 1e-4, 1e-3}}, [](LimitRow&, LimitRow& closed) {
+    closed.observed = 0.5 * *closed.predicted;
+    closed.agrees = false;
+  });
+  CHECK(*out.rows.front().low == Approx(0.5 * *out.rows.front().value));
+  REQUIRE_FALSE(out.aside.empty());
+  CHECK_THAT(out.aside.front(), Contains("another limit"));
+}
+
+}  // namespace ricochet::tests_of_steps_asks
