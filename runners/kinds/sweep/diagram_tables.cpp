@@ -53,7 +53,7 @@ SweptMotions derive_dynamics(StudyResults& results) {
   std::vector<Table> tables = {values_table(study),  bifurcations_table(study), attractors_table(study),
                                std::move(distances), verdicts_table(study),     agreement_table(study),
                                shifts_table(study)};
-  tables.push_back(verdict_shares_table(*find_table(tables, "verdicts"), study.swept));
+  tables.push_back(verdict_shares_table(*find_table(tables, "intervals"), study.swept));
   for (Table table :
        {class_counts_table(study), grazing_ranges_table(results, study.swept), numerical_viscosity_table(study)})
     tables.push_back(std::move(table));

@@ -36,9 +36,9 @@ Table verdict_shares_table(const Table& verdicts, const SweptColumns& swept) {
   const std::string& unit = swept.parameter.unit;
   Table table{"verdict_shares",
               "Over all cases: the part of the parameter's range with one verdict.",
-              {{"verdict", "", "robust, depends or undecided; see verdicts.csv."},
+              {{"verdict", "", "robust, depends or undecided; see intervals.csv."},
                {"choice", "", "The axis that decides, or several choices; empty where none does."},
-               {"intervals", "1", "Intervals of verdicts.csv with this verdict and choice."},
+               {"intervals", "1", "Intervals of intervals.csv with this verdict and choice."},
                {"width", unit, "Their widths together."},
                {"share", "1", "That width over the width of all intervals."},
                {"from", unit, "Smallest value of the parameter that is compared, the same in every row."},

@@ -275,7 +275,7 @@ TableType<VerdictRow> verdicts_type(const SweptColumns& swept) {
            &VerdictRow::verdict)
       .add({"choice", "", "The axis that decides, or several choices; empty where none does."}, &VerdictRow::choice)
       .add({"sentence", "", "The same in words, with what each choice leads to."}, &VerdictRow::sentence);
-  return {"verdicts",
+  return {"intervals",
           "Over all cases: one interval of the parameter, and whether its motion depends on a numerical choice.", rows};
 }
 

@@ -14,7 +14,7 @@
         view: data.view,
         orbits,
         cases: orbits.cases,
-        verdicts: data.rows("verdicts").filter((row) => row.from !== null && row.to !== null)
+        verdicts: data.rows("intervals").filter((row) => row.from !== null && row.to !== null)
       });
       const all = this.cases.map((one) => orbits.of(one.id)),
             present = (list) => ricochet.distinct(list).sort((a, b) => a - b);

@@ -14,7 +14,7 @@ TEST_CASE("methods that agree have one attractor, common to all, and a robust ve
   for (const double beta : {0.25, 0.5})
     for (const int steps : {2000, 8000}) methods.push_back(method(beta, steps, 20, moving));
   const StudyResults results = with_tables(study(methods, range(0.07, 0.09, 11)));
-  const Derived values(results, "values"), attractors(results, "attractors"), verdicts(results, "verdicts"),
+  const Derived values(results, "values"), attractors(results, "attractors"), verdicts(results, "intervals"),
       agreement(results, "agreement"), distances(results, "distances");
   CHECK(values.size() == 4 * 2 * 11);
   CHECK(values.text(0, "case") == id_of(methods[0]));
@@ -60,7 +60,7 @@ TEST_CASE("an attractor that some methods lack depends on the choice that they s
         return found;
       }));
   const StudyResults results = with_tables(study(methods, range(0.07, 0.09, 21)));
-  const Derived attractors(results, "attractors"), verdicts(results, "verdicts");
+  const Derived attractors(results, "attractors"), verdicts(results, "intervals");
   REQUIRE(attractors.size() == 2);
   CHECK(attractors.text(0, "label") == "common to all");
   CHECK(attractors.text(1, "label") == "depends on time.beta");
@@ -112,7 +112,7 @@ TEST_CASE("chaos of one method where the others repeat is told by that method") 
                            }});
       }
   const StudyResults results = with_tables(study(methods, range(0.07, 0.09, 11)));
-  const Derived attractors(results, "attractors"), verdicts(results, "verdicts"), distances(results, "distances"),
+  const Derived attractors(results, "attractors"), verdicts(results, "intervals"), distances(results, "distances"),
       agreement(results, "agreement");
   REQUIRE(attractors.size() == 2);
   CHECK(attractors.text(1, "class") == "chaotic");
@@ -145,7 +145,7 @@ TEST_CASE("runs of one chaotic attractor are no further apart than their null sa
   }
   const StudyResults results = with_tables(study(methods, range(0.07, 0.09, 21), {"rest", "up", "state"}, 300));
   CHECK(Derived(results, "attractors").size() == 1);
-  const Derived distances(results, "distances"), verdicts(results, "verdicts");
+  const Derived distances(results, "distances"), verdicts(results, "intervals");
   CHECK(verdicts.size() == 1);
   int beyond = 0;
   for (std::size_t k = 0; k < distances.size(); ++k) {
@@ -171,7 +171,7 @@ TEST_CASE("what only coarse steps or meshes show vanishes under refinement") {
           return moving(a, start);
         }));
   const StudyResults results = with_tables(study(methods, range(0.07, 0.09, 6)));
-  const Derived attractors(results, "attractors"), verdicts(results, "verdicts");
+  const Derived attractors(results, "attractors"), verdicts(results, "intervals");
   REQUIRE(attractors.size() == 2);
   const auto coarse = attractors.where("class", "periodic");
   const auto third = attractors.where("period", 3);
@@ -246,7 +246,7 @@ TEST_CASE("what failed makes no attractor, and leaves its values open") {
   StudyResults results = study(methods, range(0.07, 0.09, 5));
   results.cases[0].numbers.clear();
   results = with_tables(std::move(results));
-  const Derived values(results, "values"), verdicts(results, "verdicts"), attractors(results, "attractors");
+  const Derived values(results, "values"), verdicts(results, "intervals"), attractors(results, "attractors");
   for (const std::size_t row : values.where("class", "failed")) CHECK(values.at(row, "attractor").is_nothing());
   for (const std::size_t row : values.where("class", "undecided")) CHECK(values.at(row, "attractor").is_nothing());
   REQUIRE(attractors.size() == 1);
@@ -271,7 +271,7 @@ TEST_CASE("without points, or with one case, tables are smaller and nothing is i
   }
   const StudyResults one = with_tables(study({methods[0]}, range(0.07, 0.09, 5)));
   CHECK(Derived(one, "attractors").text(0, "label") == "not compared");
-  CHECK(Derived(one, "verdicts").size() == 0);
+  CHECK(Derived(one, "intervals").size() == 0);
   CHECK(Derived(one, "distances").size() == 0);
   StudyResults none;
   none.kind = "bifurcation";
@@ -293,7 +293,7 @@ TEST_CASE("every row is as long as its columns, and no cell is NaN") {
       for (const Cell& cell : row) CHECK(std::isfinite(cell.number().value_or(0)));
     }
   }
-  for (const char* name : {"values", "bifurcations", "attractors", "distances", "verdicts", "agreement", "shifts"})
+  for (const char* name : {"values", "bifurcations", "attractors", "distances", "intervals", "agreement", "shifts"})
     CHECK(names.count(name) == 1);
 }
 
