@@ -6,6 +6,7 @@
 #include "runners/asks/lines.hpp"
 #include "runners/asks/verbs.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet::asks {
 namespace {
@@ -16,6 +17,12 @@ struct Need {
   bool enough = false, known = true;
   std::string why;
 };
+
+/// The number in two digits, rounded down: a step that is smaller does as well.
+double two_digits_below(double value) {
+  const double digit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return to_digits(std::floor(value / digit) * digit, 2);
+}
 
 class Enough {
  public:
@@ -103,7 +110,7 @@ class Enough {
         out.known = false;
         out.why = "it " + one.motion;
       } else
-        out.step = line.point.finest->first * std::pow(each / *one.step, 1 / order);
+        out.step = two_digits_below(line.point.finest->first * std::pow(each / *one.step, 1 / order));
     }
     if (one.mesh.value_or(0) > each && !out.seeds && !out.duration && !out.step) {
       out.known = false;
