@@ -164,7 +164,9 @@ std::string range_text(const MeasureWords& measure, double low, double high, std
 std::string uncertainty_text(const MeasureWords& measure, double uncertainty) {
   const double u = measure.factor * uncertainty;
   const int digits = u > 0 && u < begins_with_one * magnitude(u) ? 2 : 1;
-  // As the value: 159 of two digits is 160.
+  // As the value: 159 of two digits is 160, and 1.04 is 1.0.
+  constexpr double small = 1e-3, whole = 10;
+  if (u >= small && u < whole) return fixed(u, decimals(u, true)) + unit_after(measure);
   return short_number(to_digits(u, digits), digits) + unit_after(measure);
 }
 

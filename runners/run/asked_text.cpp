@@ -52,14 +52,17 @@ report::AskedTable asked_rows(const asks::Answered& answered) {
   }
   const bool one_unit = units.size() == 1;
   report::AskedTable out;
-  out.heads = {"level", "stop",
-               "of",    one_unit && !units.begin()->empty() ? "value (" + *units.begin() + ")" : "value",
-               "unit",  "verdict"};
+  const auto value = [&](const VerdictRow& row) {
+    const std::string text = value_cell(row), unit = one_unit ? "" : unit_of(row);
+    return text + (text.empty() || unit.empty() ? "" : " " + unit);
+  };
+  out.heads = {"level", "stop", "of", one_unit && !units.begin()->empty() ? "value (" + *units.begin() + ")" : "value",
+               "verdict"};
   constexpr std::size_t values = 3;
   for (const VerdictRow& row : answered.rows)
     out.rows.push_back({row.level, stops.size() > 1 ? row.stop : "",
                         measures.size() > 1 && !row.measure.empty() ? answers::measure_words(row.measure).words : "",
-                        value_cell(row), one_unit ? "" : unit_of(row),
+                        value(row),
                         row.verdict + (row.reason.empty() ? "" : (row.verdict.empty() ? "" : ": ") + row.reason)});
   out.values = values;
   for (std::size_t k = out.heads.size(); k-- > 0;) {

@@ -6,7 +6,7 @@
 
 namespace ricochet {
 
-/// The rows of one answer: values with as many digits as their uncertainty allows, in their unit where all have one;
+/// The rows of one answer: values with as many digits as their uncertainty allows, the unit in the head where all have one;
 /// columns that are empty throughout are left out.
 report::AskedTable asked_rows(const asks::Answered& answered);
 

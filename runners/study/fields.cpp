@@ -45,6 +45,7 @@ Field of_form(Field::Form form, const char* key, std::optional<Json> fallback, c
   field.form = form;
   field.spec.key = key;
   field.spec.text = text;
+  if (form == Field::Form::words) field.spec.type = ParameterSpec::Type::word;
   field.fallback = std::move(fallback);
   return field;
 }

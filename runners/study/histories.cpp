@@ -225,7 +225,6 @@ ObjectForm motion_form() {
                                 .as("displacement")};
   Field supports =
       of_form(Field::Form::words, "supports", Json("all"), "Names of the supports that move so, or \"all\".");
-  supports.spec.type = ParameterSpec::Type::word;
   ObjectForm keys;
   keys.fields = {std::move(supports), component_key("What moves, of a beam of `planes` 2.")};
   keys.ways = {by_acceleration, by_displacement};

@@ -40,16 +40,16 @@ TEST_CASE("values have as many digits as their uncertainty allows", "[asks]") {
   CHECK(values_of(table) == Texts{"90.85 ± 0.06", "2310 ± 80", "1.44 ± 0.13", "3 ± 10", "0"});
 }
 
-TEST_CASE("units that differ have a column, and a reason follows its verdict", "[asks]") {
+TEST_CASE("units that differ stand in their rows, and a reason follows its verdict", "[asks]") {
   Answered answered;
   answered.rows = {row("", 1.4434, 0.1346, "mW", "open"), row("", 9.326, 0, "%", "half-width"),
                    row("", 28, 0, "1", "seeds")};
   answered.rows[0].reason = "one step";
   answered.rows[1].low = answered.rows[1].high = answered.rows[2].low = answered.rows[2].high = std::nullopt;
   const report::AskedTable table = asked_rows(answered);
-  CHECK(table.heads == Texts{"value", "unit", "verdict"});
+  CHECK(table.heads == Texts{"value", "verdict"});
   CHECK(table.rows ==
-        std::vector<Texts>{{"1.44 ± 0.13", "mW", "open: one step"}, {"9.326", "%", "half-width"}, {"28", "", "seeds"}});
+        std::vector<Texts>{{"1.44 ± 0.13 mW", "open: one step"}, {"9.326 %", "half-width"}, {"28", "seeds"}});
 }
 
 TEST_CASE("an interval that is not symmetric is given by its ends, a bracket without a value, too", "[asks]") {

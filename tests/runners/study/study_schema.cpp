@@ -147,6 +147,42 @@ TEST_CASE("The first thing that a validator says of a misspelt key is that key, 
   }
 }
 
+TEST_CASE("The schema and the reader agree on what may be asked") {
+  const auto asking = [](const char* list) { return with("/ask", Json::parse(list)); };
+  Json named = with("/scene/stops", Json::array({{{"name", "end"}, {"at", {{"x", 1.5}}}, {"upper", 0.1}}}));
+  const auto asking_stops = [&](const char* list) {
+    Json study = named;
+    study["ask"] = Json::parse(list);
+    return study;
+  };
+  const std::vector<Json> good = {
+      asking("[]"),
+      asking(R"([{"runs": true}])"),
+      asking(R"([{"effect": "mass", "on": "energy_end", "from": "5 %"}])"),
+      asking(R"([{"effect": "mass", "on": "energy_end", "within": 0.05}])"),
+      asking(R"([{"limit": "energy_end", "below": 1, "require": true}])"),
+      asking(R"([{"value": "energy_end", "where": {"step": 1e-4, "mass": "full"}}])"),
+      asking_stops(R"([{"value": "impulse", "stops": ["end"]}])"),
+      asking_stops(R"([{"value": "impulse", "stops": "end"}])"),
+  };
+  const std::vector<Json> bad = {
+      asking(R"({"runs": true})"),
+      asking(R"([{"require": true}])"),
+      asking(R"([{"runs": 1}])"),
+      asking(R"([{"valeu": "energy_end"}])"),
+      asking(R"([{"value": "energy_end", "limit": "energy_end", "below": 1}])"),
+      asking(R"([{"enough": "energy_end"}])"),
+      asking(R"([{"enough": "energy_end", "within": "5"}])"),
+      asking(R"([{"enough": "energy_end", "within": "five %"}])"),
+      asking(R"([{"enough": "energy_end", "within": -1}])"),
+      asking(R"([{"value": "energy_end", "where": 3}])"),
+      asking(R"([{"value": "energy_end", "where": {"step": [1e-4]}}])"),
+      asking_stops(R"([{"value": "impulse", "stops": 1}])"),
+      with("/ask", Json(std::vector<Json>(9, {{"runs", true}}))),
+  };
+  agree(stand_ins(), good, bad);
+}
+
 TEST_CASE("The schema and the reader take remarks and $schema, at any level") {
   Json study = small_study();
   study["$schema"] = "./schema.json";
