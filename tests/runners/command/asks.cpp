@@ -47,7 +47,7 @@ TEST_CASE("plan says of each ask what could stay open, before anything runs", "[
   CHECK_THAT(say(here, "plan three.json").out, !Contains("ask 1"));
 }
 
-TEST_CASE("run says each sentence above its rows, twelve at most; a yes that is required and missing is code 6",
+TEST_CASE("run says each sentence above its rows, twelve at most, and a required yes that is missing is code 6",
           "[asks]") {
   const ScratchFolder here;
   write_text(here / "study.json",
