@@ -154,6 +154,12 @@ class MotionShares {
   }
 
   void tell_aside(asks::Answered& out) const {
+    for (const UncertaintyRow& row : basins_.uncertainty)
+      for (const CaseShares& one : told_)
+        if (row.id == one.record->id && row.exponent && row.low && row.high && *row.high < 1)
+          out.aside.push_back(fmt::format("The border is fractal{}: exponent {:.2f}, {:.2f} to {:.2f}.",
+                                          one.level.empty() ? "" : " with " + one.level, *row.exponent, *row.low,
+                                          *row.high));
     std::size_t failed = 0, beyond = 0, cells = 0;
     for (const CaseShares& one : told_) {
       failed += one.failed;

@@ -128,6 +128,8 @@ class PointsAsk {
             {{"name", level(one).empty() ? branch.name : level(one) + ", " + branch.name}, {"points", points}});
       }
     }
+    add_shifts(out);
+    tell_absent(out);
     say(out);
     out.figure = {{"form", "branches"},
                   {"x", parameter_.name},
@@ -255,6 +257,56 @@ class PointsAsk {
       row.verdict = "has no end that is told";
     }
     out.rows.push_back(std::move(row));
+  }
+
+  /// Points that a case has and the finest of its method has not, and the other way round: which cases lack a point.
+  void tell_absent(asks::Answered& out) const {
+    std::set<int> names;
+    for (const Followers& one : methods_)
+      for (const Told& told : one.points)
+        if (told.point->name >= 0) names.insert(told.point->name);
+    for (const int name : names) {
+      const std::string& text = of_.points.names()[static_cast<std::size_t>(name)].text;
+      std::size_t reached = 0, absent = 0;
+      std::optional<double> least;
+      for (const PointPresenceRow& row : of_.presence) {
+        if (row.name != text || row.presence == word(PointPresence::not_reached) ||
+            std::none_of(followed_.begin(), followed_.end(), [&](const CaseRecord* one) { return one->id == row.id; }))
+          continue;
+        ++reached;
+        if (row.presence != word(PointPresence::absent)) continue;
+        ++absent;
+        if (row.passed_to) least = std::min(*row.passed_to, least.value_or(*row.passed_to));
+      }
+      if (absent == 0) continue;
+      out.aside.push_back(fmt::format(
+          "{} of {} cases have no {}{}.", absent, reached, text,
+          least ? fmt::format(", though their branches go on to {} at least", answers::short_number(*least, 4)) : ""));
+    }
+  }
+
+  /// What choices move named points by, as rows: each against the case from which it differs in that alone.
+  void add_shifts(asks::Answered& out) const {
+    std::map<std::string, const StudyPoint*> names;
+    for (const Followers& one : methods_)
+      for (const Told& told : one.points)
+        if (told.point->name >= 0)
+          names.emplace(of_.points.names()[static_cast<std::size_t>(told.point->name)].text, told.point);
+    for (const PointShiftRow& shift : of_.shifts) {
+      const auto found = names.find(shift.name);
+      if (found == names.end() || answers::is_refinement(shift.choice) || !shift.shift) continue;
+      asks::VerdictRow row;
+      row.measure = std::string("shift of the ") + point_words(found->second->kind).thing;
+      row.level = shift.value + " against " + shift.reference_value + ", " + shift.name;
+      row.value = shift.shift;
+      row.low = shift.low;
+      row.high = shift.high;
+      row.unit = parameter_.unit;
+      row.verdict = shift.low && shift.high && *shift.low <= 0 && *shift.high >= 0 ? "not told from none" : "moves";
+      row.cases = 2;
+      row.left_out = 0;
+      out.rows.push_back(std::move(row));
+    }
   }
 
   /// "folds at 0.1006 ± 3e-5".

@@ -95,6 +95,7 @@ class StepsAsk {
       out.aside.push_back(
           fmt::format("Marches have another limit than the spectrum with {} of {}: contacts open and close.", unlike,
                       limits_.size()));
+    say_mesh(out);
     say_gains(out);
     if (!double_roots_.empty())
       out.aside.push_back(
@@ -167,6 +168,27 @@ class StepsAsk {
     if (!gain.empty())
       out.aside.push_back(fmt::format("Impacts make energy though every spectrum is stable in {} of {}: {}.",
                                       gain.size(), limits_.size(), names().of(gain)));
+  }
+
+  /// How limits fall with the element's length.
+  void say_mesh(asks::Answered& out) const {
+    std::map<std::string, std::vector<std::pair<double, double>>> groups;
+    for (const StepLimit& one : limits_)
+      if (one.open.predicted && study_.varies("elements"))
+        groups[study_.key(*one.record)].emplace_back(study_.elements(*one.record).value_or(1), *one.open.predicted);
+    double least = INFINITY, most = -INFINITY;
+    for (auto& [key, points] : groups) {
+      if (points.size() < 3) continue;
+      std::sort(points.begin(), points.end());
+      const double power =
+          std::log(points.front().second / points.back().second) / std::log(points.back().first / points.front().first);
+      least = std::min(least, power);
+      most = std::max(most, power);
+    }
+    if (least > most) return;
+    const std::string a = fmt::format("{:.2f}", least), b = fmt::format("{:.2f}", most);
+    out.aside.push_back(
+        fmt::format("Limits of the mesh fall with the element's length to the power {}.", a == b ? a : a + " to " + b));
   }
 
   answers::SetNames names() const {

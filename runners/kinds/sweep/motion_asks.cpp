@@ -323,6 +323,27 @@ asks::Answered effect_on_motions(const asks::Ask& ask, const asks::Evidence& evi
   return MotionEffect(ask, evidence, motions, places).answer();
 }
 
+Json default_motion_asks(const Json& resolved, const std::string& subject) {
+  Json out = Json::array({{{"motions", subject}}});
+  const auto ask_of_choice = [&](const std::string& choice) { out.push_back({{"effect", choice}, {"on", "motions"}}); };
+  const auto key = [&](const char* name) { return resolved.contains(name) ? resolved[name] : Json(); };
+  if (const Json compare = key("compare"); compare.is_string() && compare != "all") {
+    ask_of_choice(compare.get<std::string>());
+    return out;
+  }
+  for (const char* role : {"mass", "contact", "time"}) {
+    const Json entries = key("methods").contains(role) ? key("methods")[role] : Json::array();
+    const bool lists = std::any_of(entries.begin(), entries.end(), [](const Json& entry) {
+      return std::any_of(entry.begin(), entry.end(),
+                         [](const Json& value) { return value.is_array() && value.size() > 1; });
+    });
+    if (entries.size() > 1 || lists) ask_of_choice(role);
+  }
+  if (const Json steps = key("steps_per_period"); steps.is_array() && steps.size() > 1)
+    ask_of_choice("steps_per_period");
+  return out;
+}
+
 void check_effect_on_motions(const Study& study, const Json& keys, const std::string& pointer) {
   const asks::Ask ask = asks::ask_at(keys, pointer);
   asks::check_choice(ask, study, "effect", ask.subject());
