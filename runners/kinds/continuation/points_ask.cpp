@@ -102,12 +102,10 @@ class PointsAsk {
   asks::Answered answer() const {
     asks::Answered out;
     out.cases = followed_.size();
-    out.left_out = cases_.size() - followed_.size();
+    Cases left;
     for (const CaseRecord* one : cases_)
-      if (!followed_.contains(one))
-        out.aside.push_back(
-            fmt::format("Left out: {}: {}.", evidence_.level(*one, columns_),
-                        one->reason().empty() ? "it left no branch" : one->status + ": " + one->reason()));
+      if (!followed_.contains(one)) left.push_back(one);
+    asks::leave_out(out, left);
     Json drawn = Json::array(), marks = Json::array();
     for (const Followers& one : methods_) {
       for (const Told& told : one.points) {

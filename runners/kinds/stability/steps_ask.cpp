@@ -48,7 +48,8 @@ class StepsAsk {
     std::map<std::string, StepLimit> by_id;
     for (const LimitRow& row : rows) (row.closed ? by_id[row.id].closed : by_id[row.id].open) = row;
     for (const CaseRecord* one : cases_)
-      if (const auto found = by_id.find(one->id); found != by_id.end() && !found->second.open.id.empty()) {
+      if (const auto found = by_id.find(one->id);
+          found != by_id.end() && one->status == "done" && !found->second.open.id.empty()) {
         StepLimit limit = found->second;
         limit.record = one;
         judge(limit);
@@ -65,11 +66,11 @@ class StepsAsk {
   asks::Answered answer() const {
     asks::Answered out;
     out.cases = limits_.size();
-    out.left_out = cases_.size() - limits_.size();
+    Cases left;
     for (const CaseRecord* one : cases_)
       if (std::none_of(limits_.begin(), limits_.end(), [&](const StepLimit& two) { return two.record == one; }))
-        out.aside.push_back(fmt::format("Left out: {}: {}.", evidence_.level(*one, columns_),
-                                        one->reason().empty() ? one->status : one->status + ": " + one->reason()));
+        left.push_back(one);
+    asks::leave_out(out, left);
     Json bars = Json::array();
     std::size_t unlike = 0;
     for (const StepLimit& one : limits_) {

@@ -89,15 +89,11 @@ class MotionEffect {
 
   asks::Answered answer() const {
     asks::Answered out;
-    std::map<std::string, std::size_t> without;
-    for (const CaseRecord* one : cases_) {
-      if (motions_(*one))
-        ++out.cases;
-      else
-        ++without[one->reason().empty() ? one->status : one->status + ": " + one->reason()];
-    }
-    out.left_out = cases_.size() - out.cases;
-    for (const auto& [why, count] : without) out.aside.push_back(fmt::format("Left out: {} {}.", count, why));
+    Cases left;
+    for (const CaseRecord* one : cases_)
+      if (!motions_(*one)) left.push_back(one);
+    out.cases = cases_.size() - left.size();
+    asks::leave_out(out, left);
     if (alone_ > 0)
       out.aside.push_back(fmt::format("Left out: {} levels that agree with no other in all else.", alone_));
     std::vector<asks::Verdict> verdicts;
