@@ -10,7 +10,6 @@
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"
 #include "runners/asks/kind_verbs.hpp"
-#include "runners/json/json_text.hpp"
 #include "runners/kinds/continuation/continuation.hpp"
 #include "runners/kinds/continuation/point_speaker.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
@@ -19,20 +18,6 @@
 
 namespace ricochet {
 namespace {
-
-/// Kinds by the names that asks may use.
-std::string point_kind(std::string asked) {
-  std::replace(asked.begin(), asked.end(), '_', ' ');
-  std::replace(asked.begin(), asked.end(), '-', ' ');
-  if (asked == "lift off") return "lift-off";
-  return asked == "grazing" ? "first contact" : asked;
-}
-
-const std::vector<std::string>& askable_kinds() {
-  static const std::vector<std::string> kinds = {"all",           "fold",    "torus",    "symmetry", "flip",
-                                                 "first contact", "grazing", "lift-off", "contact"};
-  return kinds;
-}
 
 /// What becomes of a branch, in words; "" of one that ends for a reason of its own.
 std::string end_words(const std::string& ended) {
@@ -407,17 +392,6 @@ class PointsAsk {
 
 asks::Answered points_ask(const asks::Ask& ask, const asks::Evidence& evidence, const PointAnalysis& points) {
   return PointsAsk(ask, evidence, points).answer();
-}
-
-void check_points_ask(const Study&, const Json& keys, const std::string& pointer) {
-  asks::refuse_stops(asks::ask_at(keys, pointer));
-  const Json& asked = keys.at("points");
-  for (std::size_t k = 0; k < asked.size(); ++k) {
-    const std::string kind = asked[k].get<std::string>();
-    if (kind != "all" && !is_point_kind(point_kind(kind)))
-      throw InputError(pointer_to(pointer, k), "no kind of point is called " + quote(kind) + "; expected one of " +
-                                                   quoted_list(askable_kinds()) + did_you_mean(kind, askable_kinds()));
-  }
 }
 
 }  // namespace ricochet
