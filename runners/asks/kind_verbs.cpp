@@ -6,6 +6,7 @@
 
 #include "runners/asks/verbs.hpp"
 #include "runners/json/json_text.hpp"
+#include "runners/table/in_order_met.hpp"
 
 // Verbs that kinds of study answer: what they are, here; what answers them, in the kinds.
 namespace ricochet::asks {
@@ -89,6 +90,24 @@ std::vector<std::string> varying(const Evidence& evidence, const Cases& cases) {
 
 void leave_out(Answered& out, const std::vector<std::string>& reasons) {
   for (const std::string& why : reasons) out.aside.push_back("Left out: " + why + ".");
+}
+
+void leave_out(Answered& out, const Cases& left) {
+  InOrderMet<std::string, Cases> groups;
+  for (const CaseRecord* one : left) {
+    std::string key = one->partial ? "still running" : one->status;
+    for (const Said& reason : one->reasons) key += reason.without_numbers();
+    groups[key].push_back(one);
+  }
+  for (const auto& [key, cases] : groups.list()) {
+    const CaseRecord& first = *cases.front();
+    const std::string status = first.partial            ? "still running"
+                               : first.status == "done" ? "without a result"
+                                                        : first.status;
+    out.aside.push_back("Left out: " + std::to_string(cases.size()) + " " + status +
+                        (first.status == "done" || first.reason().empty() ? "" : ": " + first.reason()) + ".");
+  }
+  out.left_out = left.size();
 }
 
 }  // namespace ricochet::asks

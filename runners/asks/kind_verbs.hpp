@@ -24,5 +24,7 @@ std::vector<std::string> varying(const Evidence& evidence, const Cases& cases);
 
 /// What is told of the cases of an ask that have no such value, as Answered::aside.
 void leave_out(Answered& out, const std::vector<std::string>& reasons);
+/// The same of cases, counted by status and reason; those that differ in numbers alone are one.
+void leave_out(Answered& out, const Cases& left);
 
 }  // namespace ricochet::asks

@@ -85,7 +85,7 @@ AnalysedResults::AnalysedResults(StudyResults results)
     if (!table.rows.empty()) derived.push_back(std::move(table));
   };
   add(effects_table(*this));
-  if (!analysis.answer)
+  if (const Kind* of_study = find_kind(kind); !analysis.answer && !(of_study && of_study->format.default_asks))
     for (Table& table : evidence_tables(compared)) add(std::move(table));
   if (Table answers = asked.any() ? asked_table(compared, asked) : answers_table(compared, analysis);
       !answers.rows.empty())

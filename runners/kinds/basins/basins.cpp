@@ -13,6 +13,7 @@
 #include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/basins/page/page.hpp"
 #include "runners/kinds/sweep/march_point.hpp"
+#include "runners/kinds/sweep/motion_asks.hpp"
 #include "runners/kinds/sweep/sweep.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
@@ -48,7 +49,8 @@ class BasinsKind final : public SweepKind {
  public:
   BasinsKind()
       : SweepKind("basins", "Each case goes through a grid of two parameters: where the orbit of each cell ends.",
-                  basins_keys(), {"motions", "effect on motions"}, check_basin_ask) {}
+                  basins_keys(), {"motions", "effect on motions"}, check_basin_ask,
+                  [](const Json& resolved) { return default_motion_asks(resolved, "share"); }) {}
   CasePlan plan(const StudyCase& study_case, const Registry& registry) const override {
     return plan_basins(study_case, registry);
   }
@@ -64,7 +66,7 @@ class BasinsKind final : public SweepKind {
   Analysis derive(StudyResults& results) const override {
     const auto basins = std::make_shared<const BasinAnalysis>(analyse_basins(results));
     return {
-        [basins](const answers::Compared& study) { return basins_answer(study, *basins); },
+        {},
         report::basins_page(basins),
         {{"motions", [basins](const asks::Ask& ask,
                               const asks::Evidence& evidence) { return motions_of_basins(ask, evidence, *basins); }},

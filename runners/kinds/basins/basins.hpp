@@ -1,7 +1,6 @@
 #pragma once
 #include <ricochet/contract/registry.hpp>
 
-#include "runners/answers/answer.hpp"
 #include "runners/asks/evidence.hpp"
 #include "runners/march/case_context.hpp"
 #include "runners/march/prepare_case.hpp"
@@ -27,10 +26,6 @@ CasePlan plan_basins(const StudyCase& study_case, const Registry& registry);
 /// period of what repeats, else at most 64; of filled cells those of the source.
 CaseRecord run_basins(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                       const std::atomic<bool>& stop);
-
-/// What a study of basins says: which share of the starts ends in which motion, whether methods move the border, and
-/// whether it is fractal.
-answers::Answer basins_answer(const answers::Compared& study, const BasinAnalysis& basins);
 
 /// Which share of the starts ends in which motion, method by method.
 asks::Answered motions_of_basins(const asks::Ask& ask, const asks::Evidence& evidence, const BasinAnalysis& basins);

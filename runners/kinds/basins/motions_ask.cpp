@@ -67,11 +67,11 @@ class MotionShares {
   asks::Answered answer() const {
     asks::Answered out;
     out.cases = told_.size();
-    out.left_out = cases_.size() - told_.size();
+    Cases left;
     for (const CaseRecord* one : cases_)
       if (std::none_of(told_.begin(), told_.end(), [&](const CaseShares& two) { return two.record == one; }))
-        out.aside.push_back(fmt::format("Left out: {}: {}.", evidence_.level(*one, columns_),
-                                        one->reason().empty() ? one->status : one->status + ": " + one->reason()));
+        left.push_back(one);
+    asks::leave_out(out, left);
     Json rows = Json::array();
     for (const CaseShares& one : told_) add_rows(out, one, rows);
     out.figure = {{"form", "bars"},
@@ -154,6 +154,12 @@ class MotionShares {
   }
 
   void tell_aside(asks::Answered& out) const {
+    for (const UncertaintyRow& row : basins_.uncertainty)
+      for (const CaseShares& one : told_)
+        if (row.id == one.record->id && row.exponent && row.low && row.high && *row.high < 1)
+          out.aside.push_back(fmt::format("The border is fractal{}: exponent {:.2f}, {:.2f} to {:.2f}.",
+                                          one.level.empty() ? "" : " with " + one.level, *row.exponent, *row.low,
+                                          *row.high));
     std::size_t failed = 0, beyond = 0, cells = 0;
     for (const CaseShares& one : told_) {
       failed += one.failed;

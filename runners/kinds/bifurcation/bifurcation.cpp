@@ -63,7 +63,7 @@ class BifurcationKind final : public SweepKind {
  public:
   BifurcationKind()
       : SweepKind("bifurcation", "Each case goes through a parameter: sections, classes and exponents of its orbits.",
-                  bifurcation_keys(), {"motions", "effect on motions"}, check_sweep_ask, orbit_measures()) {}
+                  bifurcation_keys(), {"motions", "effect on motions"}, check_sweep_ask, {}, orbit_measures()) {}
   CasePlan plan(const StudyCase& study_case, const Registry& registry) const override {
     return plan_bifurcation(study_case, registry);
   }

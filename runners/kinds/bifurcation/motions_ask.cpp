@@ -93,11 +93,11 @@ class MotionsAlong {
   asks::Answered answer() const {
     asks::Answered out;
     out.cases = told_.size();
-    out.left_out = cases_.size() - told_.size();
+    Cases left;
     for (const CaseRecord* one : cases_)
       if (std::none_of(told_.begin(), told_.end(), [&](const CaseMotions& two) { return two.record == one; }))
-        out.aside.push_back(fmt::format("Left out: {}: {}.", evidence_.level(*one, columns_),
-                                        one->reason().empty() ? one->status : one->status + ": " + one->reason()));
+        left.push_back(one);
+    asks::leave_out(out, left);
     Json drawn = Json::array();
     add_row(out, "", "undecided", "of the range, over all cases", asks::per_cent * undecided_, {}, {}, "%");
     for (const CaseMotions& one : told_) {

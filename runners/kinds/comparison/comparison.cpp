@@ -208,8 +208,8 @@ std::vector<MeasureInfo> comparison_measures() {
 
 namespace {
 
-StudyKind comparison_format(const char* name, const char* text, std::vector<Field> keys,
-                            std::vector<std::string> verbs) {
+StudyKind comparison_format(const char* name, const char* text, std::vector<Field> keys, std::vector<std::string> verbs,
+                            Json (*default_asks)(const Json&)) {
   StudyKind format;
   format.name = name;
   format.text = text;
@@ -218,14 +218,16 @@ StudyKind comparison_format(const char* name, const char* text, std::vector<Fiel
   format.check = check_comparison;
   format.verbs = std::move(verbs);
   format.check_ask = check_error_ask;
+  format.default_asks = default_asks;
   return format;
 }
 
 }  // namespace
 
 ComparisonKind::ComparisonKind(const char* name, const char* text, std::vector<Field> keys,
-                               std::vector<MeasureInfo> of_cases, std::vector<std::string> verbs)
-    : Kind(comparison_format(name, text, std::move(keys), std::move(verbs)), std::move(of_cases)) {}
+                               std::vector<MeasureInfo> of_cases, std::vector<std::string> verbs,
+                               Json (*default_asks)(const Json&))
+    : Kind(comparison_format(name, text, std::move(keys), std::move(verbs), default_asks), std::move(of_cases)) {}
 
 CasePlan ComparisonKind::plan(const StudyCase& study_case, const Registry& registry) const {
   return plan_case(study_case, registry);

@@ -4,21 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "runners/answers/answer.hpp"
 #include "runners/answers/compared.hpp"
 #include "runners/asks/evidence.hpp"
 
 namespace ricochet {
-
-/// Sentences before those on cases without a result.
-inline constexpr std::size_t sentences_at_most = 6;
-
-/// What a convergence study says: orders in the step and in the mesh, who stops and at what, who does not converge.
-answers::Answer orders_answer(const answers::Compared& study);
-
-/// What a work-precision study says: the cheapest methods for an accuracy of 10, 1, 0.1, … %, who never gets there, and
-/// what a compared choice costs.
-answers::Answer precision_answer(const answers::Compared& study);
 
 /// order_runs: one row per method, error and refined quantity.
 Table order_runs_table(const answers::Compared& study);
@@ -39,16 +28,19 @@ std::vector<MethodRun> runs_of(const answers::Compared& study, const Cases& case
 /// Among all cases.
 std::vector<MethodRun> runs_of(const answers::Compared& study, const std::string& error, const std::string& refined);
 
-/// "the error of the impact times"; "impact times" alone, where that says which error it is; its quantity in any case.
+/// "the error of the impact times"; "impact times" alone, where that says which error it is.
 std::string error_words(const std::string& error);
 std::string short_error_words(const std::string& error);
-std::string quantity_words(const std::string& error);
 
 /// What answers `order` and `cheapest`.
 asks::Answered order_ask(const asks::Ask& ask, const asks::Evidence& evidence);
 asks::Answered cheapest_ask(const asks::Ask& ask, const asks::Evidence& evidence);
 /// Refuses an error that the study does not compute, and orders of fewer than three sizes.
 void check_error_ask(const Study& study, const Json& ask, const std::string& pointer);
+/// What a study that asks nothing is asked: the order of each error, or its value where no three sizes show one.
+Json default_order_asks(const Json& resolved);
+/// The cheapest for 1 and 0.1 % of its first error, and what a compared choice costs.
+Json default_cheapest_asks(const Json& resolved);
 /// The error of an ask by its own name: "impact-times" of "impact_times" and of "error.impact-times".
 std::string error_name(std::string asked);
 

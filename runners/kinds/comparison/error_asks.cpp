@@ -29,11 +29,6 @@ std::string short_error_words(const std::string& error) {
   return rest.starts_with(the) ? rest.substr(the.size()) : rest;
 }
 
-std::string quantity_words(const std::string& error) {
-  std::string words = error_words(error);
-  const std::size_t of = words.rfind(" of the ");
-  return of == std::string::npos ? words : words.substr(of + 8);
-}
 std::string error_name(std::string asked) {
   if (asked.starts_with("error.")) asked.erase(0, 6);
   std::replace(asked.begin(), asked.end(), '_', '-');
@@ -67,6 +62,30 @@ void check_error_ask(const Study& study, const Json& keys, const std::string& po
     throw InputError(pointer,
                      fmt::format("an order shows from three steps or three meshes on; this study has {} and {}",
                                  steps.size(), meshes.size()));
+}
+
+Json default_order_asks(const Json& resolved) {
+  constexpr std::size_t least = 3;
+  const auto levels = [](const Json& value) { return value.is_array() ? value.size() : 1; };
+  const Json elements = resolved.contains("mesh") ? resolved["mesh"].value("elements", Json(1)) : Json(1);
+  const bool sizes = !resolved.contains("step") || levels(resolved["step"]) >= least || levels(elements) >= least;
+  Json out = Json::array();
+  for (const Json& error : resolved.contains("errors") ? resolved["errors"] : Json(error_names()))
+    out.push_back(sizes ? Json({{"order", error}}) : Json({{"value", "error." + error.get<std::string>()}}));
+  return out;
+}
+
+Json default_cheapest_asks(const Json& resolved) {
+  const Json errors = resolved.contains("errors") ? resolved["errors"] : Json(error_names());
+  const bool largest = std::find(errors.begin(), errors.end(), "tip-linf") != errors.end();
+  const Json error = largest || errors.empty() ? Json("tip-linf") : errors.front();
+  constexpr double per_cent = 0.01, per_mille = 0.001;
+  Json out = Json::array();
+  for (const double share : {per_cent, per_mille}) out.push_back({{"cheapest", error}, {"within", share}});
+  if (const Json compare = resolved.contains("compare") ? resolved["compare"] : Json();
+      compare.is_string() && compare != "all")
+    out.push_back({{"effect", compare}, {"on", "timed_seconds"}});
+  return out;
 }
 
 }  // namespace ricochet

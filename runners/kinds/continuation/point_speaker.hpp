@@ -14,6 +14,8 @@ struct PointWords {
 };
 const PointWords& point_words(const std::string& kind);
 bool is_point_kind(const std::string& kind);
+/// The kind of a name that an ask may use: "first contact" of "grazing".
+std::string point_kind(std::string asked);
 /// Whether two points are of one kind and their intervals overlap.
 bool at_one_place(const StudyPoint& a, const StudyPoint& b);
 

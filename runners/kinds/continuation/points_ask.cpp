@@ -10,7 +10,6 @@
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"
 #include "runners/asks/kind_verbs.hpp"
-#include "runners/json/json_text.hpp"
 #include "runners/kinds/continuation/continuation.hpp"
 #include "runners/kinds/continuation/point_speaker.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
@@ -19,20 +18,6 @@
 
 namespace ricochet {
 namespace {
-
-/// Kinds by the names that asks may use.
-std::string point_kind(std::string asked) {
-  std::replace(asked.begin(), asked.end(), '_', ' ');
-  std::replace(asked.begin(), asked.end(), '-', ' ');
-  if (asked == "lift off") return "lift-off";
-  return asked == "grazing" ? "first contact" : asked;
-}
-
-const std::vector<std::string>& askable_kinds() {
-  static const std::vector<std::string> kinds = {"all",           "fold",    "torus",    "symmetry", "flip",
-                                                 "first contact", "grazing", "lift-off", "contact"};
-  return kinds;
-}
 
 /// What becomes of a branch, in words; "" of one that ends for a reason of its own.
 std::string end_words(const std::string& ended) {
@@ -102,12 +87,10 @@ class PointsAsk {
   asks::Answered answer() const {
     asks::Answered out;
     out.cases = followed_.size();
-    out.left_out = cases_.size() - followed_.size();
+    Cases left;
     for (const CaseRecord* one : cases_)
-      if (!followed_.contains(one))
-        out.aside.push_back(
-            fmt::format("Left out: {}: {}.", evidence_.level(*one, columns_),
-                        one->reason().empty() ? "it left no branch" : one->status + ": " + one->reason()));
+      if (!followed_.contains(one)) left.push_back(one);
+    asks::leave_out(out, left);
     Json drawn = Json::array(), marks = Json::array();
     for (const Followers& one : methods_) {
       for (const Told& told : one.points) {
@@ -128,6 +111,8 @@ class PointsAsk {
             {{"name", level(one).empty() ? branch.name : level(one) + ", " + branch.name}, {"points", points}});
       }
     }
+    add_shifts(out);
+    tell_absent(out);
     say(out);
     out.figure = {{"form", "branches"},
                   {"x", parameter_.name},
@@ -257,6 +242,56 @@ class PointsAsk {
     out.rows.push_back(std::move(row));
   }
 
+  /// Points that a case has and the finest of its method has not, and the other way round: which cases lack a point.
+  void tell_absent(asks::Answered& out) const {
+    std::set<int> names;
+    for (const Followers& one : methods_)
+      for (const Told& told : one.points)
+        if (told.point->name >= 0) names.insert(told.point->name);
+    for (const int name : names) {
+      const std::string& text = of_.points.names()[static_cast<std::size_t>(name)].text;
+      std::size_t reached = 0, absent = 0;
+      std::optional<double> least;
+      for (const PointPresenceRow& row : of_.presence) {
+        if (row.name != text || row.presence == word(PointPresence::not_reached) ||
+            std::none_of(followed_.begin(), followed_.end(), [&](const CaseRecord* one) { return one->id == row.id; }))
+          continue;
+        ++reached;
+        if (row.presence != word(PointPresence::absent)) continue;
+        ++absent;
+        if (row.passed_to) least = std::min(*row.passed_to, least.value_or(*row.passed_to));
+      }
+      if (absent == 0) continue;
+      out.aside.push_back(fmt::format(
+          "{} of {} cases have no {}{}.", absent, reached, text,
+          least ? fmt::format(", though their branches go on to {} at least", answers::short_number(*least, 4)) : ""));
+    }
+  }
+
+  /// What choices move named points by, as rows: each against the case from which it differs in that alone.
+  void add_shifts(asks::Answered& out) const {
+    std::map<std::string, const StudyPoint*> names;
+    for (const Followers& one : methods_)
+      for (const Told& told : one.points)
+        if (told.point->name >= 0)
+          names.emplace(of_.points.names()[static_cast<std::size_t>(told.point->name)].text, told.point);
+    for (const PointShiftRow& shift : of_.shifts) {
+      const auto found = names.find(shift.name);
+      if (found == names.end() || answers::is_refinement(shift.choice) || !shift.shift) continue;
+      asks::VerdictRow row;
+      row.measure = std::string("shift of the ") + point_words(found->second->kind).thing;
+      row.level = shift.value + " against " + shift.reference_value + ", " + shift.name;
+      row.value = shift.shift;
+      row.low = shift.low;
+      row.high = shift.high;
+      row.unit = parameter_.unit;
+      row.verdict = shift.low && shift.high && *shift.low <= 0 && *shift.high >= 0 ? "not told from none" : "moves";
+      row.cases = 2;
+      row.left_out = 0;
+      out.rows.push_back(std::move(row));
+    }
+  }
+
   /// "folds at 0.1006 ± 3e-5".
   static std::string place(const Told& told) {
     return fmt::format("{} at {}", point_words(told.point->kind).does, point_value(told.value, told.half));
@@ -357,17 +392,6 @@ class PointsAsk {
 
 asks::Answered points_ask(const asks::Ask& ask, const asks::Evidence& evidence, const PointAnalysis& points) {
   return PointsAsk(ask, evidence, points).answer();
-}
-
-void check_points_ask(const Study&, const Json& keys, const std::string& pointer) {
-  asks::refuse_stops(asks::ask_at(keys, pointer));
-  const Json& asked = keys.at("points");
-  for (std::size_t k = 0; k < asked.size(); ++k) {
-    const std::string kind = asked[k].get<std::string>();
-    if (kind != "all" && !is_point_kind(point_kind(kind)))
-      throw InputError(pointer_to(pointer, k), "no kind of point is called " + quote(kind) + "; expected one of " +
-                                                   quoted_list(askable_kinds()) + did_you_mean(kind, askable_kinds()));
-  }
 }
 
 }  // namespace ricochet

@@ -10,10 +10,10 @@ class ConvergenceKind final : public ComparisonKind {
  public:
   ConvergenceKind()
       : ComparisonKind("convergence", "Each case is compared with a reference, and orders are fitted to the errors.",
-                       comparison_keys(), comparison_measures(), {"order"}) {}
+                       comparison_keys(), comparison_measures(), {"order"}, default_order_asks) {}
   Analysis analysis(StudyResults& results, const answers::Compared& study) const override {
     put_tables(results, study);
-    return {orders_answer, report::comparison_page(), {{"order", order_ask}}};
+    return {{}, report::comparison_page(), {{"order", order_ask}}};
   }
 };
 

@@ -104,6 +104,7 @@ StudyKind stability_format() {
   format.settings = [](const Json& resolved) { return given_settings(resolved, {"steps", "observe", "budget"}); };
   format.check = check_stability;
   format.verbs = {"steps"};
+  format.default_asks = [](const Json&) { return Json::array({{{"steps", "limit"}}}); };
   format.check_ask = [](const Study&, const Json& ask, const std::string& pointer) {
     asks::refuse_stops(asks::ask_at(ask, pointer));
   };
@@ -131,11 +132,9 @@ class StabilityKind final : public Kind {
     results.derived.push_back(step_limit_agreement_table(results.derived.back()));
     for (Table table : {stability_cells_table(results), stability_disagreements_table(results)})
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
-    return {stability_answer,
-            report::stability_page(),
-            {{"steps", [limits](const asks::Ask& ask, const asks::Evidence& evidence) {
-                return steps_ask(ask, evidence, *limits);
-              }}}};
+    return {{}, report::stability_page(), {{"steps", [limits](const asks::Ask& ask, const asks::Evidence& evidence) {
+                                              return steps_ask(ask, evidence, *limits);
+                                            }}}};
   }
   std::string outcome(const CaseRecord& record) const override { return limits_text(record); }
   std::string contradiction(const CaseRecord& record) const override {

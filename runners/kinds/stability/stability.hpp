@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "runners/answers/answer.hpp"
 #include "runners/asks/evidence.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/store/record.hpp"
@@ -44,10 +43,6 @@ CasePlan plan_stability(const StudyCase& study_case, const Registry& registry);
 /// Measures: limit_predicted and limit_observed (s, the smaller of open and closed), largest_radius, agreement. The
 /// last is observed over expected limit, of the open structure where both have one, else of the scene.
 CaseRecord run_stability(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop);
-
-/// What a stability study says: who has no largest step, and the largest step of each scheme with the level that has
-/// it. Then what a closed contact changes, and whether marches agree.
-answers::Answer stability_answer(const answers::Compared& study);
 
 struct LimitRow;
 

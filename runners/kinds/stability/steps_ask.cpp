@@ -48,7 +48,8 @@ class StepsAsk {
     std::map<std::string, StepLimit> by_id;
     for (const LimitRow& row : rows) (row.closed ? by_id[row.id].closed : by_id[row.id].open) = row;
     for (const CaseRecord* one : cases_)
-      if (const auto found = by_id.find(one->id); found != by_id.end() && !found->second.open.id.empty()) {
+      if (const auto found = by_id.find(one->id);
+          found != by_id.end() && one->status == "done" && !found->second.open.id.empty()) {
         StepLimit limit = found->second;
         limit.record = one;
         judge(limit);
@@ -65,11 +66,11 @@ class StepsAsk {
   asks::Answered answer() const {
     asks::Answered out;
     out.cases = limits_.size();
-    out.left_out = cases_.size() - limits_.size();
+    Cases left;
     for (const CaseRecord* one : cases_)
       if (std::none_of(limits_.begin(), limits_.end(), [&](const StepLimit& two) { return two.record == one; }))
-        out.aside.push_back(fmt::format("Left out: {}: {}.", evidence_.level(*one, columns_),
-                                        one->reason().empty() ? one->status : one->status + ": " + one->reason()));
+        left.push_back(one);
+    asks::leave_out(out, left);
     Json bars = Json::array();
     std::size_t unlike = 0;
     for (const StepLimit& one : limits_) {
@@ -95,6 +96,7 @@ class StepsAsk {
       out.aside.push_back(
           fmt::format("Marches have another limit than the spectrum with {} of {}: contacts open and close.", unlike,
                       limits_.size()));
+    say_mesh(out);
     say_gains(out);
     if (!double_roots_.empty())
       out.aside.push_back(
@@ -167,6 +169,27 @@ class StepsAsk {
     if (!gain.empty())
       out.aside.push_back(fmt::format("Impacts make energy though every spectrum is stable in {} of {}: {}.",
                                       gain.size(), limits_.size(), names().of(gain)));
+  }
+
+  /// How limits fall with the element's length.
+  void say_mesh(asks::Answered& out) const {
+    std::map<std::string, std::vector<std::pair<double, double>>> groups;
+    for (const StepLimit& one : limits_)
+      if (one.open.predicted && study_.varies("elements"))
+        groups[study_.key(*one.record)].emplace_back(study_.elements(*one.record).value_or(1), *one.open.predicted);
+    double least = INFINITY, most = -INFINITY;
+    for (auto& [key, points] : groups) {
+      if (points.size() < 3) continue;
+      std::sort(points.begin(), points.end());
+      const double power =
+          std::log(points.front().second / points.back().second) / std::log(points.back().first / points.front().first);
+      least = std::min(least, power);
+      most = std::max(most, power);
+    }
+    if (least > most) return;
+    const std::string a = fmt::format("{:.2f}", least), b = fmt::format("{:.2f}", most);
+    out.aside.push_back(
+        fmt::format("Limits of the mesh fall with the element's length to the power {}.", a == b ? a : a + " to " + b));
   }
 
   answers::SetNames names() const {

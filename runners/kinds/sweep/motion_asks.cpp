@@ -89,15 +89,11 @@ class MotionEffect {
 
   asks::Answered answer() const {
     asks::Answered out;
-    std::map<std::string, std::size_t> without;
-    for (const CaseRecord* one : cases_) {
-      if (motions_(*one))
-        ++out.cases;
-      else
-        ++without[one->reason().empty() ? one->status : one->status + ": " + one->reason()];
-    }
-    out.left_out = cases_.size() - out.cases;
-    for (const auto& [why, count] : without) out.aside.push_back(fmt::format("Left out: {} {}.", count, why));
+    Cases left;
+    for (const CaseRecord* one : cases_)
+      if (!motions_(*one)) left.push_back(one);
+    out.cases = cases_.size() - left.size();
+    asks::leave_out(out, left);
     if (alone_ > 0)
       out.aside.push_back(fmt::format("Left out: {} levels that agree with no other in all else.", alone_));
     std::vector<asks::Verdict> verdicts;
@@ -321,6 +317,27 @@ class MotionEffect {
 asks::Answered effect_on_motions(const asks::Ask& ask, const asks::Evidence& evidence, const MotionsOf& motions,
                                  const std::string& places) {
   return MotionEffect(ask, evidence, motions, places).answer();
+}
+
+Json default_motion_asks(const Json& resolved, const std::string& subject) {
+  Json out = Json::array({{{"motions", subject}}});
+  const auto ask_of_choice = [&](const std::string& choice) { out.push_back({{"effect", choice}, {"on", "motions"}}); };
+  const auto key = [&](const char* name) { return resolved.contains(name) ? resolved[name] : Json(); };
+  if (const Json compare = key("compare"); compare.is_string() && compare != "all") {
+    ask_of_choice(compare.get<std::string>());
+    return out;
+  }
+  for (const char* role : {"mass", "contact", "time"}) {
+    const Json entries = key("methods").contains(role) ? key("methods")[role] : Json::array();
+    const bool lists = std::any_of(entries.begin(), entries.end(), [](const Json& entry) {
+      return std::any_of(entry.begin(), entry.end(),
+                         [](const Json& value) { return value.is_array() && value.size() > 1; });
+    });
+    if (entries.size() > 1 || lists) ask_of_choice(role);
+  }
+  if (const Json steps = key("steps_per_period"); steps.is_array() && steps.size() > 1)
+    ask_of_choice("steps_per_period");
+  return out;
 }
 
 void check_effect_on_motions(const Study& study, const Json& keys, const std::string& pointer) {

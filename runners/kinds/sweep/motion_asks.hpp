@@ -34,4 +34,8 @@ asks::Answered effect_on_motions(const asks::Ask& ask, const asks::Evidence& evi
 /// Refuses a choice that does not vary, and "from" beside "within".
 void check_effect_on_motions(const Study& study, const Json& ask, const std::string& pointer);
 
+/// What a study of motions that asks nothing is asked: its motions, then the effect of what it compares on them, or of
+/// every role and every number of steps that vary.
+Json default_motion_asks(const Json& resolved, const std::string& subject);
+
 }  // namespace ricochet

@@ -46,7 +46,8 @@ Field swept_pointer() {
 namespace {
 
 StudyKind sweep_format(const char* name, const char* text, std::vector<Field> keys, std::vector<std::string> verbs,
-                       std::function<void(const Study&, const Json&, const std::string&)> check_ask) {
+                       std::function<void(const Study&, const Json&, const std::string&)> check_ask,
+                       std::function<Json(const Json&)> default_asks) {
   StudyKind format;
   format.name = name;
   format.text = text;
@@ -58,6 +59,7 @@ StudyKind sweep_format(const char* name, const char* text, std::vector<Field> ke
   format.check_cases = check_values;
   format.verbs = std::move(verbs);
   format.check_ask = std::move(check_ask);
+  format.default_asks = std::move(default_asks);
   return format;
 }
 
@@ -65,8 +67,9 @@ StudyKind sweep_format(const char* name, const char* text, std::vector<Field> ke
 
 SweepKind::SweepKind(const char* name, const char* text, std::vector<Field> keys, std::vector<std::string> verbs,
                      std::function<void(const Study&, const Json&, const std::string&)> check_ask,
-                     std::vector<MeasureInfo> of_cases)
-    : Kind(sweep_format(name, text, std::move(keys), std::move(verbs), std::move(check_ask)), std::move(of_cases)) {}
+                     std::function<Json(const Json&)> default_asks, std::vector<MeasureInfo> of_cases)
+    : Kind(sweep_format(name, text, std::move(keys), std::move(verbs), std::move(check_ask), std::move(default_asks)),
+           std::move(of_cases)) {}
 
 CaseRunner SweepKind::start(const RunContext& context) const {
   const auto checkpoints = std::make_shared<CheckpointStore>();

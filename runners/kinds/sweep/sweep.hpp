@@ -30,10 +30,11 @@ class SweepKind : public Kind {
   bool has_points() const override { return true; }
 
  protected:
-  /// `verbs`: of `ask`, that it answers itself, checked by `check_ask`.
+  /// `verbs`: of `ask`, that it answers itself, checked by `check_ask`. `default_asks`: what a study that
+  /// asks nothing is asked; may be empty.
   SweepKind(const char* name, const char* text, std::vector<Field> keys, std::vector<std::string> verbs,
             std::function<void(const Study& study, const Json& ask, const std::string& pointer)> check_ask,
-            std::vector<MeasureInfo> of_cases = {});
+            std::function<Json(const Json& resolved)> default_asks, std::vector<MeasureInfo> of_cases = {});
 
  private:
   /// Runs a case, with the context at which it keeps what would be lost if it were killed.

@@ -33,11 +33,16 @@ TEST_CASE("points of the asked kinds have their value and interval, and every br
   INFO(every.sentence << "\n" << folds.sentence);
   CHECK(count(every, "fold") > 0);
   CHECK(count(folds, "fold") == count(every, "fold"));
-  CHECK(folds.rows.size() - count(folds, "fold") == count(folds, "end of the branch"));
+  CHECK(folds.rows.size() ==
+        count(folds, "fold") + count(folds, "end of the branch") + count(folds, "shift of the fold"));
+  CHECK(count(folds, "shift of the fold") > 0);
   CHECK(count(folds, "end of the branch") == count(every, "end of the branch"));
   CHECK(count(folds, "end of the branch") > 0);
   for (const asks::VerdictRow& row : every.rows)
-    if (row.measure != "end of the branch") {
+    if (row.measure.starts_with("shift of")) {
+      CHECK(*row.low <= *row.value);
+      CHECK(*row.value <= *row.high);
+    } else if (row.measure != "end of the branch") {
       CHECK_THAT(row.reason, Contains("stable below: "));
       if (row.low) {
         CHECK(*row.low <= *row.value);
