@@ -48,7 +48,7 @@ report::AskedTable asked_rows(const asks::Answered& answered) {
   for (const VerdictRow& row : answered.rows) {
     if (row.value || row.low) units.insert(unit_of(row));
     if (!row.measure.empty()) measures.insert(row.measure);
-    stops.insert(row.stop);
+    if (!row.stop.empty()) stops.insert(row.stop);
   }
   const bool one_unit = units.size() == 1;
   report::AskedTable out;
