@@ -110,7 +110,7 @@ void Drawing::text(double x, double y, const std::string& words, const std::stri
 void Drawing::sign(double x, double y, std::size_t series, const std::string& title) {
   const std::string classes = fmt::format("dot s{}", series % colours);
   const double d = dot;
-  switch (series % 4) {
+  switch ((series + series / colours) % 4) {
     case 0:
       out_ += fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:g}\" class=\"{}\">{}</circle>\n", x, y, d, classes,
                           titled(title));
