@@ -37,6 +37,14 @@ std::string tick_text(double value, double step, double largest) {
   return text;
 }
 
+/// 1, 2 and 5 times a power of ten: "0.02", "5e-5", the same on all of an axis.
+std::string decade_text(double value) {
+  constexpr double many = 1e5, few = 1e-3;
+  if (value > few * (1 - 1e-9) && value < many) return number_text(value, 4);
+  const double exponent = std::floor(std::log10(value) + 1e-9);
+  return fmt::format("{:.0f}e{:.0f}", value / std::pow(ten, exponent), exponent);
+}
+
 }  // namespace
 
 bool spans(const std::vector<double>& values, double factor) {
@@ -85,8 +93,7 @@ void FigureAxis::round_logarithms(int most) {
   if (high_ <= low_) low_ = round_down(low_ / 2), high_ = round_up(high_ * 2);
   const auto add = [&](double value) {
     if (value < low_ * (1 - 1e-9) || value > high_ * (1 + 1e-9)) return;
-    constexpr double many = 1e4, few = 1e-3;
-    ticks_.emplace_back(value, value >= few && value < many ? number_text(value, 4) : number_text(value, 1));
+    ticks_.emplace_back(value, decade_text(value));
   };
   const int first = static_cast<int>(std::floor(std::log10(low_) + 1e-9)),
             last = static_cast<int>(std::ceil(std::log10(high_) - 1e-9));

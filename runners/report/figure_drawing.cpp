@@ -110,7 +110,7 @@ void Drawing::text(double x, double y, const std::string& words, const std::stri
 void Drawing::sign(double x, double y, std::size_t series, const std::string& title) {
   const std::string classes = fmt::format("dot s{}", series % colours);
   const double d = dot;
-  switch (series % 4) {
+  switch ((series + series / colours) % 4) {
     case 0:
       out_ += fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:g}\" class=\"{}\">{}</circle>\n", x, y, d, classes,
                           titled(title));
@@ -146,11 +146,11 @@ void Drawing::whisker(double low, double high, double across, bool upright, std:
   path(d, classes);
 }
 
-std::string Drawing::svg(double height, const std::string& label) const {
+std::string Drawing::svg(double height, const std::string& label, bool plane) const {
   return fmt::format(
-      "<svg class=\"ask-figure\" viewBox=\"0 0 {:g} {:.0f}\" role=\"img\" aria-label=\"{}\" "
+      "<svg class=\"ask-figure{}\" viewBox=\"0 0 {:g} {:.0f}\" role=\"img\" aria-label=\"{}\" "
       "xmlns=\"http://www.w3.org/2000/svg\">\n{}</svg>\n",
-      width, std::ceil(height), escape(label), out_);
+      plane ? " plane" : "", width, std::ceil(height), escape(label), out_);
 }
 
 AskFigure::AskFigure(const Json& figure)

@@ -19,7 +19,7 @@ inline constexpr double dot = 4, lane = 11, gap = 6;
 inline constexpr int most_ticks = 5;
 inline constexpr std::size_t colours = 8;
 /// A factor between values from which a linear axis hides the small ones.
-inline constexpr double wide_range = 100;
+inline constexpr double wide_range = 300;
 
 double width_of(const std::string& text);
 /// Words in lines that are no wider.
@@ -54,8 +54,8 @@ class Drawing {
   void path(const std::string& d, const std::string& classes, const std::string& title = "");
   /// From low to high, at a place `across`; upright where values are.
   void whisker(double low, double high, double across, bool upright, std::size_t series);
-  /// The whole, so high.
-  std::string svg(double height, const std::string& label) const;
+  /// The whole, so high; `plane`: of few rows, that are seen together.
+  std::string svg(double height, const std::string& label, bool plane = false) const;
 
  private:
   std::string out_;

@@ -74,7 +74,7 @@ std::string emphasised(const std::string& sentence) {
   static const std::string digits = "(?:−|[+])?[0-9]+(?:[.][0-9]+)?(?:e-?[0-9]+)?",
                            unit = "(?:%|times|N s|m/s|rad/s|N/m|ms|µs|s|m|N|J|W|mW|µW|mm|µm)";
   static const std::regex number("(^|[ (])(" + digits + "(?: ± " + digits + ")?(?: to " + digits + ")?(?: " + unit +
-                                 "(?![A-Za-z/]))?)(?=[ ,.;:)]|$)");
+                                 "(?![A-Za-z/]))?)(?=[ ,;:)]|[.](?![0-9])|$)");
   // The numbers of orders and parameters are no results.
   static const std::regex plain("(order |= )<strong>([^<]*)</strong>");
   return std::regex_replace(std::regex_replace(escape(sentence), number, "$1<strong>$2</strong>"), plain, "$1$2");

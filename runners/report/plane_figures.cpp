@@ -80,7 +80,7 @@ class PlaneFigure : public AskFigure {
       draw_.box(in.x.at(from), in.top, in.x.at(to) - in.x.at(from), in.bottom - in.top, "between");
     for (std::size_t k = 0; k < all.size(); ++k)
       draw(all[k], k, apart * (static_cast<double>(k) - others / 2), in.x, in.y);
-    return draw_.svg(in.end, upwards);
+    return draw_.svg(in.end, upwards, true);
   }
 
  private:
@@ -209,7 +209,7 @@ class Branches : public PlaneFigure {
       draw_.sign(in.x.at(x), in.y.at(*number_of(mark, "tip")), names.size() + place,
                  fmt::format("{}: {} at {}", kind, text_of(mark, "branch"), number_text(x, 5)));
     }
-    return draw_.svg(in.end, axis_title("y"));
+    return draw_.svg(in.end, axis_title("y"), true);
   }
 
  private:

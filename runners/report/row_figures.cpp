@@ -28,6 +28,7 @@ class RowFigure : public AskFigure {
   std::string rows(std::vector<Row> all, std::vector<double> values, const std::vector<std::string>& names,
                    bool logarithms, bool boxes = false) {
     values.insert(values.end(), at_.begin(), at_.end());
+    if (!logarithms) with_zero(values);
     double longest = 0;
     for (const Row& row : all)
       if (!row.heading) longest = std::max(longest, width_of(row.label));
@@ -86,6 +87,13 @@ class RowFigure : public AskFigure {
   std::optional<FigureAxis> axis_;
 
  private:
+  /// Lengths from zero are compared.
+  static void with_zero(std::vector<double>& values) {
+    if (values.empty()) return;
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    constexpr double near = 0.35;
+    if (*low > 0 && *low < near * *high) values.push_back(0);
+  }
   static double label_width(const Row& row, bool beside, double longest) {
     return beside && !row.heading ? longest + 1 : width - side;
   }

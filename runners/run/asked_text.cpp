@@ -23,6 +23,7 @@ std::string unit_of(const VerdictRow& row) {
 
 /// "1.44 ± 0.13", in the digits of the sentences; "8e-4 to 0.001" of what is known by its bounds alone.
 std::string value_cell(const VerdictRow& row) {
+  if (!row.value && row.low && row.high && *row.low == *row.high) return answers::short_number(*row.low);
   if (!row.value)
     return row.low && row.high ? answers::short_number(*row.low) + " to " + answers::short_number(*row.high) : "";
   answers::MeasureWords words;
@@ -31,10 +32,11 @@ std::string value_cell(const VerdictRow& row) {
   if (!row.low || !row.high) return answers::value_text(words, *row.value, {}, false);
   constexpr double lopsided = 0.05;
   const double half = 0.5 * (*row.high - *row.low), middle = 0.5 * (*row.high + *row.low);
-  if (std::abs(*row.value - middle) > lopsided * half && half > 0)
-    return fmt::format("{} ({} to {})", answers::value_text(words, *row.value, half, false),
-                       answers::value_text(words, *row.low, half, false),
-                       answers::value_text(words, *row.high, half, false));
+  if (std::abs(*row.value - middle) > lopsided * half && half > 0) {
+    const auto said = [&](double value) { return answers::value_text(words, value, half, false); };
+    const std::string value = said(*row.value), low = said(*row.low), high = said(*row.high);
+    return low == high ? value : fmt::format("{} ({} to {})", value, low, high);
+  }
   std::string text = answers::with_uncertainty(words, *row.value, half);
   if (const std::string unit = " " + words.unit; !words.unit.empty() && text.ends_with(unit))
     text.resize(text.size() - unit.size());
@@ -48,7 +50,7 @@ report::AskedTable asked_rows(const asks::Answered& answered) {
   for (const VerdictRow& row : answered.rows) {
     if (row.value || row.low) units.insert(unit_of(row));
     if (!row.measure.empty()) measures.insert(row.measure);
-    stops.insert(row.stop);
+    if (!row.stop.empty()) stops.insert(row.stop);
   }
   const bool one_unit = units.size() == 1;
   report::AskedTable out;

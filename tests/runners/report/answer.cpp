@@ -1,7 +1,8 @@
 #include <catch2/catch.hpp>
+#include <utility>
 
-#include "runners/kinds/trajectory/page/page.hpp"
 #include "runners/report/report.hpp"
+#include "runners/run/asked_text.hpp"
 #include "tests/runners/report/synthetic.hpp"
 
 using namespace ricochet;
@@ -12,17 +13,22 @@ namespace {
 
 /// The answer to what the cases have measured by now.
 std::string answer_of(StudyResults results) {
-  synthetic::derive_energies(results);
-  return answer_html(CaseView(results), trajectory_page());
+  const AnalysedResults analysed(std::move(results));
+  return answer_html(CaseView(analysed), page_of_study(analysed));
 }
 
 }  // namespace
 
-TEST_CASE("the first sentence of an answer is its headline, and the evidence stands below", "[report]") {
+TEST_CASE("an answer is a sentence with its rows and its figure, below what warns", "[report]") {
   const std::string answer = answer_of(synthetic::results());
-  CHECK_THAT(answer, Contains("<p class=\"headline\">") && Contains("<strong>") && Contains("evidence"));
-  CHECK_THAT(answer, Contains("singular P1") && Contains("h = 1e-6 s"));
-  CHECK_THAT(answer, Contains("of 36 cases"));
+  CHECK_THAT(answer, Contains("<p class=\"headline\">The energy left: ") && Contains("<strong>") &&
+                         Contains("<table class=\"verdicts\">") && Contains("<svg class=\"ask-figure\""));
+  const std::size_t headline = answer.find("<p class=\"headline\">");
+  for (const char* const warning :
+       {"Energy is made with the consistent and the lumped mass", "</strong> diverged", "</strong> refused"}) {
+    INFO(warning);
+    CHECK(answer.find(warning) < headline);
+  }
 }
 
 TEST_CASE("other measurements, another answer", "[report]") {
@@ -30,7 +36,7 @@ TEST_CASE("other measurements, another answer", "[report]") {
   for (CaseRecord& record : results.cases)
     for (auto& [name, value] : record.measures)
       if (name == "energy_left") value = CaseView::text(record, "mass") == "consistent" ? 1 : 0.5;
-  CHECK_THAT(answer_of(results), Contains("The consistent mass keeps it: all of the energy is left"));
+  CHECK_THAT(answer_of(results), Contains("from <strong>50 %</strong> to <strong>100 %</strong>"));
 }
 
 TEST_CASE("where nothing is brought in there is no ratio, and none is made up", "[report]") {

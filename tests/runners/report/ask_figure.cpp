@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
+#include <set>
 
 #include "runners/report/figure_axis.hpp"
 #include "runners/table/text.hpp"
@@ -482,6 +483,17 @@ TEST_CASE("what is not stable of a branch is broken, every special point has its
   CHECK(all_of(svg, "<title>graze: a at 5<").size() == 1);
   for (const char* one : {"fine", "coarse", "fold", "graze", "amplitude (m)", "displacement (m)"})
     check_named(drawn, one);
+}
+
+TEST_CASE("no two of thirty-two series have the same sign", "[report][asks]") {
+  Json figure = {{"form", "curves"}, {"x", "h"}, {"y", "e"}, {"series", Json::array()}};
+  for (int k = 0; k < 32; ++k) figure["series"].push_back({{"name", "n" + std::to_string(k)}, {"points", {{1, k}}}});
+  std::set<std::string> signs;
+  // A triangle has a level side, a rhombus has none.
+  for (const auto& one :
+       all_of(figure_svg(figure), R"re(<(circle|rect|path d="M[^h"]*h|path d="M[^h"]*z)[^>]*class="(dot s\d))re"))
+    signs.insert(one[1].str().substr(0, 4) + one[1].str().back() + one[2].str());
+  CHECK(signs.size() == 32);
 }
 
 TEST_CASE("bars of steps are logarithmic where they are asked to be", "[report][asks]") {

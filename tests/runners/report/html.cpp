@@ -35,3 +35,10 @@ TEST_CASE("a share has three digits", "[report]") {
   CHECK(share_text(0.05) == "5 %");
   CHECK(share_text(2.4e-9) == "2.4e-7 %");
 }
+
+TEST_CASE("numbers of a sentence are bold as a whole, or not at all", "[report]") {
+  CHECK(emphasised("No: by +6.0 ± 0.4 % in all 6.") ==
+        "No: by <strong>+6.0 ± 0.4 %</strong> in all <strong>6</strong>.");
+  CHECK(emphasised("period 2 (2.55–2.575)") == "period <strong>2</strong> (2.55–2.575)");
+  CHECK(emphasised("a < 1e-5 m; order 2") == "a &lt; <strong>1e-5 m</strong>; order 2");
+}

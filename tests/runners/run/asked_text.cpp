@@ -65,6 +65,15 @@ TEST_CASE("an interval that is not symmetric is given by its ends, a bracket wit
   CHECK(table.rows[2].back() == "no value: no case is done");
 }
 
+TEST_CASE("an interval of no width in its digits is one number", "[asks]") {
+  Answered answered;
+  answered.rows = {row("a", 2.31e-4, 0, "s", "known"), row("b", 0, 0, "s", "period 1")};
+  answered.rows[0].high = 2.31e-4 + 1e-12;
+  answered.rows[1].value.reset();
+  answered.rows[1].low = answered.rows[1].high = 2.65;
+  CHECK(values_of(asked_rows(answered)) == Texts{"2.31e-4", "2.65"});
+}
+
 TEST_CASE("a table without any value has no column of numbers", "[asks]") {
   Answered answered;
   VerdictRow one;
