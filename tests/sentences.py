@@ -13,7 +13,7 @@ import statistics
 import sys
 
 # page: most lines, most words of the median sentence
-limits = {"core/README.md": (120, 18), "core/glossary.md": (80, 18), "runners/README.md": (240, 18),
+limits = {"core/README.md": (120, 18), "core/glossary.md": (80, 18), "runners/README.md": (290, 18),
           "runners/operations.md": (120, 18), ".github/CONTRIBUTING.md": (60, 18), "studies/README.md": (140, 18)}
 limits_of_folders = {"core/numerics": (80, 18), "studies/findings": (300, 18)}
 avoided = re.compile(r"\b(seats?|crews?|pioneers?|rooms?|houses?|guests?|strangers?|parcels?|company|a march|marches)\b", re.I)

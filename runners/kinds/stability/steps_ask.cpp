@@ -16,6 +16,9 @@
 namespace ricochet {
 namespace {
 
+/// What a range without a bound says in its place.
+constexpr const char* no_bound = "none";
+
 /// What bounds the step of a case.
 enum class Bound { stop, mesh, none, everywhere, unknown };
 
@@ -163,8 +166,8 @@ class StepsAsk {
 
   void say_gains(asks::Answered& out) const {
     const Members gain = members([](const StepLimit& one) {
-      return one.closed.prediction == "none" && one.closed.disagreeing > 0 && !one.closed.observation.empty() &&
-             one.closed.observation != "none";
+      return one.closed.prediction == no_bound && one.closed.disagreeing > 0 && !one.closed.observation.empty() &&
+             one.closed.observation != no_bound;
     });
     if (!gain.empty())
       out.aside.push_back(fmt::format("Impacts make energy though every spectrum is stable in {} of {}: {}.",

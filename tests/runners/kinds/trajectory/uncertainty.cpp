@@ -57,7 +57,7 @@ TEST_CASE("an interval is the range over the methods, widened by the sum of step
   CHECK(told(table, "high").number().value() == Approx(11.2).epsilon(1e-12));
   CHECK(told(table, "verdict").text() == "methods");
   CHECK(told(table, "sentence").text() ==
-        "Rms force at bar: 9.8 to 11.2 N; methods differ by 1; the step leaves 0.2.");
+        "Rms force at bar: 9.8 to 11.2 N; methods differ by 1.0; the step leaves 0.2.");
 
   results.cases.back().measures.emplace_back("confidence.rms_force[bar]", 0.8);
   const Table sampled = uncertain(results);
@@ -85,7 +85,7 @@ TEST_CASE("small powers are said in thousandths of a watt, and stand in the tabl
   CHECK(told(table, "low").number().value() == Approx(9.8e-4).epsilon(1e-12));
   CHECK(
       told(table, "sentence").text() ==
-      "Wear power at bar: 0.98 to 1.12 mW; methods differ by 0.1; the step leaves 0.02.");
+      "Wear power at bar: 0.98 to 1.12 mW; methods differ by 0.10; the step leaves 0.02.");
 }
 
 TEST_CASE("an interval of what is never below 0 begins at 0") {
