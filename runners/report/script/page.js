@@ -14,7 +14,7 @@
     document.addEventListener(name, ofPage, {capture: true, passive: true});
 
   // Says of a box whether it holds more than it shows, and whether there is more to the right or below. Such a box can
-  // be reached and scrolled by keys. All boxes are measured before any is changed: a page is laid out once for all of them.
+  // be reached and scrolled by keys. All boxes are measured before any is changed: a page is laid out once for all.
   const resized = new Set(), widths = new ResizeObserver((entries) => entries.forEach(({target}) => lookAt(target)));
   function lookAt(box) {
     if (!resized.size)
