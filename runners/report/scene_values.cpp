@@ -103,7 +103,8 @@ std::vector<double> SceneValues::swept(const std::string& pointer) const {
         if (value.is_number()) out.push_back(value.get<double>());
       return out;
     }
-    const auto from = first_number(&(*one)["from"]), to = first_number(&(*one)["to"]);
+    if (!one->contains("from") || !one->contains("to")) continue;
+    const auto from = first_number(&one->at("from")), to = first_number(&one->at("to"));
     if (from && to) return {*from, *to};
   }
   return {};
