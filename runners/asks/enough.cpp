@@ -51,8 +51,12 @@ class Enough {
     out.passes = all_of(verdicts);
     out.verdict = word(*out.passes);
     out.figure = figure(needs);
+    // Of a no the one that is told what would do.
+    const auto counts = [&](const std::pair<const Line*, Need>& one) {
+      return *out.passes != Verdict::no || (one.second.known && !one.second.enough);
+    };
     const auto worst = std::max_element(needs.begin(), needs.end(), [&](const auto& a, const auto& b) {
-      return width(*a.first) < width(*b.first);
+      return counts(a) != counts(b) ? counts(b) : width(*a.first) < width(*b.first);
     });
     const auto& [line, need] = *worst;
     const std::string found = fmt::format("{} is known to ± {}", lines_.words.words, answers::percent(width(*line)));
