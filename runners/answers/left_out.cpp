@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "runners/answers/answer.hpp"
+#include "runners/answers/numbers_in_words.hpp"
 
 // What a study's measures cannot say.
 namespace ricochet::answers {
+
 std::string why_without(const std::string& name, const CaseRecord& record) {
   for (const auto& [item, reason] : record.left_out)
     if (item == name) return reason;

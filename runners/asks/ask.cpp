@@ -98,7 +98,9 @@ void check_where(const Ask& ask, const Study& study) {
                                           : axis.second == level);
     });
   };
-  for (const auto& [column, level] : where.items()) {
+  for (const auto& item : where.items()) {
+    const std::string& column = item.key();
+    const Json& level = item.value();
     const std::string pointer = pointer_to(ask.pointer("where"), column);
     if (std::find(study.columns.begin(), study.columns.end(), column) == study.columns.end())
       throw InputError(pointer, "no axis of this study is called " + quote(column) + "; there is: " +

@@ -26,7 +26,7 @@ double two_digits_below(double value) {
 
 class Enough {
  public:
-  Enough(const Ask& ask, const Evidence& evidence) : ask_(ask), evidence_(evidence), within_(*ask.real("within")) {
+  Enough(const Ask& ask, const Evidence& evidence) : evidence_(evidence), within_(*ask.real("within")) {
     lines_ = lines_of(ask, evidence, ask.subject());
   }
 
@@ -184,7 +184,6 @@ class Enough {
     return {{"form", "parts"}, {"measure", lines_.words.words}, {"unit", "%"}, {"rows", rows}, {"at", {hundred * within_}}};
   }
 
-  const Ask& ask_;
   const Evidence& evidence_;
   double within_;
   Lines lines_;

@@ -58,9 +58,10 @@ std::vector<SizedValue> along(const std::map<Size, BySeed>& values, const Size& 
     sizes.emplace_back(steps ? size.first : 1 / size.second, &by_seed);
   }
   std::vector<SizedValue> out;
-  for (const auto& [size, by_seed] : sizes) {
-    if (!std::all_of(common.begin(), common.end(), [&](const auto& seed) { return by_seed->contains(seed); })) continue;
-    out.push_back({size, mean_over(*by_seed, common)});
+  for (const auto& one : sizes) {
+    const BySeed& by_seed = *one.second;
+    if (std::all_of(common.begin(), common.end(), [&](const auto& seed) { return by_seed.contains(seed); }))
+      out.push_back({one.first, mean_over(by_seed, common)});
   }
   return out;
 }

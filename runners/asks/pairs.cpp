@@ -26,10 +26,10 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
   std::map<Size, std::map<std::string, double>> halves;
   for (const auto& [seed, difference] : draws) {
     out.base += first.values.at(*finest).at(seed) / static_cast<double>(draws.size());
-    const auto half = [&](const Point& point) -> std::optional<double> {
+    const auto half = [&, of_seed = seed](const Point& point) -> std::optional<double> {
       const auto sized = point.halves.find(*finest);
       if (sized == point.halves.end()) return std::nullopt;
-      const auto own = sized->second.find(seed);
+      const auto own = sized->second.find(of_seed);
       return own == sized->second.end() ? std::nullopt : std::optional(own->second);
     };
     // One draw: no surer than if the two were drawn apart. Of several, differences under one load tell.

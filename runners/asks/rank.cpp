@@ -43,7 +43,7 @@ std::vector<std::vector<std::size_t>> grouped(const std::vector<const Line*>& li
 
 class Ranking {
  public:
-  Ranking(const Ask& ask, const Evidence& evidence) : ask_(ask), evidence_(evidence), over_(ask.text("over")) {
+  Ranking(const Ask& ask, const Evidence& evidence) : evidence_(evidence), over_(ask.text("over")) {
     const Cases cases = evidence.cases(ask);
     std::vector<std::string> columns = evidence.choices(cases);
     if (over_ != over_stops) own_ = evidence.columns_of(over_);
@@ -140,7 +140,8 @@ class Ranking {
   std::vector<std::string> turns() const {
     std::vector<std::string> out;
     const Order& first = orders_.front().second;
-    for (const auto& [key, order] : orders_) {
+    for (const auto& keyed : orders_) {
+      const Order& order = keyed.second;
       if (order.names.front() == first.names.front()) continue;
       const auto place = std::find(order.names.begin(), order.names.end(), first.names.front());
       const bool together = place != order.names.end() &&
@@ -167,7 +168,6 @@ class Ranking {
     }
   }
 
-  const Ask& ask_;
   const Evidence& evidence_;
   std::string over_;
   std::vector<std::string> own_, others_;

@@ -74,7 +74,7 @@ void find_change(Series& series) {
 
 class Threshold {
  public:
-  Threshold(const Ask& ask, const Evidence& evidence) : ask_(ask), along_(ask.text("along")) {
+  Threshold(const Ask& ask, const Evidence& evidence) : along_(ask.text("along")) {
     condition_ = {ask.real("is"), ask.real("below"), ask.real("above")};
     const Cases cases = evidence.cases(ask);
     std::vector<std::string> columns = evidence.choices(cases, {along_}), others = columns;
@@ -206,7 +206,6 @@ class Threshold {
             {"along_unit", unit_.empty() ? "" : unit_.substr(1)}, {"rows", rows}, {"at", at}, {"between", between}};
   }
 
-  const Ask& ask_;
   std::string along_, unit_;
   Condition condition_;
   Lines lines_;

@@ -72,7 +72,6 @@ class MotionEffect {
  public:
   MotionEffect(const asks::Ask& ask, const asks::Evidence& evidence, const MotionsOf& motions, std::string places)
       : ask_(ask),
-        evidence_(evidence),
         study_(evidence.study()),
         motions_(motions),
         places_(std::move(places)),
@@ -300,7 +299,6 @@ class MotionEffect {
   }
 
   const asks::Ask& ask_;
-  const asks::Evidence& evidence_;
   const answers::Compared& study_;
   const MotionsOf& motions_;
   std::string places_;
