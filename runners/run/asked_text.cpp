@@ -9,6 +9,7 @@
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/numbers_in_words.hpp"
+#include "runners/json/json_text.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/text.hpp"
 
@@ -125,7 +126,6 @@ std::string asked_text(const AnalysedResults& results) {
 }
 
 nlohmann::ordered_json asked_json(const AnalysedResults& results) {
-  using Json = nlohmann::ordered_json;
   const Table table = asks::verdicts_table(results.asked);
   Json rows = Json::array();
   for (const Row& row : table.rows) {

@@ -1,4 +1,6 @@
 // Verdicts on made tables whose truth is known: no wrong yes, no wrong no; what does not matter changes nothing.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 
 #include "tests/runners/asks/made_tables.hpp"
