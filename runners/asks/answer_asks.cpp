@@ -40,15 +40,16 @@ const TableType<VerdictRow>& verdicts_type() {
   return all;
 }
 
+bool fits(const std::string& sentence) {
+  constexpr std::ptrdiff_t most = 30;
+  std::istringstream words(sentence);
+  return std::distance(std::istream_iterator<std::string>(words), {}) <= most;
+}
+
 std::string in_thirty_words(std::string must, const std::vector<std::vector<std::string>>& rest) {
-  constexpr std::size_t most = 30;
-  const auto words = [](const std::string& text) {
-    std::istringstream in(text);
-    return static_cast<std::size_t>(std::distance(std::istream_iterator<std::string>(in), {}));
-  };
   for (const std::vector<std::string>& part : rest)
     for (const std::string& wording : part)
-      if (words(must + wording) <= most) {
+      if (fits(must + wording)) {
         must += wording;
         break;
       }

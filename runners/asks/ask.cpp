@@ -50,12 +50,15 @@ Ask ask_of(const Json& keys, std::size_t number) {
   return out;
 }
 
-std::vector<Ask> asks_of(const Json& study) {
+std::vector<Ask> asks_of_list(const Json& list) {
   std::vector<Ask> out;
-  const auto list = study.find("ask");
-  if (list == study.end() || !list->is_array()) return out;
-  for (const Json& keys : *list) out.push_back(ask_of(keys, out.size() + 1));
+  for (const Json& keys : list) out.push_back(ask_of(keys, out.size() + 1));
   return out;
+}
+
+std::vector<Ask> asks_of(const Json& study) {
+  const auto list = study.find("ask");
+  return list != study.end() && list->is_array() ? asks_of_list(*list) : std::vector<Ask>();
 }
 
 std::string verb_of_kind(const Ask& ask) {
@@ -93,9 +96,7 @@ void check_where(const Ask& ask, const Study& study) {
   const Json& where = ask.keys["where"];
   const auto matches = [](const StudyCase& one, const std::string& column, const Json& level) {
     return std::any_of(one.axes.begin(), one.axes.end(), [&](const auto& axis) {
-      return axis.first == column && (axis.second.is_number() && level.is_number()
-                                          ? axis.second.template get<double>() == level.get<double>()
-                                          : axis.second == level);
+      return axis.first == column && same_level(level, axis.second);
     });
   };
   for (const auto& item : where.items()) {

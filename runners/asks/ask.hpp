@@ -20,7 +20,6 @@ struct Ask {
   std::size_t number = 1;      ///< its place in the list, from 1
   const Verb* verb = nullptr;  ///< that it has
   Json keys;                   ///< all of them, checked
-  bool given = true;           ///< by the study; not given: what the program asks where the study asks nothing
 
   bool has(const char* key) const { return keys.contains(key); }
   /// The text after a key; "" where it is not there.
@@ -30,6 +29,8 @@ struct Ask {
   std::string subject() const;
   /// "/ask/0/rank" of its verb, "/ask/0/over" of another key.
   std::string pointer(const std::string& key = "") const;
+  /// The share from which levels differ, or within which they agree; 1 % where neither is given.
+  double share_asked() const { return real("from").value_or(real("within").value_or(0.01)); }
   /// Whether the exit code depends on it.
   bool required() const { return keys.value("require", false); }
 };
@@ -53,6 +54,9 @@ const std::vector<const Verb*>& verbs();
 
 /// The verb of this name; null where there is none.
 const Verb* find_verb(const std::string& name);
+
+/// The entries of a list `ask`.
+std::vector<Ask> asks_of_list(const Json& list);
 
 /// What a study asks, complete; `study`: as it is kept. None where it asks nothing.
 std::vector<Ask> asks_of(const Json& study);

@@ -8,15 +8,6 @@
 
 namespace ricochet::asks {
 
-std::vector<Ask> asks_of_list(const Json& list) {
-  std::vector<Ask> out;
-  for (const Json& keys : list) {
-    out.push_back(ask_of(keys, out.size() + 1));
-    out.back().given = false;
-  }
-  return out;
-}
-
 std::vector<Ask> asks_of_measures(const Evidence& evidence, const std::vector<std::string>& measures, bool runs) {
   constexpr std::size_t most = 4;
   Json list = Json::array();

@@ -9,11 +9,12 @@
 #include "runners/asks/pairs.hpp"
 #include "runners/asks/verbs.hpp"
 #include "runners/json/json_text.hpp"
+#include "runners/table/in_order_met.hpp"
 
 namespace ricochet::asks {
 namespace {
 
-/// One combination of all other choices: its levels against each other.
+/// One combination of all other choices.
 struct Combination {
   std::string stop, level;  // of the others
   std::vector<const Line*> lines;
@@ -67,8 +68,7 @@ std::string share_text(const Pair& pair) {
   const double share = *pair.share;
   answers::MeasureWords words;
   words.unit = "%";
-  constexpr double hundred = 100;
-  words.factor = hundred;
+  words.factor = per_cent;
   const std::string value = answers::with_uncertainty(words, std::abs(share), pair.share_u);
   return (value.starts_with("0 ") ? "" : share < 0 ? "−" : "+") + value;
 }
@@ -77,9 +77,7 @@ class EffectSpeaker {
  public:
   EffectSpeaker(const Ask& ask, const Evidence& evidence)
       : ask_(ask), evidence_(evidence), own_(evidence.columns_of(ask.subject())), cases_(evidence.cases(ask)) {
-    constexpr double one_per_cent = 0.01;
-    from_ = ask.real("from").value_or(one_per_cent);
-    if (const auto within = ask.real("within")) from_ = *within;
+    from_ = ask.share_asked();
     agrees_ = ask.has("within");
     std::vector<std::string> columns = evidence.choices(cases_);
     std::erase_if(columns, [&](const std::string& one) { return std::find(own_.begin(), own_.end(), one) != own_.end(); });
@@ -92,85 +90,81 @@ class EffectSpeaker {
   Answered answer() {
     Answered out = begin_answer(lines_);
     out.figure = figure();
-    if (const std::string why = nothing_known(lines_); !why.empty()) {
-      out.verdict = word(Verdict::open);
-      out.passes = Verdict::open;
-      out.reason = why;
-      out.sentence = fmt::format("Open: no case has a value of {}: {}.", lines_.words.words, why);
-      return out;
-    }
+    if (auto open = open_without_values(lines_, out)) return *open;
     std::vector<const Told*> yes, no, open;
-    const std::vector<const Told*> decide = widest();
-    for (const Told* one : decide) add_rows(out, *one);
-    for (const Told& one : told_)
-      if (std::find(decide.begin(), decide.end(), &one) == decide.end()) add_rows(out, one);
+    std::vector<char> shown(told_.size(), 0);
+    for (const std::size_t k : decides_) {
+      add_row(out, told_[k]);
+      shown[k] = 1;
+    }
+    for (std::size_t k = 0; k < told_.size(); ++k)
+      if (!shown[k]) add_row(out, told_[k]);
     for (const Line& line : lines_.all) {
       VerdictRow row = lines_.row(line);
       row.verdict = "value";
       out.rows.push_back(std::move(row));
     }
-    for (const Told* one : decide)
-      (one->verdict == Verdict::yes ? yes : one->verdict == Verdict::no ? no : open).push_back(one);
+    for (const std::size_t k : decides_) {
+      const Told& one = told_[k];
+      (one.verdict == Verdict::yes ? yes : one.verdict == Verdict::no ? no : open).push_back(&one);
+    }
     say(out, yes, no, open);
     return out;
   }
 
  private:
   void combine() {
+    InOrderMet<std::string, Combination> all;
     for (const Line& line : lines_.all) {
       const std::string level = evidence_.level(line.point.first(), others_);
-      auto found = std::find_if(combinations_.begin(), combinations_.end(), [&](const Combination& one) {
-        return one.stop == line.stop && one.level == level;
-      });
-      if (found == combinations_.end()) found = combinations_.insert(combinations_.end(), {line.stop, level, {}});
-      found->lines.push_back(&line);
+      Combination& one = all[level + '\n' + line.stop];
+      one.stop = line.stop;
+      one.level = level;
+      one.lines.push_back(&line);
     }
-    for (const Combination& one : combinations_)
+    for (auto& [key, one] : std::move(all).list()) combinations_.push_back(std::move(one));
+    for (const Combination& one : combinations_) {
+      const std::size_t first = told_.size();
       for (std::size_t a = 0; a < one.lines.size(); ++a)
-        for (std::size_t b = a + 1; b < one.lines.size(); ++b) {
-          Told told{&one, own_level(*one.lines[a]), own_level(*one.lines[b]), {}, Verdict::open, ""};
-          for (const Line* line : {one.lines[a], one.lines[b]})
-            if (!line->known() && told.reason.empty()) told.reason = line->point.none;
-          if (told.reason.empty()) {
-            told.pair = pair_of(one.lines[a]->point, one.lines[b]->point);
-            judge(told, from_);
-          }
-          told_.push_back(std::move(told));
-        }
+        for (std::size_t b = a + 1; b < one.lines.size(); ++b) told_.push_back(told_of(one, *one.lines[a], *one.lines[b]));
+      if (told_.size() > first) decides_.push_back(deciding(first));
+    }
+  }
+
+  Told told_of(const Combination& where, const Line& a, const Line& b) const {
+    Told told{&where, own_level(a), own_level(b), {}, Verdict::open, ""};
+    for (const Line* line : {&a, &b})
+      if (!line->known() && told.reason.empty()) told.reason = line->point.none;
+    if (!told.reason.empty()) return told;
+    told.pair = pair_of(a.point, b.point);
+    judge(told, from_);
+    return told;
   }
 
   std::string own_level(const Line& line) const { return evidence_.level(line.point.first(), own_); }
 
-  /// Of each combination the pair that decides: one that is a yes, else one that is open, else the largest.
-  std::vector<const Told*> widest() const {
-    std::vector<const Told*> out;
-    for (const Combination& one : combinations_) {
-      const Told* best = nullptr;
-      const auto size = [](const Told& told) { return told.pair ? std::abs(told.pair->difference) : 0.0; };
-      const auto rank = [](const Told& told) {
-        return told.verdict == Verdict::yes ? 2 : told.verdict == Verdict::open ? 1 : 0;
-      };
-      for (const Told& told : told_)
-        if (told.where == &one &&
-            (!best || rank(told) > rank(*best) || (rank(told) == rank(*best) && size(told) > size(*best))))
-          best = &told;
-      if (best) out.push_back(best);
-    }
-    return out;
+  /// The pair that decides, of those from `first` on: one that is a yes, else one that is open, else the largest.
+  std::size_t deciding(std::size_t first) const {
+    const auto rank = [](const Told& told) {
+      return std::pair(told.verdict == Verdict::yes ? 2 : told.verdict == Verdict::open ? 1 : 0,
+                       told.pair ? std::abs(told.pair->difference) : 0.0);
+    };
+    const auto best = std::max_element(told_.begin() + static_cast<std::ptrdiff_t>(first), told_.end(),
+                                       [&](const Told& a, const Told& b) { return rank(a) < rank(b); });
+    return static_cast<std::size_t>(best - told_.begin());
   }
 
-  void add_rows(Answered& out, const Told& one) const {
+  void add_row(Answered& out, const Told& one) const {
     VerdictRow row;
     row.measure = ask_.text("on");
     row.stop = one.where->stop;
     row.level = one.second + " against " + one.first + (one.where->level.empty() ? "" : ", " + one.where->level);
     row.unit = "%";
-    constexpr double hundred = 100;
     if (one.pair && one.pair->share) {
-      row.value = hundred * *one.pair->share;
+      row.value = per_cent * *one.pair->share;
       if (const auto u = one.pair->share_u) {
-        row.low = *row.value - hundred * *u;
-        row.high = *row.value + hundred * *u;
+        row.low = *row.value - per_cent * *u;
+        row.high = *row.value + per_cent * *u;
       }
     }
     const Verdict shown = one.verdict == Verdict::open ? Verdict::open
@@ -312,6 +306,7 @@ class EffectSpeaker {
   Lines lines_;
   std::vector<Combination> combinations_;
   std::vector<Told> told_;
+  std::vector<std::size_t> decides_;  // of each combination the pair that does
 };
 
 void check_effect(const Ask& ask, const Study& study) {

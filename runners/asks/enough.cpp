@@ -32,13 +32,7 @@ class Enough {
 
   Answered answer() const {
     Answered out = begin_answer(lines_);
-    if (const std::string why = nothing_known(lines_); !why.empty()) {
-      out.verdict = word(Verdict::open);
-      out.passes = Verdict::open;
-      out.reason = why;
-      out.sentence = fmt::format("Open: no case has a value of {}: {}.", lines_.words.words, why);
-      return out;
-    }
+    if (auto open = open_without_values(lines_, out)) return *open;
     std::vector<std::pair<const Line*, Need>> needs;
     std::vector<Verdict> verdicts;
     for (const Line& line : lines_.all) {
@@ -131,16 +125,11 @@ class Enough {
     return study.value("duration", 0.0);
   }
 
-  std::string step_words(double step) const {
-    // Downwards: it is to do.
-    return evidence_.study().step_words(step);
-  }
-
   std::string remedy(const Need& need) const {
     std::vector<std::string> parts;
     if (need.seeds) parts.push_back(fmt::format("{:.0f} seeds", *need.seeds));
     if (need.duration) parts.push_back(fmt::format("{} s of window", answers::short_number(*need.duration, 2)));
-    if (need.step) parts.push_back(step_words(*need.step));
+    if (need.step) parts.push_back(evidence_.study().step_words(*need.step));
     return some_of(parts);
   }
 
@@ -153,9 +142,8 @@ class Enough {
     width_row.measure = line.measure;
     width_row.level = line.level;
     width_row.stop = line.stop;
-    constexpr double hundred = 100;
     const double own = width(line);
-    if (std::isfinite(own)) width_row.value = hundred * own;
+    if (std::isfinite(own)) width_row.value = per_cent * own;
     width_row.unit = "%";
     width_row.verdict = "half-width";
     out.rows.push_back(width_row);
@@ -174,14 +162,13 @@ class Enough {
 
   Json figure(const std::vector<std::pair<const Line*, Need>>& needs) const {
     Json rows = Json::array();
-    constexpr double hundred = 100;
     for (const auto& [line, need] : needs) {
       const Estimate& one = line->estimate();
       if (one.value == 0) continue;
       for (const auto& [part, value] : {std::pair("step", one.step), std::pair("mesh", one.mesh), std::pair("sampling", one.sampling)})
-        if (value) rows.push_back({{"name", line->level + (line->stop.empty() ? "" : " " + line->stop)}, {"part", part}, {"value", hundred * *value / std::abs(one.value)}});
+        if (value) rows.push_back({{"name", line->level + (line->stop.empty() ? "" : " " + line->stop)}, {"part", part}, {"value", per_cent * *value / std::abs(one.value)}});
     }
-    return {{"form", "parts"}, {"measure", lines_.words.words}, {"unit", "%"}, {"rows", rows}, {"at", {hundred * within_}}};
+    return {{"form", "parts"}, {"measure", lines_.words.words}, {"unit", "%"}, {"rows", rows}, {"at", {per_cent * within_}}};
   }
 
   const Evidence& evidence_;

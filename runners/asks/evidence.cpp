@@ -21,12 +21,17 @@ std::pair<std::string, std::string> split_measure(const std::string& name) {
   return {name.substr(0, open), name.substr(open + 1, name.size() - open - 2)};
 }
 
-namespace {
-
-/// Whether a level that a study names is the one of a case: 1e6 and 1000000 are.
 bool same_level(const Json& asked, const Json& own) {
   return asked.is_number() && own.is_number() ? asked.get<double>() == own.get<double>() : asked == own;
 }
+
+std::string ending_key(const CaseRecord& record) {
+  std::string key = record.partial ? "still running" : record.status;
+  for (const Said& one : record.reasons) key += one.without_numbers();
+  return key;
+}
+
+namespace {
 
 const Json* axis_value(const CaseRecord& record, const std::string& column) {
   for (const auto& [name, value] : record.axes)
@@ -88,16 +93,21 @@ std::vector<std::string> Evidence::measures(const Ask& ask, const std::string& n
   return out;
 }
 
-std::vector<std::string> Evidence::choices(const Cases& cases, const std::vector<std::string>& own) const {
+std::vector<std::string> Evidence::varying(const Cases& cases) const {
   std::vector<std::string> out;
-  for (const std::string& column : results().columns) {
-    if (column == seed_axis || contains(own, column) || answers::is_refinement(column)) continue;
-    for (const CaseRecord* record : cases)
-      if (study_.text(*record, column) != study_.text(*cases.front(), column)) {
-        out.push_back(column);
-        break;
-      }
-  }
+  for (const std::string& column : results().columns)
+    if (std::any_of(cases.begin(), cases.end(), [&](const CaseRecord* record) {
+          return study_.text(*record, column) != study_.text(*cases.front(), column);
+        }))
+      out.push_back(column);
+  return out;
+}
+
+std::vector<std::string> Evidence::choices(const Cases& cases, const std::vector<std::string>& own) const {
+  std::vector<std::string> out = varying(cases);
+  std::erase_if(out, [&](const std::string& column) {
+    return column == seed_axis || contains(own, column) || answers::is_refinement(column);
+  });
   return out;
 }
 
@@ -148,9 +158,7 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
     }
     point.floor *= share ? 1 : largest;
     for (const auto& [size, value] : point.values)
-      if (!point.finest || size.second > point.finest->second ||
-          (size.second == point.finest->second && size.first < point.finest->first))
-        point.finest = size;
+      if (!point.finest || finer(size, *point.finest)) point.finest = size;
     limits.push_back(point.finest ? std::optional(limits_at(point.values, *point.finest, point.floor)) : std::nullopt);
     if (!point.finest) point.none = left_out(measure_of_all, point.cases).lines.front();
     out.push_back(std::move(point));
@@ -185,8 +193,7 @@ LeftOut Evidence::left_out(const std::string& name, const Cases& cases) const {
     } else {
       const std::string reason = record->reason();
       why = record->excluded || reason.empty() ? reason : record->status + ": " + reason;
-      key = record->status;
-      for (const Said& one : record->reasons) key += one.without_numbers();
+      key = ending_key(*record);
     }
     Group& group = groups[key];
     if (group.count++ == 0) group.first = why;

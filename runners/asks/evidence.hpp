@@ -35,6 +35,10 @@ struct Estimate {
 
 /// A size of refinement: the step (1 where none varies), the elements (1 likewise).
 using Size = std::pair<double, double>;
+/// Whether a has the finer mesh, or the same and the smaller step.
+inline bool finer(const Size& a, const Size& b) {
+  return a.second != b.second ? a.second > b.second : a.first < b.first;
+}
 
 /// Cases that agree in all that is chosen: they differ in step, mesh and seed alone.
 struct Point {
@@ -69,7 +73,9 @@ class Evidence {
   /// The measures of an ask by name, "peak_force[gap]": of a measure of stops one for each stop that it names, or all.
   /// The name as it is where no case has any.
   std::vector<std::string> measures(const Ask& ask, const std::string& name) const;
-  /// Columns that vary among these cases, but those of refinement, seeds, and `own`.
+  /// Columns that vary among these cases, refinements and seeds among them.
+  std::vector<std::string> varying(const Cases& cases) const;
+  /// The same but those of refinement, seeds, and `own`.
   std::vector<std::string> choices(const Cases& cases, const std::vector<std::string>& own = {}) const;
   /// The columns of a choice: of a role all that vary, else the one.
   std::vector<std::string> columns_of(const std::string& choice) const;
@@ -91,6 +97,12 @@ class Evidence {
  private:
   const answers::Compared& study_;
 };
+
+/// Whether a level that a study names is the one of a case: 1e6 and 1000000 are.
+bool same_level(const Json& asked, const Json& own);
+
+/// Equal for cases that ended alike: by status, and by reasons that differ in numbers at most.
+std::string ending_key(const CaseRecord& record);
 
 /// The name of a measure without its stop, and the stop; "" where it has none.
 std::pair<std::string, std::string> split_measure(const std::string& name);

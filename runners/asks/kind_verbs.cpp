@@ -1,9 +1,5 @@
 #include "runners/asks/kind_verbs.hpp"
 
-#include <algorithm>
-#include <iterator>
-#include <sstream>
-
 #include "runners/asks/verbs.hpp"
 #include "runners/json/json_text.hpp"
 #include "runners/table/in_order_met.hpp"
@@ -59,11 +55,8 @@ const Verb& steps_verb() {
 }
 
 std::string fitting(const std::vector<std::string>& sentences) {
-  constexpr std::ptrdiff_t most = 30;
-  for (const std::string& one : sentences) {
-    std::istringstream words(one);
-    if (std::distance(std::istream_iterator<std::string>(words), {}) <= most) return one;
-  }
+  for (const std::string& one : sentences)
+    if (fits(one)) return one;
   return sentences.back();
 }
 
@@ -78,27 +71,13 @@ void refuse_stops(const Ask& ask) {
                      quote(std::string(ask.verb->name)) + " speaks of no single stop; leave it out");
 }
 
-std::vector<std::string> varying(const Evidence& evidence, const Cases& cases) {
-  std::vector<std::string> out;
-  for (const std::string& column : evidence.results().columns)
-    if (std::any_of(cases.begin(), cases.end(), [&](const CaseRecord* one) {
-          return evidence.study().text(*one, column) != evidence.study().text(*cases.front(), column);
-        }))
-      out.push_back(column);
-  return out;
-}
-
 void leave_out(Answered& out, const std::vector<std::string>& reasons) {
   for (const std::string& why : reasons) out.aside.push_back("Left out: " + why + ".");
 }
 
 void leave_out(Answered& out, const Cases& left) {
   InOrderMet<std::string, Cases> groups;
-  for (const CaseRecord* one : left) {
-    std::string key = one->partial ? "still running" : one->status;
-    for (const Said& reason : one->reasons) key += reason.without_numbers();
-    groups[key].push_back(one);
-  }
+  for (const CaseRecord* one : left) groups[ending_key(*one)].push_back(one);
   for (const auto& [key, cases] : groups.list()) {
     const CaseRecord& first = *cases.front();
     const std::string status = first.partial            ? "still running"

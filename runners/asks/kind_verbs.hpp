@@ -1,4 +1,5 @@
 #pragma once
+#include <set>
 #include <string>
 #include <vector>
 
@@ -7,8 +8,6 @@
 /// \file
 /// What verbs that kinds of study answer have in common.
 namespace ricochet::asks {
-
-inline constexpr double per_cent = 100;  ///< rows and figures have shares in per cent
 
 /// The first of these sentences that has at most thirty words; the last where none has. The fullest stands first.
 std::string fitting(const std::vector<std::string>& sentences);
@@ -19,12 +18,19 @@ Ask ask_at(const Json& keys, const std::string& pointer);
 /// Refuses stops, of which such a verb does not speak.
 void refuse_stops(const Ask& ask);
 
-/// Columns of these cases that vary, refinements among them.
-std::vector<std::string> varying(const Evidence& evidence, const Cases& cases);
-
 /// What is told of the cases of an ask that have no such value, as Answered::aside.
 void leave_out(Answered& out, const std::vector<std::string>& reasons);
-/// The same of cases, counted by status and reason; those that differ in numbers alone are one.
+/// The same of cases, counted by how they ended (ending_key()).
 void leave_out(Answered& out, const Cases& left);
+/// The same of those among `cases` of which nothing is told; what is told has its case as `record`.
+template <class Told>
+void leave_out(Answered& out, const Cases& cases, const std::vector<Told>& told) {
+  std::set<const CaseRecord*> known;
+  for (const Told& one : told) known.insert(one.record);
+  Cases left;
+  for (const CaseRecord* one : cases)
+    if (!known.contains(one)) left.push_back(one);
+  leave_out(out, left);
+}
 
 }  // namespace ricochet::asks

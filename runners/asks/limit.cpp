@@ -85,9 +85,8 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
     out.sentence = in_thirty_words(
         fmt::format("No: {} is not {}{}; it is {}", name, range, in_these, lines.text(worst.estimate())),
         {{no.size() == 1 ? "" : worst.place()}});
-  } else if (!nothing_known(lines).empty()) {
-    out.reason = nothing_known(lines);
-    out.sentence = fmt::format("Open: no case has a value of {}: {}.", name, out.reason);
+  } else if (auto without = open_without_values(lines, out)) {
+    return *without;
   } else {
     std::vector<const Line*> known;
     for (const Line* line : open)

@@ -76,7 +76,6 @@ Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& meas
 Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure,
                const std::vector<std::string>& columns, bool as_stored) {
   Lines out;
-  out.columns = columns;
   const Cases cases = evidence.cases(ask);
   const std::vector<std::string> names = evidence.measures(ask, measure);
   out.words = words_of(names.front());
@@ -151,6 +150,15 @@ std::string nothing_known(const Lines& lines) {
   for (const Line& line : lines.all)
     if (std::find(reasons.begin(), reasons.end(), line.point.none) == reasons.end()) reasons.push_back(line.point.none);
   return some_of(reasons);
+}
+
+std::optional<Answered> open_without_values(const Lines& lines, Answered begun) {
+  begun.reason = nothing_known(lines);
+  if (begun.reason.empty()) return std::nullopt;
+  begun.verdict = word(Verdict::open);
+  begun.passes = Verdict::open;
+  begun.sentence = fmt::format("Open: no case has a value of {}: {}.", lines.words.words, begun.reason);
+  return begun;
 }
 
 std::string short_reason(const std::string& reason) {

@@ -25,7 +25,6 @@ struct Line {
 struct Lines {
   answers::MeasureWords words;  ///< of the measure without its stops
   std::vector<Line> all;
-  std::vector<std::string> columns;  ///< that tell levels apart
   std::size_t cases = 0, left_out = 0;
   std::vector<std::string> aside;  ///< what is left out, by reason
 
@@ -49,6 +48,9 @@ std::string set_name(const Lines& lines, const std::vector<const Line*>& set);
 
 /// What becomes an answer of such lines: counts and what is left out.
 Answered begin_answer(const Lines& lines);
+
+/// The answer of lines without any value to a question that has a yes or a no: open. Nothing where some has one.
+std::optional<Answered> open_without_values(const Lines& lines, Answered begun);
 
 /// Why nothing is known, of lines without a value; "" where some has one.
 std::string nothing_known(const Lines& lines);

@@ -15,14 +15,11 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
     for (const auto& [seed, value] : by_seed)
       if (const auto match = other->second.find(seed); match != other->second.end())
         differences[size][seed] = match->second - value;
-    if (differences.contains(size) &&
-        (!finest || size.second > finest->second || (size.second == finest->second && size.first < finest->first)))
-      finest = size;
+    if (differences.contains(size) && (!finest || finer(size, *finest))) finest = size;
   }
   if (!finest) return std::nullopt;
   Pair out{&first, &second};
   const auto& draws = differences.at(*finest);
-  out.seeds = draws.size();
   std::map<Size, std::map<std::string, double>> halves;
   for (const auto& [seed, difference] : draws) {
     out.base += first.values.at(*finest).at(seed) / static_cast<double>(draws.size());

@@ -16,7 +16,6 @@ struct Pair {
   double base = 0;        ///< of the first there: what the difference is a share of
   std::optional<double> u = {};  ///< of the difference, as of an Estimate; nothing where it is not known
   std::string unknown = {};      ///< why it is not: "one step: …"
-  std::size_t seeds = 1;
   /// The difference as a share of the first at the same step and mesh, and what is open of that; nothing where the
   /// first is zero or round-off.
   std::optional<double> share = {}, share_u = {};

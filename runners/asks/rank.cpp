@@ -56,11 +56,7 @@ class Ranking {
       const std::string level = level_of(line);
       Order& order = orders[level];
       order.level = level;
-      if (!line.known()) {
-        ++without_;
-        continue;
-      }
-      order.lines.push_back(&line);
+      if (line.known()) order.lines.push_back(&line);
     }
     orders_ = std::move(orders).list();
     for (auto& [key, order] : orders_) {
@@ -84,16 +80,16 @@ class Ranking {
     for (const auto& [key, order] : orders_) add_rows(out, order);
     const Order& first = orders_.front().second;
     const bool firm = first.groups.size() == first.lines.size();
-    std::vector<std::string> turned = turns();
+    const auto [turned, turned_to] = turns();
     out.verdict = !turned.empty() ? "turned round" : firm ? "told apart" : first.groups.size() > 1 ? "in part" : "not told apart";
     if (!firm && !first.lines.empty()) out.reason = first.lines.front()->estimate().unknown();
     std::vector<std::vector<std::string>> rest;
     if (!out.reason.empty()) rest.push_back({"; " + out.reason, "; " + short_reason(out.reason)});
     if (orders_.size() > 1)
       rest.push_back({turned.empty() ? fmt::format("; the same first in all {} combinations", orders_.size())
-                                     : fmt::format("; {} is first with {}", turned_to_, some_of(turned, 1)),
+                                     : fmt::format("; {} is first with {}", turned_to, some_of(turned, 1)),
                       turned.empty() ? fmt::format("; with all {} the same", orders_.size())
-                                     : fmt::format("; {} is first with others", turned_to_)});
+                                     : fmt::format("; {} is first with others", turned_to)});
     out.sentence = in_thirty_words(capitalised_order(first), rest);
     return out;
   }
@@ -136,9 +132,9 @@ class Ranking {
                        fmt::join(parts, ", then "), more > 0 ? fmt::format(", then {} more", more) : "");
   }
 
-  /// The levels of all else with which another is surely the largest.
-  std::vector<std::string> turns() const {
-    std::vector<std::string> out;
+  /// The levels of all else with which another is surely the largest, and which one is so with the first of them.
+  std::pair<std::vector<std::string>, std::string> turns() const {
+    std::pair<std::vector<std::string>, std::string> out;
     const Order& first = orders_.front().second;
     for (const auto& keyed : orders_) {
       const Order& order = keyed.second;
@@ -149,8 +145,8 @@ class Ranking {
                               return order.names[k] == first.names.front();
                             });
       if (together) continue;
-      if (out.empty()) turned_to_ = order.names.front();
-      out.push_back(order.level);
+      if (out.first.empty()) out.second = order.names.front();
+      out.first.push_back(order.level);
     }
     return out;
   }
@@ -173,8 +169,6 @@ class Ranking {
   std::vector<std::string> own_, others_;
   Lines lines_;
   std::vector<std::pair<std::string, Order>> orders_;
-  std::size_t without_ = 0;
-  mutable std::string turned_to_;
 };
 
 void check_rank(const Ask& ask, const Study& study) {

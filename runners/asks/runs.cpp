@@ -21,11 +21,8 @@ std::vector<Ending> endings(const Cases& cases) {
   InOrderMet<std::string, Ending> out;
   for (const CaseRecord* record : cases) {
     const std::string status = record->partial ? "running" : record->status;
-    std::string key = status;
     const bool done = status == "done";
-    if (!done)
-      for (const Said& one : record->reasons) key += one.without_numbers();
-    Ending& ending = out[key];
+    Ending& ending = out[done ? status : ending_key(*record)];
     if (ending.cases.empty()) ending = {status, done ? "" : record->reason(), {}};
     ending.cases.push_back(record);
   }
@@ -52,8 +49,7 @@ Answered answer_runs(const Ask& ask, const Evidence& evidence) {
     if (one.status == "done")
       done += one.cases.size();
     else {
-      const std::string reason = one.reason.substr(0, one.reason.find(": "));
-      others.push_back(fmt::format("{} {} ({})", one.cases.size(), one.status, reason));
+      others.push_back(fmt::format("{} {} ({})", one.cases.size(), one.status, short_reason(one.reason)));
       wrong += went_wrong(*one.cases.front()) ? one.cases.size() : 0;
     }
   }
@@ -68,10 +64,6 @@ Answered answer_runs(const Ask& ask, const Evidence& evidence) {
   out.verdict = done == cases.size() ? "yes" : wrong > 0 ? "no" : "some refused";
   out.sentence = done == cases.size() ? fmt::format("Yes: all {} cases run.", done)
                                       : fmt::format("{} of {} cases run; {}.", done, cases.size(), some_of(others));
-  Json rows = Json::array();
-  for (const VerdictRow& row : out.rows)
-    if (row.level != "all") rows.push_back({{"name", row.level + (row.reason.empty() ? "" : ": " + row.reason)}, {"group", ""}, {"value", *row.value}});
-  out.figure = nullptr;
   return out;
 }
 

@@ -105,12 +105,7 @@ class Threshold {
   Answered answer() const {
     Answered out = begin_answer(lines_);
     out.figure = figure();
-    if (const std::string why = nothing_known(lines_); !why.empty() || series_.empty()) {
-      out.verdict = word(Verdict::open);
-      out.reason = why;
-      out.sentence = fmt::format("Open: no case has a value of {}: {}.", lines_.words.words, why);
-      return out;
-    }
+    if (auto open = open_without_values(lines_, out)) return *open;
     for (const Series& series : series_) add_rows(out, series);
     std::vector<const Series*> with, not_monotone, without;
     for (const Series& series : series_)

@@ -38,6 +38,11 @@ struct Answered {
   nlohmann::ordered_json figure = nullptr;
 };
 
+inline constexpr double per_cent = 100;  ///< rows and figures have shares in per cent
+
+/// Whether a sentence has at most thirty words.
+bool fits(const std::string& sentence);
+
 /// What must be said, and of the rest as much as thirty words hold. Each part begins with its own mark, "; …"; of its
 /// wordings the first that fits is taken.
 std::string in_thirty_words(std::string must, const std::vector<std::vector<std::string>>& rest);

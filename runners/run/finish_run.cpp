@@ -44,10 +44,6 @@ Analysis analysis_of(StudyResults& results, const answers::Compared& study) {
   return {};
 }
 
-}  // namespace
-
-namespace {
-
 constexpr const char* status_asked = "status";
 
 std::vector<std::string> observed_by_name(const StudyResults& results) {

@@ -49,7 +49,7 @@ struct CaseShares {
 class MotionShares {
  public:
   MotionShares(const asks::Ask& ask, const asks::Evidence& evidence, const BasinAnalysis& basins)
-      : evidence_(evidence), basins_(basins), cases_(evidence.cases(ask)), columns_(asks::varying(evidence, cases_)) {
+      : evidence_(evidence), basins_(basins), cases_(evidence.cases(ask)), columns_(evidence.varying(cases_)) {
     for (const CaseRecord* one : cases_) {
       const auto found = std::find(basins.records.begin(), basins.records.end(), one);
       if (found != basins.records.end())
@@ -67,11 +67,7 @@ class MotionShares {
   asks::Answered answer() const {
     asks::Answered out;
     out.cases = told_.size();
-    Cases left;
-    for (const CaseRecord* one : cases_)
-      if (std::none_of(told_.begin(), told_.end(), [&](const CaseShares& two) { return two.record == one; }))
-        left.push_back(one);
-    asks::leave_out(out, left);
+    asks::leave_out(out, cases_, told_);
     Json rows = Json::array();
     for (const CaseShares& one : told_) add_rows(out, one, rows);
     out.figure = {{"form", "bars"},

@@ -80,7 +80,7 @@ class MotionsAlong {
       : evidence_(evidence),
         study_(evidence.study()),
         cases_(evidence.cases(ask)),
-        columns_(asks::varying(evidence, cases_)),
+        columns_(evidence.varying(cases_)),
         parameter_(report::swept_parameter(evidence.results())) {
     parameter_.unit = report::shown_unit(parameter_.unit);
     for (std::size_t c = 0; c < swept.records.size(); ++c)
@@ -93,11 +93,7 @@ class MotionsAlong {
   asks::Answered answer() const {
     asks::Answered out;
     out.cases = told_.size();
-    Cases left;
-    for (const CaseRecord* one : cases_)
-      if (std::none_of(told_.begin(), told_.end(), [&](const CaseMotions& two) { return two.record == one; }))
-        left.push_back(one);
-    asks::leave_out(out, left);
+    asks::leave_out(out, cases_, told_);
     Json drawn = Json::array();
     add_row(out, "", "undecided", "of the range, over all cases", asks::per_cent * undecided_, {}, {}, "%");
     for (const CaseMotions& one : told_) {

@@ -61,7 +61,7 @@ class PointsAsk {
         study_(evidence.study()),
         of_(of),
         cases_(evidence.cases(ask)),
-        columns_(asks::varying(evidence, cases_)),
+        columns_(evidence.varying(cases_)),
         parameter_(report::swept_parameter(evidence.results())) {
     parameter_.unit = report::shown_unit(parameter_.unit);
     for (const Json& one : ask.keys.at("points")) kinds_.insert(point_kind(one.get<std::string>()));

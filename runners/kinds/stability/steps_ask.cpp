@@ -47,7 +47,7 @@ class StepsAsk {
       : evidence_(evidence),
         study_(evidence.study()),
         cases_(evidence.cases(ask)),
-        columns_(asks::varying(evidence, cases_)) {
+        columns_(evidence.varying(cases_)) {
     std::map<std::string, StepLimit> by_id;
     for (const LimitRow& row : rows) (row.closed ? by_id[row.id].closed : by_id[row.id].open) = row;
     for (const CaseRecord* one : cases_)
@@ -69,11 +69,7 @@ class StepsAsk {
   asks::Answered answer() const {
     asks::Answered out;
     out.cases = limits_.size();
-    Cases left;
-    for (const CaseRecord* one : cases_)
-      if (std::none_of(limits_.begin(), limits_.end(), [&](const StepLimit& two) { return two.record == one; }))
-        left.push_back(one);
-    asks::leave_out(out, left);
+    asks::leave_out(out, cases_, limits_);
     Json bars = Json::array();
     std::size_t unlike = 0;
     for (const StepLimit& one : limits_) {

@@ -77,10 +77,9 @@ class MotionEffect {
         places_(std::move(places)),
         own_(evidence.columns_of(ask.subject())),
         cases_(evidence.cases(ask)) {
-    constexpr double one_per_cent = 0.01;
     agrees_ = ask.has("within");
-    from_ = ask.real(agrees_ ? "within" : "from").value_or(one_per_cent);
-    for (const std::string& column : asks::varying(evidence, cases_))
+    from_ = ask.share_asked();
+    for (const std::string& column : evidence.varying(cases_))
       if (!answers::is_refinement(column) && std::find(own_.begin(), own_.end(), column) == own_.end())
         others_.push_back(column);
     find_pairs();
