@@ -312,8 +312,4 @@ std::string level_phrase(const std::string& choice, const std::string& level) {
   return choice == "mass" && !level.empty() ? "the " + level + " mass" : level;
 }
 
-std::string plural_s(bool several) {
-  return several ? "" : "s";
-}
-
 }  // namespace ricochet::answers

@@ -89,7 +89,5 @@ std::vector<std::string> without(std::vector<std::string> columns, const std::ve
 std::string spoken(const std::string& choice);
 /// "the singular P1 mass" of its level; other levels as they are.
 std::string level_phrase(const std::string& choice, const std::string& level);
-/// "the energy"; verbs agree: a choice that is several things has none.
-std::string plural_s(bool several);
 
 }  // namespace ricochet::answers

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/measure/statistics/quantiles.hpp>
 
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
@@ -52,13 +51,6 @@ std::vector<const Method*> MeasureLimits::with_limit() const {
 std::vector<const Method*> MeasureLimits::without_gain() const {
   std::vector<const Method*> out = with_limit();
   std::erase_if(out, [](const Method* one) { return one->gains; });
-  return out;
-}
-
-std::vector<const Method*> MeasureLimits::without_value() const {
-  std::vector<const Method*> out;
-  for (const Method& one : methods)
-    if (!one.limit && !with_status(one.cases, "done").empty()) out.push_back(&one);
   return out;
 }
 
@@ -180,7 +172,7 @@ double scale_of(const MeasureWords& words, const std::vector<const Method*>& met
 }
 
 Difference paired(const Method& high, const Method& low) {
-  Difference out{&high, &low, 0, std::nullopt, 0};
+  Difference out{&high, &low, 0, std::nullopt};
   double h = 0, N = 0;
   for (const auto& [size, value] : high.grid) {
     if (!low.at(size.first, size.second)) continue;
@@ -200,7 +192,6 @@ Difference paired(const Method& high, const Method& low) {
     if (size.second == N) by_step.push_back({size.first, value - *other});
     if (size.first == h) by_mesh.push_back({1 / size.second, value - *other});
   }
-  out.step_sizes = static_cast<int>(by_step.size());
   out.value = std::abs(*high.at(h, N) - *low.at(h, N));
   const auto step = difference_uncertainty(by_step), mesh = difference_uncertainty(by_mesh);
   if (step || mesh) out.uncertainty = step.value_or(0) + mesh.value_or(0);
@@ -232,8 +223,6 @@ ChoiceEffect choice_effect(const Compared& study, const MeasureLimits& limits, c
     groups[study.key(method->first(), others)].push_back(method);
     scenes[study.key(method->first(), scene)].push_back(method);
   }
-  std::vector<double> sizes, uncertainties;
-  InOrderMet<std::string, std::size_t> most, least;
   for (const auto& [key, group] : groups.list()) {
     if (group.size() < 2) continue;
     const double scale = scale_of(limits.words, scenes[study.key(group.front()->first(), scene)]);
@@ -241,7 +230,7 @@ ChoiceEffect choice_effect(const Compared& study, const MeasureLimits& limits, c
     const Difference difference = farthest(group);
     ChoiceRow row{
         .combination = &group.front()->first(), .levels = group.size(), .difference = difference.value / scale};
-    if (difference.uncertainty) uncertainties.push_back(*(row.uncertainty = *difference.uncertainty / scale));
+    if (difference.uncertainty) row.uncertainty = *difference.uncertainty / scale;
     const auto level = [&](const Method* method) {
       return own.size() == 1 && own.front() != choice
                  ? study.value_words(own.front(), study.text(method->first(), own.front()))
@@ -249,27 +238,8 @@ ChoiceEffect choice_effect(const Compared& study, const MeasureLimits& limits, c
     };
     row.most = level(difference.high);
     row.least = level(difference.low);
-    sizes.push_back(row.difference);
-    if (row.matters() == Matters::yes) {
-      ++out.matters;
-      ++most[row.most];
-      ++least[row.least];
-    }
-    out.matters_not += row.matters() == Matters::no ? 1 : 0;
     out.rows.push_back(std::move(row));
   }
-  if (sizes.empty()) return out;
-  out.typical = median(sizes);
-  out.largest = *std::max_element(sizes.begin(), sizes.end());
-  if (!uncertainties.empty()) out.typical_uncertainty = median(uncertainties);
-  constexpr double in_most = 0.8;
-  const auto usual = [&](const auto& counts) -> std::string {
-    for (const auto& [name, count] : counts.list())
-      if (static_cast<double>(count) >= in_most * static_cast<double>(out.matters)) return name;
-    return "";
-  };
-  out.most = usual(most);
-  out.least = usual(least);
   return out;
 }
 

@@ -42,8 +42,6 @@ struct MeasureLimits {
   MeasureWords words;
   std::vector<Method> methods;  ///< in the study's order
   std::vector<const Method*> with_limit() const;
-  /// Those that ran and have no value of this measure.
-  std::vector<const Method*> without_value() const;
   /// Those of with_limit() that do not gain: a difference of one that does says how far it grew.
   std::vector<const Method*> without_gain() const;
 };
@@ -80,7 +78,6 @@ struct Difference {
   const Method *high = nullptr, *low = nullptr;
   double value = 0;                   ///< ≥ 0, at the finest step and mesh that both have
   std::optional<double> uncertainty;  ///< nothing at a single step and mesh
-  int step_sizes = 0;                 ///< that both have at that mesh
 };
 /// Of the two methods that are farthest apart by their limits.
 Difference farthest(const std::vector<const Method*>& methods);
@@ -104,10 +101,6 @@ struct ChoiceRow {
 struct ChoiceEffect {
   std::string choice;
   std::vector<ChoiceRow> rows;
-  double typical = 0, largest = 0;
-  std::optional<double> typical_uncertainty;
-  std::size_t matters = 0, matters_not = 0;
-  std::string most, least;  ///< where the same level is an end in four of five combinations in which it matters
 };
 
 /// What these columns of a choice move, over all combinations of the others. What gains energy is left out; the scale

@@ -177,15 +177,6 @@ std::string with_uncertainty(const MeasureWords& measure, double value, std::opt
   return value_text(measure, value, uncertainty, false) + " ± " + uncertainty_text(measure, *uncertainty);
 }
 
-std::string cell_text(const MeasureWords& measure, double value) {
-  const double v = measure.factor * value;
-  if (measure.factor == 100 && v > 99 && v < 100) {
-    const int places = 1 - static_cast<int>(std::floor(std::log10(std::max(100 - v, 1e-6))));
-    return fixed(v, std::max(2, places));
-  }
-  return short_number(v, 4);
-}
-
 std::string percent(double share) {
   const double size = std::abs(share);
   constexpr double times = 10, whole = 0.995;
@@ -193,10 +184,6 @@ std::string percent(double share) {
   if (size >= times) return short_number(share, 2) + " times";
   if (size >= whole) return fmt::format("{:.0f} %", 100 * share);
   return short_number(100 * share, 2) + " %";
-}
-
-std::string by_percent(double share) {
-  return std::abs(share) < smallest_percent ? "nothing" : percent(share);
 }
 
 }  // namespace ricochet::answers

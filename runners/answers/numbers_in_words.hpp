@@ -38,13 +38,9 @@ std::string range_text(const MeasureWords& measure, double low, double high, std
 std::string uncertainty_text(const MeasureWords& measure, double uncertainty);
 /// "43.12 ± 0.03 %"; without an uncertainty the value alone.
 std::string with_uncertainty(const MeasureWords& measure, double value, std::optional<double> uncertainty);
-/// A value as it was computed: four digits, more near 100 %.
-std::string cell_text(const MeasureWords& measure, double value);
 
 /// A share in per cent to two digits: "0.012 %", "39 %", "the same" below 1e-7 %, "12 times" from 1000 % on.
 std::string percent(double share);
-/// Such a share after "by": "nothing" where it is the same.
-std::string by_percent(double share);
 
 /// "1 of 48 cases".
 std::string capitalised(std::string text);

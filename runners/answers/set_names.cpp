@@ -234,12 +234,6 @@ std::optional<std::pair<double, std::string>> SetNames::rule(const Picked& chose
   return best;
 }
 
-std::string SetNames::mostly(const Members& members) const {
-  Picked chosen(methods_.size(), 0);
-  for (const std::size_t m : members) chosen[m] = 1;
-  return methods_.size() > most_searched ? "" : nearest(chosen, members.size(), 0).value_or("");
-}
-
 std::string SetNames::shared(const Members& members) const {
   Picked chosen(methods_.size(), 0);
   for (const std::size_t m : members) chosen[m] = 1;

@@ -26,8 +26,6 @@ class SetNames {
     bool exact = true;  ///< picks the set and nothing else
   };
   Name found(const Members& chosen, bool may_turn = true) const;
-  /// The nearest rule alone: "mostly viscosity 0 s (9 of 12)"; "" where none is near.
-  std::string mostly(const Members& chosen) const;
   /// What all of these have in common: "7 of 68 methods, all of them with explicit evaluation".
   std::string shared(const Members& chosen) const;
   /// The label of one method.
