@@ -13,7 +13,6 @@ using namespace ricochet::browser;
 
 namespace {
 
-const char* const width_of_page = "document.documentElement.scrollWidth";
 // What passes the right edge, but for what lies in a box that scrolls.
 const char* const beyond_answer =
     "Array.from(document.querySelectorAll('#answer *')).filter((e) => !e.closest('.scroll, svg') && "
@@ -54,7 +53,7 @@ TEST_CASE("every row of an answer can be reached, on a phone as on a wide screen
     return browser::Json{
         {"name", name},   {"page", page},
         {"width", width}, {"height", 900},
-        {"dark", dark},   {"evaluate", {width_of_page, beyond_answer, boxes, rows_reached, figures, colours}}};
+        {"dark", dark},   {"evaluate", {page_width, beyond_answer, boxes, rows_reached, figures, colours}}};
   };
   const browser::Json said = driven(
       "asks",

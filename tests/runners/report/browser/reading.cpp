@@ -17,7 +17,6 @@ namespace {
 const char* const read_kinds[] = {"trajectory", "convergence", "work-precision", "stability", "bifurcation", "basins"};
 
 // Expressions that the page answers.
-const char* const page_width = "document.documentElement.scrollWidth";
 // Boxes and words that pass the right edge of what is seen, but for what lies in a box that scrolls by itself.
 const char* const beyond_edge =
     "Array.from(document.querySelectorAll('body *')).filter((e) => !e.closest('.scroll, .extremes, .hidden, .skip, "
