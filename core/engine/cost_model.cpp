@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <deque>
 #include <fstream>
+#include <mutex>
 #include <optional>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/kernels/band_ldlt.hpp>
 #include <ricochet/kernels/floating_point.hpp>
+#include <ricochet/kernels/sparse_ldlt.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace ricochet {
 
@@ -49,6 +55,50 @@ namespace {
 struct Rates {
   double product, substitution, sparse, elementwise, diagonal, measure;
 };
+
+// Bands up to this half-bandwidth come of beams and bars: a sparse factor has no fewer entries there. Wider ones are
+// substituted one multiply-add after the other.
+constexpr int narrow = 8;
+constexpr double wide = 1.3;  // ns per multiply-add, one lane
+
+// What SparseOperator takes, ns: of a product by rows per entry, of a substitution per entry each time it is read.
+double by_rows(double lanes) {
+  return lanes == 1 ? 0.4 : 0.2;
+}
+double by_blocks(double lanes, double entries) {
+  constexpr double second_cache = 1e6, third_cache = 16e6, bytes = sizeof(double);
+  const double size = bytes * entries, near = lanes == 1 ? 0.25 : 0.15;
+  const double fetched = size < second_cache ? 0 : size < third_cache ? 0.4 : 0.9;
+  return std::max(near, fetched / lanes);
+}
+
+// A pattern by its numbers (FNV-1a).
+std::uint64_t pattern_of(const SparseMatrix& matrix) {
+  std::uint64_t hash = 14695981039346656037U;
+  const auto take = [&](const int* from, Eigen::Index count) {
+    for (Eigen::Index i = 0; i < count; ++i) hash = (hash ^ static_cast<std::uint64_t>(from[i])) * 1099511628211U;
+  };
+  take(matrix.outerIndexPtr(), matrix.outerSize() + 1);
+  take(matrix.innerIndexPtr(), matrix.nonZeros());
+  return hash;
+}
+
+// Of K + M, or of both with their border. Those of the patterns that were counted last are kept.
+SparseFill counted_fill(const SemiDiscrete& problem) {
+  static std::mutex mutex;
+  static std::deque<std::pair<std::uint64_t, SparseFill>> kept;
+  constexpr std::size_t most = 32;
+  std::vector<int> order;
+  SparseMatrix system = weighted_system(1, problem.stiffness, 1, problem.inertia).assemble(order);
+  system.makeCompressed();
+  const std::uint64_t pattern = pattern_of(system);
+  const std::lock_guard lock(mutex);
+  for (const auto& [known, fill] : kept)
+    if (known == pattern) return fill;
+  if (kept.size() == most) kept.pop_front();
+  kept.emplace_back(pattern, sparse_fill(system));
+  return kept.back().second;
+}
 
 // What a stage costs besides, whatever its size: calls and the motion of the support. Per step and per lane there is
 // the check of contact, closed now and then. What `bench_march` and `bench_decay` measure over their products and sums.
@@ -96,16 +146,23 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork
   } else {
     double w = half_bandwidth(problem.stiffness);
     if (problem.space.given || problem.basis) w = std::max<double>(w, half_bandwidth(inertia.mass));
-    const double v = border > 0 ? w + 2 : w;
-    nanoseconds += n * (2 * w + 1) * rate.product;
-    const double solve = kind == OperatorKind::sparse ? rate.sparse : rate.substitution;
-    if (inertia.inverted()) {
-      const double r = half_bandwidth(inertia.inverse);
-      nanoseconds += work.without_stiffness ? n * (2 * r + 1) * rate.product : 2 * n * (4 * std::max(w, r) + 1) * solve;
-    } else {
-      nanoseconds += (n + border) * (2 * v + 1) * solve;
-    }
+    const double v = border > 0 ? w + 2 : w, r = inertia.inverted() ? half_bandwidth(inertia.inverse) : 0;
     cost.setup_seconds = stages * n * 200 * nano;
+    if (inertia.inverted() && work.without_stiffness) {
+      nanoseconds += n * (2 * w + 1) * rate.product + n * (2 * r + 1) * rate.product;
+    } else if (kind == OperatorKind::sparse && v > narrow) {
+      const SparseFill fill = counted_fill(problem);
+      nanoseconds += static_cast<double>(problem.stiffness.nonZeros()) * by_rows(lanes) +
+                     2 * fill.entries * by_blocks(lanes, fill.entries);
+      cost.setup_seconds += stages * 0.5 * fill.operations * nano;
+    } else {
+      const double solve = kind == OperatorKind::sparse ? rate.sparse
+                           : v > narrow && lanes == 1   ? wide
+                                                        : rate.substitution;
+      const double entries = inertia.inverted() ? 2 * n * (4 * std::max(w, r) + 1) : (n + border) * (2 * v + 1);
+      nanoseconds += n * (2 * w + 1) * rate.product + entries * solve;
+      if (v > narrow) cost.setup_seconds += stages * (n + border) * v * v * nano;
+    }
   }
   const double fixed = per_stage + (problem.points() > 0 ? per_contact + per_contact_lane * lanes : 0);
   cost.step_seconds = stages * (nanoseconds * lanes + fixed) * nano;

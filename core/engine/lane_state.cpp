@@ -178,14 +178,21 @@ bool finite(const Block& block) {
 
 }  // namespace
 
-void Marcher::check_lanes() {
+// K times the first slot.
+void Marcher::push_back() {
+  if (stiffness_rows_.rows() > 0)
+    return kernels_.row_product(stiffness_rows_.view(), false, slots_[0], elastic_.data());
   BandStep step;
   step.rows = program_.model->rows();
   step.product_width = stiffness_width_;
-  step.K = stiffness_rows_.data();
+  step.K = stiffness_band_.data();
   step.k = slots_[0];
   step.b = elastic_.data();
   kernels_.band_step(step);
+}
+
+void Marcher::check_lanes() {
+  push_back();
   std::array<double, 32> energies{};
   add_products(blocks_[0], elastic_, energies.data());
   bool all_finite = true;
@@ -195,7 +202,7 @@ void Marcher::check_lanes() {
     const double energy = energies[static_cast<std::size_t>(lane)];
     bool sound = std::isfinite(energy);
     for (std::size_t j = 1; j < blocks_.size() && !all_finite && sound; ++j)
-      for (int i = 0; i < step.rows; ++i) sound = sound && std::isfinite(blocks_[j].at(i, lane));
+      for (int i = 0; i < blocks_[j].rows(); ++i) sound = sound && std::isfinite(blocks_[j].at(i, lane));
     if (!sound)
       freeze(lane, {.cause = EndCause::state_not_finite, .count = check_interval});
     else if (beyond_bound(lane, energy))

@@ -23,9 +23,14 @@ Marcher::Marcher(Program program)
   const MarchModel& model = *program_.model;
   const int rows = model.rows(), T = program_.width, points = program_.problem->points();
   const auto slot_count = program_.plan.slots.size();
-  stiffness_width_ = half_bandwidth(model.stiffness());
-  if (!model.inertia().factored()) stiffness_width_ = std::max(stiffness_width_, half_bandwidth(model.inertia().mass));
-  stiffness_rows_ = band_storage(model.stiffness(), stiffness_width_, T == 1);
+  if (program_.kind == OperatorKind::sparse) {
+    stiffness_rows_ = RowMatrix::from(model.stiffness());
+  } else {
+    stiffness_width_ = half_bandwidth(model.stiffness());
+    if (!model.inertia().factored())
+      stiffness_width_ = std::max(stiffness_width_, half_bandwidth(model.inertia().mass));
+    stiffness_band_ = band_storage(model.stiffness(), stiffness_width_, T == 1);
+  }
   blocks_.reserve(slot_count);
   // A step by nodes reads three rows before the first, however narrow K is.
   const int border = std::max(stiffness_width_, 3);

@@ -242,6 +242,7 @@ class Marcher {
 
   // lane_state.cpp: lanes that come and go, or diverge.
   void check_lanes();
+  void push_back();
   void clear_lane(int lane);
   void clear_efforts(int column);
 
@@ -276,7 +277,8 @@ class Marcher {
   Block elastic_;
   std::vector<bool> delayed_points_;  // see delay_tangents()
   int delay_steps_ = 0;
-  std::vector<double> stiffness_rows_;
+  std::vector<double> stiffness_band_;
+  RowMatrix stiffness_rows_;  // in its place where the operator is sparse
   int stiffness_width_ = 0;
   long long step_ = 0, visited_ = 0;
   std::unique_ptr<LaneFlight> lane_flight_;  // null: every step is marched

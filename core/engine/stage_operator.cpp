@@ -6,6 +6,7 @@
 #include <ricochet/engine/stage_operator.hpp>
 #include <ricochet/kernels/band_ldlt.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
+#include <ricochet/kernels/sparse_substitution.hpp>
 
 namespace ricochet {
 namespace {
@@ -25,27 +26,37 @@ void refuse_indefinite(const SparseLdlt& ldlt, const SparseMatrix& whole, const 
   }
 }
 
-// What band and sparse operators share: the right-hand side by band products, and M x of a mass that is not assembled.
-// That goes through the border: with g = B m / √s_M the solution of the quasi-definite system is S⁻¹(b + M m).
+// How a right-hand side multiplies with K, M and C.
+enum class Products { by_bands, by_rows };
+
+// What band and sparse operators share: the right-hand side, and M x of a mass that is not assembled. That goes through
+// the border: with g = B m / √s_M the solution of the quasi-definite system is S⁻¹(b + M m).
 class Assembly {
  public:
-  Assembly(const MarchModel& model, const FoldedStage& stage, int lanes)
+  Assembly(const MarchModel& model, const FoldedStage& stage, int lanes, Products products)
       : kernels_(lane_kernels(lanes)),
         rows_(model.rows()),
         slots_(static_cast<int>(stage.mass_history.size())),
         mass_weights_(stage.mass_history),
         shape_(model.support_shape().data()) {
     const Inertia& inertia = model.inertia();
-    const bool by_diagonals = lanes == 1;
-    width_ = half_bandwidth(model.stiffness());
+    const bool by_bands = products == Products::by_bands, by_diagonals = lanes == 1;
+    const auto stored = [&](const SparseMatrix& matrix, int width, std::vector<double>& band, RowMatrix& rows) {
+      if (by_bands)
+        band = band_storage(matrix, width, by_diagonals);
+      else
+        rows = RowMatrix::from(matrix);
+    };
+    width_ = by_bands ? half_bandwidth(model.stiffness()) : 0;
     const MassFactors factors = inertia.assembled() ? MassFactors{} : mass_factors(inertia);
     border_ = stage.mass != 0 ? static_cast<int>(factors.coupling.rows()) : 0;
-    if (inertia.assembled()) width_ = std::max(width_, half_bandwidth(inertia.mass));
-    if (any(stage.stiffness_history)) K_ = band_storage(model.stiffness(), width_, by_diagonals);
+    if (inertia.assembled() && by_bands) width_ = std::max(width_, half_bandwidth(inertia.mass));
+    keeps_combination_ = any(stage.stiffness_history);
+    if (keeps_combination_) stored(model.stiffness(), width_, K_, K_rows_);
     if (any(stage.mass_history)) {
       m_ = Block(rows_, lanes, width_);
       if (inertia.assembled()) {
-        M_ = band_storage(inertia.mass, width_, by_diagonals);
+        stored(inertia.mass, width_, M_, M_rows_);
       } else {
         coupling_ = RowMatrix::from(factors.coupling);
         for (double& value : coupling_.value) value /= std::sqrt(stage.mass);
@@ -53,8 +64,8 @@ class Assembly {
     }
     if (const SparseMatrix* C = model.problem().damping.matrix.get(); C && any(stage.damping_history)) {
       damping_weights_ = stage.damping_history;
-      damping_width_ = half_bandwidth(*C);
-      C_ = band_storage(*C, damping_width_, by_diagonals);
+      damping_width_ = by_bands ? half_bandwidth(*C) : 0;
+      stored(*C, damping_width_, C_, C_rows_);
       c_ = Block(rows_, lanes, damping_width_);
     }
     b_ = Block(rows_ + border_, lanes);
@@ -62,9 +73,9 @@ class Assembly {
 
   int border() const { return border_; }
   bool mass_through_border() const { return coupling_.rows() > 0; }
-  bool keeps_combination() const { return !K_.empty(); }
+  bool keeps_combination() const { return keeps_combination_; }
   /// Whether b is K k and loads, without M.
-  bool stiffness_alone() const { return !K_.empty() && m_.rows() == 0 && c_.rows() == 0; }
+  bool stiffness_alone() const { return keeps_combination_ && m_.rows() == 0 && c_.rows() == 0; }
   const double* shape() const { return shape_; }
   Block& right_hand_side() { return b_; }
 
@@ -96,11 +107,24 @@ class Assembly {
     return step;
   }
 
+  /// b by rows.
+  const double* assemble(const FreeStepInput& input) {
+    kernels_.band_step(describe(input));
+    const auto add = [&](const RowMatrix& matrix, const double* x) {
+      if (matrix.rows() > 0) kernels_.row_product(matrix.view(), true, x, b_.data());
+    };
+    add(K_rows_, input.k);
+    add(M_rows_, m_.data());
+    add(C_rows_, c_.data());
+    return b_.data();
+  }
+
  private:
   const LaneKernels& kernels_;
   int rows_, slots_, width_ = 0, border_ = 0, damping_width_ = 0;
+  bool keeps_combination_ = false;
   std::vector<double> mass_weights_, damping_weights_, K_, M_, C_;
-  RowMatrix coupling_;
+  RowMatrix K_rows_, M_rows_, C_rows_, coupling_;
   const double* shape_;
   Block m_, c_, b_;
 };
@@ -110,7 +134,7 @@ class Assembly {
 class BandOperator final : public StageOperator {
  public:
   BandOperator(const MarchModel& model, const FoldedStage& stage, int lanes)
-      : assembly_(model, stage, lanes),
+      : assembly_(model, stage, lanes, Products::by_bands),
         kernels_(lane_kernels(lanes)),
         stiffness_(model.stiffness()),
         slots_(static_cast<int>(stage.mass_history.size())),
@@ -266,11 +290,14 @@ class InverseOperator final : public StageOperator {
   Block force_, history_, unknown_;
 };
 
-/// CHOLMOD's simplicial L D Lᵀ, which all lanes are substituted through at once.
+/// A sparse L D Lᵀ by blocks of columns, which all lanes are substituted through at once; products by rows.
 class SparseOperator final : public StageOperator {
  public:
   SparseOperator(const MarchModel& model, const FoldedStage& stage, int lanes)
-      : assembly_(model, stage, lanes), kernels_(lane_kernels(lanes)), lanes_(lanes), rows_(model.rows()) {}
+      : assembly_(model, stage, lanes, Products::by_rows),
+        kernels_(lane_kernels(lanes)),
+        lanes_(lanes),
+        rows_(model.rows()) {}
 
   std::optional<std::string> factorise(const QuasiDefinite& matrix) {
     std::vector<int> order;
@@ -280,10 +307,9 @@ class SparseOperator final : public StageOperator {
     refuse_indefinite(ldlt, whole, order, rows_);
     // The border's part of the right-hand side is zero, unless M x goes through it.
     const int known = assembly_.mass_through_border() ? assembly_.right_hand_side().rows() : rows_;
-    lanes_through_ = SparseSubstitution(ldlt, order, known, rows_);
-    column_through_ = SparseSubstitution(ldlt, order, rows_, rows_);
-    work_ = Block(lanes_through_.rows(), lanes_);
-    column_work_ = Block(lanes_through_.rows(), 1);
+    through_ = SparseSubstitution(ldlt, order, known, rows_);
+    work_ = Block(through_.rows() + 1, lanes_);
+    column_work_ = Block(through_.rows() + 1, 1);
     unknown_ = Block(rows_, lanes_);
     return std::nullopt;
   }
@@ -291,9 +317,8 @@ class SparseOperator final : public StageOperator {
   bool keeps_combination() const override { return assembly_.keeps_combination(); }
 
   void free_step(const FreeStepInput& input) override {
-    kernels_.band_step(assembly_.describe(input));
-    SparseStep step = lanes_through_.step();
-    step.b = assembly_.right_hand_side().data();
+    SparseStep step = through_.step();
+    step.b = assembly_.assemble(input);
     step.work = work_.data();
     step.z = unknown_.data();
     kernels_.sparse_step(step);
@@ -302,7 +327,7 @@ class SparseOperator final : public StageOperator {
   double* unknown() override { return unknown_.data(); }
 
   void solve_column(const double* rhs, double* x) override {
-    SparseStep step = column_through_.step();
+    SparseStep step = through_.step_of_wanted();
     step.b = rhs;
     step.work = column_work_.data();
     step.z = x;
@@ -313,7 +338,7 @@ class SparseOperator final : public StageOperator {
   Assembly assembly_;
   const LaneKernels& kernels_;
   int lanes_, rows_;
-  SparseSubstitution lanes_through_, column_through_;
+  SparseSubstitution through_;
   Block work_, column_work_, unknown_;
 };
 

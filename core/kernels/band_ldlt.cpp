@@ -42,6 +42,7 @@ SparseMatrix QuasiDefinite::assemble(std::vector<int>& order) const {
     }
   order.resize(static_cast<std::size_t>(n + border));
   std::iota(order.begin(), order.end(), 0);
+  if (border == 0) return A;
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     return place[static_cast<std::size_t>(a)] < place[static_cast<std::size_t>(b)];
   });

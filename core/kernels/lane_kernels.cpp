@@ -4,6 +4,7 @@
 #include <ricochet/kernels/lane_modes.hpp>
 #include <ricochet/kernels/lane_nodes.hpp>
 #include <ricochet/kernels/lane_rows.hpp>
+#include <ricochet/kernels/lane_sparse.hpp>
 #include <stdexcept>
 
 namespace ricochet {
@@ -39,6 +40,9 @@ using namespace lane_bodies;
     TARGET static void node_step(const NodeStep& step) { node_step_body<T>(step); }                                    \
     TARGET static void mode_step(const ModeStep& step) { mode_step_body<T>(step); }                                    \
     TARGET static void sparse_step(const SparseStep& step) { sparse_step_body<T>(step); }                              \
+    TARGET static void row_product(const LaneRows& h, bool add, const double* x, double* y) {                          \
+      row_product_body<T>(h, add, x, y);                                                                               \
+    }                                                                                                                  \
     [[gnu::noinline]] TARGET static void diagonal_many(int n, int c, const double* f, const double* const* x,          \
                                                        const double* a, double* z) {                                   \
       diagonal_general<T>(n, c, f, x, a, z);                                                                           \
@@ -64,7 +68,7 @@ using namespace lane_bodies;
       return triple_product_body(n, a, x, y);                                                                          \
     }                                                                                                                  \
     static constexpr LaneKernels table{combine,   update,  band_step,  node_step, diagonal_step,                        \
-                                       mode_step, sparse_step, measure, add_column, outside,   triple_product};                     \
+                                       mode_step, sparse_step, row_product, measure, add_column, outside, triple_product};              \
   };
 // clang-format on
 

@@ -109,26 +109,30 @@ struct ModeStep {
   SquareSum* sum = nullptr;       ///< T = 1 alone; null: nothing is added up
 };
 
-/// L or Lᵀ without its diagonal, by rows.
-struct SparseFactorRows {
-  const int* start = nullptr;  ///< rows + 1
-  const int* index = nullptr;
-  const double* value = nullptr;
+/// A sparse L D Lᵀ by blocks of neighbouring columns, at most eight, that have the same rows below them. Where rows of
+/// one column alone are shared, the others have zeros there.
+struct SparseBlocks {
+  static constexpr int widest = 8;
+  int rows = 0, blocks = 0;
+  const int* column = nullptr;      ///< blocks + 1: the first of each
+  const int* below = nullptr;       ///< blocks + 1: the first four of rows below each
+  const int* index = nullptr;       ///< those rows by fours; `rows` in the place of none
+  const double* value = nullptr;    ///< of each block its own rows by rows, a whole number of fours; then, by fours of
+                                    ///< rows below, each column
+  const double* inverse = nullptr;  ///< 1/D
 };
 
 /// S z = b with S = L D Lᵀ sparse, all lanes in one pass over the factor.
 struct SparseStep {
-  int rows = 0;  ///< of the factor
-  SparseFactorRows lower, upper;
-  const double* inverse = nullptr;  ///< 1/D
-  const int* from = nullptr;        ///< row of b for each row of the factor, −1: zero
-  const int* to = nullptr;          ///< row of z for each row of the factor, −1: none
+  SparseBlocks L;
+  const int* from = nullptr;  ///< row of b for each row of the factor, −1: zero
+  const int* to = nullptr;    ///< row of z for each row of the factor, −1: none
   const double* b = nullptr;
-  double* work = nullptr;  ///< rows × T
+  double* work = nullptr;  ///< (rows + 1) × T
   double* z = nullptr;
 };
 
-/// A row-compressed matrix with few columns per row (H, B).
+/// A row-compressed matrix.
 struct LaneRows {
   int rows = 0;
   const int* start = nullptr;  ///< rows + 1
@@ -151,6 +155,8 @@ struct LaneKernels {
                         double* z);
   void (*mode_step)(const ModeStep& step);
   void (*sparse_step)(const SparseStep& step);
+  /// y = A x, or y + A x.
+  void (*row_product)(const LaneRows& matrix, bool add, const double* x, double* y);
   /// y[i] = Σ_e value[e] (Σ_j weight[j] x_j[index[e]]) + offset[lane], e over row i; count ≤ most_lane_terms; offset
   /// may be null.
   void (*measure)(const LaneRows& matrix, int count, const double* const* x, const double* weight, const double* offset,

@@ -53,21 +53,12 @@ class SparseLdlt {
   std::vector<double> value_, pivot_, work_;
 };
 
-/// A sparse factor as SparseStep reads it: L by rows for the way down, by columns for the way up.
-class SparseSubstitution {
- public:
-  SparseSubstitution() = default;
-  /// `order`: the unknown of each row of the matrix that was factorised. Those from `known` on have no right-hand side,
-  /// those from `wanted` on no place in z.
-  SparseSubstitution(const SparseLdlt& ldlt, const std::vector<int>& order, int known, int wanted);
-  int rows() const { return static_cast<int>(inverse_.size()); }
-  /// Without blocks.
-  SparseStep step() const;
-
- private:
-  std::vector<int> lower_start_, lower_index_, upper_start_, upper_index_, from_, to_;
-  std::vector<double> lower_, upper_, inverse_;
+/// What the factor of a matrix with this pattern takes, which is counted without making it: entries of L below its
+/// diagonal, and operations.
+struct SparseFill {
+  double entries = 0, operations = 0;
 };
+SparseFill sparse_fill(const Eigen::SparseMatrix<double>& A);
 
 /// S = k K + m M as (1) of band_ldlt.hpp. A mass that is not assembled enters through its border, scaled so that both
 /// blocks have the same units. K is n × n; m ≥ 0.
