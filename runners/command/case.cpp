@@ -6,7 +6,6 @@
 #include "runners/command/subcommand.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/stored_study.hpp"
-#include "runners/march/study_identity.hpp"
 #include "runners/run/merge_folders.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/run/study_runner.hpp"
@@ -85,20 +84,9 @@ std::string ledger_text(const Kind& kind, const Study& study, const CaseRecord& 
   return "\nenergy ledger:\n" + table.text(2);
 }
 
-/// The case as a run of its study marches it: references that the store keeps are not computed again.
-CaseRecord run_again(const OpenCase& open, const StoredStudy& stored, const StudyCase& study_case,
-                     const std::atomic<bool>& stop) {
-  const RunContext context{stored.study, stored.registry, [](const StudyCase& one) { return one.id; }};
-  const CaseRunner runner = open.kind->start(context);
-  CheckpointStore checkpoints;
-  checkpoints.find = [&](const std::string& key) { return read_motion(open.folder, key, arithmetic_digest()); };
-  if (runner.open) runner.open(checkpoints, stop);
-  return runner.run(study_case, stop);
-}
-
 int print_again(const OpenCase& open, const StoredStudy& stored, const StudyCase& study_case, std::ostream& out,
                 const std::atomic<bool>& stop) {
-  const CaseRecord again = run_again(open, stored, study_case, stop);
+  const CaseRecord again = march_again(open.folder, *open.kind, stored, study_case, stop);
   out << fmt::format("case {} of {} ({})\n", open.record.id, open.results.name, open.results.kind)
       << parameters_text(open.record) << "\n"
       << again.status << (again.reasons.empty() ? "" : ": " + again.reason())

@@ -7,8 +7,10 @@
 
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/trajectory/trajectory.hpp"
+#include "runners/march/study_identity.hpp"
 #include "runners/plan_files/plan_file.hpp"
 #include "runners/report/html.hpp"
+#include "runners/store/store.hpp"
 #include "runners/study/case_id.hpp"
 #include "runners/study/load_study.hpp"
 
@@ -80,6 +82,16 @@ StoredStudy::StoredStudy(const StudyResults& results, const std::vector<std::fil
 const StudyCase& StoredStudy::find(const std::string& id) const {
   if (const StudyCase* found = find_case(study, id)) return *found;
   throw PointRefused(fmt::format("the stored study has no case {} any more: run it again", id));
+}
+
+CaseRecord march_again(const std::filesystem::path& folder, const Kind& kind, const StoredStudy& stored,
+                       const StudyCase& study_case, const std::atomic<bool>& stop) {
+  const RunContext context{stored.study, stored.registry, [](const StudyCase& one) { return one.id; }};
+  const CaseRunner runner = kind.start(context);
+  CheckpointStore checkpoints;
+  checkpoints.find = [&](const std::string& key) { return read_motion(folder, key, arithmetic_digest()); };
+  if (runner.open) runner.open(checkpoints, stop);
+  return runner.run(study_case, stop);
 }
 
 }  // namespace ricochet

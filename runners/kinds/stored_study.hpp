@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <filesystem>
 #include <ricochet/contract/registry.hpp>
 #include <ricochet/loader/catalogue.hpp>
@@ -27,5 +28,12 @@ struct StoredStudy {
   Registry registry;
   Study study;
 };
+
+class Kind;
+
+/// The case of stored results in `folder` marched again, as a run of its study marches it: references that the store
+/// keeps are not computed again. Throws Interrupted where `stop` became true.
+CaseRecord march_again(const std::filesystem::path& folder, const Kind& kind, const StoredStudy& stored,
+                       const StudyCase& study_case, const std::atomic<bool>& stop);
 
 }  // namespace ricochet

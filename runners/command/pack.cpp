@@ -1,0 +1,238 @@
+#include "runners/pack/pack.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <numeric>
+#include <ostream>
+#include <random>
+#include <system_error>
+
+#include "runners/command/command.hpp"
+#include "runners/command/subcommand.hpp"
+#include "runners/kinds/kind.hpp"
+#include "runners/kinds/stored_study.hpp"
+#include "runners/pack/sha256.hpp"
+#include "runners/report/summary_page.hpp"
+#include "runners/run/analysed_results.hpp"
+#include "runners/run/environment.hpp"
+#include "runners/run/merge_folders.hpp"
+#include "runners/run/study_runner.hpp"
+#include "runners/store/fingerprint.hpp"
+#include "runners/store/folder_lock.hpp"
+#include "runners/store/store.hpp"
+#include "runners/table/table_reader.hpp"
+#include "runners/table/text.hpp"
+
+namespace ricochet {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int drawn_by_default = 3;
+
+/// A folder of this process alone that goes with it.
+class WorkFolder {
+ public:
+  WorkFolder() {
+    std::string name = (fs::temp_directory_path() / "ricochet-verify-XXXXXX").string();
+    if (!::mkdtemp(name.data())) throw std::system_error(errno, std::generic_category(), name);
+    path_ = name;
+  }
+  ~WorkFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+std::string counted(std::size_t number, const char* what) {
+  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+}
+
+/// How many cases `--cases` asks for; at most `all`.
+std::size_t cases_asked(const std::string& text, std::size_t all) {
+  if (text == "all") return all;
+  if (text.empty()) return std::min<std::size_t>(drawn_by_default, all);
+  constexpr std::size_t most_digits = 9;
+  if (text.size() > most_digits || text.find_first_not_of("0123456789") != std::string::npos)
+    throw UsageError(fmt::format("--cases \"{}\": expected a number of cases, or all", text));
+  return std::min<std::size_t>(std::stoul(text), all);
+}
+
+/// Cases that march: what is refused, unfinished or of a reference is not computed again.
+std::vector<const CaseRecord*> cases_that_march(const StudyResults& results) {
+  std::vector<const CaseRecord*> found;
+  for (const CaseRecord& record : results.cases)
+    if (record.status != "refused" && !record.partial && !is_reference(record)) found.push_back(&record);
+  return found;
+}
+
+/// So many of them, drawn, in their order.
+std::vector<const CaseRecord*> drawn(const std::vector<const CaseRecord*>& all, std::size_t count) {
+  std::vector<const CaseRecord*> found;
+  std::mt19937_64 random{std::random_device{}()};
+  std::sample(all.begin(), all.end(), std::back_inserter(found), count, random);
+  return found;
+}
+
+/// u / |value| of each measure of the case's methods, by the table of limits: what step and mesh leave open of it.
+std::map<std::string, double> shares_left_open(const StudyResults& results, const CaseRecord& record) {
+  std::map<std::string, double> shares;
+  const Table* limits = find_table(results.derived, "limits");
+  if (!limits) return shares;
+  const TableReader rows(*limits);
+  const std::size_t measure = rows.column("measure"), value = rows.column("value"), u = rows.column("u");
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const bool same = std::all_of(record.axes.begin(), record.axes.end(), [&](const auto& axis) {
+      const std::size_t column = rows.column_if_any(axis.first);
+      return column == TableReader::absent || rows.text(r, column).empty() ||
+             rows.text(r, column) == cell_of(axis.second).text();
+    });
+    const auto at = rows.number(r, value), open = rows.number(r, u);
+    if (same && at && open && *at != 0) shares[rows.text(r, measure)] = *open / std::abs(*at);
+  }
+  return shares;
+}
+
+enum class Equal { bits, within, no };
+
+/// How the case computed again agrees with the stored one; `text` says it in a line or more.
+Equal agreement(const StudyResults& results, const CaseRecord& stored, const CaseRecord& again, std::string& text) {
+  const Comparison found = compare(stored, again);
+  if (found.differences.empty()) {
+    text = "equal to the last bit";
+    return Equal::bits;
+  }
+  const std::map<std::string, double> shares = shares_left_open(results, stored);
+  bool within = stored.status == again.status;
+  std::size_t compared = 0;
+  double largest = 0;
+  for (const auto& [name, value] : again.measures) {
+    const auto share = shares.find(name);
+    const auto kept = std::find_if(stored.measures.begin(), stored.measures.end(),
+                                   [&](const auto& one) { return one.first == name; });
+    if (share == shares.end() || kept == stored.measures.end()) continue;
+    ++compared;
+    const double difference = std::abs(value - kept->second), open = share->second * std::abs(kept->second);
+    within = within && difference <= open;
+    if (open > 0) largest = std::max(largest, difference / open);
+  }
+  if (within && compared > 0) {
+    text = fmt::format("equal within u: {}, the largest difference is {:.2g} u", counted(compared, "measure"), largest);
+    return Equal::within;
+  }
+  constexpr std::size_t told = 3;
+  text = compared == 0 && within ? "not equal, and the study says no u:" : "not equal:";
+  for (std::size_t k = 0; k < std::min(told, found.differences.size()); ++k) text += "\n    " + found.differences[k];
+  if (found.differences.size() > told) text += fmt::format("\n    and {} more", found.differences.size() - told);
+  return Equal::no;
+}
+
+/// What computes here and did not there, a line.
+std::string other_program(const Environment& there) {
+  const Environment here = describe_environment({});
+  std::string text;
+  for (const char* name : {"program", "commit", "compiler", "contract", "arithmetic"})
+    if (const std::string a = environment_entry(there, name), b = environment_entry(here, name); a != b)
+      text += fmt::format("{}{} {} there, {} here", text.empty() ? "computed with " : "; ", name, a, b);
+  return text.empty() ? "" : text + "\n";
+}
+
+int compute_again(const Arguments& arguments, const fs::path& place, std::ostream& out) {
+  StudyResults stored_results = read_store(place / packed::results);
+  if (stored_results.study.contains("files") && stored_results.study["files"].is_object())
+    stored_results.study["files"]["folder"] = (place / packed::study).string();
+  const AnalysedResults results = with_tables(std::move(stored_results));
+  const Kind* kind = find_kind(results.kind);
+  if (!kind)
+    throw UsageError(fmt::format("it holds a study of kind {}, which this program does not have", results.kind));
+  const std::vector<const CaseRecord*> all = cases_that_march(results);
+  const std::vector<const CaseRecord*> chosen = drawn(all, cases_asked(arguments.drawn, all.size()));
+  out << fmt::format("{} ({}): {} of {} computed again\n", results.name, results.kind, chosen.size(),
+                     counted(all.size(), "case"))
+      << other_program(results.environment);
+  if (chosen.empty()) return exit_done;
+  const StoredStudy stored(results, arguments.plugins);
+  const StopSignal signals;
+  std::map<Equal, std::size_t> counts;
+  for (const CaseRecord* record : chosen) {
+    const CaseRecord again =
+        march_again(place / packed::results, *kind, stored, stored.find(record->id), signals.requested());
+    std::string text;
+    ++counts[agreement(results, *record, again, text)];
+    out << fmt::format("  {}: {}\n", record->id, text);
+  }
+  const char* verdict = counts[Equal::no] > 0       ? "not equal"
+                        : counts[Equal::within] > 0 ? "equal within u"
+                                                    : "bit-equal";
+  out << fmt::format("{}: {} to the last bit, {} within u, {} not\n", verdict, counts[Equal::bits],
+                     counts[Equal::within], counts[Equal::no]);
+  return counts[Equal::no] > 0 ? exit_some_failed : exit_done;
+}
+
+}  // namespace
+
+int command_pack(const Arguments& arguments, std::ostream& out) {
+  const fs::path folder = arguments.operands.front();
+  if (!fs::exists(folder / "results.sqlite"))
+    throw UsageError(folder.string() + ": holds no results.sqlite; expected a folder of results");
+  // Nobody writes there meanwhile; where nobody can, nothing is locked.
+  std::optional<FolderLock> lock;
+  if (::access(folder.c_str(), W_OK) == 0) lock.emplace(folder);
+  StudyResults results = read_store(folder);
+  const std::size_t cases = results.cases.size();
+  const int expected = results.expected_cases;
+  const fs::path file = arguments.out.value_or(results.name + ".ricochet.zip");
+  const std::string answer = report::index_markdown({{with_tables(results), ""}});
+  const std::size_t parts = pack_results(folder, results, answer, file);
+  out << fmt::format("{}: {}, {} of {}, {}\nSHA-256 {}\n", file.string(), counted(parts, "part"), cases,
+                     counted(static_cast<std::size_t>(expected), "case"),
+                     size_text(static_cast<double>(fs::file_size(file))), file_sha256(file));
+  return exit_done;
+}
+
+int command_unpack(const Arguments& arguments, std::ostream& out) {
+  const fs::path file = arguments.operands.front();
+  constexpr std::string_view ending = ".ricochet.zip";
+  std::string name = file.filename().string();
+  if (name.ends_with(ending)) name.resize(name.size() - ending.size());
+  const fs::path folder = arguments.operands.size() > 1 ? fs::path(arguments.operands[1]) : fs::path(name);
+  std::error_code ignored;
+  if (fs::exists(folder, ignored) && (!fs::is_directory(folder, ignored) || !fs::is_empty(folder, ignored)))
+    throw UsageError(folder.string() + " is there, and not an empty folder; expected a new one");
+  FolderWriter writer(folder);
+  const std::size_t parts = unpack_results(file, writer.place()).size();
+  writer.commit();
+  out << fmt::format("{}: {}, each as it was packed\nresults: {}\n", folder.string(), counted(parts, "part"),
+                     (folder / packed::results).string());
+  return exit_done;
+}
+
+int command_verify(const Arguments& arguments, std::ostream& out) {
+  cases_asked(arguments.drawn, 0);  // a slip there is told first
+  return march_apart(arguments, out, [&](std::ostream& to) {
+    const fs::path file = arguments.operands.front();
+    const WorkFolder work;
+    const std::size_t parts = unpack_results(file, work.path()).size();
+    to << fmt::format("{}: {}, each as it was packed\nSHA-256 {}\n", file.string(), counted(parts, "part"),
+                      file_sha256(file));
+    try {
+      return compute_again(arguments, work.path(), to);
+    } catch (const PointRefused& refused) {
+      throw UsageError(refused.what());
+    } catch (const Interrupted&) {
+      return static_cast<int>(exit_interrupted);
+    }
+  });
+}
+
+}  // namespace ricochet

@@ -1,0 +1,262 @@
+// A result in one file: what comes out is what went in, and what is not as it was packed leaves nothing behind.
+#include "runners/pack/pack.hpp"
+
+#include <archive.h>
+#include <archive_entry.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "runners/pack/sha256.hpp"
+#include "runners/pack/zip_file.hpp"
+#include "tests/runners/command/spoken_command.hpp"
+
+namespace command_tests {
+namespace {
+
+using ricochet::Sha256;
+using ricochet::ZipWriter;
+
+std::string sha256(const std::string& text) {
+  Sha256 sum;
+  sum.add(text);
+  return sum.digits();
+}
+
+/// Results of a study that takes no time, in the folder `made`.
+void make_results(const Folder& here) {
+  here.write("rod.json", R"({
+    "name": "rod", "kind": "trajectory", "duration": 1, "samples": 10, "step": [0.01, 0.005],
+    "ask": [{"value": "energy_end"}],
+    "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1}, "stops": {"upper": 0.1, "at": "tip"},
+              "initial": {"velocity": "1"},
+              "load": [{"force": {"file": "force.csv", "time": "t", "value": "f"}}]},
+    "methods": {"mass": "consistent", "contact": [{"name": "penalty", "stiffness": 1e3}, "signorini"], "time": "newmark"}})");
+  here.write("force.csv", "t,f\n0,0\n0.5,0.1\n1,0\n");
+  const Outcome run = here.run("run rod.json --out made");
+  INFO(run.out << run.err);
+  REQUIRE(run.code == 0);
+}
+
+using Parts = std::vector<std::pair<std::string, std::string>>;
+
+Parts parts_of(const fs::path& file) {
+  Parts parts;
+  ricochet::read_zip(file, {[&](const std::string& name) { parts.emplace_back(name, ""); },
+                            [&](std::string_view bytes) { parts.back().second += bytes; }, [] {}});
+  return parts;
+}
+
+void write_parts(const fs::path& file, const Parts& parts) {
+  ZipWriter zip(file);
+  for (const auto& [name, text] : parts) zip.add(name, text);
+  zip.commit();
+}
+
+/// A part with a sum of its own in the manifest, as one who knows the format would add it.
+void add_part(Parts& parts, const std::string& name, const std::string& text) {
+  parts.front().second += sha256(text) + "  " + name + "\n";
+  parts.emplace_back(name, text);
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& item : fs::directory_iterator(folder)) {
+    const std::string name = item.path().filename().string();
+    if (name != ".out" && name != ".err") names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("pack: SHA-256 gives the digests of FIPS 180-4, in whatever pieces") {
+  CHECK(sha256("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  CHECK(sha256("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  CHECK(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq") ==
+        "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  CHECK(sha256(std::string(1000000, 'a')) == "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+  for (const std::size_t size : {55, 56, 63, 64, 65, 119, 120, 128}) {
+    const std::string text(size, 'x');
+    Sha256 pieces;
+    for (std::size_t at = 0; at < size; at += 7) pieces.add(std::string_view(text).substr(at, 7));
+    CHECK(pieces.digits() == sha256(text));
+  }
+}
+
+TEST_CASE("pack: a result comes out as it went in, runs again from its study, and is bit-equal") {
+  const Folder here;
+  make_results(here);
+  const Outcome first = here.run("pack made"), second = here.run("pack made --out again.zip", "TZ=Asia/Tokyo");
+  INFO(first.out << first.err << second.err);
+  REQUIRE(first.code == 0);
+  CHECK_THAT(first.out, Contains("rod.ricochet.zip: ") && Contains("4 of 4 cases") && Contains("SHA-256 "));
+  CHECK(read(here / "rod.ricochet.zip") == read(here / "again.zip"));
+
+  const Outcome unpacked = here.run("unpack rod.ricochet.zip");
+  INFO(unpacked.out << unpacked.err);
+  REQUIRE(unpacked.code == 0);
+  for (const auto& item : fs::recursive_directory_iterator(here / "made"))
+    if (item.is_regular_file())
+      CHECK(read(item.path()) == read(here / "rod" / "results" / item.path().lexically_relative(here / "made")));
+  CHECK(read(here / "rod/study/force.csv") == read(here / "force.csv"));
+  CHECK_THAT(read(here / "rod/answer.md"), Contains("rod"));
+  if (std::system("command -v sha256sum >/dev/null") == 0)
+    CHECK(std::system(("cd '" + (here / "rod").string() + "' && sha256sum --quiet -c manifest-sha256.txt").c_str()) ==
+          0);
+
+  const auto crate = nlohmann::json::parse(read(here / "rod/ro-crate-metadata.json"));
+  std::size_t files = 0;
+  for (const auto& item : crate.at("@graph")) {
+    if (item.at("@type") != "File") continue;
+    ++files;
+    CHECK(item.at("sha256") == sha256(read(here / "rod" / item.at("@id").get<std::string>())));
+  }
+  CHECK(files + 2 == parts_of(here / "rod.ricochet.zip").size());
+  CHECK_THAT(crate.dump(), Contains("contract") && Contains("plugin mass.so") && Contains("lanes"));
+
+  // Its study runs where it lies; the force is the file beside it.
+  const Outcome run = here.run("run rod/study/study.json --out elsewhere");
+  INFO(run.out << run.err);
+  CHECK(run.code == 0);
+  CHECK_THAT(here.run("compare made elsewhere").out, Contains("cases: 4 in both"));
+
+  fs::remove(here / "force.csv");  // the pack has its own
+  const Outcome verified = here.run("verify rod.ricochet.zip --cases all");
+  INFO(verified.out << verified.err);
+  CHECK(verified.code == 0);
+  CHECK_THAT(verified.out, Contains("4 of 4 cases computed again") && Contains("bit-equal: 4 to the last bit"));
+  CHECK_THAT(here.run("verify rod.ricochet.zip").out, Contains("3 of 4 cases"));
+  CHECK_THAT(here.run("verify rod.ricochet.zip --cases 0").out, !Contains("bit-equal"));
+  const Outcome wrong = here.run("verify rod.ricochet.zip --cases many");
+  CHECK(wrong.code == 2);
+  CHECK_THAT(wrong.err, Contains("expected a number of cases, or all"));
+}
+
+TEST_CASE("pack: what is not a whole packed result is refused with its cause, and leaves nothing") {
+  const Folder here;
+  make_results(here);
+  REQUIRE(here.run("pack made").code == 0);
+  const std::string whole = read(here / "rod.ricochet.zip");
+  const Parts parts = parts_of(here / "rod.ricochet.zip");
+  const auto refused = [&](const std::string& cause) {
+    const std::vector<std::string> before = names_in(here / "");
+    for (const char* words : {"verify bad.zip", "unpack bad.zip new"}) {
+      const Outcome outcome = here.run(words);
+      INFO(words << "\n" << outcome.out << outcome.err);
+      CHECK(outcome.code == 2);
+      CHECK(outcome.out.empty());
+      CHECK_THAT(outcome.err, StartsWith("ricochet: bad.zip: ") && Contains(cause));
+    }
+    CHECK(names_in(here / "") == before);
+  };
+  for (const std::size_t size : {std::size_t{0}, std::size_t{10}, whole.size() / 2, whole.size() - 30}) {
+    here.write("bad.zip", whole.substr(0, size));
+    refused("no whole zip file");
+  }
+  here.write("bad.zip", "not a zip file at all");
+  refused("no whole zip file");
+
+  const auto changed = [&](const std::function<void(Parts&)>& change, const std::string& cause) {
+    Parts other = parts;
+    change(other);
+    fs::remove(here / "bad.zip");
+    write_parts(here / "bad.zip", other);
+    refused(cause);
+  };
+  changed([](Parts& all) { all.back().second += " "; }, "is not as it was packed");
+  changed([](Parts& all) { all.pop_back(); }, "is missing");
+  changed([](Parts& all) { all.erase(all.begin()); }, "has no part manifest-sha256.txt");
+  changed([](Parts& all) { all.emplace_back("results/more.csv", "a\n"); }, "was not packed");
+  changed([](Parts& all) { all.front().second += "half a line\n"; }, "has a line that is none");
+  changed([](Parts& all) { all = {{ricochet::packed::sums, ""}}; }, "has no part ro-crate-metadata.json");
+  // Whoever writes the manifest can name what is not allowed.
+  for (const char* name : {"../climbs", "results/../../climbs", "/tmp/absolute", "a//b", "./a", "a\\b", "line\nbreak"})
+    changed([&](Parts& all) { add_part(all, name, "x"); }, "\"");
+  changed([](Parts& all) { add_part(all, "study/study.json", "{}"); }, "stands twice");
+  changed([](Parts& all) { add_part(all, "results/zeros", std::string(300000000, '\0')); }, "times as large");
+  CHECK_FALSE(fs::exists(here / "climbs"));
+
+  // A link that would lead a later part out of the folder.
+  fs::remove(here / "bad.zip");
+  archive* zip = archive_write_new();
+  archive_write_set_format_zip(zip);
+  archive_write_open_filename(zip, (here / "bad.zip").c_str());
+  archive_entry* entry = archive_entry_new();
+  archive_entry_set_pathname(entry, "results");
+  archive_entry_set_filetype(entry, AE_IFLNK);
+  archive_entry_set_symlink(entry, "/tmp");
+  archive_entry_set_perm(entry, 0777);
+  archive_write_header(zip, entry);
+  archive_entry_free(entry);
+  archive_write_free(zip);
+  refused("is a link, a folder or a device");
+}
+
+TEST_CASE("pack: bytes that change at random are told, or change nothing that is packed") {
+  const Folder here;
+  make_results(here);
+  REQUIRE(here.run("pack made").code == 0);
+  const std::string whole = read(here / "rod.ricochet.zip");
+  const Parts parts = parts_of(here / "rod.ricochet.zip");
+  std::mt19937 random(1);
+  int told = 0;
+  constexpr int tries = 60;
+  for (int n = 0; n < tries; ++n) {
+    std::string bytes = whole;
+    bytes[random() % bytes.size()] ^= static_cast<char>(1 + random() % 255);
+    here.write("bad.zip", bytes);
+    fs::remove_all(here / "place");
+    fs::create_directory(here / "place");
+    try {
+      ricochet::unpack_results(here / "bad.zip", here / "place");
+      for (const auto& [name, text] : parts) CHECK(read(here / "place" / name) == text);
+    } catch (const std::exception& error) {
+      CHECK_THAT(error.what(), Contains("bad.zip: "));
+      ++told;
+    }
+  }
+  CHECK(told > tries / 2);
+}
+
+TEST_CASE("pack: another result than the stored one is not equal, and says so with exit code 3") {
+  const Folder here;
+  make_results(here);
+  REQUIRE(here.run("pack made").code == 0);
+  Parts parts = parts_of(here / "rod.ricochet.zip");
+  // The force of another study, with sums that fit.
+  std::string sums;
+  for (auto& [name, text] : parts) {
+    if (name == "study/force.csv") text = "t,f\n0,0\n0.5,0.2\n1,0\n";
+    if (name != ricochet::packed::sums) sums += sha256(text) + "  " + name + "\n";
+  }
+  parts.front().second = sums;
+  write_parts(here / "other.zip", parts);
+  const Outcome other = here.run("verify other.zip --cases all");
+  INFO(other.out << other.err);
+  // The study knows its files by their digests.
+  CHECK(other.code == 2);
+  CHECK_THAT(other.err, Contains("force.csv has changed since"));
+}
+
+TEST_CASE("pack: a folder that cannot be packed is refused with its cause") {
+  const Folder here;
+  make_results(here);
+  here.write("force.csv", "t,f\n0,0\n1,9\n");
+  const Outcome changed = here.run("pack made");
+  CHECK(changed.code == 2);
+  CHECK_THAT(changed.err, Contains("force.csv has changed since the study ran"));
+  CHECK_FALSE(fs::exists(here / "rod.ricochet.zip"));
+  fs::create_directory(here / "empty");
+  CHECK_THAT(here.run("pack empty").err, Contains("expected a folder of results"));
+  CHECK(here.run("unpack nowhere.zip").code == 2);
+  fs::create_directory(here / "full");
+  here.write("full/file", "x");
+  CHECK_THAT(here.run("unpack nowhere.zip full").err, Contains("not an empty folder"));
+}
+
+}  // namespace command_tests
