@@ -5,10 +5,11 @@ say() { printf '%s\n' "$*"; }
 give_up() { printf 'error: %s\n' "$*" >&2; exit 1; }
 
 # Beyond the standard library: matrices (Eigen, CHOLMOD of SuiteSparse, headers of Boost), words of commands (Boost), JSON, formulas
-# (muParser), the store (SQLite), texts (fmt), modes of large structures (Spectra), pages (mustache), messages between processes (cereal).
+# (muParser), the store (SQLite), texts (fmt), modes of large structures (Spectra), pages (mustache), messages between processes (cereal),
+# results in one file (libarchive).
 build_packages="libeigen3-dev libsuitesparse-dev libboost-dev libboost-program-options-dev nlohmann-json3-dev
 libmuparser-dev libsqlite3-dev libsqlitecpp-dev libfmt-dev libkainjow-mustache-dev
-libcereal-dev libspectra-dev"
+libcereal-dev libspectra-dev libarchive-dev"
 # command=package: the command may come from elsewhere than Debian.
 build_commands="g++=g++ cmake=cmake ninja=ninja-build"
 

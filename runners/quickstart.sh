@@ -6,11 +6,13 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/runners/packages.sh"
 cd "$root"
 
+say "Ricochet: installs what is missing of compiler, CMake and libraries from Debian (named below), builds into build/release,"
+say "runs one study into results. Two cores take some five minutes and 800 MB the first time, a second run seconds."
 # shellcheck disable=SC2086  # lists of words
 install_missing $build_commands $build_packages
 fetch_charts
 
-say "Building (a few minutes the first time)"
+say "Building"
 cmake --preset release -DRICOCHET_TESTS=OFF -Wno-dev
 cmake --build --preset release --target ricochet
 
@@ -25,3 +27,7 @@ build/release/bin/ricochet run "$study" || status=$?
 say ""
 say "The report: $root/$report  (open it in a browser; it needs no network)"
 say "Next: edit studies/quick.json and run  build/release/bin/ricochet run studies/quick.json"
+case $(build/release/bin/ricochet doctor) in
+  *"charts "*"not built in"*) say "Missing: charts (npm could not fetch the library): the report has tables only. Run this again with a network." ;;
+  *) say "Nothing is missing: reports have their charts." ;;
+esac

@@ -3,6 +3,7 @@
 #include <ricochet/contract/abi.hpp>
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/loader/child.hpp>
+#include <ricochet/loader/installed_folder.hpp>
 #include <ricochet/loader/library.hpp>
 #include <sstream>
 
@@ -60,20 +61,13 @@ Catalogue::Catalogue(fs::path installed, const std::vector<fs::path>& folders, c
 }
 
 Catalogue Catalogue::standard(const std::vector<fs::path>& files) {
-  const fs::path program = fs::read_symlink("/proc/self/exe");
-  fs::path installed = program.parent_path().parent_path() / "lib" / "ricochet";
-  std::error_code ignored;
-  // A distribution may install libraries under lib/<triplet>.
-  if (!fs::is_directory(installed, ignored))
-    for (const auto& item : fs::directory_iterator(installed.parent_path(), ignored))
-      if (fs::is_directory(item.path() / "ricochet", ignored)) installed = item.path() / "ricochet";
   std::vector<fs::path> folders;
   if (const char* path = std::getenv("RICOCHET_PLUGIN_PATH")) {
     std::istringstream parts{std::string(path)};
     for (std::string part; std::getline(parts, part, ':');)
       if (!part.empty()) folders.emplace_back(part);
   }
-  return Catalogue(installed, folders, files);
+  return Catalogue(installed_plugins(), folders, files);
 }
 
 void Catalogue::read_library(const fs::path& file, bool insist) {

@@ -11,12 +11,15 @@
 #include <ricochet/loader/child.hpp>
 #include <system_error>
 
+#include "runners/command/manual.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/fingerprint.hpp"
 #include "runners/table/plain_output.hpp"
+#include "runners/table/text.hpp"
 #include "runners/workers/worker_process.hpp"
 
 namespace ricochet {
@@ -182,6 +185,40 @@ Commands result_commands() {
   };
 }
 
+// Commands of results in one file.
+Commands packed_commands() {
+  const Option plugin = plugin_option();
+  const Option file{"out", "FILE", "the file that is made (default: NAME.ricochet.zip)", &Args::out};
+  const Option cases{"cases", "N|all",
+                     "compute so many cases again, drawn by chance, or all (default: 3; 0: compare sums alone)",
+                     &Args::drawn};
+  return {
+      {"pack",
+       "DIR [--out FILE]",
+       "Put a results folder into one file: study with the files that it read, tables, answer, report, what computed "
+       "it.",
+       1,
+       1,
+       {file},
+       command_pack},
+      {"verify",
+       "FILE [--cases N|all]",
+       "Check a packed result, compute some of its cases again, and say whether they are bit-equal, equal within u or "
+       "not.",
+       1,
+       1,
+       {cases, plugin},
+       command_verify},
+      {"unpack",
+       "FILE [DIR]",
+       "Check a packed result and make its folder, whole or not at all.",
+       1,
+       2,
+       {},
+       command_unpack},
+  };
+}
+
 // Commands of one case or orbit.
 Commands case_commands() {
   const Option plugin = plugin_option();
@@ -242,12 +279,20 @@ Commands program_commands() {
        0,
        {plugin},
        command_doctor},
+      {"manual",
+       fmt::format("{}", fmt::join(manual_pages(), "|")),
+       "Print a page for man, or the completions of a shell.",
+       1,
+       1,
+       {},
+       command_manual},
   };
 }
 
 std::vector<Subcommand> all_commands() {
   Commands all;
-  for (const auto& some : {study_commands(), method_commands(), result_commands(), case_commands(), program_commands()})
+  for (const auto& some :
+       {study_commands(), method_commands(), result_commands(), packed_commands(), case_commands(), program_commands()})
     all.insert(all.end(), some.begin(), some.end());
   return all;
 }
@@ -258,11 +303,19 @@ std::string overview() {
   for (const Subcommand& command : subcommands())
     text += fmt::format("  {:<9} {:<46} {}\n", command.name, command.usage, command.summary);
   text +=
-      "\n  ricochet help COMMAND shows the options of one command; ricochet --version the version.\n\n"
-      "Exit codes: 0 all done, 2 bad study or usage, 3 some cases failed or none could run,\n"
-      "4 plugin missing or incompatible, 5 store unusable, output not written or memory at an end, 130 interrupted "
-      "(resumable).\n";
+      "\n  ricochet help COMMAND shows the options of one command; ricochet --version the version.\n\nExit codes:\n";
+  for (const ExitMeaning& meaning : exit_meanings()) text += fmt::format("  {:>3}  {}\n", meaning.code, meaning.text);
   return text;
+}
+
+/// The version and the commit, then what the program was built with.
+std::string version_text() {
+  const Environment all = describe_environment({});
+  TextTable table({"", ""});
+  for (const char* name : {"compiler", "contract", "lanes", "libraries"})
+    table.add({name, environment_entry(all, name)});
+  const std::string rows = table.text();  // below an empty head
+  return fmt::format("{}, commit {}{}", environment_entry(all, "program"), environment_entry(all, "commit"), rows);
 }
 
 const Subcommand& find_command(const std::string& name) {
@@ -298,10 +351,7 @@ int dispatch(const std::vector<std::string>& arguments, std::ostream& out, const
     return exit_done;
   }
   if (first == "--version") {
-    const auto entries = describe_environment({}).entries;
-    const auto commit =
-        std::find_if(entries.begin(), entries.end(), [](const auto& entry) { return entry.first == "commit"; });
-    out << entries.front().second << (commit != entries.end() ? ", commit " + commit->second : "") << "\n";
+    out << version_text();
     return exit_done;
   }
   if (first == "worker" && rest.empty()) return serve_as_worker();  // started by this program, not by a person

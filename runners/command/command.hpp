@@ -21,6 +21,7 @@ enum ExitCode {
   exit_some_failed = 3,
   exit_plugin = 4,  ///< plugin missing or incompatible
   exit_store = 5,   ///< the store, an output or the machine's memory
+  exit_not_met = 6,    ///< an ask that must have a yes has none
   exit_interrupted = 130
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ostream>
 
+#include "runners/command/manual.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/fields.hpp"
@@ -25,6 +26,7 @@ std::string plain(const nlohmann::ordered_json& value) {
 namespace {
 
 constexpr const char* whole_study = "study";
+constexpr const char* see_below = "see below";
 
 /// A word of the study format on which the keys of an object depend.
 struct FormWord {
@@ -101,49 +103,55 @@ std::string default_of(const Field& field) {
   if (!field.unless.empty()) return "or " + field.unless;
   if (field.required()) return "required";
   const std::string text = plain(*field.fallback);
-  return text.size() > longest ? "see below" : text;
+  return text.size() > longest ? see_below : text;
 }
 
 /// A row per key, those of nested objects by their path; `when`: the words under which it is there.
-void add_keys(const ObjectForm& form, const std::string& path, const std::string& when, TextTable& table,
-              std::string& below) {
+void add_keys(const ObjectForm& form, const std::string& path, const std::string& when, std::vector<KeyRow>& rows) {
   for (const Field& field : form.fields) {
     const std::string name = path + field.key();
     const bool listed = field.form == Field::Form::scalar || field.form == Field::Form::numbers;
     const bool number = listed && field.spec.type != ParameterSpec::Type::word;
-    table.add({name, type_of(field), field.spec.unit, default_of(field), number ? admissible_values(field.spec) : "",
-               field.spec.text + when});
-    if (default_of(field) == "see below") below += fmt::format("    {}: {}\n", name, plain(*field.fallback));
+    rows.push_back({name, type_of(field), field.spec.unit, default_of(field),
+                    number ? admissible_values(field.spec) : "", field.spec.text + when,
+                    default_of(field) == see_below ? plain(*field.fallback) : ""});
     if (field.form == Field::Form::bodies) continue;  // as `structure`
-    for (const ObjectForm& nested : field.nested) add_keys(nested, name + ".", when, table, below);
-    for (const ObjectForm& one : field.listed) add_keys(one, name + "[].", when + " (in a list)", table, below);
+    for (const ObjectForm& nested : field.nested) add_keys(nested, name + ".", when, rows);
+    for (const ObjectForm& one : field.listed) add_keys(one, name + "[].", when + " (in a list)", rows);
   }
   for (const Variant& variant : form.variants)
-    add_keys(variant.keys, path, fmt::format(" (with {})", fmt::join(variant.words, ", ")), table, below);
-  for (const ObjectForm& way : form.ways) add_keys(way, path, " (one way)", table, below);
+    add_keys(variant.keys, path, fmt::format(" (with {})", fmt::join(variant.words, ", ")), rows);
+  for (const ObjectForm& way : form.ways) add_keys(way, path, " (one way)", rows);
 }
 
-std::string key_table(const ObjectForm& form) {
+std::string key_table(const std::vector<KeyRow>& rows) {
   TextTable table({"key", "type", "unit", "default", "range", "meaning"});
   std::string below;
-  add_keys(form, "", "", table, below);
+  for (const KeyRow& row : rows) {
+    table.add({row.key, row.type, row.unit, row.fallback, row.range, row.meaning});
+    if (!row.below.empty()) below += fmt::format("    {}: {}\n", row.key, row.below);
+  }
   return table.text(2) + (below.empty() ? "" : "\n  long defaults\n" + below);
+}
+
+std::vector<KeyRow> rows_of(const ObjectForm& form) {
+  std::vector<KeyRow> rows;
+  add_keys(form, "", "", rows);
+  return rows;
 }
 
 void print(const FormWord& word, std::ostream& out) {
   const StudyKind* kind = word.place == "/kind" ? find_study_kind(word.name) : nullptr;
   out << fmt::format("{} (a value of {}): {}\n", word.name, word.place, kind ? kind->text : word.key->spec.text);
-  out << (word.form->fields.empty() ? "\nno keys of its own\n" : "\nkeys\n" + key_table(*word.form));
+  out << (word.form->fields.empty() ? "\nno keys of its own\n" : "\nkeys\n" + key_table(rows_of(*word.form)));
 }
 
-/// Every key of the study format: those of all studies, then those of each kind.
+/// Every key of the study format.
 void print_study(std::ostream& out) {
-  ObjectForm common = study_form();
-  common.variants.clear();
-  out << "study (a file that asks one question): the keys that every study has\n\n" << key_table(common);
-  for (const StudyKind* kind : study_kinds()) {
-    const ObjectForm own{kind->keys, "", {}};
-    out << fmt::format("\nkind {}: {}\n\n", kind->name, kind->text) << key_table(own);
+  const char* before = "";
+  for (const KeySection& section : study_sections()) {
+    out << before << section.title << ": " << section.text << "\n\n" << key_table(section.rows);
+    before = "\n";
   }
 }
 
@@ -160,6 +168,16 @@ void print(const MeasureInfo& measure, std::ostream& out) {
 }
 
 }  // namespace
+
+std::vector<KeySection> study_sections() {
+  ObjectForm common = study_form();
+  common.variants.clear();
+  std::vector<KeySection> sections = {
+      {"study (a file that asks one question)", "the keys that every study has", rows_of(common)}};
+  for (const StudyKind* kind : study_kinds())
+    sections.push_back({"kind " + kind->name, kind->text, rows_of({kind->keys, "", {}})});
+  return sections;
+}
 
 const char* type_word(const ParameterSpec& spec) {
   switch (spec.type) {

@@ -1,9 +1,8 @@
 #include <fmt/format.h>
-#include <muParserDef.h>
 
 #include <algorithm>
 #include <ostream>
-#include <ricochet/contract/abi.hpp>
+#include <ricochet/loader/installed_folder.hpp>
 #include <set>
 
 #include "runners/command/command.hpp"
@@ -21,12 +20,13 @@ namespace fs = std::filesystem;
 void print_program(std::ostream& out) {
   TextTable table({"", ""});
   for (const auto& [name, value] : describe_environment({}).entries)
-    if (name != "started") table.add({name, name == "libraries" ? value + ", muParser " + mu::ParserVersion : value});
+    if (name != "started") table.add({name, value});
   const std::string charts(report::chart_library_version());
   table.add({"charts", charts.empty()
                            ? "not built in: reports have tables only (run `npm ci` in runners/report and build again)"
                            : "ECharts " + charts + ", built in"});
-  table.add({"ABI tag", abi_tag()});
+  const fs::path data = installed_data();
+  table.add({"pages, studies", data.empty() ? "not installed: those of the source tree" : data.string()});
   out << table.text() << "\n";
 }
 

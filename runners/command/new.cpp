@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <ostream>
+#include <ricochet/loader/installed_folder.hpp>
 #include <sstream>
 
 #include "runners/command/command.hpp"
@@ -184,8 +185,8 @@ int command_new(const Arguments& arguments, std::ostream& out) {
         wish.name, ricochet, plugin, works);
   }
   std::error_code ignored;
-  const fs::path page = wish.prefix() / "share/doc/ricochet" / (plan ? "plan-files.md" : "plugins.md");
-  if (fs::exists(page, ignored))
+  const fs::path page = installed_data() / "plugins" / (plan ? "plan-files.md" : "README.md");
+  if (page.is_absolute() && fs::exists(page, ignored))
     out << (plan ? "\nAll keys of a plan: " : "\nWhat the loop does with each field: ") << page.string() << "\n";
   return exit_done;
 }

@@ -56,6 +56,7 @@ struct Arguments {
   int nodes = 0, cpus = 0;                       ///< --nodes, --cpus; 0: none given
   StudyPart part;                                ///< --part; whole: none given
   std::string time;                              ///< --time; "": none given
+  std::string drawn;                             ///< --cases of verify; "": none given
   bool help = false;
   FindHosts hosts;  ///< not a word of the command line: see run_command()
 };
@@ -110,10 +111,14 @@ int command_merge(const Arguments& arguments, std::ostream& out);
 int command_compare(const Arguments& arguments, std::ostream& out);
 int command_export(const Arguments& arguments, std::ostream& out);
 int command_league(const Arguments& arguments, std::ostream& out);
+int command_pack(const Arguments& arguments, std::ostream& out);
+int command_verify(const Arguments& arguments, std::ostream& out);
+int command_unpack(const Arguments& arguments, std::ostream& out);
 int command_point(const Arguments& arguments, std::ostream& out);
 int command_case(const Arguments& arguments, std::ostream& out);
 int command_schema(const Arguments& arguments, std::ostream& out);
 int command_doctor(const Arguments& arguments, std::ostream& out);
+int command_manual(const Arguments& arguments, std::ostream& out);
 
 // What they share.
 

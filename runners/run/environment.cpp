@@ -1,16 +1,22 @@
 #include "runners/run/environment.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <Spectra/Util/Version.h>
 #include <fmt/format.h>
 #include <gnu/libc-version.h>
+#include <muParserDef.h>
 #include <sqlite3.h>
 #include <sys/utsname.h>
 
 #include <Eigen/Core>
 #include <boost/version.hpp>
+#include <cereal/version.hpp>
 #include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <ricochet/contract/abi.hpp>
+#include <ricochet/kernels/instruction_set.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
 #include <string>
 #if __has_include(<suitesparse/cholmod.h>)
 #include <suitesparse/cholmod.h>
@@ -57,6 +63,15 @@ std::string instruction_sets() {
 #endif
 }
 
+// What marching does at once: doubles in a vector of the kernels, motions in a block.
+std::string lanes() {
+  const InstructionSet set = best_instruction_set();
+  const int doubles = set == InstructionSet::avx512 ? 8 : set == InstructionSet::avx2 ? 4 : 2;
+  constexpr int most = 32;
+  return fmt::format("{} doubles at once ({}), 1 to {} lanes in a block", doubles, lane_instruction_set(),
+                     lane_width(most));
+}
+
 std::string kernel() {
   utsname name{};
   return ::uname(&name) == 0 ? fmt::format("{} {} {}", name.sysname, name.release, name.machine) : "unknown";
@@ -71,6 +86,9 @@ std::string libraries() {
                   NLOHMANN_JSON_VERSION_PATCH),
       fmt::format("SQLite {}", sqlite3_libversion()),
       fmt::format("SQLiteCpp {}", SQLITECPP_VERSION),
+      fmt::format("muParser {}", mu::ParserVersion),
+      fmt::format("Spectra {}.{}.{}", SPECTRA_MAJOR_VERSION, SPECTRA_MINOR_VERSION, SPECTRA_PATCH_VERSION),
+      fmt::format("cereal {}.{}.{}", CEREAL_VERSION_MAJOR, CEREAL_VERSION_MINOR, CEREAL_VERSION_PATCH),
       fmt::format("glibc {}", ::gnu_get_libc_version()),
 #ifdef CHOLMOD_MAIN_VERSION
       fmt::format("CHOLMOD {}.{}.{}", CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION),
@@ -88,11 +106,13 @@ Environment describe_environment(const std::vector<std::filesystem::path>& plugi
       {"program", "ricochet " + build.version},
       {"commit", build.commit},
       {"compiler", compiler()},
+      {"contract", abi_tag()},
       {"build type", build.type},
       {"flags", build.flags},
       {"processor", processor()},
       {"cores", allowed_processors().text()},
       {"instruction sets", instruction_sets()},
+      {"lanes", lanes()},
       {kArithmetic, arithmetic_digest()},
       {"kernel", kernel()},
       {"libraries", libraries()},

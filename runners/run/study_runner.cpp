@@ -157,9 +157,9 @@ class FolderRun {
     }
     if (!excluded.empty()) store_.save(excluded);
     const std::size_t running = pending.size();
-    tell(fmt::format("{}{}: {} case{}, {} finished before, {} to run{}", study_.name,
+    tell(fmt::format("{}{}: {} case{}, {} finished before, {} to {}", study_.name,
                      part_.whole() ? "" : ", " + part_.text(), cases_.size(), cases_.size() == 1 ? "" : "s",
-                     kept_.size(), running, running > 0 ? " " + workers() : ""));
+                     kept_.size(), running, running > 0 ? "plan and run " + workers() : "run"));
     if (running == 0) return true;
     store_.save_progress("planning, " + workers());
     if (part_.whole())
@@ -241,9 +241,12 @@ class FolderRun {
   int finish() {
     const auto results = write_folder(store_, folder_, runner_.render, &fresh_);
     const double seconds = seconds_since(begin_);
+    // As `plan` counts them: what is refused does not run.
+    const auto ran = std::count_if(results->cases.begin(), results->cases.end(), [this](const CaseRecord& one) {
+      return fresh_.count(one.id) != 0 && one.status != "refused";
+    });
     return tell_results(runner_.out, *results, folder_,
-                        fmt::format("{} run now in {}, {} kept", fresh_.size(), duration_text(seconds), kept_.size()),
-                        table_);
+                        fmt::format("{} run now in {}, {} kept", ran, duration_text(seconds), kept_.size()), table_);
   }
 
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();

@@ -37,6 +37,10 @@ TEST_CASE("A plan shows cases, refusals with reasons and cost, and runs nothing"
   };
   CHECK_THAT(timeless(all.out), StartsWith(timeless(outcome.out)) && Contains("operator") && Contains("refused: "));
   CHECK_FALSE(fs::exists(here / "results"));
+  // A run counts them alike.
+  const Outcome run = here.run("run tiny.json");
+  CHECK_THAT(run.err, Contains("4 cases, 0 finished before, 3 to plan and run"));
+  CHECK_THAT(run.out, Contains("4 cases: 2 done, 2 refused (2 run now"));
 }
 
 TEST_CASE("A plan and the doctor say how many processors may be used, and what allows no more") {

@@ -137,7 +137,7 @@ TEST_CASE("merge: what is missing is counted, and a run in the merged folder add
   CHECK_THAT(read_text(here / "all/report.html"), Contains("Partial results: 6 of 9 cases so far"));
   const CommandOutput more = say(here, go_on);
   CHECK(more.code == 0);
-  CHECK_THAT(more.err, Contains("6 finished before, 3 to run"));
+  CHECK_THAT(more.err, Contains("6 finished before, 3 to plan and run"));
   CHECK(say(here, "run study.json --out one").code == 0);
   same_tables::check_same(here / "one", here / "all");
   // A whole folder beside its parts: every case is there twice, and once in what comes out.

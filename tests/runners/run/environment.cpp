@@ -13,7 +13,7 @@ TEST_CASE("environment: every entry says something, and plugin libraries come wi
   write_text(scratch / "mass-x.so", "code");
   const Environment environment = describe_environment({scratch / "mass-x.so"});
   std::map<std::string, std::string> entries(environment.entries.begin(), environment.entries.end());
-  for (const char* name : {"program", "commit", "compiler", "build type", "flags", "processor", "cores",
+  for (const char* name : {"program", "commit", "compiler", "contract", "lanes", "build type", "flags", "processor", "cores",
                            "instruction sets", "kernel", "libraries", "plugin mass-x.so", "started"}) {
     INFO(name);
     CHECK_FALSE(entries[name].empty());

@@ -96,7 +96,7 @@ TEST_CASE("parts: a run of one has its cases alone, says so, and goes on as itse
   REQUIRE(run(study, options) == 0);
   CHECK(run.runs == 2);
   CHECK_THAT(run.summary, Contains("part 2 of 3: 2 cases: 2 done") && !Contains("not run yet"));
-  CHECK_THAT(run.messages, Contains("fake, part 2 of 3: 2 cases, 0 finished before, 2 to run"));
+  CHECK_THAT(run.messages, Contains("fake, part 2 of 3: 2 cases, 0 finished before, 2 to plan and run"));
   const StudyResults part = read_store(options.out);
   CHECK(part.part == StudyPart{2, 3});
   CHECK(part.expected_cases == 2);

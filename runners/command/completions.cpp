@@ -1,0 +1,207 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runners/command/manual.hpp"
+#include "runners/command/subcommand.hpp"
+
+namespace ricochet {
+namespace {
+
+/// What a shell offers for a word of the command line.
+enum class Offer { nothing, files, folders, studies, words };
+
+struct Operand {
+  Offer offer = Offer::nothing;
+  std::vector<std::string> words;  ///< of Offer::words
+};
+
+Offer offer_of(const std::string& name) {
+  if (name == "FILE" || name.find("PLUGIN") != std::string::npos) return Offer::files;
+  if (name.find(".json") != std::string::npos) return Offer::studies;
+  return name == "A" || name.find("DIR") != std::string::npos ? Offer::folders : Offer::nothing;
+}
+
+/// The first operand, by the first word of the usage: "STUDY.json", "DIR…", "[mass|contact]".
+Operand operand_of(const Subcommand& command) {
+  if (command.most == 0) return {};
+  std::string first = command.usage.substr(0, command.usage.find(' '));
+  std::erase_if(first, [](char c) { return c == '[' || c == ']'; });
+  if (first.find('|') == std::string::npos || first.find_first_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") != std::string::npos)
+    return {offer_of(first), {}};
+  Operand operand{Offer::words, {}};
+  for (std::size_t at = 0; at != std::string::npos;) {
+    const std::size_t bar = first.find('|', at);
+    operand.words.push_back(first.substr(at, bar == std::string::npos ? bar : bar - at));
+    at = bar == std::string::npos ? bar : bar + 1;
+  }
+  return operand;
+}
+
+/// The options of a command, --help with them.
+std::vector<Option> options_of(const Subcommand& command) {
+  std::vector<Option> all = command.options;
+  all.push_back({"help", "", "this text", {}});
+  return all;
+}
+
+/// The words that may stand in the place of a command.
+std::vector<std::pair<std::string, std::string>> first_words() {
+  std::vector<std::pair<std::string, std::string>> words;
+  for (const Subcommand& command : subcommands()) words.emplace_back(command.name, command.summary);
+  words.emplace_back("help", "Show the commands, or what one of them takes.");
+  words.emplace_back("--help", "Show the commands.");
+  words.emplace_back("--version", "Show the version, and what the program was built with.");
+  return words;
+}
+
+std::string command_names() {
+  std::string names;
+  for (const Subcommand& command : subcommands()) names += (names.empty() ? "" : " ") + command.name;
+  return names;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+/// A text between single quotes of a shell.
+std::string shell_quoted(const std::string& text) {
+  return "'" + replaced(text, "'", "'\\''") + "'";
+}
+
+constexpr const char* generated = "# Made by `ricochet manual {}`.\n";
+
+std::string bash_offer(const Operand& operand) {
+  switch (operand.offer) {
+    case Offer::nothing:
+      return "COMPREPLY=()";
+    case Offer::files:
+      return "compopt -o filenames; COMPREPLY=($(compgen -f -- \"$word\"))";
+    case Offer::folders:
+      return "compopt -o filenames; COMPREPLY=($(compgen -d -- \"$word\"))";
+    case Offer::studies:
+      return "compopt -o filenames; COMPREPLY=($(compgen -f -X '!*.json' -- \"$word\") $(compgen -d -- \"$word\"))";
+    case Offer::words:
+      break;
+  }
+  return fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$word\"))", fmt::join(operand.words, " "));
+}
+
+std::string zsh_offer(const Operand& operand) {
+  switch (operand.offer) {
+    case Offer::nothing:
+      return " ";
+    case Offer::files:
+      return "_files";
+    case Offer::folders:
+      return "_files -/";
+    case Offer::studies:
+      return "_files -g \"*.json\"";
+    case Offer::words:
+      break;
+  }
+  return fmt::format("({})", fmt::join(operand.words, " "));
+}
+
+std::string fish_offer(const Operand& operand) {
+  switch (operand.offer) {
+    case Offer::nothing:
+      return "-f";
+    case Offer::files:
+      return "-F";
+    case Offer::folders:
+      return "-f -a '(__fish_complete_directories)'";
+    case Offer::studies:
+      return "-f -a '(__fish_complete_suffix .json)'";
+    case Offer::words:
+      break;
+  }
+  return fmt::format("-f -a '{}'", fmt::join(operand.words, " "));
+}
+
+/// A text within an entry of _arguments.
+std::string zsh_text(const std::string& text) {
+  return replaced(replaced(replaced(replaced(text, "\\", "\\\\"), "[", "\\["), "]", "\\]"), ":", "\\:");
+}
+
+}  // namespace
+
+std::string bash_completion() {
+  std::string text = fmt::format(fmt::runtime(generated), "bash") +
+                     "_ricochet() {\n"
+                     "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} IFS=$' \\t\\n'\n"
+                     "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n";
+  std::string words;
+  for (const auto& [word, summary] : first_words()) words += (words.empty() ? "" : " ") + word;
+  text += fmt::format("    COMPREPLY=($(compgen -W '{}' -- \"$word\"))\n    return\n  fi\n", words) +
+          "  case ${COMP_WORDS[1]} in\n";
+  for (const Subcommand& command : subcommands()) {
+    std::string names;
+    text += fmt::format("    {})\n      case $before in\n", command.name);
+    for (const Option& option : options_of(command)) {
+      names += (names.empty() ? "--" : " --") + option.name;
+      if (!option.value.empty())
+        text += fmt::format("        --{}) {}; return ;;\n", option.name, bash_offer({offer_of(option.value), {}}));
+    }
+    text += fmt::format(
+        "      esac\n      case $word in\n        -*) COMPREPLY=($(compgen -W '{}' -- \"$word\")) ;;\n        *) {} "
+        ";;\n"
+        "      esac ;;\n",
+        names, bash_offer(operand_of(command)));
+  }
+  return text + fmt::format("    help) COMPREPLY=($(compgen -W '{}' -- \"$word\")) ;;\n", command_names()) +
+         "  esac\n}\ncomplete -F _ricochet ricochet\n";
+}
+
+std::string zsh_completion() {
+  std::string text = "#compdef ricochet\n" + fmt::format(fmt::runtime(generated), "zsh") +
+                     "_ricochet() {\n  local -a first\n  first=(\n";
+  for (const auto& [word, summary] : first_words())
+    text += fmt::format("    {}\n", shell_quoted(word + ":" + replaced(summary, ":", "\\:")));
+  text +=
+      "  )\n  if (( CURRENT == 2 )); then\n    _describe command first\n    return\n  fi\n"
+      "  local command=$words[2]\n  shift words\n  (( CURRENT-- ))\n  case $command in\n";
+  for (const Subcommand& command : subcommands()) {
+    text += fmt::format("    {})\n      _arguments", command.name);
+    for (const Option& option : options_of(command)) {
+      const bool repeats = std::holds_alternative<std::vector<std::filesystem::path> Arguments::*>(option.target);
+      std::string entry = fmt::format("{}--{}[{}]", repeats ? "*" : "", option.name, zsh_text(option.text));
+      if (!option.value.empty()) entry += ":" + zsh_text(option.value) + ":" + zsh_offer({offer_of(option.value), {}});
+      text += " \\\n        " + shell_quoted(entry);
+    }
+    if (command.most > 0)
+      text += " \\\n        " +
+              shell_quoted((command.most > 1 ? "*:operand:" : "1:operand:") + zsh_offer(operand_of(command)));
+    text += " ;;\n";
+  }
+  return text + fmt::format("    help) _arguments '1:command:({})' ;;\n", command_names()) +
+         "  esac\n}\nif [ \"$funcstack[1]\" = _ricochet ]; then\n  _ricochet \"$@\"\nelse\n  compdef _ricochet "
+         "ricochet\nfi\n";
+}
+
+std::string fish_completion() {
+  std::string text = fmt::format(fmt::runtime(generated), "fish") + "complete -c ricochet -f\n";
+  for (const auto& [word, summary] : first_words()) {
+    if (word.starts_with("--"))
+      text += fmt::format("complete -c ricochet -n __fish_use_subcommand -l {} -d {}\n", word.substr(2),
+                          shell_quoted(summary));
+    else
+      text += fmt::format("complete -c ricochet -n __fish_use_subcommand -a {} -d {}\n", word, shell_quoted(summary));
+  }
+  for (const Subcommand& command : subcommands()) {
+    const std::string here = fmt::format("complete -c ricochet -n '__fish_seen_subcommand_from {}'", command.name);
+    for (const Option& option : options_of(command)) {
+      text += fmt::format("{} -l {} -d {}", here, option.name, shell_quoted(option.text));
+      if (!option.value.empty()) text += " -r " + fish_offer({offer_of(option.value), {}});
+      text += "\n";
+    }
+    if (const Operand operand = operand_of(command); operand.offer != Offer::nothing)
+      text += here + " " + fish_offer(operand) + "\n";
+  }
+  return text + fmt::format("complete -c ricochet -n '__fish_seen_subcommand_from help' -f -a '{}'\n", command_names());
+}
+
+}  // namespace ricochet
