@@ -92,6 +92,8 @@ Wrong check_values(const Inertia& inertia) {
   if (auto wrong = check_finite(matrix, name)) return wrong;
   if (auto wrong = check_diagonal(matrix, name)) return wrong;
   if (auto wrong = check_symmetric(matrix, name)) return wrong;
+  // One factorisation tells the rank too.
+  if (inertia.assembled() && semidefinite_rank(matrix) == matrix.rows()) return std::nullopt;
   constexpr double round_off = 1e-11, regular = 1e-12;
   if (!positive(scaled(matrix), inertia.assembled() ? round_off : -regular))
     return inertia.assembled() ? std::string("the mass has a negative eigenvalue")
@@ -107,8 +109,9 @@ Wrong check_kernel(const Inertia& inertia, int n) {
     return fmt::format("declares a kernel of dimension {}, a mass that has an inverse has 0", inertia.kernel_dimension);
   }
   constexpr double regular = 1e-12;
-  // A regular mass needs no rank, only a Cholesky factorisation that succeeds.
-  if (!inertia.factored() && inertia.kernel_dimension == 0 && positive(scaled(inertia.mass), -regular))
+  // A regular mass may be regular by less than a rank asks for.
+  if (!inertia.factored() && inertia.kernel_dimension == 0 &&
+      (semidefinite_rank(inertia.mass) == n || positive(scaled(inertia.mass), -regular)))
     return std::nullopt;
   const int kernel = n - (inertia.factored() ? row_rank(inertia.coupling) : semidefinite_rank(inertia.mass));
   if (kernel == inertia.kernel_dimension) return std::nullopt;

@@ -1,6 +1,12 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <deque>
+#include <mutex>
+#include <ricochet/contract/fingerprint.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
+#include <utility>
 
 namespace ricochet {
 
@@ -95,15 +101,53 @@ SparseMatrix consistent_mass(const FiniteElementSpace& space) {
   return mass;
 }
 
-int semidefinite_rank(const SparseMatrix& A) {
+namespace {
+
+// Positive pivots of A − zero·1.
+template <class Ordering>
+int positive_pivots(const SparseMatrix& shifted) {
+  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Ordering> factors(shifted);
+  return static_cast<int>((factors.vectorD().array() > 0).count());
+}
+
+// Whether entries stand further from the diagonal than those of beams.
+bool wide(const SparseMatrix& A) {
+  constexpr int narrow = 8;
+  for (int j = 0; j < A.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(A, j); it; ++it)
+      if (std::abs(static_cast<int>(it.row()) - j) > narrow) return true;
+  return false;
+}
+
+int counted_rank(const SparseMatrix& A) {
   constexpr double zero = 1e-11;
   Eigen::VectorXd scales = A.diagonal();
   for (double& scale : scales) scale = scale > 0 ? 1 / std::sqrt(scale) : 1.0;
   SparseMatrix shift(A.rows(), A.cols());
   shift.setIdentity();
   const SparseMatrix shifted = SparseMatrix(scales.asDiagonal() * A * scales.asDiagonal()) - zero * shift;
-  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::NaturalOrdering<int>> factors(shifted);
-  return static_cast<int>((factors.vectorD().array() > 0).count());
+  return wide(A) ? positive_pivots<Eigen::AMDOrdering<int>>(shifted)
+                 : positive_pivots<Eigen::NaturalOrdering<int>>(shifted);
+}
+
+}  // namespace
+
+int semidefinite_rank(const SparseMatrix& A) {
+  static std::mutex mutex;
+  static std::deque<std::pair<Fingerprint, int>> kept;
+  constexpr std::size_t most = 64;
+  SparseMatrix compressed;
+  if (!A.isCompressed()) {
+    compressed = A;
+    compressed.makeCompressed();
+  }
+  const Fingerprint print = fingerprint(A.isCompressed() ? A : compressed);
+  const std::lock_guard lock(mutex);
+  for (const auto& [known, rank] : kept)
+    if (known == print) return rank;
+  if (kept.size() == most) kept.pop_front();
+  kept.emplace_back(print, counted_rank(A));
+  return kept.back().second;
 }
 
 int row_rank(const SparseMatrix& B) {

@@ -135,7 +135,8 @@ SparseMatrix consistent_mass(const FiniteElementSpace& space);
 
 /// Rank of a symmetric positive semidefinite A (n × n): how many eigenvalues of D A D are above 1e-11. The scales D =
 /// diag(A)^{-1/2} make units count for nothing. By Sylvester's law of inertia the rank is the number of positive pivots
-/// of D A D − 1e-11 I = L Δ Lᵀ. It costs one sparse factorisation in the order given.
+/// of D A D − 1e-11 I = L Δ Lᵀ. It costs one sparse factorisation, in the order given of a narrow band. The ranks of the
+/// matrices that were asked for last are kept.
 int semidefinite_rank(const SparseMatrix& A);
 
 /// Rank of B (any shape): that of B̂ B̂ᵀ, where B̂ has the columns of B scaled to length 1. Singular values below 3e-6

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <deque>
 #include <fstream>
 #include <mutex>
 #include <optional>
+#include <ricochet/contract/fingerprint.hpp>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/kernels/band_ldlt.hpp>
 #include <ricochet/kernels/floating_point.hpp>
+#include <ricochet/kernels/sparse_factor.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
 #include <string>
 #include <utility>
@@ -56,10 +57,8 @@ struct Rates {
   double product, substitution, sparse, elementwise, diagonal, measure;
 };
 
-// Bands up to this half-bandwidth come of beams and bars: a sparse factor has no fewer entries there. Wider ones are
-// substituted one multiply-add after the other.
-constexpr int narrow = 8;
-constexpr double wide = 1.3;  // ns per multiply-add, one lane
+// Wider bands than narrow ones are substituted one multiply-add after the other: ns each, one lane.
+constexpr double wide = 1.3;
 
 // What SparseOperator takes, ns: of a product by rows per entry, of a substitution per entry each time it is read.
 double by_rows(double lanes) {
@@ -72,26 +71,15 @@ double by_blocks(double lanes, double entries) {
   return std::max(near, fetched / lanes);
 }
 
-// A pattern by its numbers (FNV-1a).
-std::uint64_t pattern_of(const SparseMatrix& matrix) {
-  std::uint64_t hash = 14695981039346656037U;
-  const auto take = [&](const int* from, Eigen::Index count) {
-    for (Eigen::Index i = 0; i < count; ++i) hash = (hash ^ static_cast<std::uint64_t>(from[i])) * 1099511628211U;
-  };
-  take(matrix.outerIndexPtr(), matrix.outerSize() + 1);
-  take(matrix.innerIndexPtr(), matrix.nonZeros());
-  return hash;
-}
-
 // Of K + M, or of both with their border. Those of the patterns that were counted last are kept.
 SparseFill counted_fill(const SemiDiscrete& problem) {
   static std::mutex mutex;
-  static std::deque<std::pair<std::uint64_t, SparseFill>> kept;
+  static std::deque<std::pair<Fingerprint, SparseFill>> kept;
   constexpr std::size_t most = 32;
   std::vector<int> order;
   SparseMatrix system = weighted_system(1, problem.stiffness, 1, problem.inertia).assemble(order);
   system.makeCompressed();
-  const std::uint64_t pattern = pattern_of(system);
+  const Fingerprint pattern = pattern_fingerprint(system);
   const std::lock_guard lock(mutex);
   for (const auto& [known, fill] : kept)
     if (known == pattern) return fill;
@@ -150,18 +138,18 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork
     cost.setup_seconds = stages * n * 200 * nano;
     if (inertia.inverted() && work.without_stiffness) {
       nanoseconds += n * (2 * w + 1) * rate.product + n * (2 * r + 1) * rate.product;
-    } else if (kind == OperatorKind::sparse && v > narrow) {
+    } else if (kind == OperatorKind::sparse && w > narrow_band) {
       const SparseFill fill = counted_fill(problem);
       nanoseconds += static_cast<double>(problem.stiffness.nonZeros()) * by_rows(lanes) +
                      2 * fill.entries * by_blocks(lanes, fill.entries);
       cost.setup_seconds += stages * 0.5 * fill.operations * nano;
     } else {
-      const double solve = kind == OperatorKind::sparse ? rate.sparse
-                           : v > narrow && lanes == 1   ? wide
-                                                        : rate.substitution;
-      const double entries = inertia.inverted() ? 2 * n * (4 * std::max(w, r) + 1) : (n + border) * (2 * v + 1);
-      nanoseconds += n * (2 * w + 1) * rate.product + entries * solve;
-      if (v > narrow) cost.setup_seconds += stages * (n + border) * v * v * nano;
+      const double solve = kind == OperatorKind::sparse    ? rate.sparse
+                           : w > narrow_band && lanes == 1 ? wide
+                                                           : rate.substitution;
+      const double terms = inertia.inverted() ? 2 * n * (4 * std::max(w, r) + 1) : (n + border) * (2 * v + 1);
+      nanoseconds += n * (2 * w + 1) * rate.product + terms * solve;
+      if (w > narrow_band) cost.setup_seconds += stages * (n + border) * v * v * nano;
     }
   }
   const double fixed = per_stage + (problem.points() > 0 ? per_contact + per_contact_lane * lanes : 0);

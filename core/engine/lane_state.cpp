@@ -180,8 +180,8 @@ bool finite(const Block& block) {
 
 // K times the first slot.
 void Marcher::push_back() {
-  if (stiffness_rows_.rows() > 0)
-    return kernels_.row_product(stiffness_rows_.view(), false, slots_[0], elastic_.data());
+  if (program_.kind == OperatorKind::sparse)
+    return kernels_.row_product(RowMatrix::symmetric(program_.model->stiffness()), false, slots_[0], elastic_.data());
   BandStep step;
   step.rows = program_.model->rows();
   step.product_width = stiffness_width_;

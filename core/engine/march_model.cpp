@@ -59,13 +59,10 @@ RowMatrix RowMatrix::from(const Eigen::SparseMatrix<double, Eigen::RowMajor>& ma
 MarchModel::MarchModel(std::shared_ptr<const SemiDiscrete> problem, bool modal)
     : problem_(std::move(problem)), rows_(problem_->dofs()) {
   const SemiDiscrete& p = *problem_;
-  if (!modal) {
-    stiffness_ = p.stiffness;
-    inertia_ = p.inertia;
-    shape_ = p.support_shape;
-  } else {
+  if (modal)
     find_modes();
-  }
+  else
+    shape_ = p.support_shape;
   contact_ = in_model(p.contact);
   if (p.changed_by_law()) measured_ = in_model(p.law_rows);
   tip_ = in_model(p.tip);

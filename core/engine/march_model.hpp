@@ -3,6 +3,7 @@
 #include <memory>
 #include <ricochet/kernels/lane_kernels.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
+#include <stdexcept>
 #include <vector>
 
 namespace ricochet {
@@ -21,6 +22,11 @@ struct RowMatrix {
     return sum;
   }
   LaneRows view() const { return {rows(), start.data(), index.data(), value.data()}; }
+  /// The columns of a symmetric matrix that is compressed are its rows.
+  static LaneRows symmetric(const SparseMatrix& matrix) {
+    if (!matrix.isCompressed()) throw std::logic_error("a matrix that is not compressed has no rows to read");
+    return {static_cast<int>(matrix.rows()), matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr()};
+  }
   /// With so many columns.
   Eigen::MatrixXd dense(int columns) const;
   static RowMatrix from(const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix);
@@ -39,8 +45,8 @@ class MarchModel {
   bool modal() const { return modes_.size() > 0; }
   int rows() const { return rows_; }
   /// K and M in these coordinates (M empty when it stays factored), and the factors.
-  const SparseMatrix& stiffness() const { return stiffness_; }
-  const Inertia& inertia() const { return inertia_; }
+  const SparseMatrix& stiffness() const { return modal() ? stiffness_ : problem_->stiffness; }
+  const Inertia& inertia() const { return modal() ? inertia_ : problem_->inertia; }
   /// H, where the contact points are; and what the law measures and pushes along, H too unless it changed the problem.
   const RowMatrix& contact() const { return contact_; }
   const RowMatrix& measured() const { return problem_->changed_by_law() ? measured_ : contact_; }
@@ -69,7 +75,7 @@ class MarchModel {
   double shift_ = 0;       // σ
   Eigen::VectorXd damping_;
   int rows_ = 0;
-  SparseMatrix stiffness_;
+  SparseMatrix stiffness_;  // of modes
   Inertia inertia_;
   RowMatrix contact_, measured_, tip_;
   Eigen::VectorXd shape_;

@@ -23,9 +23,7 @@ Marcher::Marcher(Program program)
   const MarchModel& model = *program_.model;
   const int rows = model.rows(), T = program_.width, points = program_.problem->points();
   const auto slot_count = program_.plan.slots.size();
-  if (program_.kind == OperatorKind::sparse) {
-    stiffness_rows_ = RowMatrix::from(model.stiffness());
-  } else {
+  if (program_.kind != OperatorKind::sparse) {
     stiffness_width_ = half_bandwidth(model.stiffness());
     if (!model.inertia().factored())
       stiffness_width_ = std::max(stiffness_width_, half_bandwidth(model.inertia().mass));

@@ -277,8 +277,7 @@ class Marcher {
   Block elastic_;
   std::vector<bool> delayed_points_;  // see delay_tangents()
   int delay_steps_ = 0;
-  std::vector<double> stiffness_band_;
-  RowMatrix stiffness_rows_;  // in its place where the operator is sparse
+  std::vector<double> stiffness_band_;  // empty where the operator is sparse
   int stiffness_width_ = 0;
   long long step_ = 0, visited_ = 0;
   std::unique_ptr<LaneFlight> lane_flight_;  // null: every step is marched

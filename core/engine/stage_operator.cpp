@@ -41,11 +41,11 @@ class Assembly {
         shape_(model.support_shape().data()) {
     const Inertia& inertia = model.inertia();
     const bool by_bands = products == Products::by_bands, by_diagonals = lanes == 1;
-    const auto stored = [&](const SparseMatrix& matrix, int width, std::vector<double>& band, RowMatrix& rows) {
+    const auto stored = [&](const SparseMatrix& matrix, int width, std::vector<double>& band, LaneRows& rows) {
       if (by_bands)
         band = band_storage(matrix, width, by_diagonals);
       else
-        rows = RowMatrix::from(matrix);
+        rows = RowMatrix::symmetric(matrix);
     };
     width_ = by_bands ? half_bandwidth(model.stiffness()) : 0;
     const MassFactors factors = inertia.assembled() ? MassFactors{} : mass_factors(inertia);
@@ -110,8 +110,8 @@ class Assembly {
   /// b by rows.
   const double* assemble(const FreeStepInput& input) {
     kernels_.band_step(describe(input));
-    const auto add = [&](const RowMatrix& matrix, const double* x) {
-      if (matrix.rows() > 0) kernels_.row_product(matrix.view(), true, x, b_.data());
+    const auto add = [&](const LaneRows& matrix, const double* x) {
+      if (matrix.rows > 0) kernels_.row_product(matrix, true, x, b_.data());
     };
     add(K_rows_, input.k);
     add(M_rows_, m_.data());
@@ -124,7 +124,8 @@ class Assembly {
   int rows_, slots_, width_ = 0, border_ = 0, damping_width_ = 0;
   bool keeps_combination_ = false;
   std::vector<double> mass_weights_, damping_weights_, K_, M_, C_;
-  RowMatrix K_rows_, M_rows_, C_rows_, coupling_;
+  LaneRows K_rows_, M_rows_, C_rows_;  // where there are no bands; of the model
+  RowMatrix coupling_;
   const double* shape_;
   Block m_, c_, b_;
 };

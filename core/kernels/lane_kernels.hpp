@@ -155,6 +155,8 @@ struct LaneKernels {
                         double* z);
   void (*mode_step)(const ModeStep& step);
   void (*sparse_step)(const SparseStep& step);
+  /// Lᵀ x in the place of x, rows + 1 numbers of one lane, whatever T.
+  void (*sparse_strain)(const SparseBlocks& L, double* x);
   /// y = A x, or y + A x.
   void (*row_product)(const LaneRows& matrix, bool add, const double* x, double* y);
   /// y[i] = Σ_e value[e] (Σ_j weight[j] x_j[index[e]]) + offset[lane], e over row i; count ≤ most_lane_terms; offset

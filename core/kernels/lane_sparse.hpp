@@ -85,26 +85,31 @@ RICOCHET_INLINE void block_up(const double* value, const int* index, long fours,
 }
 
 // Several lanes, the same operations on each.
+template <int T>
+RICOCHET_INLINE V<T>* own_row(double* rows, long i, long first) {
+  return row<T>(rows, i) + first;
+}
+
 template <int T, int G>
 RICOCHET_INLINE void lanes_down(const double* value, const int* index, long fours, long columns, double* own_rows,
                                 double* work, long first) {
-  const auto own = [&](long i) { return row<T>(own_rows, i) + first; };
   for (long i = 1; i < columns; ++i)
     for (long j = 0; j < i; ++j)
 #pragma GCC unroll 4
-      for (int k = 0; k < G; ++k) own(i)[k] -= value[i * (i - 1) / 2 + j] * own(j)[k];
+      for (int k = 0; k < G; ++k)
+        own_row<T>(own_rows, i, first)[k] -= value[i * (i - 1) / 2 + j] * own_row<T>(own_rows, j, first)[k];
   const double* panel = value + own_entries(columns);
   for (long f = 0; f < fours; ++f, panel += 4 * columns, index += 4)
     for (int r = 0; r < 4; ++r) {
       V<T> even[G], odd[G] = {};
 #pragma GCC unroll 4
-      for (int k = 0; k < G; ++k) even[k] = V<T>{} + panel[r] * own(0)[k];
+      for (int k = 0; k < G; ++k) even[k] = V<T>{} + panel[r] * own_row<T>(own_rows, 0, first)[k];
       for (long c = 1; c < columns; c += 2) {
 #pragma GCC unroll 4
-        for (int k = 0; k < G; ++k) odd[k] += panel[4 * c + r] * own(c)[k];
+        for (int k = 0; k < G; ++k) odd[k] += panel[4 * c + r] * own_row<T>(own_rows, c, first)[k];
         if (c + 1 == columns) break;
 #pragma GCC unroll 4
-        for (int k = 0; k < G; ++k) even[k] += panel[4 * (c + 1) + r] * own(c + 1)[k];
+        for (int k = 0; k < G; ++k) even[k] += panel[4 * (c + 1) + r] * own_row<T>(own_rows, c + 1, first)[k];
       }
       V<T>* out = row<T>(work, index[r]) + first;
 #pragma GCC unroll 4
@@ -115,7 +120,6 @@ RICOCHET_INLINE void lanes_down(const double* value, const int* index, long four
 template <int T, int G>
 RICOCHET_INLINE void lanes_up(const double* value, const int* index, long fours, long columns, const double* inverse,
                               double* own_rows, const double* work, long first) {
-  const auto own = [&](long i) { return row<T>(own_rows, i) + first; };
   for (long c = 0; c < columns; ++c) {
     V<T> sum[4][G] = {};
     const double* panel = value + own_entries(columns) + 4 * c;
@@ -126,12 +130,14 @@ RICOCHET_INLINE void lanes_up(const double* value, const int* index, long fours,
         for (int k = 0; k < G; ++k) sum[r][k] += panel[r] * (row<T>(work, index[4 * f + r]) + first)[k];
 #pragma GCC unroll 4
     for (int k = 0; k < G; ++k)
-      own(c)[k] = (V<T>{} + own(c)[k] * inverse[c]) - ((sum[0][k] + sum[1][k]) + (sum[2][k] + sum[3][k]));
+      own_row<T>(own_rows, c, first)[k] = (V<T>{} + own_row<T>(own_rows, c, first)[k] * inverse[c]) -
+                                          ((sum[0][k] + sum[1][k]) + (sum[2][k] + sum[3][k]));
   }
   for (long i = columns - 1; i > 0; --i)
     for (long j = 0; j < i; ++j)
 #pragma GCC unroll 4
-      for (int k = 0; k < G; ++k) own(j)[k] -= value[i * (i - 1) / 2 + j] * own(i)[k];
+      for (int k = 0; k < G; ++k)
+        own_row<T>(own_rows, j, first)[k] -= value[i * (i - 1) / 2 + j] * own_row<T>(own_rows, i, first)[k];
 }
 
 template <int T>
@@ -189,6 +195,27 @@ RICOCHET_INLINE void up_any(const double* value, const int* index, long fours, l
     constexpr int G = Row<T>::count < 4 ? Row<T>::count : 4;
     for (long first = 0; first < Row<T>::count; first += G)
       lanes_up<T, G>(value, index, fours, columns, inverse, own, work, first);
+  }
+}
+
+// Lᵀ x in the place of x, one lane: rows below a block are what they were.
+RICOCHET_INLINE void sparse_strain_body(const SparseBlocks& L, double* x) {
+  x[L.rows] = 0;
+  const double* value = L.value;
+  for (long s = 0; s < L.blocks; ++s) {
+    const long first = L.column[s], columns = L.column[s + 1] - first, fours = L.below[s + 1] - L.below[s];
+    const double* panel = value + own_entries(columns);
+    double* own = x + first;
+    for (long i = 1; i < columns; ++i)
+      for (long j = 0; j < i; ++j) own[j] += value[i * (i - 1) / 2 + j] * own[i];
+    const int* index = L.index + 4 * static_cast<long>(L.below[s]);
+    Vector4 sum[SparseBlocks::widest] = {};
+    for (long f = 0; f < fours; ++f, panel += 4 * columns, index += 4) {
+      const Vector4 below = {x[index[0]], x[index[1]], x[index[2]], x[index[3]]};
+      for (long c = 0; c < columns; ++c) sum[c] += load4(panel + 4 * c) * below;
+    }
+    for (long c = 0; c < columns; ++c) own[c] += total(sum[c]);
+    value = panel;
   }
 }
 

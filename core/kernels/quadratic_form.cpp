@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <ricochet/kernels/band_ldlt.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
 #include <ricochet/kernels/instruction_set.hpp>
 #include <ricochet/kernels/lane_kernels.hpp>
 #include <ricochet/kernels/quadratic_form.hpp>
@@ -37,8 +38,55 @@ RICOCHET_AVX2_ALONE void strain_of_three(int n, const double* l, const double* x
 
 }  // namespace
 
+struct QuadraticForm::Rows {
+  std::vector<int> start{0}, index;
+  std::vector<double> value;
+  LaneRows view() const { return {static_cast<int>(start.size()) - 1, start.data(), index.data(), value.data()}; }
+};
+
+// Row i of a symmetric matrix is its column.
+void QuadraticForm::put_rows(const SparseMatrix& matrix) {
+  const auto rows = std::make_shared<Rows>();
+  const auto most = static_cast<std::size_t>(matrix.nonZeros() + matrix.rows()) / 2;
+  rows->index.reserve(most);
+  rows->value.reserve(most);
+  for (int i = 0; i < matrix.outerSize(); ++i) {
+    for (SparseMatrix::InnerIterator it(matrix, i); it; ++it) {
+      if (it.row() < i || it.value() == 0) continue;
+      rows->index.push_back(static_cast<int>(it.row()));
+      rows->value.push_back(it.row() == i ? it.value() / 2 : it.value());
+    }
+    rows->start.push_back(static_cast<int>(rows->index.size()));
+  }
+  sparse_ = rows;
+  first_.resize(static_cast<std::size_t>(rows_));
+}
+
+QuadraticForm QuadraticForm::by_rows() const {
+  QuadraticForm rows = *this;
+  rows.factor_.reset();
+  return rows;
+}
+
+QuadraticForm QuadraticForm::by_rows(const SparseMatrix& matrix) {
+  const int width = half_bandwidth(matrix);
+  if (width <= narrow_band) return QuadraticForm(matrix);
+  QuadraticForm rows;
+  rows.rows_ = static_cast<int>(matrix.rows());
+  rows.width_ = width;
+  rows.put_rows(matrix);
+  return rows;
+}
+
 QuadraticForm::QuadraticForm(const SparseMatrix& matrix)
     : rows_(static_cast<int>(matrix.rows())), width_(half_bandwidth(matrix)) {
+  if (width_ > narrow_band) {
+    put_rows(matrix);
+    factor_ = SparseFactor::of(matrix);
+    if (factor_ && !factor_->positive()) factor_.reset();
+    if (factor_) work_ = Block(rows_ + 1, 1);
+    return;
+  }
   diagonals_.assign(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(width_ + 1), 0.0);
   QuasiDefinite definite;
   definite.A = matrix;
@@ -86,7 +134,7 @@ QuadraticForm::QuadraticForm(const SparseMatrix& coupling, const SparseMatrix& v
 }
 
 QuadraticForm QuadraticForm::of(const Inertia& inertia) {
-  if (inertia.assembled()) return QuadraticForm(inertia.mass);
+  if (inertia.assembled()) return by_rows(inertia.mass);
   const MassFactors factors = mass_factors(inertia);
   return {factors.coupling, factors.velocity_mass};
 }
@@ -114,14 +162,14 @@ void QuadraticForm::strain(const double* x, std::vector<double>& out) const {
 }
 
 std::optional<QuadraticForm::Squares> QuadraticForm::squares() const {
-  if (!start_.empty()) return std::nullopt;
+  if (!start_.empty() || sparse_) return std::nullopt;
   if (width_ == 0) return Squares{0, diagonals_.data(), diagonals_.data()};
   if (pivot_.empty()) return std::nullopt;
   return Squares{width_, diagonals_.data(), pivot_.data()};
 }
 
 bool QuadraticForm::unit() const {
-  return start_.empty() && width_ == 0 &&
+  return start_.empty() && !sparse_ && width_ == 0 &&
          std::all_of(diagonals_.begin(), diagonals_.end(), [](double d) { return d == 1; });
 }
 
@@ -131,6 +179,16 @@ double QuadraticForm::operator()(const double* x) const {
 
 double QuadraticForm::operator()(const double* x, const double* y) const {
   const LaneKernels& kernels = lane_kernels(1);
+  if (factor_ && x == y) return factor_->form(x, work_.data());
+  if (sparse_) {
+    // A = U + Uᵀ.
+    const auto with = [&](const double* a, const double* b) {
+      kernels.row_product(sparse_->view(), false, b, first_.data());
+      return flight_kernels().dot(rows_, a, first_.data());
+    };
+    const double upper = with(x, y);
+    return x == y ? 2 * upper : upper + with(y, x);
+  }
   if (!start_.empty()) {
     reduce(x, first_);
     if (x != y) reduce(y, second_);
@@ -151,42 +209,58 @@ double QuadraticForm::operator()(const double* x, const double* y) const {
   return sum;
 }
 
-InverseForm::InverseForm(const QuasiDefinite& matrix) : factorised_(!ldlt_.factorise(matrix)) {}
+InverseForm::InverseForm(const QuasiDefinite& matrix) {
+  if (half_bandwidth(matrix.A) <= narrow_band) {
+    factorised_ = !ldlt_.factorise(matrix);
+    order_ = ldlt_.order();
+    return;
+  }
+  const int dofs = static_cast<int>(matrix.A.rows());
+  factor_ = SparseFactor::of(matrix.assemble(order_));
+  factorised_ = factor_ != nullptr;
+  for (std::size_t j = 0; factorised_ && j < order_.size(); ++j) {
+    const bool dof = order_[static_cast<std::size_t>(factor_->order()[j])] < dofs;
+    factorised_ = dof == (factor_->pivot()[j] > 0);
+  }
+}
 
 // The rows of the border are zero.
 Eigen::VectorXd InverseForm::in_factor_order(const Eigen::VectorXd& b) const {
-  const int rows = ldlt_.rows(), dofs = static_cast<int>(b.size());
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(rows);
-  for (int i = 0; i < rows; ++i)
-    if (const int unknown = ldlt_.order()[static_cast<std::size_t>(i)]; unknown < dofs) right[i] = b[unknown];
+  const auto dofs = static_cast<int>(b.size());
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(order_.size()));
+  for (std::size_t i = 0; i < order_.size(); ++i)
+    if (order_[i] < dofs) right[static_cast<Eigen::Index>(i)] = b[order_[i]];
   return right;
 }
 
-Block InverseForm::substitute(Eigen::VectorXd right) const {
+Eigen::VectorXd InverseForm::substitute(Eigen::VectorXd right) const {
+  if (factor_) {
+    Block work(factor_->size() + 1, 1);
+    factor_->solve(right.data(), right.data(), work.data());
+    return right;
+  }
   Block z(ldlt_.rows(), 1, ldlt_.half_width());
   BandStep step;
   ldlt_.substitute_in(step, z.data());
   step.b = right.data();
   lane_kernels(1).band_step(step);
-  return z;
+  return Eigen::Map<const Eigen::VectorXd>(z.data(), z.rows());
 }
 
 std::optional<double> InverseForm::operator()(const Eigen::VectorXd& b) const {
   if (!factorised_) return std::nullopt;
-  const Eigen::VectorXd right = in_factor_order(b);
-  const Block z = substitute(right);
+  const Eigen::VectorXd right = in_factor_order(b), z = substitute(right);
   double form = 0;
-  for (int i = 0; i < z.rows(); ++i) form += right[i] * z.data()[i];
+  for (Eigen::Index i = 0; i < z.size(); ++i) form += right[i] * z[i];
   return form;
 }
 
 std::optional<Eigen::VectorXd> InverseForm::solve(const Eigen::VectorXd& b) const {
   if (!factorised_) return std::nullopt;
-  const Block z = substitute(in_factor_order(b));
+  const Eigen::VectorXd z = substitute(in_factor_order(b));
   Eigen::VectorXd solution(b.size());
-  for (int i = 0; i < z.rows(); ++i)
-    if (const int unknown = ldlt_.order()[static_cast<std::size_t>(i)]; unknown < b.size())
-      solution[unknown] = z.data()[i];
+  for (std::size_t i = 0; i < order_.size(); ++i)
+    if (order_[i] < b.size()) solution[order_[i]] = z[static_cast<Eigen::Index>(i)];
   return solution;
 }
 

@@ -1,22 +1,30 @@
 #pragma once
 #include <Eigen/SparseCore>
+#include <memory>
 #include <optional>
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/kernels/band_ldlt.hpp>
 #include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/sparse_factor.hpp>
 #include <vector>
 
 namespace ricochet {
 
-/// xᵀA y for a symmetric positive semidefinite A that is banded, or M = Bᵀ C_v⁻¹ B given by its factors (never formed;
+/// xᵀA y for a symmetric positive semidefinite A, or M = Bᵀ C_v⁻¹ B given by its factors (never formed;
 /// B = I and C_v = M⁻¹ where the inverse is given).
-/// One lane, x and y contiguous. No allocation after construction.
+/// One lane, x and y contiguous. No allocation after construction. A definite matrix of no narrow band has its squares
+/// by a factor that others may share; products of two vectors by rows.
 class QuadraticForm {
  public:
   QuadraticForm() = default;
   explicit QuadraticForm(const SparseMatrix& matrix);
   QuadraticForm(const SparseMatrix& coupling, const SparseMatrix& velocity_mass);
+  /// A mass is as well conditioned as its elements: of no narrow band it goes by rows alone.
   static QuadraticForm of(const Inertia& inertia);
+  /// By rows of A, where it has no narrow band: a pass over its entries in place of one over its factor. What A x loses
+  /// of a smooth x is lost, so it is for what is added up at every step, and not for energies.
+  QuadraticForm by_rows() const;
+  static QuadraticForm by_rows(const SparseMatrix& matrix);
 
   double operator()(const double* x) const;
   double operator()(const double* x, const double* y) const;
@@ -32,16 +40,22 @@ class QuadraticForm {
   bool unit() const;
 
  private:
+  struct Rows;
+  void put_rows(const SparseMatrix& matrix);
   void reduce(const double* x, std::vector<double>& out) const;  // L⁻¹ B x
   void strain(const double* x, std::vector<double>& out) const;  // Lᵀ x
   int rows_ = 0, width_ = 0;
   std::vector<double> diagonals_;  // (w+1) × n: A[i, i+s], or L[i+s, i]
   std::vector<double> pivot_;      // D of A, empty when A is not definite
+  // Of no narrow band: entries right of the diagonal and half of it; a factor where A is definite.
+  std::shared_ptr<const Rows> sparse_;
+  std::shared_ptr<const SparseFactor> factor_;
   // Factored form: B by rows, C_v = L D Lᵀ.
   std::vector<int> start_, index_;
   std::vector<double> value_, lower_, inverse_pivot_;
   int velocity_width_ = 0;
   mutable std::vector<double> first_, second_;
+  mutable Block work_;
 };
 
 /// An inverse and its quadratic form, factorised once.
@@ -56,10 +70,12 @@ class InverseForm {
 
  private:
   Eigen::VectorXd in_factor_order(const Eigen::VectorXd& b) const;
-  Block substitute(Eigen::VectorXd right) const;
+  Eigen::VectorXd substitute(Eigen::VectorXd right) const;
 
   BandLdlt ldlt_;
-  bool factorised_;
+  std::shared_ptr<const SparseFactor> factor_;  // in its place where the band is not narrow
+  std::vector<int> order_;                      // unknown of each row
+  bool factorised_ = false;
 };
 
 /// xᵀA x and hᵀx of x = x_0 + Σ_k r_k x_k, in one pass over the x_k: for what is added up at every step. Rounded

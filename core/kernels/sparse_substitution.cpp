@@ -48,6 +48,7 @@ SparseSubstitution::SparseSubstitution(const SparseLdlt& ldlt, const std::vector
     add_block(ldlt, first, end);
     first = end;
   }
+  value_.shrink_to_fit();
 }
 
 void SparseSubstitution::add_block(const SparseLdlt& ldlt, int first, int end) {

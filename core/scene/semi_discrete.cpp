@@ -265,6 +265,7 @@ void march_in_basis(const SceneSpec& scene, const SparseMatrix& mass, SemiDiscre
     *state = least_squares ? in_basis_by_least_squares(basis, *state) : in_basis(basis, mass, problem.contact, *state);
   SparseMatrix stiffness(basis.dofs(), basis.dofs());
   for (int i = 0; i < basis.dofs(); ++i) stiffness.insert(i, i) = basis.stiffness[i];
+  stiffness.makeCompressed();
   problem.stiffness = std::move(stiffness);
   if (const auto& C = problem.damping.matrix) {
     const Eigen::MatrixXd damping = basis.shapes.transpose() * (*C * basis.shapes);
@@ -314,6 +315,8 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   auto built = bodies ? join_masses(*bodies, problem, build) : build(problem);
   if (auto* refusal = std::get_if<Refusal>(&built)) return *refusal;
   problem.inertia = std::get<Inertia>(std::move(built));
+  problem.inertia.mass.makeCompressed();
+  problem.stiffness.makeCompressed();
 
   const auto* assembled = std::get_if<AssembledSpec>(&scene.structure);
   auto load = std::make_shared<DistributedLoad>(whole_load(scene), problem.space,

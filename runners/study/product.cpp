@@ -325,7 +325,7 @@ void check_bases(const std::vector<std::optional<BasisSpec>>& bases, const Json&
 }
 
 void check_size(const StructureSpec& structure) {
-  constexpr int most_dofs = 20000;
+  constexpr int most_dofs = 100000;
   const auto* spec = std::get_if<AssembledSpec>(&structure);
   if (!spec || spec->structure->dofs() <= most_dofs) return;
   const int n = spec->structure->dofs();

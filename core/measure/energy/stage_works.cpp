@@ -107,9 +107,9 @@ Works& Works::operator+=(const Works& other) {
 StageWorks::StageWorks(const Marcher& marcher, const QuadraticForm& mass, const QuadraticForm& stiffness)
     : model_(*marcher.program().model),
       mass_(mass),
-      stiffness_(stiffness),
+      stiffness_(stiffness.by_rows()),
       mass_form_(mass),
-      stiffness_form_(stiffness),
+      stiffness_form_(stiffness_),
       damping_(model_.problem().damping),
       damped_(damping_.stiffness != 0 || damping_.mass != 0),
       projected_(marcher.program().support),
@@ -119,10 +119,10 @@ StageWorks::StageWorks(const Marcher& marcher, const QuadraticForm& mass, const 
   if (model_.modal_damping().size() > 0)
     own_damping_ = QuadraticForm(SparseMatrix(model_.modal_damping().asDiagonal()));
   else if (damping_.matrix)
-    own_damping_ = QuadraticForm(*damping_.matrix);
+    own_damping_ = QuadraticForm::by_rows(*damping_.matrix);
   const double* shape = projected_ ? model_.support_shape().data() : nullptr;
   const SparseMatrix nothing(model_.rows(), model_.rows());
-  const QuadraticForm first = damping_.stiffness != 0 ? stiffness : damped_ ? mass : QuadraticForm(nothing);
+  const QuadraticForm first = damping_.stiffness != 0 ? stiffness_ : damped_ ? mass : QuadraticForm(nothing);
   first_ = CombinedForm(first, shape);
   const StepPlan& plan = marcher.program().plan;
   const double pulsation = model_.problem().support.pulsation, h = marcher.program().h;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <ricochet/kernels/eigenvalues.hpp>
-#include <ricochet/kernels/sparse_ldlt.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
+#include <ricochet/kernels/sparse_factor.hpp>
 #include <ricochet/scene/basis/modal_basis.hpp>
 #include <vector>
 
@@ -14,7 +16,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int most_dense = 1000;
+// Beams of so many dofs are small problems. Of wider matrices few modes are cheaper by Lanczos.
+bool dense_pays(const SparseMatrix& K, int count) {
+  constexpr int most_dense = 1000, most_wide = 200;
+  const bool few = 5 * count < K.rows();
+  return K.rows() <= (few && half_bandwidth(K) > narrow_band ? most_wide : most_dense);
+}
 
 /// μ descending and φ with φᵀ(K + σM)φ = 1.
 struct Slowest {
@@ -43,41 +50,45 @@ Slowest dense(const SparseMatrix& K, const SparseMatrix& M, double shift, int co
 class ShiftedSolve {
  public:
   using Scalar = double;
-  ShiftedSolve(const SparseMatrix& shifted) : size_(shifted.rows()) { ready = ldlt_.factorise(shifted); }
+  ShiftedSolve(const SparseMatrix& shifted)
+      : size_(shifted.rows()), factor_(SparseFactor::of(shifted)), work_(static_cast<int>(size_) + 1, 1) {}
   Index rows() const { return size_; }
   Index cols() const { return size_; }
   void set_shift(const double&) {}
-  void perform_op(const double* in, double* out) const { ldlt_.solve(in, out); }
-  bool ready = false;
+  void perform_op(const double* in, double* out) const { factor_->solve(in, out, work_.data()); }
+  bool ready() const { return factor_ != nullptr; }
 
  private:
   Index size_;
-  mutable SparseLdlt ldlt_;
+  std::shared_ptr<const SparseFactor> factor_;
+  mutable Block work_;
 };
 
 class MassProduct {
  public:
   using Scalar = double;
-  MassProduct(const SparseMatrix& mass) : mass_(mass) {}
+  MassProduct(const SparseMatrix& mass) : mass_(mass) { mass_.makeCompressed(); }
   Index rows() const { return mass_.rows(); }
   Index cols() const { return mass_.rows(); }
+  // Its columns are its rows.
   void perform_op(const double* in, double* out) const {
-    Eigen::Map<VectorXd>(out, rows()).noalias() = mass_ * Eigen::Map<const VectorXd>(in, rows());
+    lane_kernels(1).row_product(
+        {static_cast<int>(rows()), mass_.outerIndexPtr(), mass_.innerIndexPtr(), mass_.valuePtr()}, false, in, out);
   }
 
  private:
-  const SparseMatrix& mass_;
+  SparseMatrix mass_;
 };
 
 Slowest by_lanczos(const SparseMatrix& K, const SparseMatrix& M, double shift, int count) {
   using Solver = Spectra::SymGEigsShiftSolver<ShiftedSolve, MassProduct, Spectra::GEigsMode::ShiftInvert>;
   Slowest out;
   out.with_mass = static_cast<int>(K.rows());
-  const SparseMatrix shifted = K + shift * M;
+  const SparseMatrix shifted = shift == 0 ? K : K + shift * M;
   ShiftedSolve solve(shifted);
   MassProduct product(M);
   const int space = std::min(static_cast<int>(K.rows()), 2 * count + 20);
-  if (!solve.ready || count >= space) return out;
+  if (!solve.ready() || count >= space) return out;
   Solver solver(solve, product, count, space, -shift);
   solver.init();
   constexpr int most_restarts = 1000;
@@ -109,8 +120,7 @@ double first_shift(const SparseMatrix& K, const SparseMatrix& M) {
 LowestModes shifted_modes(const SparseMatrix& K, const SparseMatrix& M, int count, double shift, double rigid) {
   LowestModes out;
   out.shift = shift;
-  const bool small = K.rows() <= most_dense;
-  Slowest found = small ? dense(K, M, shift, count) : by_lanczos(K, M, shift, count);
+  Slowest found = dense_pays(K, count) ? dense(K, M, shift, count) : by_lanczos(K, M, shift, count);
   out.with_mass = found.with_mass;
   if (!found.found) return out;
   out.found = true;

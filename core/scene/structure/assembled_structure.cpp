@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/sparse_factor.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/files/text_file.hpp>
@@ -100,13 +102,14 @@ std::optional<NegativePivot> negative_pivot(const SparseMatrix& matrix) {
 
 /// Whether the slowest motion has an energy that is round-off of its own terms. The motion is found by inverse
 /// iteration with a factor of K. A pivot that vanishes may come out as one of either sign.
-bool moves_rigidly(const SparseMatrix& stiffness, SparseLdlt& ldlt) {
+template <class Solve>
+bool moves_rigidly(const SparseMatrix& stiffness, Solve&& solve) {
   constexpr int iterations = 4;
   constexpr double round_off = 1e-15;
   Eigen::VectorXd x(stiffness.rows());
   for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = 1 + 0.5 * std::sin(1.7 * static_cast<double>(i));
   for (int k = 0; k < iterations; ++k) {
-    ldlt.solve(x.data(), x.data());
+    solve(x.data());
     x.normalize();
   }
   const double terms = x.cwiseAbs().dot(SparseMatrix(stiffness.cwiseAbs()) * x.cwiseAbs());
@@ -191,10 +194,19 @@ class StructureMaker {
       if (stiff[i] == 0 && heavy[i] == 0)
         throw FileError(fmt::format("nothing holds or moves {}: its rows of {} and {} are zero", dof_text(i),
                                     files_.stiffness_name, files_.mass_name));
-    check_pivots(out_.mass, files_.mass_name, "a mass is positive semidefinite");
+    if (semidefinite_rank(out_.mass) < out_.dofs())
+      check_pivots(out_.mass, files_.mass_name, "a mass is positive semidefinite");
+    if (half_bandwidth(out_.stiffness) > narrow_band) out_.factor = SparseFactor::of(out_.stiffness);
+    if (out_.factor && out_.factor->positive()) {
+      Block work(out_.dofs() + 1, 1);
+      out_.definite = !moves_rigidly(out_.stiffness, [&](double* x) { out_.factor->solve(x, x, work.data()); });
+      if (out_.definite) return;
+    }
+    out_.factor.reset();
     check_pivots(out_.stiffness, files_.stiffness_name, "expected a structure in stable equilibrium");
     SparseLdlt ldlt;
-    out_.definite = ldlt.factorise(out_.stiffness) && !moves_rigidly(out_.stiffness, ldlt);
+    out_.definite =
+        ldlt.factorise(out_.stiffness) && !moves_rigidly(out_.stiffness, [&](double* x) { ldlt.solve(x, x); });
     if (out_.definite) return;
     const double sigma = (heavy.maxCoeff() > 0 && stiff.maxCoeff() > 0) ? stiff.maxCoeff() / heavy.maxCoeff() : 1.0;
     if (!ldlt.factorise(out_.stiffness + sigma * out_.mass))

@@ -10,6 +10,8 @@
 
 namespace ricochet {
 
+class SparseFactor;
+
 struct JoinedBodies;
 
 /// What an assembled structure is made of: matrices over all dofs of the table, held ones too.
@@ -47,13 +49,14 @@ struct ModalPart {
 struct AssembledStructure {
   std::string stiffness_name, mass_name, table_name;
   int held_dofs = 0;
-  bool definite = true;        ///< whether K is positive definite: no rigid motion
-  int half_width = 0;          ///< largest |i − j| of the entries of K and M
-  SparseMatrix stiffness;      ///< K, n × n, both triangles
-  SparseMatrix mass;           ///< M, n × n, both triangles, positive semidefinite
-  SparseMatrix damping;        ///< C of a file, n × n, both triangles; empty: none
-  std::vector<DofName> names;  ///< of the free dofs, in their order here; places in m
-  GivenMass dofs_known;        ///< of the free dofs, for mass strategies; its matrices are empty
+  bool definite = true;                        ///< whether K is positive definite: no rigid motion
+  int half_width = 0;                          ///< largest |i − j| of the entries of K and M
+  SparseMatrix stiffness;                      ///< K, n × n, both triangles
+  std::shared_ptr<const SparseFactor> factor;  ///< of K, held for all who factorise it; null: a narrow band, or none
+  SparseMatrix mass;                           ///< M, n × n, both triangles, positive semidefinite
+  SparseMatrix damping;                        ///< C of a file, n × n, both triangles; empty: none
+  std::vector<DofName> names;                  ///< of the free dofs, in their order here; places in m
+  GivenMass dofs_known;                        ///< of the free dofs, for mass strategies; its matrices are empty
   std::vector<std::string> supports;
   Eigen::MatrixXd static_modes;   ///< ψ, n × r
   Eigen::MatrixXd support_loads;  ///< s (kg), n × r

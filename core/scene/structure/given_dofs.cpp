@@ -129,7 +129,8 @@ class BandOrder {
 
   /// Breadth first, neighbours of few neighbours first; levels as they are met.
   std::vector<int> walk(int from) {
-    std::fill(level_.begin(), level_.end(), -1);
+    // Nodes of other components keep what they have: none.
+    for (const int row : walked_) level_[static_cast<std::size_t>(row)] = -1;
     std::vector<int> met = {from};
     level_[static_cast<std::size_t>(from)] = 0;
     for (std::size_t k = 0; k < met.size(); ++k)
@@ -138,6 +139,7 @@ class BandOrder {
           level_[static_cast<std::size_t>(other)] = level_[static_cast<std::size_t>(met[k])] + 1;
           met.push_back(other);
         }
+    walked_ = met;
     return met;
   }
 
@@ -157,7 +159,7 @@ class BandOrder {
   }
 
   std::vector<std::vector<int>> next_;
-  std::vector<int> level_;
+  std::vector<int> level_, walked_;
 };
 
 int width_of(const SparseMatrix& pattern, const std::vector<int>& order) {

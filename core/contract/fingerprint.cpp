@@ -1,0 +1,44 @@
+#include <cstring>
+#include <ricochet/contract/fingerprint.hpp>
+
+namespace ricochet {
+namespace {
+
+void take(std::uint64_t word, Fingerprint& print) {
+  print.first = (print.first ^ word) * 0x9e3779b97f4a7c15U;
+  print.second = (print.second + word) * 0xc2b2ae3d27d4eb4fU;
+  print.second ^= print.second >> 29U;
+}
+
+template <class Number>
+void take(const Number* from, Eigen::Index count, Fingerprint& print) {
+  const char* at = reinterpret_cast<const char*>(from);
+  auto bytes = static_cast<std::size_t>(count) * sizeof(Number);
+  std::uint64_t word = 0;
+  for (; bytes >= sizeof(word); at += sizeof(word), bytes -= sizeof(word)) {
+    std::memcpy(&word, at, sizeof(word));
+    take(word, print);
+  }
+  word = 0;
+  std::memcpy(&word, at, bytes);
+  take(word, print);
+}
+
+}  // namespace
+
+Fingerprint pattern_fingerprint(const Eigen::SparseMatrix<double>& matrix) {
+  Fingerprint print;
+  take(static_cast<std::uint64_t>(matrix.rows()), print);
+  take(static_cast<std::uint64_t>(matrix.cols()), print);
+  take(matrix.outerIndexPtr(), matrix.outerSize() + 1, print);
+  take(matrix.innerIndexPtr(), matrix.nonZeros(), print);
+  return print;
+}
+
+Fingerprint fingerprint(const Eigen::SparseMatrix<double>& matrix) {
+  Fingerprint print = pattern_fingerprint(matrix);
+  take(matrix.valuePtr(), matrix.nonZeros(), print);
+  return print;
+}
+
+}  // namespace ricochet

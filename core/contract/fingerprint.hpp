@@ -1,0 +1,19 @@
+#pragma once
+#include <Eigen/SparseCore>
+#include <cstddef>
+#include <cstdint>
+
+namespace ricochet {
+
+/// 128 bits of all that a matrix consists of: equal for the same entries in the same places, to the last bit.
+struct Fingerprint {
+  std::uint64_t first = 1469598103934665603U, second = 7809847782465536322U;
+  bool operator==(const Fingerprint&) const = default;
+};
+
+/// Of a compressed matrix.
+Fingerprint fingerprint(const Eigen::SparseMatrix<double>& matrix);
+/// Of its size and places alone.
+Fingerprint pattern_fingerprint(const Eigen::SparseMatrix<double>& matrix);
+
+}  // namespace ricochet
