@@ -66,17 +66,16 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_RICOCHET_PACKAGE_NAME ricochet)
 set(CPACK_DEBIAN_RICOCHET_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_RICOCHET_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/triggers)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
-set(CPACK_DEBIAN_RICOCHET_DESCRIPTION "numerical analysis of nonsmooth dynamics
-Takes a study of a vibrating structure between stops, runs every combination
+set(CPACK_DEBIAN_RICOCHET_DESCRIPTION "Takes a study of a vibrating structure between stops, runs every combination
 of its mass matrices, contact laws, time schemes, steps and meshes, and says
 what each choice is worth. Program, methods, studies and pages.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME ricochet-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "ricochet (= ${PROJECT_VERSION}), libeigen3-dev (>= 3.4)")
 set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS "g++, cmake")
-set(CPACK_DEBIAN_DEV_DESCRIPTION "methods of your own for Ricochet
-Headers, CMake package and examples to build mass matrices, contact laws,
+set(CPACK_DEBIAN_DEV_DESCRIPTION "Headers, CMake package and examples to build mass matrices, contact laws,
 time schemes and references as plugins of Ricochet.")
 # An archive lies anywhere: it has no prefix of its own.
 file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/CPackProject.cmake @ONLY CONTENT "if(CPACK_GENERATOR STREQUAL \"TGZ\")
