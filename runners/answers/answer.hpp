@@ -44,7 +44,8 @@ std::vector<Doubt> doubts_of(const StudyResults& results);
 /// The same, a sentence each: "Doubtful: 2 of 3 cases (…): …"; of more than four kinds three.
 std::vector<Sentence> doubted(const Compared& study);
 
-/// That no case touched a stop, with the largest displacement against the gap. Nothing where one did, or has no stops.
+/// That nothing moved; or that no case touched a stop, with the largest displacement against the gap. Nothing where one
+/// did, or has no stops.
 std::optional<Sentence> say_untouched(const Compared& study);
 
 /// Why a case that ran has no value of a measure; "" where that is not known.

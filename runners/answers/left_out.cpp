@@ -21,7 +21,32 @@ std::string why_without(const std::string& name, const CaseRecord& record) {
   return "";
 }
 
+namespace {
+
+/// Where no case has moved at all, and none had energy.
+std::optional<Sentence> say_unmoved(const Compared& study) {
+  std::size_t still = 0;
+  for (const CaseRecord& record : study.results().cases) {
+    if (record.status != "done") continue;
+    const auto zero = [&](const char* name) { return measure(record, name).value_or(0) == 0; };
+    const bool known = measure(record, "largest_tip_displacement") && measure(record, "energy_start");
+    if (!known || !zero("largest_tip_displacement") || !zero("energy_start") || !zero("work_of_loads"))
+      return std::nullopt;
+    ++still;
+  }
+  if (still == 0) return std::nullopt;
+  Clause clause{.form = "status", .measure = "largest_tip_displacement"};
+  clause.value = 0;
+  clause.unit = "m";
+  clause.status = "unmoved";
+  return Sentence{"Nothing moved: the structure starts at rest where nothing pushes it, and no load does work.",
+                  {clause}};
+}
+
+}  // namespace
+
 std::optional<Sentence> say_untouched(const Compared& study) {
+  if (auto unmoved = say_unmoved(study)) return unmoved;
   double gap = 0, largest = 0;
   bool any = false, several = false;
   std::string law;

@@ -27,6 +27,7 @@ struct Told {
   std::optional<Pair> pair;
   Verdict verdict = Verdict::open;
   std::string reason;
+  bool between = false;  // open, for the size asked lies within its interval
 };
 
 /// Whether the difference is as large as asked. Nothing in both is no agreement.
@@ -60,7 +61,7 @@ void judge(Told& told, double from) {
   else if (size + u < from)
     told.verdict = Verdict::no;
   else
-    told.reason = "that lies within what is open of it";
+    told.reason = "that lies within what is open of it", told.between = true;
 }
 
 /// "+6.8 ± 0.1 %".
@@ -80,7 +81,8 @@ class EffectSpeaker {
     from_ = ask.share_asked();
     agrees_ = ask.has("within");
     std::vector<std::string> columns = evidence.choices(cases_);
-    std::erase_if(columns, [&](const std::string& one) { return std::find(own_.begin(), own_.end(), one) != own_.end(); });
+    std::erase_if(columns,
+                  [&](const std::string& one) { return std::find(own_.begin(), own_.end(), one) != own_.end(); });
     others_ = columns;
     columns.insert(columns.end(), own_.begin(), own_.end());
     lines_ = lines_of(ask, evidence, ask.text("on"), columns);
@@ -126,7 +128,8 @@ class EffectSpeaker {
     for (const Combination& one : combinations_) {
       const std::size_t first = told_.size();
       for (std::size_t a = 0; a < one.lines.size(); ++a)
-        for (std::size_t b = a + 1; b < one.lines.size(); ++b) told_.push_back(told_of(one, *one.lines[a], *one.lines[b]));
+        for (std::size_t b = a + 1; b < one.lines.size(); ++b)
+          told_.push_back(told_of(one, *one.lines[a], *one.lines[b]));
       if (told_.size() > first) decides_.push_back(deciding(first));
     }
   }
@@ -138,7 +141,23 @@ class EffectSpeaker {
     if (!told.reason.empty()) return told;
     told.pair = pair_of(a.point, b.point);
     judge(told, from_);
+    if (told.verdict == Verdict::no && acts_at_stops() && untouched(a.point) && untouched(b.point)) {
+      told.verdict = Verdict::open;
+      told.reason = "no stop is touched";
+    }
     return told;
+  }
+
+  /// Whether the choice has a part in contact alone: the law, restitution.
+  bool acts_at_stops() const {
+    return std::all_of(own_.begin(), own_.end(), [](const std::string& column) {
+      return column == "contact" || column.starts_with("contact.") || column.ends_with(".restitution");
+    });
+  }
+
+  static bool untouched(const Point& point) {
+    return std::all_of(point.behind.begin(), point.behind.end(),
+                       [](const CaseRecord* one) { return measure(*one, "contact_instants") == 0.0; });
   }
 
   std::string own_level(const Line& line) const { return evidence_.level(line.point.first(), own_); }
@@ -146,7 +165,9 @@ class EffectSpeaker {
   /// The pair that decides, of those from `first` on: one that is a yes, else one that is open, else the largest.
   std::size_t deciding(std::size_t first) const {
     const auto rank = [](const Told& told) {
-      return std::pair(told.verdict == Verdict::yes ? 2 : told.verdict == Verdict::open ? 1 : 0,
+      return std::pair(told.verdict == Verdict::yes    ? 2
+                       : told.verdict == Verdict::open ? 1
+                                                       : 0,
                        told.pair ? std::abs(told.pair->difference) : 0.0);
     };
     const auto best = std::max_element(told_.begin() + static_cast<std::ptrdiff_t>(first), told_.end(),
@@ -167,7 +188,7 @@ class EffectSpeaker {
         row.high = *row.value + per_cent * *u;
       }
     }
-    const Verdict shown = one.verdict == Verdict::open ? Verdict::open
+    const Verdict shown = one.verdict == Verdict::open               ? Verdict::open
                           : (one.verdict == Verdict::yes) != agrees_ ? Verdict::yes
                                                                      : Verdict::no;
     row.verdict = word(shown);
@@ -188,7 +209,7 @@ class EffectSpeaker {
   /// Whether a share says it: not of what is nothing, nor of what is many times as large.
   static bool as_share(const Told& one) {
     constexpr double times = 10, nearly_all = 0.9;
-    return one.pair && one.pair->share && std::abs(*one.pair->share) < times && *one.pair->share > -nearly_all;
+    return one.pair && one.pair->share && std::abs(*one.pair->share)<times&& * one.pair->share> - nearly_all;
   }
 
   const Line& line_of(const Combination& combination, const std::string& level) const {
@@ -197,8 +218,8 @@ class EffectSpeaker {
   }
   /// "from 0 with Dumont–Paoli to 3.4 ± 0.2 with Newmark".
   std::string values(const Told& one) const {
-    return fmt::format("from {} with {} to {} with {}", lines_.text(line_of(*one.where, one.first).estimate()), one.first,
-                       lines_.text(line_of(*one.where, one.second).estimate()), one.second);
+    return fmt::format("from {} with {} to {} with {}", lines_.text(line_of(*one.where, one.first).estimate()),
+                       one.first, lines_.text(line_of(*one.where, one.second).estimate()), one.second);
   }
 
   /// How much these differ: "by +6.8 ± 0.1 % to +30 ± 2 % (hrz against consistent)"; of what no share says, the values.
@@ -214,8 +235,9 @@ class EffectSpeaker {
     });
     if (one_pair) {
       const std::string which = fmt::format(" ({} against {})", list.front()->second, list.front()->first);
-      return list.size() == 1 ? "by " + share_text(*list.front()->pair) + which
-                              : fmt::format("by {} to {}{}", share_text(*(*least)->pair), share_text(*(*most)->pair), which);
+      return list.size() == 1
+                 ? "by " + share_text(*list.front()->pair) + which
+                 : fmt::format("by {} to {}{}", share_text(*(*least)->pair), share_text(*(*most)->pair), which);
     }
     const Told& largest = std::abs(*(*least)->pair->share) > std::abs(*(*most)->pair->share) ? **least : **most;
     return fmt::format("by up to {} ({} against {}{})", share_text(*largest.pair), largest.second, largest.first,
@@ -259,28 +281,35 @@ class EffectSpeaker {
       out.passes = agrees_ ? Verdict::no : everywhere ? Verdict::yes : open.empty() ? Verdict::no : Verdict::open;
       out.verdict = agrees_ ? "no" : everywhere ? "yes" : "in part";
       out.sentence = in_thirty_words(fmt::format("{}: {} changes {} by {} and more{}",
-                                                 agrees_ ? "No" : everywhere ? "Yes" : "In part", choice, measure, least,
-                                                 in_these(yes, all)),
+                                                 agrees_      ? "No"
+                                                 : everywhere ? "Yes"
+                                                              : "In part",
+                                                 choice, measure, least, in_these(yes, all)),
                                      {{": " + sizes(yes), ": " + short_sizes(yes)}, {rest}});
       return;
     }
     if (open.empty()) {
       out.passes = agrees_ ? Verdict::yes : Verdict::no;
       out.verdict = word(*out.passes);
-      out.sentence = in_thirty_words(fmt::format("{}: {} changes {} by less than {}{}", agrees_ ? "Yes, they agree" : "No",
-                                                 choice, measure, least, in_these(no, all)),
-                                     {{": " + sizes(no), ": " + short_sizes(no)}});
+      out.sentence =
+          in_thirty_words(fmt::format("{}: {} changes {} by less than {}{}", agrees_ ? "Yes, they agree" : "No", choice,
+                                      measure, least, in_these(no, all)),
+                          {{": " + sizes(no), ": " + short_sizes(no)}});
       return;
     }
     const Told& first = *open.front();
     out.passes = Verdict::open;
     out.verdict = word(Verdict::open);
     out.reason = first.reason;
-    out.sentence = in_thirty_words(
-        fmt::format("Open{}: whether {} changes {} by {} is not told", in_these(open, all), choice, measure, least),
-        {{first.pair ? "; it does " + sizes({&first}) : "", first.pair ? "; it does " + short_sizes({&first}) : ""},
-         {": " + first.reason, ": " + short_reason(first.reason)},
-         {no.empty() ? "" : fmt::format("; less in the other {}", no.size())}});
+    const std::vector<std::string> sizes_told = {first.pair ? "; it does " + sizes({&first}) : "",
+                                                 first.pair ? "; it does " + short_sizes({&first}) : ""},
+                                   why = {": " + first.reason, ": " + short_reason(first.reason)},
+                                   rest_told = {no.empty() ? "" : fmt::format("; less in the other {}", no.size())};
+    const std::string begins =
+        fmt::format("Open{}: whether {} changes {} by {} is not told", in_these(open, all), choice, measure, least);
+    // A size that decides comes before the reason that speaks of it.
+    out.sentence = first.between ? in_thirty_words(begins, {sizes_told, why, rest_told})
+                                 : in_thirty_words(begins, {why, sizes_told, rest_told});
   }
 
   Json figure() const {
@@ -323,12 +352,18 @@ void check_effect(const Ask& ask, const Study& study) {
 
 const Verb& effect_verb() {
   static const Verb verb{
-      "effect", "Whether a choice changes a measure by a share, all else the same.",
-      {keys::of_form(Field::Form::text, "effect", std::nullopt, "The choice: a role, a parameter, an axis that varies."),
+      "effect",
+      "Whether a choice changes a measure by a share, all else the same.",
+      {keys::of_form(Field::Form::text, "effect", std::nullopt,
+                     "The choice: a role, a parameter, an axis that varies."),
        keys::of_form(Field::Form::text, "on", std::nullopt, "The measure."),
-       keys::quiet(keys::of_form(Field::Form::share, "from", Json(nullptr), "Whether levels differ by this share; 1 % where absent.")),
-       keys::quiet(keys::of_form(Field::Form::share, "within", Json(nullptr), "Whether levels agree within this share."))},
-      "", check_effect, doubt_of_one_step,
+       keys::quiet(keys::of_form(Field::Form::share, "from", Json(nullptr),
+                                 "Whether levels differ by this share; 1 % where absent.")),
+       keys::quiet(
+           keys::of_form(Field::Form::share, "within", Json(nullptr), "Whether levels agree within this share."))},
+      "",
+      check_effect,
+      doubt_of_one_step,
       [](const Ask& ask, const Evidence& evidence) { return EffectSpeaker(ask, evidence).answer(); }};
   return verb;
 }

@@ -10,6 +10,8 @@
 #include <limits>
 #include <numbers>
 #include <ricochet/contract/said_format.hpp>
+#include <ricochet/kernels/sparse_ldlt.hpp>
+#include <ricochet/measure/stability/structure_physics.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/whole_load.hpp>
 #include <set>
@@ -337,6 +339,33 @@ std::vector<std::string> table_notes(const StudyCase& study_case) {
                         load[k].at(at).get<double>(), longest, enough));
     }
   return notes;
+}
+
+Said short_run(const SemiDiscrete& problem, double duration) {
+  constexpr double times = 100;
+  constexpr int steps = 2;
+  SparseLdlt stiffness;
+  if (problem.dofs() > most_modal_dofs || !stiffness.factorise(problem.stiffness)) return {};
+  Eigen::VectorXd shape = Eigen::VectorXd::Ones(problem.dofs());
+  double squared = 0;
+  for (int k = 0; k < steps; ++k) {
+    const Eigen::VectorXd pushed = apply_mass(problem.inertia, shape);
+    stiffness.solve(pushed.data(), shape.data());
+    const double mass = shape.dot(apply_mass(problem.inertia, shape));
+    if (!(mass > 0)) return {};
+    squared = shape.dot(pushed) / mass;
+    shape /= std::sqrt(mass);
+  }
+  const double period = 2 * std::numbers::pi / std::sqrt(squared);
+  if (!(squared > 0) || !(duration * times < period) || !std::isfinite(period)) return {};
+  return said("the run of {:.3g} s lasts {:.2g} of the slowest period, {:.3g} s: nothing of that motion is seen",
+              duration, duration / period, period);
+}
+
+std::vector<Said> run_doubts(const StudyCase& study_case, const Prepared& prepared) {
+  std::vector<Said> out = load_changes(study_case.scene, study_case.step, prepared.steps);
+  out.push_back(short_run(*prepared.problem, static_cast<double>(prepared.steps) * study_case.step));
+  return out;
 }
 
 std::vector<std::string> coarse_tables(const SceneSpec& scene, const std::vector<double>& pulsations) {

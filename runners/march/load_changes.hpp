@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "runners/march/prepare_case.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {
@@ -42,6 +43,14 @@ class GapWatch {
 /// in the formulas, 64 of each at most. What it does not find may be there. Costs half a millisecond at most where a
 /// formula takes 100 ns. Empty where no load is a formula in t.
 std::vector<Said> load_changes(const SceneSpec& scene, double step, long long steps);
+
+/// What a run of `duration` (s) shows of a structure whose slowest mode is more than a hundred times as slow: nothing
+/// of its motion. ω₁² is what two steps of inverse iteration with K leave of the quotient xᵀKx/xᵀMx, at least the true
+/// one. Nothing where K has no inverse, and of more dofs than modes are found of.
+Said short_run(const SemiDiscrete& problem, double duration);
+
+/// What the steps of a case do not resolve, and what its duration does not show: load_changes() and short_run().
+std::vector<Said> run_doubts(const StudyCase& study_case, const Prepared& prepared);
 
 /// What the step of a case makes of its tables and spectra, a sentence each. Told are tables with many steps between
 /// entries, and spectra whose highest line has fewer than five steps in its period.

@@ -128,7 +128,7 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   } else {
     record_early_end(record, marcher, prepared.steps, budget);
   }
-  std::vector<Said> doubts = load_changes(study_case.scene, study_case.step, prepared.steps);
+  std::vector<Said> doubts = run_doubts(study_case, prepared);
   doubts.push_back(GapWatch::crossed(marcher, recorder));
   doubts.push_back(struck.told(marcher, largest_restitution(study_case, *marcher.program().problem, registry)));
   add_doubts(record, doubts);

@@ -258,8 +258,8 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   plan.steps = prepared.steps;
   plan.notes = prepared.notes;
   if (!prepared.program) return plan;
-  for (Said& change : load_changes(study_case.scene, study_case.step, prepared.steps))
-    plan.notes.push_back(std::move(change.text));
+  for (Said& doubt : run_doubts(study_case, prepared))
+    if (!doubt.text.empty()) plan.notes.push_back(std::move(doubt.text));
   plan.coarsest_step = plan.finest_step = study_case.step;
   plan.operator_name = operator_name(prepared.program->kind);
   plan.left_out = left_out_pairs(prepared.program->left_out);
@@ -279,7 +279,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   Prepared prepared = prepare_case(study_case, registry);
   CaseRecord record = begin_record(study_case, prepared);
   if (!prepared.program) return record;
-  std::vector<Said> doubts = load_changes(study_case.scene, study_case.step, prepared.steps);
+  std::vector<Said> doubts = run_doubts(study_case, prepared);
   const std::shared_ptr<const SemiDiscrete> problem = prepared.problem;
   Marcher marcher(std::move(*prepared.program));
   Watched watched(study_case, marcher, prepared.steps);

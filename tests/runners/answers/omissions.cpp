@@ -101,6 +101,31 @@ TEST_CASE("where no stop was touched the first sentence says so, with the gap") 
   CHECK_THAT(sentences(results), !Contains("No stop was touched"));
 }
 
+TEST_CASE("where nothing moved the first sentence says so, with stops and without") {
+  StudyResults results = full_factorial(
+      {{"mass", {"consistent", "lumped"}}}, refined, [](const auto&, double) { return 0; }, "impulse");
+  for (CaseRecord& record : results.cases) {
+    put(record, "largest_tip_displacement", 0);
+    put(record, "energy_start", 0);
+    put(record, "work_of_loads", 0);
+  }
+  const std::string first =
+      "Nothing moved: the structure starts at rest where nothing pushes it, and no load does work.";
+  CHECK(first_line(sentences(results)) == first);
+  for (CaseRecord& record : results.cases) {
+    put(record, "smallest_gap", 0.1);
+    put(record, "contact_instants", 0);
+  }
+  CHECK(first_line(sentences(results)) == first);
+  // One case that moved is enough, and so is one that had energy.
+  for (const char* name : {"largest_tip_displacement", "energy_start", "work_of_loads"}) {
+    StudyResults one = results;
+    for (auto& [measure, value] : one.cases.back().measures)
+      if (measure == name) value = 1e-9;
+    CHECK_THAT(sentences(one), !Contains("Nothing moved"));
+  }
+}
+
 TEST_CASE("a case is driven by what no potential tells") {
   CaseRecord record;
   record.measures = {{"work_of_loads", 3.0}};

@@ -71,7 +71,8 @@ TEST_CASE("asks: an effect is as large as asked, or smaller, in truth") {
   for (int k = 0; k < tries; ++k) {
     Made made = random_methods(random, 2);
     // Methods may err in their own ways.
-    const double other = uniform(random, -0.3, 0.3), base = made.truth({0}), second = base * (1 + uniform(random, -0.2, 0.2));
+    const double other = uniform(random, -0.3, 0.3), base = made.truth({0}),
+                 second = base * (1 + uniform(random, -0.2, 0.2));
     made.truth = [=](const std::vector<std::size_t>& at) { return at[0] == 0 ? base : second; };
     StudyResults results = made.results();
     for (CaseRecord& record : results.cases)
@@ -137,7 +138,8 @@ TEST_CASE("asks: a threshold lies between the levels that are told") {
     for (const double x : xs) made.choices[0].levels.push_back(fmt::format("{}", x));
     made.truth = [=](const std::vector<std::size_t>& level) { return 1 + (at - xs[level[0]]); };
     StudyResults results = made.results();
-    for (CaseRecord& record : results.cases) record.axes[0].second = std::stod(record.axes[0].second.get<std::string>());
+    for (CaseRecord& record : results.cases)
+      record.axes[0].second = std::stod(record.axes[0].second.get<std::string>());
     const Answered answered = answer_of(results, {{"threshold", "impulse"}, {"below", 1}, {"along", "stops.upper"}});
     const VerdictRow& last = answered.rows.back();
     INFO("at " << at << ": " << answered.sentence);
@@ -256,4 +258,28 @@ TEST_CASE("asks: nothing on both sides is no agreement") {
   const Answered answered = answer_of(made.results(), {{"effect", "mass"}, {"on", "impulse"}, {"from", 0.05}});
   CHECK(answered.passes == Verdict::open);
   CHECK(answered.reason == "both are zero, or round-off");
+}
+
+TEST_CASE("asks: no contact law agrees with another where no stop is touched, and masses do") {
+  Made made;
+  made.truth = [](const auto&) { return 3.0; };
+  made.error = 0.01;
+  for (const std::string choice : {"contact", "contact.stiffness", "time.restitution", "mass"}) {
+    made.choices = {{choice, {"a", "b"}}};
+    StudyResults results = made.results();
+    const Json ask = {{"effect", choice}, {"on", "impulse"}};
+    const auto passes = [&](double instants) {
+      StudyResults some = results;
+      for (CaseRecord& record : some.cases) record.measures.emplace_back("contact_instants", instants);
+      const Answered answered = answer_of(some, ask);
+      INFO(choice << " " << answered.sentence);
+      CHECK(words_in(answered.sentence) <= 30);
+      if (instants == 0 && choice != "mass")
+        CHECK_THAT(answered.sentence, Catch::Matchers::Contains("no stop is touched"));
+      return *answered.passes;
+    };
+    CHECK(passes(1) == Verdict::no);
+    CHECK(passes(0) == (choice == "mass" ? Verdict::no : Verdict::open));
+    CHECK(*answer_of(results, ask).passes == Verdict::no);
+  }
 }

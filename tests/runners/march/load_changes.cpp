@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/marching.hpp"
 
 using namespace ricochet;
 using Catch::Matchers::Contains;
@@ -91,4 +94,34 @@ TEST_CASE("a load that jumps is told with the steps in which it does") {
   // A ramp of a tenth of a step is one; of five steps none.
   CHECK(said("t < 0.3 ? 0 : (t < 0.301 ? 1000*(t - 0.3) : 1)", 0.01, 100).size() == 1);
   CHECK(said("t < 0.3 ? 0 : (t < 0.35 ? 20*(t - 0.3) : 1)", 0.01, 100).empty());
+}
+
+TEST_CASE("a run of less than a hundredth of the slowest period is told, beside that period") {
+  // An oscillator of 10 rad/s: T = 2π/10 exactly.
+  const auto oscillator = testing::problem_of(pushed({}), 1, {"consistent"});
+  CHECK(short_run(*oscillator, 0.00629).empty());
+  CHECK(short_run(*oscillator, 0.00628).text ==
+        "the run of 0.00628 s lasts 0.01 of the slowest period, 0.628 s: nothing of that motion is seen");
+  // A bar of eight lumped elements: ω₁ = 2c/ℓ sin(π/32) = 4 sin(π/32), T = 16.03 s.
+  SceneSpec scene;
+  BarSpec bar;
+  bar.length = 8;
+  bar.EA = 4;
+  scene.structure = bar;
+  const double period = 2 * M_PI / (4 * std::sin(M_PI / 32));
+  for (const char* mass : {"lumped", "consistent"}) {
+    const auto problem = testing::problem_of(scene, 8, {mass});
+    CAPTURE(mass);
+    // The quotient is from above: what is told is short in truth.
+    CHECK(short_run(*problem, 0.0101 * period).empty());
+    CHECK_FALSE(short_run(*problem, 0.0095 * period).empty());
+  }
+  // E a thousand million times too small makes T √10⁹ times as long.
+  bar.EA = 4e-9;
+  scene.structure = bar;
+  CHECK_THAT(short_run(*testing::problem_of(scene, 8, {"lumped"}), 10).text, Contains("5.07e+05 s"));
+  // What nothing holds has no slowest period.
+  std::get<OscillatorSpec>(scene.structure = OscillatorSpec{}).mass = 1;
+  std::get<OscillatorSpec>(scene.structure).stiffness = 0;
+  CHECK(short_run(*testing::problem_of(scene, 1, {"consistent"}), 1e-9).empty());
 }
