@@ -23,15 +23,11 @@ struct Answer {
   /// Adds a sentence with one clause.
   void say(std::string text, Clause clause);
   void say(Sentence sentence) { sentences.push_back(std::move(sentence)); }
-  /// Leaves the first so many.
-  void keep(std::size_t most) {
-    if (sentences.size() > most) sentences.resize(most);
-  }
   Table table() const;
 };
 
-/// Cases that gave no result, one sentence for each status: "Not run: 4 of 48 cases (…): why."
-std::vector<Sentence> ended(const Compared& study);
+/// References that the study names and that refuse, a sentence each: errors are those against the others.
+std::vector<Sentence> refused_references(const Compared& study);
 /// What makes figures of finished cases doubtful: the sentence of the first case; of the others it may differ in
 /// numbers.
 struct Doubt {

@@ -13,35 +13,6 @@ namespace {
 
 constexpr std::size_t longest_reason = 160;
 
-/// A reason of several cases; "…" stands for numbers in which they differ.
-struct Reason {
-  Said said;
-  Cases cases;
-};
-
-Said in_common(const Said& a, const Said& b) {
-  std::vector<std::string> numbers;
-  for (std::size_t k = 0; k < a.marks.size(); ++k) numbers.push_back(a.number(k) == b.number(k) ? a.number(k) : "…");
-  return a.with_numbers(numbers);
-}
-
-/// Reasons by how many cases they stop. `alike`: reasons that differ in numbers alone are one.
-std::vector<Reason> reasons_of(const Cases& cases, bool alike) {
-  InOrderMet<std::string, Reason> groups;
-  for (const CaseRecord* record : cases) {
-    if (record->reasons.empty()) continue;
-    const Said& reason = record->reasons.front();
-    Reason& one = groups[alike ? reason.without_numbers() : reason.text];
-    one.said = one.cases.empty() || !alike ? reason : in_common(one.said, reason);
-    one.cases.push_back(record);
-  }
-  std::vector<Reason> out;
-  for (auto& [key, reason] : std::move(groups).list()) out.push_back(std::move(reason));
-  std::stable_sort(out.begin(), out.end(),
-                   [](const Reason& a, const Reason& b) { return a.cases.size() > b.cases.size(); });
-  return out;
-}
-
 /// Whole sentences of the reason, or a whole clause, that are not too long.
 std::string shortened(const std::string& reason) {
   if (reason.size() <= longest_reason) return reason;
@@ -107,24 +78,7 @@ std::string at_steps(const Compared& study, const Cases& cases) {
   return " at h = " + and_list(words) + " s";
 }
 
-/// References that the study names and that refuse: errors are those against the others.
-void add_refused_references(const Compared& study, std::vector<Sentence>& out) {
-  InOrderMet<std::string, std::size_t> counts;
-  const std::string begins = refused_reference;
-  for (const CaseRecord& record : study.results().cases)
-    for (const std::string& note : record.notes)
-      if (note.starts_with(begins)) ++counts[note.substr(begins.size())];
-  const std::size_t total = study.results().cases.size();
-  for (const auto& [refusal, cases] : counts.list()) {
-    const std::string name = refusal.substr(0, refusal.find(": "));
-    out.push_back({fmt::format("The reference {} does not apply{}: {}.", name,
-                               cases == total ? "" : fmt::format(" to {} of {} cases", cases, total),
-                               shortened(refusal.substr(std::min(refusal.size(), name.size() + 2)))),
-                   {status_clause("reference refused", name, cases, total)}});
-  }
-}
-
-/// "Not run: 4 of 48 cases (those with …): why."; `how`: the status and the word for it.
+/// "Doubtful: 4 of 48 cases (those with …): why."; `how`: the status and the word for it.
 Sentence told_of(const Compared& study, const Listed& methods, const SetNames& names,
                  const std::pair<std::string, std::string>& how, const Cases& some, const std::string& reason) {
   const std::size_t total = study.results().cases.size();
@@ -179,53 +133,21 @@ std::vector<Sentence> doubted(const Compared& study) {
   return out;
 }
 
-std::vector<Sentence> ended(const Compared& study) {
+std::vector<Sentence> refused_references(const Compared& study) {
   std::vector<Sentence> out;
-  const Listed methods = methods_of(study);
+  InOrderMet<std::string, std::size_t> counts;
+  const std::string begins = refused_reference;
+  for (const CaseRecord& record : study.results().cases)
+    for (const std::string& note : record.notes)
+      if (note.starts_with(begins)) ++counts[note.substr(begins.size())];
   const std::size_t total = study.results().cases.size();
-  const SetNames names(study, methods.firsts);
-  for (const std::string status : {"diverged", "failed", "refused"}) {
-    Cases cases;
-    for (const CaseRecord& record : study.results().cases)
-      if (record.status == status && !record.partial) cases.push_back(&record);
-    if (cases.empty()) continue;
-    const bool refused = status == "refused";
-    const std::string verb = refused ? "Not run" : capitalised(status);
-    const auto say = [&](const Cases& some, const std::string& reason) {
-      out.push_back(told_of(study, methods, names, {status, verb}, some, reason));
-    };
-    // Where each case says its own figures, none speaks for the others.
-    const std::vector<Reason> reasons = reasons_of(cases, refused);
-    constexpr std::size_t all_told = 3, told = 2;
-    const auto named = [&](const Cases& some) {
-      const std::set<const CaseRecord*> chosen(some.begin(), some.end());
-      return names.found(members_where(methods, [&](const CaseRecord* one) { return chosen.contains(one); })).exact;
-    };
-    // Cases of several reasons that have a name together alone are told together.
-    const bool together = named(cases) && std::any_of(reasons.begin(), reasons.end(),
-                                                      [&](const Reason& one) { return !named(one.cases); });
-    if (refused && reasons.size() > 1 && together) {
-      say(cases, shortened(reasons.front().said.text) + fmt::format(" ({} of these; {} other reason{})",
-                                                                    reasons.front().cases.size(), reasons.size() - 1,
-                                                                    reasons.size() == 2 ? "" : "s"));
-      continue;
-    }
-    if (!refused || reasons.size() < 2) {
-      const bool shared = !reasons.empty() && (reasons.front().cases.size() > 1 || cases.size() == 1);
-      say(cases, shared ? shortened(reasons.front().said.text) : "");
-      continue;
-    }
-    const std::size_t most = reasons.size() <= all_told ? all_told : told;
-    std::size_t left = cases.size();
-    for (std::size_t k = 0; k < std::min(most, reasons.size()); ++k) {
-      say(reasons[k].cases, shortened(reasons[k].said.text));
-      left -= reasons[k].cases.size();
-    }
-    if (left > 0)
-      out.push_back({fmt::format("{} for other reasons: {} of {} cases.", verb, left, total),
-                     {status_clause(status, "", left, total)}});
+  for (const auto& [refusal, cases] : counts.list()) {
+    const std::string name = refusal.substr(0, refusal.find(": "));
+    out.push_back({fmt::format("The reference {} does not apply{}: {}.", name,
+                               cases == total ? "" : fmt::format(" to {} of {} cases", cases, total),
+                               shortened(refusal.substr(std::min(refusal.size(), name.size() + 2)))),
+                   {status_clause("reference refused", name, cases, total)}});
   }
-  add_refused_references(study, out);
   return out;
 }
 

@@ -16,7 +16,6 @@ struct Asked {
   std::vector<std::string> first;  ///< what comes before all answers: that nothing happened
   std::vector<std::pair<Ask, Answered>> all;
   std::vector<std::string> proposed = {};  ///< of a study that asks nothing: what it could ask, as JSON
-  bool any() const { return !all.empty(); }
   /// Those that must be yes and are not.
   std::vector<const Ask*> unmet() const;
 };

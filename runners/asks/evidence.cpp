@@ -121,8 +121,7 @@ std::vector<std::string> Evidence::columns_of(const std::string& choice) const {
 
 bool Evidence::has_shares(const std::string& name, const Cases& cases) const {
   const answers::MeasureWords words = answers::measure_words(name);
-  return words.scale == "energy_brought_in" &&
-         std::all_of(cases.begin(), cases.end(), [&](const CaseRecord* record) {
+  return words.scale == "energy_brought_in" && std::all_of(cases.begin(), cases.end(), [&](const CaseRecord* record) {
            return record->status != "done" || !measure(*record, name) || answers::scaled_value(words, *record);
          });
 }
@@ -234,6 +233,7 @@ std::string energy_made(const answers::Compared& study) {
 std::vector<std::string> Evidence::warnings() const {
   std::vector<std::string> out;
   if (auto untouched = answers::say_untouched(study_)) out.push_back(untouched->text);
+  for (const answers::Sentence& refused : answers::refused_references(study_)) out.push_back(refused.text);
   if (const std::string made = energy_made(study_); !made.empty()) out.push_back(made);
   return out;
 }

@@ -17,14 +17,14 @@ inline constexpr const char* seed_axis = "seed";
 
 /// What is known of a number: value ± u, u = step + mesh + sampling.
 struct Estimate {
-  double value = 0;                                   ///< at the finest step and mesh; of seeds their mean
-  std::optional<double> step, mesh;                   ///< what each refinement leaves; nothing of a single size
-  std::optional<double> sampling;                     ///< half the 95 % interval of a mean; nothing where none is drawn
-  bool grows = false;                                 ///< without bound as it is refined
-  std::string motion;                                 ///< "still falls with the step" of what is not settled
-  std::optional<double> order;                        ///< in the step
+  double value = 0;                  ///< at the finest step and mesh; of seeds their mean
+  std::optional<double> step, mesh;  ///< what each refinement leaves; nothing of a single size
+  std::optional<double> sampling;    ///< half the 95 % interval of a mean; nothing where none is drawn
+  bool grows = false;                ///< without bound as it is refined
+  std::string motion;                ///< "still falls with the step" of what is not settled
+  std::optional<double> order;       ///< in the step
   std::size_t steps = 1, meshes = 1, seeds = 1;
-  bool has_step = true;                               ///< whether its study has a step to refine
+  bool has_step = true;  ///< whether its study has a step to refine
   /// What is not known at all: "one step"; "" where u holds all.
   std::string unknown() const;
   /// The sum of what is known; nothing where it grows, or where nothing is known.
@@ -42,8 +42,8 @@ inline bool finer(const Size& a, const Size& b) {
 
 /// Cases that agree in all that is chosen: they differ in step, mesh and seed alone.
 struct Point {
-  Cases cases;   ///< all
-  Cases behind;  ///< those with a value
+  Cases cases;                                           ///< all
+  Cases behind;                                          ///< those with a value
   std::map<Size, std::map<std::string, double>> values;  ///< by seed, of the finest mesh where modes vary on several
   std::map<Size, std::map<std::string, double>> halves;  ///< half intervals of these, where known
   std::optional<Size> finest;
@@ -91,7 +91,8 @@ class Evidence {
 
   /// The levels of a case in these columns, in words: "hrz, 1e8 N/m". "" of none.
   std::string level(const CaseRecord& record, const std::vector<std::string>& columns) const;
-  /// What comes before any number, a sentence each: that no stop was touched, who makes energy.
+  /// What comes before any number, a sentence each: that nothing moved, or no stop was touched; which
+  /// references do not apply; who makes energy.
   std::vector<std::string> warnings() const;
 
  private:

@@ -93,10 +93,7 @@ struct ForecastContext {
 /// What a kind makes of the results of one study, once: what its answer and its page ask. It may refer to the results,
 /// which outlive it.
 struct Analysis {
-  /// Its own way to answer, when all tables are there. Empty: methods in tiers, or choices by what they move, in the
-  /// observed measures.
-  std::function<answers::Answer(const answers::Compared&)> answer = {};
-  report::KindPage page = {};  ///< what its reports show; empty: what every page has
+  report::KindPage page = {};   ///< what its reports show; empty: what every page has
   asks::OwnAnswers verbs = {};  ///< what answers the verbs that its kind declares (StudyKind::verbs)
 };
 

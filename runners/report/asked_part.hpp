@@ -28,7 +28,6 @@ struct AskedPart {
 struct AskedAnswers {
   std::vector<std::string> first;  ///< what comes before all answers
   std::vector<AskedPart> parts;
-  bool any() const { return !parts.empty(); }
 };
 
 /// The first screen: what warns, then each sentence with its table and its figure.

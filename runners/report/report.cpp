@@ -72,30 +72,11 @@ std::string script(const std::string& attributes, const std::string& content) {
   return "<script" + attributes + ">" + content + "</script>\n";
 }
 
-/// The answer: its first sentence large, the others below it; more of them fold.
-std::string answer_sentences(const StudyResults& results) {
-  const std::vector<std::string> lines = answer_lines(results);
-  if (lines.empty()) return "";
-  std::string out = "<p class=\"headline\">" + emphasised(lines.front()) + "</p>\n<ul class=\"answer\">\n", rest;
-  for (size_t k = 1; k < lines.size(); ++k)
-    (k < most_answer_lines ? out : rest) += "<li>" + escape(lines[k]) + "</li>\n";
-  out += "</ul>\n";
-  if (!rest.empty())
-    out += fmt::format("<details><summary>{} more</summary><ul class=\"answer\">\n{}</ul></details>\n",
-                       lines.size() - most_answer_lines, rest);
-  return out;
-}
-
 }  // namespace
 
 std::string answer_html(const CaseView& view, const KindPage& kind) {
   if (view.results().cases.empty()) return "<p>No case has run yet.</p>\n";
-  if (kind.asked.any()) return asked_html(kind.asked);
-  // A script puts the figure that shows the answer beside its sentences.
-  const std::string said = answer_sentences(view.results()), more = kind.answer ? kind.answer(view) : "";
-  const std::string answer =
-      said.empty() ? more
-                   : "<div class=\"first\"><div>\n" + said + more + "</div><div id=\"answer-figure\"></div></div>\n";
+  const std::string answer = asked_html(kind.asked);
   if (answer.empty() && view.with_status("done").empty())
     return "<p>No case has finished with a result; the table below says why.</p>\n";
   return answer;
@@ -120,7 +101,7 @@ std::string render_page(const StudyResults& results, const KindPage& kind, std::
   page.set("counts", counts_text(results));
   page.set("banners", banners(results));
   page.set("answer", answer_html(view, kind));
-  if (const std::string beneath = kind.asked.any() && kind.answer ? kind.answer(view) : ""; !beneath.empty())
+  if (const std::string beneath = kind.answer ? kind.answer(view) : ""; !beneath.empty())
     page.set("beneath", html_section(beneath));
   page.set("charts", truth(!library.empty()));
   page.set("masses", truth(kind.masses));

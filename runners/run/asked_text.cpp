@@ -90,8 +90,7 @@ report::AskedAnswers asked_answers(const AnalysedResults& results) {
       aside.push_back(fmt::format("Ask {} requires a yes and has none.", ask.number));
     out.parts.push_back({ask.number, answered.sentence, std::move(aside), asked_rows(answered), answered.figure});
   }
-  if (out.any())
-    for (const answers::Sentence& doubt : answers::doubted(results.compared)) out.first.push_back(doubt.text);
+  for (const answers::Sentence& doubt : answers::doubted(results.compared)) out.first.push_back(doubt.text);
   return out;
 }
 

@@ -60,7 +60,6 @@ asks::Asked asked_of(const StudyResults& results, const answers::Compared& compa
   const Kind* kind = find_kind(results.kind);
   if (kind && kind->format.default_asks)
     return asks::answer_asks(asks::asks_of_list(kind->format.default_asks(results.study)), evidence, analysis.verbs);
-  if (analysis.answer) return {};
   const std::vector<std::string> names = observed_by_name(results), measures = observed_measures(results);
   const bool runs = std::find(names.begin(), names.end(), status_asked) != names.end() || measures.empty();
   asks::Asked out = asks::answer_asks(asks::asks_of_measures(evidence, measures, runs), evidence, analysis.verbs);
@@ -81,12 +80,10 @@ AnalysedResults::AnalysedResults(StudyResults results)
     if (!table.rows.empty()) derived.push_back(std::move(table));
   };
   add(effects_table(*this));
-  if (const Kind* of_study = find_kind(kind); !analysis.answer && !(of_study && of_study->format.default_asks))
+  if (const Kind* of_study = find_kind(kind); !of_study || !of_study->format.default_asks)
     for (Table& table : evidence_tables(compared)) add(std::move(table));
-  if (Table answers = asked.any() ? asked_table(compared, asked) : answers_table(compared, analysis);
-      !answers.rows.empty())
-    derived.insert(derived.begin() + before_shares, std::move(answers));
-  if (asked.any()) derived.insert(derived.begin() + before_shares, asks::verdicts_table(asked));
+  for (Table table : {asked_table(compared, asked), asks::verdicts_table(asked)})
+    if (!table.rows.empty()) derived.insert(derived.begin() + before_shares, std::move(table));
   add(reasons_table(*this));
   for (Table& table : report::page_tables(*this, analysis.page)) add(std::move(table));
 }
@@ -119,7 +116,7 @@ int tell_results(std::FILE* out, const AnalysedResults& results, const std::file
   constexpr int nothing_ran = 3;
   const bool nothing = std::all_of(results.cases.begin(), results.cases.end(),
                                    [](const CaseRecord& one) { return one.status == "refused"; });
-  const std::string answer = results.asked.any() ? asked_text(results) : answer_text(results);
+  const std::string answer = asked_text(results);
   const int code = nothing ? nothing_ran : results_exit_code(results);
   say(out, fmt::format("{}{}\n{} ({})\nreport: {}\n", table ? case_table(results) + "\n" : "", answer,
                        totals_text(results), how, (folder / "report.html").string()));
@@ -200,14 +197,6 @@ std::vector<std::string> observed_measures(const StudyResults& results) {
   return names;
 }
 
-Table answers_table(const answers::Compared& study, const Analysis& analysis) {
-  answers::Answer answer = analysis.answer(study);
-  // Behind the headline: no sentence that is cut off.
-  const std::vector<answers::Sentence> doubts = answers::doubted(study);
-  answer.sentences.insert(answer.sentences.begin() + (answer.sentences.empty() ? 0 : 1), doubts.begin(), doubts.end());
-  return answer.table();
-}
-
 Table asked_table(const answers::Compared& study, const asks::Asked& asked) {
   answers::Answer answer;
   const auto say = [&](const std::string& text, const char* status) {
@@ -265,15 +254,6 @@ std::string outcome_text(const CaseRecord& record, const std::string& kind) {
     return text;
   }
   return reason.empty() ? record.status : fmt::format("{}: {}", record.status, reason);
-}
-
-std::string answer_text(const StudyResults& results) {
-  constexpr std::size_t most = report::most_answer_lines;
-  const std::vector<std::string> lines = report::answer_lines(results);
-  std::string out = results.question.empty() ? "" : results.question + "\n";
-  for (std::size_t k = 0; k < std::min(lines.size(), most); ++k) out += "  " + lines[k] + "\n";
-  if (lines.size() > most) out += fmt::format("  {} more in the report\n", lines.size() - most);
-  return out;
 }
 
 std::string case_table(const StudyResults& results) {

@@ -39,10 +39,7 @@ std::unique_ptr<const AnalysedResults> write_folder(Store& store, const std::fil
 int tell_results(std::FILE* out, const AnalysedResults& results, const std::filesystem::path& folder,
                  const std::string& how, bool table = false);
 
-/// answers: what a kind that answers itself says to a study's question, in the order in which it is read.
-Table answers_table(const answers::Compared& study, const Analysis& analysis);
-
-/// The same of a study that asks: what comes first, a sentence for each ask, what is doubtful and what is left out.
+/// answers: what comes first, a sentence for each ask, what is doubtful and what is left out.
 Table asked_table(const answers::Compared& study, const asks::Asked& asked);
 
 /// What an answer by observed measures rests on: limits, refinements and differences of these.
@@ -55,9 +52,6 @@ std::vector<std::string> observed_measures(const StudyResults& results);
 /// The outcome of one case in words, or the status and its reason: "done: energy 12.3 J → 11.9 J (−3.2 %), 14 impacts,
 /// 0.42 µs/step". A kind of study may have more to say of a finished case (Kind::outcome).
 std::string outcome_text(const CaseRecord& record, const std::string& kind);
-
-/// The question and the sentences of the answer, a few at most, each on a line of its own; how many more there are.
-std::string answer_text(const StudyResults& results);
 
 /// One line per case: the axes that vary in aligned columns under their names, then the outcome.
 std::string case_table(const StudyResults& results);

@@ -83,7 +83,7 @@ class HalfLives final : public Kind {
   }
   Analysis analysis(StudyResults& results, const answers::Compared&) const override {
     collect_tables(results);
-    return {{}, half_lives_page()};
+    return {half_lives_page()};
   }
 };
 

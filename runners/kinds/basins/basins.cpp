@@ -66,7 +66,6 @@ class BasinsKind final : public SweepKind {
   Analysis derive(StudyResults& results) const override {
     const auto basins = std::make_shared<const BasinAnalysis>(analyse_basins(results));
     return {
-        {},
         report::basins_page(basins),
         {{"motions", [basins](const asks::Ask& ask,
                               const asks::Evidence& evidence) { return motions_of_basins(ask, evidence, *basins); }},

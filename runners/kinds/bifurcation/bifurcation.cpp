@@ -63,7 +63,8 @@ class BifurcationKind final : public SweepKind {
  public:
   BifurcationKind()
       : SweepKind("bifurcation", "Each case goes through a parameter: sections, classes and exponents of its orbits.",
-                  bifurcation_keys(), {"motions", "effect on motions"}, check_sweep_ask, {}, orbit_measures()) {}
+                  bifurcation_keys(), {"motions", "effect on motions"}, check_sweep_ask, default_sweep_asks,
+                  orbit_measures()) {}
   CasePlan plan(const StudyCase& study_case, const Registry& registry) const override {
     return plan_bifurcation(study_case, registry);
   }
@@ -78,8 +79,7 @@ class BifurcationKind final : public SweepKind {
   }
   Analysis derive(StudyResults& results) const override {
     const auto swept = std::make_shared<const SweptMotions>(derive_dynamics(results));
-    return {bifurcation_answer,
-            report::bifurcation_page(),
+    return {report::bifurcation_page(),
             {{"motions", [swept](const asks::Ask& ask,
                                  const asks::Evidence& evidence) { return motions_of_sweep(ask, evidence, *swept); }},
              {"effect on motions", [swept](const asks::Ask& ask, const asks::Evidence& evidence) {

@@ -20,16 +20,14 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
 CaseRecord run_bifurcation(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                            const std::atomic<bool>& stop);
 
-/// What a bifurcation study says: which methods give the diagram of the reference, and how it converges in the step.
-/// Then where the motion is the same whatever the numerics, which motions these are, and where they change.
-answers::Answer bifurcation_answer(const answers::Compared& study);
-
 struct SweptMotions;
 
 /// Which motions there are along the parameter, where they change, and how much of the range is undecided.
 asks::Answered motions_of_sweep(const asks::Ask& ask, const asks::Evidence& evidence, const SweptMotions& swept);
 /// At how many values a choice changes the motion.
 asks::Answered effect_on_sweep(const asks::Ask& ask, const asks::Evidence& evidence, const SweptMotions& swept);
+/// What a study that asks nothing is asked: its motions, and what choices change of them.
+Json default_sweep_asks(const Json& resolved);
 void check_sweep_ask(const Study& study, const Json& ask, const std::string& pointer);
 
 }  // namespace ricochet

@@ -334,6 +334,11 @@ asks::Answered effect_on_sweep(const asks::Ask& ask, const asks::Evidence& evide
   return effect_on_motions(ask, evidence, motions, swept.diagram.start_count() > 1 ? "orbits" : "values");
 }
 
+Json default_sweep_asks(const Json& resolved) {
+  if (!resolved.contains("parameter")) return Json::array();
+  return default_motion_asks(resolved, names_of(resolved.at("parameter").at("pointer").get<std::string>()).front());
+}
+
 void check_sweep_ask(const Study& study, const Json& keys, const std::string& pointer) {
   const asks::Ask ask = asks::ask_at(keys, pointer);
   asks::refuse_stops(ask);

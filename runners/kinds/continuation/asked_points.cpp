@@ -1,10 +1,14 @@
-// Kinds of special points as asks name them.
-#include <algorithm>
+// Kinds of special points as asks name them, and their values in words.
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "runners/answers/numbers_in_words.hpp"
 #include "runners/asks/kind_verbs.hpp"
 #include "runners/json/json_text.hpp"
 #include "runners/kinds/continuation/continuation.hpp"
-#include "runners/kinds/continuation/point_speaker.hpp"
+#include "runners/kinds/continuation/point_words.hpp"
 
 namespace ricochet {
 
@@ -13,6 +17,17 @@ std::string point_kind(std::string asked) {
   std::replace(asked.begin(), asked.end(), '-', ' ');
   if (asked == "lift off") return "lift-off";
   return asked == "grazing" ? "first contact" : asked;
+}
+
+std::string point_value(double value, std::optional<double> half) {
+  if (!half || !(*half > 1e-12 * std::abs(value))) return answers::short_number(value, 7);
+  int places = -static_cast<int>(std::floor(std::log10(*half)));
+  constexpr double begins_with_one = 1.95;
+  const bool fine = *half * std::pow(10, places) < begins_with_one;
+  constexpr int most = 15;
+  std::string text = fmt::format("{:.{}f}", value, std::clamp(places + fine, 0, most));
+  if (text.starts_with('-')) text.replace(0, 1, "−");
+  return text + " ± " + answers::short_number(*half, fine ? 2 : 1);
 }
 
 namespace {

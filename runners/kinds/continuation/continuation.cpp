@@ -28,6 +28,7 @@ StudyKind continuation_format() {
   format.add_references = add_reference_cases;
   format.verbs = {"points"};
   format.check_ask = check_points_ask;
+  format.default_asks = [](const Json&) { return Json::array({{{"points", {"all"}}}}); };
   return format;
 }
 
@@ -63,8 +64,7 @@ class ContinuationKind final : public Kind {
     collect_tables(results, [](const std::string& table) { return table == special_points_type().name; });
     const auto points = std::make_shared<const PointAnalysis>(study);
     points->append_tables(results);
-    return {[points](const answers::Compared& of) { return continuation_answer(of, *points); },
-            report::continuation_page(points),
+    return {report::continuation_page(points),
             {{"points", [points](const asks::Ask& ask, const asks::Evidence& evidence) {
                 return points_ask(ask, evidence, *points);
               }}}};

@@ -42,10 +42,6 @@ CaseRecord run_reference(const StudyCase& study_case, const Registry& registry, 
 /// the two rows around it. Throws PointRefused.
 int solve_branch_point(const StudyResults& results, const PointRequest& asked, std::ostream& out);
 
-/// What a continuation study says: where the orbits of the reference case have special points, with interval and order.
-/// Then what each choice moves the first of them by, which cases lack it, and what turns a step invents.
-answers::Answer continuation_answer(const answers::Compared& study, const PointAnalysis& points);
-
 /// Special points of asked kinds in the order of their branches, what is stable beside them, and how far branches went.
 asks::Answered points_ask(const asks::Ask& ask, const asks::Evidence& evidence, const PointAnalysis& points);
 void check_points_ask(const Study& study, const Json& ask, const std::string& pointer);

@@ -13,7 +13,7 @@ class ConvergenceKind final : public ComparisonKind {
                        comparison_keys(), comparison_measures(), {"order"}, default_order_asks) {}
   Analysis analysis(StudyResults& results, const answers::Compared& study) const override {
     put_tables(results, study);
-    return {{}, report::comparison_page(), {{"order", order_ask}}};
+    return {report::comparison_page(), {{"order", order_ask}}};
   }
 };
 

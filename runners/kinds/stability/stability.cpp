@@ -132,9 +132,9 @@ class StabilityKind final : public Kind {
     results.derived.push_back(step_limit_agreement_table(results.derived.back()));
     for (Table table : {stability_cells_table(results), stability_disagreements_table(results)})
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
-    return {{}, report::stability_page(), {{"steps", [limits](const asks::Ask& ask, const asks::Evidence& evidence) {
-                                              return steps_ask(ask, evidence, *limits);
-                                            }}}};
+    return {report::stability_page(), {{"steps", [limits](const asks::Ask& ask, const asks::Evidence& evidence) {
+                                          return steps_ask(ask, evidence, *limits);
+                                        }}}};
   }
   std::string outcome(const CaseRecord& record) const override { return limits_text(record); }
   std::string contradiction(const CaseRecord& record) const override {

@@ -1,4 +1,3 @@
-#include "runners/study/check_object.hpp"
 #include "runners/kinds/trajectory/trajectory.hpp"
 
 #include <fmt/format.h>
@@ -21,6 +20,7 @@
 #include "runners/store/record_values.hpp"
 #include "runners/store/snapshots.hpp"
 #include "runners/study/body_keys.hpp"
+#include "runners/study/check_object.hpp"
 #include "runners/study/fields.hpp"
 
 namespace ricochet {
@@ -344,7 +344,7 @@ class TrajectoryKind final : public Kind {
     collect_tables(results);
     for (Table table : {energy_ends_table(results), energy_ledger_table(results), answers::uncertainty_table(study)})
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
-    return {{}, report::trajectory_page()};
+    return {report::trajectory_page()};
   }
   std::vector<std::string> observed(const StudyResults& results) const override { return observed_energies(results); }
   Table curve(const StudyResults& results) const override {

@@ -46,7 +46,7 @@ class WorkPrecisionKind final : public ComparisonKind {
     put_tables(results, study, [](const StudyResults& of) -> std::vector<Table> {
       return {work_precision_table(of), precision_targets_table(of)};
     });
-    return {{}, report::work_precision_page(), {{"order", order_ask}, {"cheapest", cheapest_ask}}};
+    return {report::work_precision_page(), {{"order", order_ask}, {"cheapest", cheapest_ask}}};
   }
 };
 

@@ -155,8 +155,6 @@
       if (target.dataset && target.dataset.value && !target.title) target.title = target.dataset.value;
     });
     startFigures();
-    // With the names of the study.
-    document.querySelectorAll("#answer .first ul.answer").forEach(ricochet.shortenLines);
     for (const id of ["answer", "beneath", "methods"]) {
       const section = document.getElementById(id);
       // Answers of asks say what they mean.

@@ -78,19 +78,6 @@
     const found = Array.from(text.data.matchAll(pattern)).filter(([word]) => !told.has(word) && told.add(word));
     for (const {0: word, index} of found.reverse()) text.splitText(index + word.length).before(buttonOf(word));
   }
-  // The lines of an answer with short names, which stand in a key below them.
-  ricochet.shortenLines = (list) => {
-    const used = new Set();
-    for (const line of list.querySelectorAll("li")) {
-      const full = line.textContent, short = ricochet.shorten(full.replace(/^Structure\.(?=\w)/, "structure."), used);
-      if (short === full) continue;
-      line.textContent = short;
-      line.title = full;
-    }
-    if (used.size)
-      list.after(
-          Object.assign(document.createElement("p"), {className: "fine key", textContent: ricochet.keyTo(used)}));
-  };
   ricochet.explainWords = (root) => {
     const walk = document.createTreeWalker(
         root, NodeFilter.SHOW_TEXT,

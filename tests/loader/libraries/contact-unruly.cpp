@@ -4,6 +4,7 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -41,6 +42,8 @@ void leave_a_process() {
   ::sleep(hours);
   ::_exit(0);
 }
+
+std::atomic<bool> solving = false;
 
 void do_it(const std::string& what) {
   static bool once = false;
@@ -83,6 +86,11 @@ void do_it(const std::string& what) {
       ::usleep(300000);
       ::raise(SIGSEGV);
     }).detach();
+  if (what == "waiting-thread")  // until the first solve(), however long a worker takes to open its study
+    std::thread([] {
+      while (!solving) ::usleep(1000);
+      ::raise(SIGSEGV);
+    }).detach();
   if (what == "second") {  // only the process that comes first is spared
     const char* file = std::getenv("RICOCHET_TEST_LEFT");
     if (::access(file, F_OK) == 0) ::raise(SIGSEGV);
@@ -106,6 +114,7 @@ class Unruly final : public ContactLaw {
   void prepare(int, std::span<const Parameters>) override {}
   void solve(ReducedProblem& problem) override {
     constexpr double stiffness = 1e5;  // N/m
+    solving = true;
     at("solve");
     for (const int lane : problem.touched) {
       LaneProblem one = problem.lane(lane);

@@ -176,14 +176,14 @@ TEST_CASE("unruly: whatever ends a worker in a law, its case is failed and the l
 
 TEST_CASE("unruly: a thread that crashes outside of any function is told with the libraries that may have begun it") {
   const ScratchFolder here;
-  // Longer than the thread waits.
+  // Longer than a thread takes to see it march.
   quick_studies::Json study = small_study();
   study["methods"]["contact"] = "unruly";
   study["step"] = 1e-6;
   study["duration"] = 10;
   study["budget"] = 60;
   write_text(here / "small.json", study.dump());
-  const CommandOutput ran = unruly(here, "run small.json --jobs 1 --out out", "register thread");
+  const CommandOutput ran = unruly(here, "run small.json --jobs 1 --out out", "register waiting-thread");
   INFO(ran.out << ran.err);
   CHECK(ran.code == 3);
   const auto rows = cases_of(here);

@@ -1,9 +1,12 @@
 // What the report of kind `stability` tells is what the cases' tables hold.
+#include <fmt/ranges.h>
+
 #include <catch2/catch.hpp>
 
 #include "runners/kinds/stability/stability.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/report/report.hpp"
+#include "runners/report/summary_page.hpp"
 #include "runners/run/finish_run.hpp"
 #include "tests/runners/report/synthetic_stability.hpp"
 
@@ -39,7 +42,8 @@ TEST_CASE("the table says limits, agreement, marginal roots", "[report]") {
   const StudyResults all = with_tables(synthetic::stability());
   const std::string html = stability_html(CaseView(all));
   CHECK_THAT(html, Contains("root −1 on &lt;the kernel&gt;") && Contains("nothing to march") && Contains("none"));
-  CHECK_THAT(answer_html(CaseView(all), stability_page()), Contains("Marches have another limit than the spectrum with 4 of 8"));
+  CHECK_THAT(fmt::format("{}", fmt::join(answer_lines(all), "\n")),
+             Contains("Marches have another limit than the spectrum with 4 of 8"));
   CHECK(html.find("<the kernel>") == std::string::npos);
   StudyResults other;
   other.kind = "trajectory";

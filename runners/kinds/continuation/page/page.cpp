@@ -8,8 +8,8 @@
 #include <numeric>
 #include <tuple>
 
-#include "runners/kinds/continuation/point_speaker.hpp"
 #include "runners/kinds/continuation/point_tables.hpp"
+#include "runners/kinds/continuation/point_words.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/report/html.hpp"

@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "runners/kinds/continuation/point_speaker.hpp"
+#include "runners/kinds/continuation/point_words.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/run/finish_run.hpp"
 #include "runners/table/table_reader.hpp"
@@ -31,11 +31,11 @@ std::string name_of(const StudyResults& all, const std::string& kind) {
   return "";
 }
 
-std::vector<std::string> sentences_of(const StudyResults& all) {
-  std::vector<std::string> out;
+/// What a study that asks nothing is answered.
+asks::Answered answered(const StudyResults& all) {
   const AnalysedResults own(all);
-  for (const answers::Sentence& one : own.analysis.answer(own.compared).sentences) out.push_back(one.text);
-  return out;
+  REQUIRE(own.asked.all.size() == 1);
+  return own.asked.all.front().second;
 }
 
 }  // namespace
@@ -133,24 +133,6 @@ TEST_CASE("names stand in special_points, of ends nowhere") {
   CHECK(named > 0);
 }
 
-TEST_CASE("the answer gives value, interval and order, and every number of it stands in answers") {
-  const AnalysedResults all(synthetic::points());
-  const auto said = sentences_of(all);
-  REQUIRE(said.size() >= 4);
-  CHECK_THAT(said[0],
-             Contains("The stable symmetric period-1 orbit folds at 0.1005") && Contains("±") && Contains("in h"));
-  std::string whole;
-  for (const std::string& one : said) {
-    whole += one + "\n";
-    // Words of a sentence, as many as can be read aloud in 15 seconds.
-    CHECK(std::count(one.begin(), one.end(), ' ') < 45);
-  }
-  INFO(whole);
-  CHECK_THAT(whole, Contains("becomes a torus at") && Contains("first touches a stop at 0.0791792"));
-  CHECK_THAT(whole, Contains("moves by") && Contains("No such fold"));
-  for (const answers::Sentence& one : all.analysis.answer(all.compared).sentences) CHECK_FALSE(one.clauses.empty());
-}
-
 TEST_CASE("the order of cases changes no number and no sentence") {
   const StudyResults all = with_tables(synthetic::points());
   StudyResults shuffled = synthetic::points();
@@ -175,38 +157,11 @@ TEST_CASE("one case names nothing, and says so") {
   one.cases = {one.cases[5]};
   one = with_tables(std::move(one));
   CHECK(point_limits_type().read(one.derived).empty());
-  const auto said = sentences_of(one);
-  REQUIRE(said.size() == 1);
-  CHECK_THAT(said[0], Contains("One case") && Contains("fold at 0.10056"));
-}
-
-namespace {
-
-/// Two cases of two methods; the first has branches without special points, or both.
-StudyResults without_points(bool both) {
-  StudyResults all = synthetic::points();
-  all.cases = {all.cases[5], all.cases[15]};
-  for (std::size_t k = 0; k < (both ? 2 : 1); ++k) {
-    std::vector<BranchRow> rows = branch_rows_in(*find_table(all.cases[k].tables, branches_name));
-    for (BranchRow& row : rows) row.point.reset();
-    all.cases[k].tables = {branches_type(4).with(rows), special_points_type().with({}), turns_type().with({})};
-  }
-  return with_tables(std::move(all));
-}
-
-}  // namespace
-
-TEST_CASE("where the finest case has no special point those of another are told") {
-  const auto said = sentences_of(without_points(false));
-  REQUIRE_FALSE(said.empty());
-  CHECK_THAT(said[0], Contains("the finest has none") && Contains("fold at 0.1"));
-}
-
-TEST_CASE("without special points the orbits are told, each once") {
-  const auto said = sentences_of(without_points(true));
-  REQUIRE(said.size() == 1);
-  // Both ways begin with one orbit at 0.08; its largest multiplier is 1 − 12 · 0.00495.
-  CHECK(said[0] == "No special point was met; orbits are stable at 0.08 (largest multiplier 0.941).");
+  const asks::Answered out = answered(one);
+  CHECK_THAT(out.sentence, Contains("folds at 0.10055980 ± 1e-7"));
+  CHECK(std::any_of(out.rows.begin(), out.rows.end(), [](const asks::VerdictRow& row) {
+    return row.reason.find("no second case confirms it") != std::string::npos;
+  }));
 }
 
 TEST_CASE("a study without orbits says why") {
@@ -220,48 +175,10 @@ TEST_CASE("a study without orbits says why") {
   row.note = "no orbit of period 1 within 30 iterations";
   none.cases[0].tables = {branches_type(4).with({}), special_points_type().with({row}), turns_type().with({})};
   none = with_tables(std::move(none));
-  CHECK(sentences_of(none) ==
-        std::vector<std::string>{"No periodic orbit was found: no orbit of period 1 within 30 iterations."});
+  CHECK(answered(none).sentence == "Open: no periodic orbit was found: no orbit of period 1 within 30 iterations.");
   StudyResults nothing;
   nothing.kind = "continuation";
   CHECK_NOTHROW(with_tables(nothing));
-}
-
-TEST_CASE("an answer says how far branches went, and why those that end inside the range do") {
-  const auto with_ends = [](const std::vector<std::vector<std::string>>& of_cases) {
-    StudyResults all = synthetic::points();
-    // That of the finest case of the first method, which is told of, comes first.
-    all.cases = {all.cases[5], all.cases[15]};
-    for (std::size_t c = 0; c < all.cases.size(); ++c) {
-      std::vector<SpecialRow> rows;
-      for (const std::string& ended : of_cases[c]) {
-        SpecialRow& row = rows.emplace_back();
-        row.branch = rows.size() == 1 ? "orbit-1+" : "orbit-1-";
-        row.kind = "end";
-        row.parameter = 0.0998;
-        row.ended = ended;
-        row.note = "why it " + ended;
-      }
-      std::erase_if(all.cases[c].tables, [](const Table& table) { return table.name == "special_points"; });
-      all.cases[c].tables.push_back(special_points_type().with(rows));
-    }
-    std::vector<std::string> said = sentences_of(with_tables(std::move(all)));
-    std::erase_if(said, [](const std::string& one) {
-      return one.find("branch") == std::string::npos && one.find("orbit-") == std::string::npos;
-    });
-    return said;
-  };
-  CHECK(with_ends({{"range", "range"}, {"range", "closed"}}) ==
-        std::vector<std::string>{"Of 4 branches 3 go to an end of the range and 1 closes."});
-  CHECK(with_ends({{"range", "left"}, {"limit", "joined"}}) ==
-        std::vector<std::string>{"Of 4 branches 1 goes to an end of the range and 1 joins another branch.",
-                                 "orbit-1- ends inside the range, at 0.0998: why it left.",
-                                 "Inside the range end also branches of 1 other case (special_points.csv)."});
-  CHECK(with_ends({{"left"}, {}}) ==
-        std::vector<std::string>{"None of 1 branch goes to an end of the range.",
-                                 "orbit-1+ ends inside the range, at 0.0998: why it left."});
-  // Stores of earlier versions do not say.
-  CHECK(with_ends({{"", ""}, {""}}).empty());
 }
 
 TEST_CASE("values are said to the digits that their intervals bear") {

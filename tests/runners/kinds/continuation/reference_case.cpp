@@ -163,8 +163,8 @@ TEST_CASE("a reference fills its columns and changes neither names nor limits no
   const auto orders = point_orders_type().read(plain.derived), same = point_orders_type().read(beside.derived);
   REQUIRE(orders.size() == same.size());
   for (std::size_t k = 0; k < same.size(); ++k) CHECK(same[k].order == orders[k].order);
-  const auto answer = beside.analysis.answer(beside.compared);
-  CHECK(std::any_of(answer.sentences.begin(), answer.sentences.end(), [](const answers::Sentence& one) {
-    return one.text.find("the reference: 0.1005653") != std::string::npos;
+  const std::vector<asks::VerdictRow>& said = beside.asked.all.front().second.rows;
+  CHECK(std::any_of(said.begin(), said.end(), [](const asks::VerdictRow& row) {
+    return row.reason.find("reference 0.1005653") != std::string::npos;
   }));
 }
