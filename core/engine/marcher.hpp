@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <ricochet/contact_solvers/circle_solver.hpp>
+#include <ricochet/contract/said.hpp>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/march_loads.hpp>
 #include <ricochet/engine/step_observer.hpp>
@@ -52,6 +53,7 @@ struct LaneEnd {
 
 /// The cause in words, with its numbers: "the contact law did not converge (residual 0.3 after 50 iterations)"; "" for
 /// none.
+Said told(const LaneEnd& end);
 std::string text(const LaneEnd& end);
 
 /// How a lane fares. A lane that diverges is frozen at zero, out of every stop's reach, and the others go on.

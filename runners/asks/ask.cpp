@@ -90,15 +90,15 @@ void check_stops(const Ask& ask, const Study& study) {
   }
 }
 
+bool matches(const StudyCase& one, const std::string& column, const Json& level) {
+  return std::any_of(one.axes.begin(), one.axes.end(),
+                     [&](const auto& axis) { return axis.first == column && same_level(level, axis.second); });
+}
+
 /// A level that some case has, and all of them together.
 void check_where(const Ask& ask, const Study& study) {
   if (!ask.has("where")) return;
   const Json& where = ask.keys["where"];
-  const auto matches = [](const StudyCase& one, const std::string& column, const Json& level) {
-    return std::any_of(one.axes.begin(), one.axes.end(), [&](const auto& axis) {
-      return axis.first == column && same_level(level, axis.second);
-    });
-  };
   for (const auto& item : where.items()) {
     const std::string& column = item.key();
     const Json& level = item.value();
@@ -117,14 +117,18 @@ void check_where(const Ask& ask, const Study& study) {
     for (const std::string& one : levels) listed += (listed.empty() ? "" : ", ") + one;
     throw InputError(pointer, "no case has the level " + quote(level) + "; there is: " + listed);
   }
-  if (std::none_of(study.cases.begin(), study.cases.end(), [&](const StudyCase& one) {
-        return std::all_of(where.items().begin(), where.items().end(),
-                           [&](const auto& item) { return matches(one, item.key(), item.value()); });
-      }))
+  if (std::none_of(study.cases.begin(), study.cases.end(), [&](const StudyCase& one) { return speaks_of(ask, one); }))
     throw InputError(ask.pointer("where"), "no case has all of these levels together");
 }
 
 }  // namespace
+
+bool speaks_of(const Ask& ask, const StudyCase& one) {
+  const auto where = ask.keys.find("where");
+  if (where == ask.keys.end()) return true;
+  return std::all_of(where->items().begin(), where->items().end(),
+                     [&](const auto& item) { return matches(one, item.key(), item.value()); });
+}
 
 void check(const Ask& ask, const Study& study) {
   const StudyKind& kind = *find_study_kind(study.kind);

@@ -35,6 +35,9 @@ struct Ask {
   bool required() const { return keys.value("require", false); }
 };
 
+/// Whether a case has the levels of an ask's `where`.
+bool speaks_of(const Ask& ask, const StudyCase& one);
+
 /// A verb: what may be asked, how it is checked, and what answers it.
 struct Verb {
   const char* name;           ///< its key in an entry of `ask`

@@ -8,6 +8,7 @@
 #include "runners/answers/answer.hpp"
 #include "runners/answers/limits.hpp"
 #include "runners/answers/set_names.hpp"
+#include "runners/asks/verdicts.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
@@ -159,7 +160,7 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
     for (const auto& [size, value] : point.values)
       if (!point.finest || finer(size, *point.finest)) point.finest = size;
     limits.push_back(point.finest ? std::optional(limits_at(point.values, *point.finest, point.floor)) : std::nullopt);
-    if (!point.finest) point.none = left_out(measure_of_all, point.cases).lines.front();
+    if (!point.finest) point.none = left_out(measure_of_all, point.cases).reasons.front().said();
     out.push_back(std::move(point));
   }
   std::vector<Limit*> all;
@@ -174,11 +175,7 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
 }
 
 LeftOut Evidence::left_out(const std::string& name, const Cases& cases) const {
-  struct Group {
-    std::size_t count = 0;
-    std::string first;
-  };
-  InOrderMet<std::string, Group> groups;  // reasons that differ in numbers alone are one
+  InOrderMet<std::string, LeftOut::Reason> groups;  // reasons that differ in numbers alone are one
   LeftOut out;
   for (const CaseRecord* record : cases) {
     if (record->status == "done" && measure(*record, name)) continue;
@@ -194,10 +191,28 @@ LeftOut Evidence::left_out(const std::string& name, const Cases& cases) const {
       why = record->excluded || reason.empty() ? reason : record->status + ": " + reason;
       key = ending_key(*record);
     }
-    Group& group = groups[key];
-    if (group.count++ == 0) group.first = why;
+    LeftOut::Reason& group = groups[key];
+    if (group.count++ == 0) group.text = why;
   }
-  for (const auto& [key, group] : groups.list()) out.lines.push_back(fmt::format("{} {}", group.count, group.first));
+  for (auto& [key, group] : std::move(groups).list()) out.reasons.push_back(std::move(group));
+  return out;
+}
+
+std::vector<std::string> LeftOut::told() const {
+  constexpr std::size_t all_told = 3, most = 2;
+  std::vector<Reason> sorted = reasons;
+  std::vector<std::string> out;
+  if (reasons.size() > all_told)
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Reason& a, const Reason& b) { return a.count > b.count; });
+  const std::size_t shown = reasons.size() > all_told ? most : reasons.size();
+  std::size_t rest = 0;
+  for (std::size_t k = 0; k < sorted.size(); ++k)
+    if (k < shown)
+      out.push_back("Left out: " + sorted[k].said() + ".");
+    else
+      rest += sorted[k].count;
+  if (rest > 0)
+    out.push_back(fmt::format("Left out: {} more for {} other reasons, which are in reasons.csv.", rest, sorted.size() - shown));
   return out;
 }
 
@@ -223,9 +238,13 @@ std::string energy_made(const answers::Compared& study) {
     firsts.push_back(&method.first());
   }
   if (making.empty()) return "";
-  const std::string who = making.size() == firsts.size() ? "every method" : answers::SetNames(study, firsts).of(making);
-  return fmt::format("Energy is made with {}: it ends with up to {} times what was brought in.", who,
-                     answers::short_number(most, 2));
+  const auto with = [&](const std::string& who) {
+    return fmt::format("Energy is made with {}: it ends with up to {} times what was brought in.", who,
+                       answers::short_number(most, 2));
+  };
+  if (making.size() == firsts.size()) return with("every method");
+  const std::string named = with(answers::SetNames(study, firsts).of(making));
+  return fits(named) ? named : with(fmt::format("{} of {} methods", making.size(), firsts.size()));
 }
 
 }  // namespace

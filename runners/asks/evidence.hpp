@@ -54,10 +54,17 @@ struct Point {
   const CaseRecord& first() const { return *cases.front(); }
 };
 
-/// Why cases are not behind a verdict: "12 refused: …".
+/// Why cases are not behind a verdict.
 struct LeftOut {
+  struct Reason {
+    std::size_t count = 0;
+    std::string text;  ///< "refused: …"
+    std::string said() const { return std::to_string(count) + " " + text; }
+  };
   std::size_t count = 0;
-  std::vector<std::string> lines;  ///< by reason
+  std::vector<Reason> reasons;  ///< in the order of the cases
+  /// A sentence each: "Left out: 12 refused: …."; of more than three reasons the two of most cases, and how many more.
+  std::vector<std::string> told() const;
 };
 
 /// The results of a study as verbs look at them.

@@ -1,5 +1,7 @@
 #include "runners/asks/kind_verbs.hpp"
 
+#include <algorithm>
+
 #include "runners/asks/verbs.hpp"
 #include "runners/json/json_text.hpp"
 #include "runners/table/in_order_met.hpp"
@@ -65,27 +67,35 @@ Ask ask_at(const Json& keys, const std::string& pointer) {
   return ask_of(keys, std::stoul(place.parent_pointer().back()) + 1);
 }
 
+std::function<void(const Json&, const std::string&, const std::string&)> measures_alone(
+    const std::vector<MeasureInfo>& measures) {
+  std::vector<std::string> names;
+  for (const MeasureInfo& one : measures) names.emplace_back(one.name);
+  return [names](const Json&, const std::string& measure, const std::string& pointer) {
+    if (std::find(names.begin(), names.end(), measure) == names.end())
+      throw InputError(pointer, "cases of this kind have no measure " + quote(measure) + "; expected one of " +
+                                    quoted_list(names) + did_you_mean(measure, names));
+  };
+}
+
 void refuse_stops(const Ask& ask) {
   if (ask.has("stops"))
     throw InputError(ask.pointer("stops"),
                      quote(std::string(ask.verb->name)) + " speaks of no single stop; leave it out");
 }
 
-void leave_out(Answered& out, const std::vector<std::string>& reasons) {
-  for (const std::string& why : reasons) out.aside.push_back("Left out: " + why + ".");
-}
-
 void leave_out(Answered& out, const Cases& left) {
-  InOrderMet<std::string, Cases> groups;
-  for (const CaseRecord* one : left) groups[ending_key(*one)].push_back(one);
-  for (const auto& [key, cases] : groups.list()) {
-    const CaseRecord& first = *cases.front();
-    const std::string status = first.partial            ? "still running"
-                               : first.status == "done" ? "without a result"
-                                                        : first.status;
-    out.aside.push_back("Left out: " + std::to_string(cases.size()) + " " + status +
-                        (first.status == "done" || first.reason().empty() ? "" : ": " + first.reason()) + ".");
+  InOrderMet<std::string, LeftOut::Reason> groups;
+  for (const CaseRecord* one : left) {
+    LeftOut::Reason& group = groups[ending_key(*one)];
+    if (group.count++ > 0) continue;
+    const bool done = one->status == "done";
+    group.text = (one->partial ? "still running" : done ? "without a result" : one->status) +
+                 (done || one->reason().empty() ? "" : ": " + one->reason());
   }
+  LeftOut all;
+  for (auto& [key, group] : std::move(groups).list()) all.reasons.push_back(std::move(group));
+  for (std::string& line : all.told()) out.aside.push_back(std::move(line));
   out.left_out = left.size();
 }
 

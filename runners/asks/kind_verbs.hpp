@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -15,12 +16,15 @@ std::string fitting(const std::vector<std::string>& sentences);
 /// An entry of `ask` whose verb stands at `pointer`, "/ask/0/order".
 Ask ask_at(const Json& keys, const std::string& pointer);
 
+/// StudyKind::check_measure of a kind whose cases have these measures alone.
+std::function<void(const Json& resolved, const std::string& measure, const std::string& pointer)> measures_alone(
+    const std::vector<MeasureInfo>& measures);
+
 /// Refuses stops, of which such a verb does not speak.
 void refuse_stops(const Ask& ask);
 
-/// What is told of the cases of an ask that have no such value, as Answered::aside.
-void leave_out(Answered& out, const std::vector<std::string>& reasons);
-/// The same of cases, counted by how they ended (ending_key()).
+/// What is told of the cases of an ask that have no result, as Answered::aside: counted by how they ended
+/// (ending_key()).
 void leave_out(Answered& out, const Cases& left);
 /// The same of those among `cases` of which nothing is told; what is told has its case as `record`.
 template <class Told>

@@ -100,8 +100,8 @@ Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& meas
       out.left_out += line.point.cases.size() - line.point.behind.size();
       out.all.push_back(std::move(line));
     }
-    for (const std::string& why : evidence.left_out(name, cases).lines)
-      if (told.insert(why).second) out.aside.push_back("Left out: " + why + ".");
+    for (const std::string& line : evidence.left_out(name, cases).told())
+      if (told.insert(line).second) out.aside.push_back(line);
   }
   // One stop needs no name.
   if (names.size() == 1) {
@@ -194,7 +194,7 @@ void check_choice(const Ask& ask, const Study& study, const std::string& key, co
     std::set<std::string> levels;
     for (const StudyCase& one : study.cases)
       for (const auto& [axis, value] : one.axes)
-        if (axis == column) levels.insert(value.dump());
+        if (axis == column && speaks_of(ask, one)) levels.insert(value.dump());
     for (const std::string& name : {axis_role(column), column}) {
       std::vector<std::string>& list = levels.size() > 1 ? varying : fixed;
       if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
@@ -204,7 +204,8 @@ void check_choice(const Ask& ask, const Study& study, const std::string& key, co
   const std::string expected =
       varying.empty() ? "; no choice of this study varies" : "; expected one of " + quoted_list(varying);
   if (std::find(fixed.begin(), fixed.end(), choice) != fixed.end())
-    throw InputError(ask.pointer(key), quote(choice) + " has one level in this study" + expected);
+    throw InputError(ask.pointer(key), quote(choice) + " has one level in " +
+                                           (ask.has("where") ? "the cases of \"where\"" : "this study") + expected);
   throw InputError(ask.pointer(key), "no choice of this study is called " + quote(choice) + expected +
                                          did_you_mean(choice, varying));
 }

@@ -233,7 +233,7 @@ void record_early_end(CaseRecord& record, const Marcher& marcher, long long step
     return;
   }
   record.status = status.end.failed() ? "failed" : "diverged";
-  record.reasons = {said("step {}, t = {:.6g} s: {}", status.step, status.time, text(status.end))};
+  record.reasons = {said("step {}, t = {:.6g} s: {}", status.step, status.time, told(status.end))};
   record.steps = status.step;
 }
 

@@ -11,7 +11,8 @@ namespace ricochet::report {
 /// - "along": `rows` of `series`, `x`, `value`, `low`, `high`: values along an axis `along` in `along_unit`, `at` as
 ///   lines, ranges `between` shaded;
 /// - "parts": `rows` of `name`, `part`, `value`: parts of a whole, stacked from zero; `at` as lines;
-/// - "ranges": `rows` of `name`, `motion`, `from`, `to`: stretches of `x` in `x_unit`, a row for each name;
+/// - "ranges": `rows` of `name`, `motion`, `from`, `to`: stretches of `x` in `x_unit`, a row for each name; `group` and
+///   `colour` of each or of none: what the legend names, and "#0072B2";
 /// - "curves": `series` of `name`, `points` [x, y] and `floor`, over `x` and `y` with `x_unit` and `y_unit`, in
 ///   logarithms where `log`; `at` as lines of y;
 /// - "branches": `series` of `name` and `points` [x, y, stable], what is not stable broken, and `marks` of `kind`,

@@ -96,9 +96,11 @@ void Drawing::line(double x1, double y1, double x2, double y2, const std::string
                       classes);
 }
 
-void Drawing::box(double x, double y, double w, double h, const std::string& classes, const std::string& title) {
-  out_ += fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" class=\"{}\">{}</rect>\n", x,
-                      y, w, h, classes, titled(title));
+void Drawing::box(double x, double y, double w, double h, const std::string& classes, const std::string& title,
+                  const std::string& colour) {
+  out_ += fmt::format(
+      "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" class=\"{}\"{}>{}</rect>\n", x, y, w, h, classes,
+      colour.empty() ? "" : fmt::format(" style=\"--c:{}\"", escape(colour)), titled(title));
 }
 
 void Drawing::text(double x, double y, const std::string& words, const std::string& classes, const char* anchor) {
@@ -181,7 +183,7 @@ double AskFigure::legend(const std::vector<std::string>& names, double top, bool
     const double wide = 2 * lane + width_of(lines.front());
     if (x > side && (x + wide > width - side || lines.size() > 1)) x = side, y += line_height;
     if (boxes)
-      draw_.box(x, y - 9, 9, 9, fmt::format("part s{}", k % colours));
+      draw_.box(x, y - 9, 9, 9, fmt::format("part s{}", k % colours), "", colours_.empty() ? "" : colours_[k]);
     else
       draw_.sign(x + dot, y - dot, k);
     for (std::size_t l = 0; l < lines.size(); ++l)

@@ -45,7 +45,9 @@ std::string words_of(const std::string& name, const Mark& mark, const std::strin
 class Drawing {
  public:
   void line(double x1, double y1, double x2, double y2, const std::string& classes);
-  void box(double x, double y, double w, double h, const std::string& classes, const std::string& title = "");
+  /// `colour`: "#0072B2", where it is none of the series'.
+  void box(double x, double y, double w, double h, const std::string& classes, const std::string& title = "",
+           const std::string& colour = "");
   /// `anchor`: "start", "middle" or "end"; y of the base line.
   void text(double x, double y, const std::string& words, const std::string& classes = "",
             const char* anchor = "start");
@@ -75,7 +77,8 @@ class AskFigure {
   std::string value_title() const;
   /// "step (s)" of `x` and `x_unit`.
   std::string axis_title(const char* axis) const;
-  /// Names of series with their signs, from `top` downwards; where it ends.
+  /// Names of series with their signs, from `top` downwards; where it ends. Boxes have the colours of colours_ where
+  /// these are given.
   double legend(const std::vector<std::string>& names, double top, bool boxes = false);
   /// "60 N".
   std::string label_at(double value) const;
@@ -90,6 +93,7 @@ class AskFigure {
   const Json& figure_;
   std::string unit_;
   std::vector<double> at_;
+  std::vector<std::string> colours_;  ///< of the names of a legend; empty: those of series
   Drawing draw_;
 };
 

@@ -233,36 +233,40 @@ class Ranges : public RowFigure {
   using RowFigure::RowFigure;
   std::string svg() override {
     struct Stretch {
-      std::size_t motion = 0;
+      std::size_t group = 0;
+      std::string motion;
       double from = 0, to = 0;
     };
     InOrderMet<std::string, std::vector<Stretch>> met;
-    std::vector<std::string> motions;
+    std::vector<std::string> groups;
     std::vector<double> values;
     for (const Json& row : list_of(figure_, "rows")) {
-      const std::string motion = text_of(row, "motion");
-      auto place = std::find(motions.begin(), motions.end(), motion);
-      if (place == motions.end()) place = motions.insert(place, motion);
+      const std::string motion = text_of(row, "motion"), own = text_of(row, "group"), group = own.empty() ? motion : own;
+      auto place = std::find(groups.begin(), groups.end(), group);
+      if (place == groups.end()) {
+        place = groups.insert(place, group);
+        if (!own.empty()) colours_.push_back(text_of(row, "colour"));
+      }
       auto& stretches = met[text_of(row, "name")];
       const auto from = number_of(row, "from"), to = number_of(row, "to");
       if (!from || !to) continue;
-      stretches.push_back({static_cast<std::size_t>(place - motions.begin()), *from, *to});
+      stretches.push_back({static_cast<std::size_t>(place - groups.begin()), motion, *from, *to});
       values.insert(values.end(), {*from, *to});
     }
     std::vector<Row> all;
     for (auto& [name, stretches] : std::move(met).list())
-      all.push_back(
-          {name, false, 1.3, [this, motions, stretches = std::move(stretches)](double y) {
-             for (const Stretch& one : stretches) {
-               constexpr double least = 1.5;  // one value alone is seen, too
-               const double from = axis_->at(one.from), wide = std::max(axis_->at(one.to) - from, least);
-               draw_.box(from, y - lane / 2, wide, lane, fmt::format("part s{}", one.motion % colours),
-                         fmt::format("{}: {} to {}", motions[one.motion], number_text(one.from), number_text(one.to)));
-             }
-             if (stretches.empty()) draw_.text(axis_->at(axis_->low()) + gap, y + 4, "no value", "none");
-           }});
+      all.push_back({name, false, 1.3, [this, stretches = std::move(stretches)](double y) {
+                       for (const Stretch& one : stretches) {
+                         constexpr double least = 1.5;  // one value alone is seen, too
+                         const double from = axis_->at(one.from), wide = std::max(axis_->at(one.to) - from, least);
+                         draw_.box(from, y - lane / 2, wide, lane, fmt::format("part s{}", one.group % colours),
+                                   fmt::format("{}: {} to {}", one.motion, number_text(one.from), number_text(one.to)),
+                                   colours_.empty() ? "" : colours_[one.group]);
+                       }
+                       if (stretches.empty()) draw_.text(axis_->at(axis_->low()) + gap, y + 4, "no value", "none");
+                     }});
     if (all.empty()) return "";
-    return rows(std::move(all), std::move(values), motions, false, true);
+    return rows(std::move(all), std::move(values), groups, false, true);
   }
 };
 

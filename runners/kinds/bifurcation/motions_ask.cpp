@@ -26,6 +26,13 @@ constexpr double much_open = 0.25;  // share of the range that is told first
 struct ValueMotions {
   std::set<std::pair<std::string, int>> motions = {};  ///< each attractor once
   std::size_t decided = 0, open = 0;                   ///< starts
+  std::string word = {};                               ///< one of the motions as orbits.csv has it
+  /// The group of motions by which it is drawn.
+  report::RegimeGroup group() const {
+    if (motions.empty()) return report::regime_groups[report::undecided_group];
+    if (motions.size() > 1) return {"several motions", "#7FBF3F"};
+    return report::regime_groups[report::regime_group(word, std::nullopt)];
+  }
   /// "two of period 1 and no contact"; "" where nothing is decided.
   std::string text() const {
     std::map<std::string, std::size_t> counts;
@@ -43,6 +50,7 @@ struct ValueMotions {
 struct MotionStretch {
   double from = 0, to = 0;
   std::string motion;
+  report::RegimeGroup group;
 };
 
 /// Between the last value of one set of motions and the first of the next.
@@ -101,7 +109,12 @@ class MotionsAlong {
       for (const MotionStretch& part : one.stretches) {
         const std::string motion = part.motion.empty() ? "undecided" : part.motion;
         add_row(out, one.level, motion, "", {}, part.from, part.to, parameter_.unit);
-        drawn.push_back({{"name", one.level}, {"motion", motion}, {"from", part.from}, {"to", part.to}});
+        drawn.push_back({{"name", one.level},
+                         {"motion", motion},
+                         {"group", part.group.name},
+                         {"colour", part.group.colour},
+                         {"from", part.from},
+                         {"to", part.to}});
       }
       for (const MotionChange& change : one.changes)
         add_row(out, one.level, change.from + " to " + change.to,
@@ -122,7 +135,9 @@ class MotionsAlong {
       if (!std::isfinite(run.parameter)) continue;
       ValueMotions& at = out.at[run.parameter];
       run.decided() ? ++at.decided : ++at.open;
-      if (run.decided()) at.motions.emplace(motion_words(run.motion), run.attractor);
+      if (!run.decided()) continue;
+      at.motions.emplace(motion_words(run.motion), run.attractor);
+      at.word = ricochet::text(run.motion);
     }
     std::set<double> values;
     for (const auto& [value, at] : out.at) values.insert(value);
@@ -132,7 +147,7 @@ class MotionsAlong {
       if (!out.stretches.empty() && out.stretches.back().motion == at.text())
         out.stretches.back().to = value;
       else
-        out.stretches.push_back({value, value, at.text()});
+        out.stretches.push_back({value, value, at.text(), at.group()});
     }
     const MotionStretch* known = nullptr;
     bool open = false;

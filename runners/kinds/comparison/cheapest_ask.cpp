@@ -52,10 +52,9 @@ class CheapestAsk {
 
   asks::Answered answer() const {
     asks::Answered out;
-    std::vector<std::string> left;
     for (const CaseRecord* one : cases_) out.cases += share(*one).has_value();
     out.left_out = cases_.size() - out.cases;
-    asks::leave_out(out, evidence_.left_out("error." + error_, cases_).lines);
+    out.aside = evidence_.left_out("error." + error_, cases_).told();
     std::vector<const Reach*> there, never;
     for (const Reach& one : methods_) (one.first ? there : never).push_back(&one);
     std::stable_sort(there.begin(), there.end(),
@@ -119,7 +118,7 @@ class CheapestAsk {
     if (out.first) return;
     if (!out.best)
       out.reason = evidence_.left_out("error." + error_, out.cases).count > 0
-                       ? evidence_.left_out("error." + error_, out.cases).lines.front()
+                       ? evidence_.left_out("error." + error_, out.cases).reasons.front().said()
                        : "nothing to take a share of";
     else if (untimed)
       out.reason = "it was not timed";

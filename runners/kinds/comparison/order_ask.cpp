@@ -62,7 +62,7 @@ class OrderAsk {
     const asks::LeftOut left = evidence_.left_out(measure_name, cases_);
     out.left_out = left.count;
     out.cases = cases_.size() - left.count;
-    asks::leave_out(out, left.lines);
+    out.aside = left.told();
     std::vector<asks::Verdict> verdicts;
     std::vector<std::vector<std::string>> said;
     Json series = Json::array();
@@ -141,7 +141,7 @@ class OrderAsk {
         for (const CaseRecord* one : cases_)
           if (study_.key(*one) == key) own.push_back(one);
         const asks::LeftOut left = evidence_.left_out("error." + error_, own);
-        method.reason = left.lines.empty() ? "one size" : left.lines.front();
+        method.reason = left.reasons.empty() ? "one size" : left.reasons.front().said();
       }
       list.push_back(std::move(method));
     }

@@ -14,6 +14,13 @@
 namespace ricochet {
 namespace {
 
+std::vector<MeasureInfo> continuation_measures() {
+  using Of = MeasureInfo::Of;
+  return {{"branches", "1", "Branches that were followed.", Of::computation},
+          {"pieces", "1", "Pieces or steps of all branches.", Of::computation},
+          {"special_points", "1", "Special points on them, ends not counted."}};
+}
+
 StudyKind continuation_format() {
   StudyKind format;
   format.name = "continuation";
@@ -26,17 +33,11 @@ StudyKind continuation_format() {
   format.complete = mark_sweep;
   format.check_cases = check_continued_cases;
   format.add_references = add_reference_cases;
+  format.check_measure = asks::measures_alone(continuation_measures());
   format.verbs = {"points"};
   format.check_ask = check_points_ask;
   format.default_asks = [](const Json&) { return Json::array({{{"points", {"all"}}}}); };
   return format;
-}
-
-std::vector<MeasureInfo> continuation_measures() {
-  using Of = MeasureInfo::Of;
-  return {{"branches", "1", "Branches that were followed.", Of::computation},
-          {"pieces", "1", "Pieces or steps of all branches.", Of::computation},
-          {"special_points", "1", "Special points on them, ends not counted."}};
 }
 
 class ContinuationKind final : public Kind {

@@ -103,6 +103,7 @@ StudyKind stability_format() {
   format.keys = stability_keys();
   format.settings = [](const Json& resolved) { return given_settings(resolved, {"steps", "observe", "budget"}); };
   format.check = check_stability;
+  format.check_measure = asks::measures_alone(stability_measures());
   format.verbs = {"steps"};
   format.default_asks = [](const Json&) { return Json::array({{{"steps", "limit"}}}); };
   format.check_ask = [](const Study&, const Json& ask, const std::string& pointer) {

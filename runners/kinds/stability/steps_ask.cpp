@@ -222,6 +222,11 @@ class StepsAsk {
     }
     const answers::SetNames sets = names();
     std::vector<std::string> texts;
+    // Of two groups one is named.
+    const auto named = [&](const auto& of) {
+      const std::string name = sets.of(of);
+      return bounds.size() == 2 && name.starts_with("all but ") ? "the others" : name;
+    };
     for (const int brief : {0, 1, 2}) {
       std::vector<std::string> parts;
       // The largest group needs no name beside the others.
@@ -232,7 +237,7 @@ class StepsAsk {
         const std::string who = of.size() == limits_.size() ? (limits_.size() == 1 ? "" : " with every case")
                                 : brief == 2 ? fmt::format(" in {} of {} cases", of.size(), limits_.size())
                                 : brief == 1 && of.size() == largest && bounds.size() > 1 ? " elsewhere"
-                                                                                          : " with " + sets.of(of);
+                                                                                          : " with " + named(of);
         switch (bound) {
           case Bound::stop:
           case Bound::mesh:

@@ -1,5 +1,6 @@
 #include "runners/kinds/sweep/sweep.hpp"
 
+#include "runners/asks/kind_verbs.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/stored_study.hpp"
 #include "runners/kinds/sweep/block_orders.hpp"
@@ -49,6 +50,7 @@ StudyKind sweep_format(const char* name, const char* text, std::vector<Field> ke
                        std::function<void(const Study&, const Json&, const std::string&)> check_ask,
                        std::function<Json(const Json&)> default_asks) {
   StudyKind format;
+  format.check_measure = asks::measures_alone(orbit_measures());
   format.name = name;
   format.text = text;
   format.keys = std::move(keys);

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
+#include <ricochet/contract/said_format.hpp>
+#include <ricochet/engine/marcher.hpp>
 
 #include "tests/runners/asks/made_tables.hpp"
 
@@ -282,4 +284,37 @@ TEST_CASE("asks: no contact law agrees with another where no stop is touched, an
     CHECK(passes(0) == (choice == "mass" ? Verdict::no : Verdict::open));
     CHECK(*answer_of(results, ask).passes == Verdict::no);
   }
+}
+
+TEST_CASE("asks: cases that end alike but for their numbers are one line, and many reasons three") {
+  Made made;
+  made.choices = {{"mass", {"a", "b", "c", "d", "e", "f"}}};
+  made.truth = [](const auto&) { return 3.0; };
+  StudyResults results = made.results();
+  const auto asides = [&] {
+    const Answered answered = answer_of(results, {{"value", "impulse"}});
+    for (const std::string& one : answered.aside) CHECK(one.starts_with("Left out: "));
+    return answered.aside;
+  };
+  CHECK(asides().empty());
+  // Of five masses; ends of an integration tell their numbers.
+  LaneEnd end{.cause = EndCause::energy_beyond, .value = 1, .bound = 2};
+  for (CaseRecord& record : results.cases) {
+    if (record.axes[0].second == "a") continue;
+    end.value *= 7;
+    record.status = "diverged";
+    record.reasons = {said("step {}, t = {} s: {}", static_cast<int>(end.value), end.value, told(end))};
+  }
+  CHECK(asides() == std::vector<std::string>{"Left out: 20 diverged: step 7, t = 7 s: the energy 7 J passed the bound 2 J."});
+  for (CaseRecord& record : results.cases) {
+    const std::string mass = record.axes[0].second.get<std::string>();
+    if (mass == "a" || mass == "b") continue;
+    record.status = "refused";
+    record.reasons = {Said(mass + " does not apply")};
+  }
+  // Four each; the first two are told, in the order of the study.
+  CHECK(asides() == std::vector<std::string>{
+                        "Left out: 4 diverged: step 7, t = 7 s: the energy 7 J passed the bound 2 J.",
+                        "Left out: 4 refused: c does not apply.",
+                        "Left out: 12 more for 3 other reasons, which are in reasons.csv."});
 }

@@ -96,6 +96,29 @@ TEST_CASE("a sweep is asked for its own parameter, basins for shares", "[asks]")
   CHECK_THAT(refused(oscillator("trajectory"), {{"motions", "share"}}), Contains("kinds bifurcation and basins"));
 }
 
+TEST_CASE("cases without a motion of their own have no measures of motions", "[asks]") {
+  for (const char* kind : {"bifurcation", "basins", "stability"}) {
+    INFO(kind);
+    const Json study = oscillator(kind);
+    for (const Json& ask : {Json({{"value", "impulse"}}), Json({{"limit", "impulse"}, {"below", 1}}),
+                            Json({{"enough", "impulse"}, {"within", 0.1}}), Json({{"effect", "time"}, {"on", "impulse"}})})
+      CHECK_THAT(refused(study, ask), Contains("cases of this kind have no measure \"impulse\"; expected one of \""));
+  }
+  CHECK(refused(oscillator("bifurcation"), {{"value", "share_periodic"}}) == "");
+  CHECK_THAT(refused(oscillator("stability"), {{"value", "limit_observd"}}), Contains("did you mean \"limit_observed\"?"));
+}
+
+TEST_CASE("a choice that where leaves one level of is refused", "[asks]") {
+  const Json study = oscillator("trajectory"), newmark = {{"time", "newmark"}};
+  CHECK(refused(study, {{"effect", "time"}, {"on", "impulse"}}) == "");
+  CHECK(refused(study, {{"effect", "step"}, {"on", "impulse"}, {"where", newmark}}) == "");
+  CHECK_THAT(refused(study, {{"effect", "time"}, {"on", "impulse"}, {"where", newmark}}),
+             Contains("/ask/0/effect: \"time\" has one level in the cases of \"where\"; expected one of \"step\""));
+  CHECK_THAT(refused(study, {{"rank", "impulse"}, {"over", "time"}, {"where", newmark}}), Contains("/ask/0/over: "));
+  CHECK_THAT(refused(study, {{"threshold", "impulse"}, {"is", 0}, {"along", "step"}, {"where", {{"step", 0.01}}}}),
+             Contains("/ask/0/along: "));
+}
+
 TEST_CASE("points and steps are asked of their kinds alone", "[asks]") {
   CHECK(refused(oscillator("stability"), {{"steps", "limit"}}) == "");
   CHECK(refused(oscillator("bifurcation"), {{"effect", "time"}, {"on", "motions"}, {"from", "10 %"}}) == "");

@@ -312,6 +312,27 @@ TEST_CASE("a figure of pairs has a row for each, with every level in a lane of i
   }
 }
 
+TEST_CASE("stretches of one group have one colour, that of its name in the legend", "[report][asks]") {
+  Json figure = {{"form", "ranges"}, {"x", "amplitude"}, {"x_unit", "m"}, {"rows", Json::array()}};
+  const std::vector<std::string> colours = {"#5B5B5B", "#6A3D9A", "#D55E00"};
+  // More motions than a palette has colours, in three groups.
+  for (int k = 0; k < 30; ++k)
+    figure["rows"].push_back({{"name", "n0q"},
+                              {"motion", "period " + std::to_string(k)},
+                              {"group", "g" + std::to_string(k % 3) + "q"},
+                              {"colour", colours[static_cast<std::size_t>(k % 3)]},
+                              {"from", k},
+                              {"to", k + 1}});
+  const std::string svg = figure_svg(figure);
+  for (std::size_t k = 0; k < colours.size(); ++k) {
+    std::size_t count = 0;
+    for (std::size_t at = svg.find("--c:" + colours[k]); at != std::string::npos; at = svg.find("--c:" + colours[k], at + 1))
+      ++count;
+    CHECK(count == 11);  // ten stretches, and the name
+    check_named(read(svg), "g" + std::to_string(k) + "q");
+  }
+}
+
 TEST_CASE("values along an axis stand over it, ranges are shaded where they are", "[report][asks]") {
   Random random(4);
   for (int trial = 0; trial < trials; ++trial) {
