@@ -10,7 +10,6 @@
 #include <limits>
 #include <numbers>
 #include <ricochet/contract/said_format.hpp>
-#include <ricochet/kernels/sparse_ldlt.hpp>
 #include <ricochet/measure/stability/structure_physics.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/whole_load.hpp>
@@ -343,23 +342,10 @@ std::vector<std::string> table_notes(const StudyCase& study_case) {
 
 Said short_run(const SemiDiscrete& problem, double duration) {
   constexpr double times = 100;
-  constexpr int steps = 2;
-  SparseLdlt stiffness;
-  if (problem.dofs() > most_modal_dofs || !stiffness.factorise(problem.stiffness)) return {};
-  Eigen::VectorXd shape = Eigen::VectorXd::Ones(problem.dofs());
-  double squared = 0;
-  for (int k = 0; k < steps; ++k) {
-    const Eigen::VectorXd pushed = apply_mass(problem.inertia, shape);
-    stiffness.solve(pushed.data(), shape.data());
-    const double mass = shape.dot(apply_mass(problem.inertia, shape));
-    if (!(mass > 0)) return {};
-    squared = shape.dot(pushed) / mass;
-    shape /= std::sqrt(mass);
-  }
-  const double period = 2 * std::numbers::pi / std::sqrt(squared);
-  if (!(squared > 0) || !(duration * times < period) || !std::isfinite(period)) return {};
+  const auto period = slowest_period(problem);
+  if (!period || !(duration * times < *period)) return {};
   return said("the run of {:.3g} s lasts {:.2g} of the slowest period, {:.3g} s: nothing of that motion is seen",
-              duration, duration / period, period);
+              duration, duration / *period, *period);
 }
 
 std::vector<Said> run_doubts(const StudyCase& study_case, const Prepared& prepared) {

@@ -44,9 +44,8 @@ class GapWatch {
 /// formula takes 100 ns. Empty where no load is a formula in t.
 std::vector<Said> load_changes(const SceneSpec& scene, double step, long long steps);
 
-/// What a run of `duration` (s) shows of a structure whose slowest mode is more than a hundred times as slow: nothing
-/// of its motion. ω₁² is what two steps of inverse iteration with K leave of the quotient xᵀKx/xᵀMx, at least the true
-/// one. Nothing where K has no inverse, and of more dofs than modes are found of.
+/// What a run of `duration` (s) shows of a structure whose slowest period is more than a hundred times as long: nothing
+/// of that motion. Nothing where no such period is known.
 Said short_run(const SemiDiscrete& problem, double duration);
 
 /// What the steps of a case do not resolve, and what its duration does not show: load_changes() and short_run().

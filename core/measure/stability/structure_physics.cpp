@@ -59,6 +59,24 @@ StructureModes open_modes(const SemiDiscrete& problem) {
   return {dense_mass(problem.inertia), MatrixXd(problem.stiffness), problem.inertia.kernel_dimension, free};
 }
 
+std::optional<double> slowest_period(const SemiDiscrete& problem) {
+  constexpr int steps = 2;
+  SparseLdlt stiffness;
+  if (problem.dofs() > most_modal_dofs || !stiffness.factorise(problem.stiffness)) return std::nullopt;
+  VectorXd shape = VectorXd::Ones(problem.dofs());
+  double squared = 0;
+  for (int k = 0; k < steps; ++k) {
+    const VectorXd pushed = apply_mass(problem.inertia, shape);
+    stiffness.solve(pushed.data(), shape.data());
+    const double mass = shape.dot(apply_mass(problem.inertia, shape));
+    if (!(mass > 0)) return std::nullopt;
+    squared = shape.dot(pushed) / mass;
+    shape /= std::sqrt(mass);
+  }
+  const double period = 2 * std::numbers::pi / std::sqrt(squared);
+  return squared > 0 && std::isfinite(period) ? std::optional(period) : std::nullopt;
+}
+
 StructureModes held_modes(const SemiDiscrete& problem, const std::vector<int>& points, bool free) {
   const Index n = problem.dofs();
   MatrixXd rows(static_cast<Index>(points.size()), n);

@@ -44,6 +44,11 @@ StructureModes open_modes(const SemiDiscrete& problem);
 /// Those of the structure with H_J q = 0; `free`: without this, K is singular.
 StructureModes held_modes(const SemiDiscrete& problem, const std::vector<int>& points, bool free);
 
+/// The longest period of the structure with open contact, s: 2π/ω, ω² = xᵀKx/xᵀMx after two steps of inverse iteration
+/// with K. That is at least ω₁², so the period is at most the true one. Nothing where K has no inverse, and of more dofs
+/// than modes are found of.
+std::optional<double> slowest_period(const SemiDiscrete& problem);
+
 /// A number of the structure, in SI units.
 struct PhysicalNumber {
   const char* symbol;
