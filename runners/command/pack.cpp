@@ -119,7 +119,7 @@ Equal agreement(const StudyResults& results, const CaseRecord& stored, const Cas
   for (const auto& [name, value] : again.measures) {
     const auto share = shares.find(name);
     const auto kept = std::find_if(stored.measures.begin(), stored.measures.end(),
-                                   [&](const auto& one) { return one.first == name; });
+                                   [&wanted = name](const auto& one) { return one.first == wanted; });
     if (share == shares.end() || kept == stored.measures.end()) continue;
     ++compared;
     const double difference = std::abs(value - kept->second), open = share->second * std::abs(kept->second);

@@ -1,5 +1,6 @@
 #include "runners/kinds/continuation/continuation.hpp"
 
+#include "runners/asks/kind_verbs.hpp"
 #include "runners/kinds/all_kinds.hpp"
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continuation_tables.hpp"

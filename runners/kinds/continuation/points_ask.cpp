@@ -11,6 +11,7 @@
 #include "runners/answers/set_names.hpp"
 #include "runners/asks/kind_verbs.hpp"
 #include "runners/kinds/continuation/continuation.hpp"
+#include "runners/kinds/continuation/point_tables.hpp"
 #include "runners/kinds/continuation/point_words.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/report/case_view.hpp"

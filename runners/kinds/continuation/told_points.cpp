@@ -3,6 +3,7 @@
 #include <map>
 #include <tuple>
 
+#include "runners/kinds/continuation/point_tables.hpp"
 #include "runners/kinds/continuation/point_words.hpp"
 #include "runners/table/table_reader.hpp"
 

@@ -4,6 +4,7 @@
 
 #include "runners/asks/kind_verbs.hpp"
 #include "runners/kinds/continuation/continuation.hpp"
+#include "runners/kinds/continuation/point_tables.hpp"
 #include "runners/kinds/continuation/point_words.hpp"
 #include "runners/run/finish_run.hpp"
 #include "tests/runners/report/synthetic_points.hpp"

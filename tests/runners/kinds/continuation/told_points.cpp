@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "runners/answers/compared.hpp"
+#include "runners/kinds/continuation/point_tables.hpp"
 #include "runners/kinds/continuation/point_words.hpp"
 #include "runners/run/finish_run.hpp"
 #include "runners/table/table_reader.hpp"
