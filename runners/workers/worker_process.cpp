@@ -153,7 +153,7 @@ WorkerProcess::WorkerProcess() {
     ::waitpid(pid_, nullptr, 0);
     ended_ = true;
     errno = EAGAIN;
-    fail("thread");
+    fail("a thread, for which memory or the limit of processes is too small");
   }
 }
 

@@ -336,7 +336,10 @@ class BifurcationRun {
                               scheduler_->count())};
     } else if (marched == 0) {
       for (const OrbitView& view : all)
-        if (view.orbit) record_.reasons = {"no orbit was completed; " + end_text(*view.orbit)};
+        if (view.orbit)
+          record_.reasons = {said("no orbit was completed; {}", view.orbit->end_words.empty()
+                                                                    ? told(view.orbit->end)
+                                                                    : Said(view.orbit->end_words))};
     } else if (bad > 0) {
       record_.notes.push_back(
           fmt::format("{} of {} orbits were refused or stopped; their rows say why", bad, all.size()));
