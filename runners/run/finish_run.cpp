@@ -14,6 +14,7 @@
 #include "runners/report/html.hpp"
 #include "runners/report/summary_page.hpp"
 #include "runners/run/asked_text.hpp"
+#include "runners/run/exit_code.hpp"
 #include "runners/run/choice_effects.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/store/atomic_file.hpp"
@@ -27,8 +28,6 @@
 #include "runners/table/text.hpp"
 
 namespace ricochet {
-
-constexpr int required_not_met = 6;
 
 void say(std::FILE* out, std::string_view text) {
   say_as_it_is(out, plain_text(text));
@@ -113,16 +112,15 @@ std::unique_ptr<const AnalysedResults> write_folder(Store& store, const std::fil
 
 int tell_results(std::FILE* out, const AnalysedResults& results, const std::filesystem::path& folder,
                  const std::string& how, bool table) {
-  constexpr int nothing_ran = 3;
   const bool nothing = std::all_of(results.cases.begin(), results.cases.end(),
                                    [](const CaseRecord& one) { return one.status == "refused"; });
   const std::string answer = asked_text(results);
-  const int code = nothing ? nothing_ran : results_exit_code(results);
+  const int code = nothing ? exit_some_failed : results_exit_code(results);
   say(out, fmt::format("{}{}\n{} ({})\nreport: {}\n", table ? case_table(results) + "\n" : "", answer,
                        totals_text(results), how, (folder / "report.html").string()));
   for (const asks::Ask* ask : results.asked.unmet())
     say(out, fmt::format("{}ask {} requires a yes and has none\n",
-                         code == 0 ? fmt::format("exit code {}: ", required_not_met) : "", ask->number));
+                         code == 0 ? fmt::format("exit code {}: ", static_cast<int>(exit_not_met)) : "", ask->number));
   if (nothing)
     say(out, "nothing ran: every case is refused; the reasons above and in the report say what to change\n");
   else if (code != 0)
@@ -131,7 +129,7 @@ int tell_results(std::FILE* out, const AnalysedResults& results, const std::file
                                "a study of each alone\n",
                                code, (folder / "failures").string())
                  : fmt::format("exit code {}: the methods of some cases are in error\n", code));
-  return code == 0 && !results.asked.unmet().empty() ? required_not_met : code;
+  return code == 0 && !results.asked.unmet().empty() ? exit_not_met : code;
 }
 
 // What is made of a folder's store alone: its report and tables anew, or the tables elsewhere.
@@ -140,16 +138,15 @@ namespace {
 
 /// 0, or the code of a store that cannot be used, with its cause said.
 int unless_unusable(const std::function<int()>& work) {
-  constexpr int store_unusable = 5;
   try {
     return work();
   } catch (const StoreError& error) {
     say(stderr, fmt::format("ricochet: {}\n", error.what()));
-    return store_unusable;
+    return exit_store;
   } catch (const nlohmann::json::exception& error) {
     // A study that no program wrote: one that did is checked by its checksum.
     say(stderr, fmt::format("ricochet: what the store says of its study cannot be ({})\n", error.what()));
-    return store_unusable;
+    return exit_store;
   }
 }
 
@@ -167,7 +164,7 @@ int rebuild_report_with(const RenderReport& render, const std::filesystem::path&
     say(stdout, json ? asked_json(results).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"
                      : fmt::format("{}\nreport: {}\n", totals_text(results), (folder / "report.html").string()));
     tell_damage(folder, results);
-    return results.asked.unmet().empty() ? 0 : required_not_met;
+    return results.asked.unmet().empty() ? 0 : exit_not_met;
   });
 }
 
@@ -296,9 +293,8 @@ std::string totals_text(const StudyResults& results) {
 }
 
 int results_exit_code(const StudyResults& results) {
-  constexpr int some_failed = 3;
-  return !contradictions(results).empty() || count(results, "diverged") + count(results, "failed") > 0 ? some_failed
-                                                                                                       : 0;
+  const bool wrong = !contradictions(results).empty() || count(results, "diverged") + count(results, "failed") > 0;
+  return wrong ? exit_some_failed : exit_done;
 }
 
 }  // namespace ricochet

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <numbers>
+#include <ricochet/kernels/block.hpp>
 #include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
+#include <ricochet/kernels/sparse_factor.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
 #include <ricochet/measure/stability/structure_physics.hpp>
 #include <ricochet/scene/assembly.hpp>
@@ -61,13 +63,15 @@ StructureModes open_modes(const SemiDiscrete& problem) {
 
 std::optional<double> slowest_period(const SemiDiscrete& problem) {
   constexpr int steps = 2;
-  SparseLdlt stiffness;
-  if (problem.dofs() > most_modal_dofs || !stiffness.factorise(problem.stiffness)) return std::nullopt;
+  if (problem.dofs() > most_modal_dofs) return std::nullopt;
+  const auto stiffness = SparseFactor::of(problem.stiffness);
+  if (!stiffness) return std::nullopt;
+  Block work(problem.dofs() + 1, 1);
   VectorXd shape = VectorXd::Ones(problem.dofs());
   double squared = 0;
   for (int k = 0; k < steps; ++k) {
     const VectorXd pushed = apply_mass(problem.inertia, shape);
-    stiffness.solve(pushed.data(), shape.data());
+    stiffness->solve(pushed.data(), shape.data(), work.data());
     const double mass = shape.dot(apply_mass(problem.inertia, shape));
     if (!(mass > 0)) return std::nullopt;
     squared = shape.dot(pushed) / mass;
