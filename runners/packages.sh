@@ -1,5 +1,5 @@
-# Sourced by runners/quickstart.sh and tests/run.sh, which set `root` to the project's folder: what this project needs of Debian 12 and of
-# npm, fetched only when it is missing, so that a second run needs no network.
+# Sourced by runners/quickstart.sh and tests/run.sh, which set `root` to the project's folder: what this project needs of Debian 12,
+# fetched only when it is missing, so that a second run needs no network.
 
 say() { printf '%s\n' "$*"; }
 give_up() { printf 'error: %s\n' "$*" >&2; exit 1; }
@@ -42,18 +42,4 @@ install_missing() {
   # shellcheck disable=SC2086  # a list of words
   as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing ||
     give_up "apt-get could not install:$missing"
-}
-
-# npm_packages FOLDER PACKAGE: what the folder's lock file pins, into it; fails where that cannot be had.
-npm_packages() {
-  [ -d "$1/node_modules/$2" ] && return 0
-  command -v npm >/dev/null 2>&1 || (install_missing npm=nodejs npm=npm) || return 1
-  say "Fetching $2 (once)"
-  (cd "$1" && npm ci --no-audit --no-fund)
-}
-
-# The chart library; without it reports have tables only, so failing here stops nothing.
-fetch_charts() {
-  npm_packages "$root/runners/report" echarts ||
-    say "npm could not fetch the chart library: reports will have tables only; run this again with a network for charts" >&2
 }

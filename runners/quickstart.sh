@@ -7,10 +7,9 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
 
 say "Ricochet: installs what is missing of compiler, CMake and libraries from Debian (named below), builds into build/release,"
-say "runs one study into results. Two cores take some five minutes and 800 MB the first time, a second run seconds."
+say "runs one study into results. Two cores take some five minutes and 600 MB the first time, a second run seconds."
 # shellcheck disable=SC2086  # lists of words
 install_missing $build_commands $build_packages
-fetch_charts
 
 say "Building"
 cmake --preset release -DRICOCHET_TESTS=OFF -Wno-dev
@@ -27,7 +26,3 @@ build/release/bin/ricochet run "$study" || status=$?
 say ""
 say "The report: $root/$report  (open it in a browser; it needs no network)"
 say "Next: edit studies/quick.json and run  build/release/bin/ricochet run studies/quick.json"
-case $(build/release/bin/ricochet doctor) in
-  *"charts "*"not built in"*) say "Missing: charts (npm could not fetch the library): the report has tables only. Run this again with a network." ;;
-  *) say "Nothing is missing: reports have their charts." ;;
-esac

@@ -17,10 +17,14 @@ if [ "${RICOCHET_WITHOUT_MPI:-}" = 1 ]; then
 else
   install_missing openmpi-bin libopenmpi-dev slurmctld slurmd slurm-client munge
 fi
-fetch_charts
-# Editors read the schema by ajv, and so does the suite.
+# Editors read the schema by ajv, and so does the suite: what the lock file of its folder pins.
 install_missing node=nodejs
-npm_packages "$root/tests/runners/study/validator" ajv || give_up "npm could not fetch ajv, which the tests of the schema need"
+validator=$root/tests/runners/study/validator
+if [ ! -d "$validator/node_modules/ajv" ]; then
+  command -v npm >/dev/null 2>&1 || install_missing npm=npm
+  say "Fetching ajv (once)"
+  (cd "$validator" && npm ci --no-audit --no-fund) || give_up "npm could not fetch ajv, which the tests of the schema need"
+fi
 
 # A compiler cache, where there is one, finds again what did not change, in another folder, too.
 if command -v ccache >/dev/null 2>&1; then

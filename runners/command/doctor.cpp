@@ -8,7 +8,6 @@
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/plan_files/plan_file.hpp"
-#include "runners/report/assets.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/table/text.hpp"
 
@@ -21,10 +20,6 @@ void print_program(std::ostream& out) {
   TextTable table({"", ""});
   for (const auto& [name, value] : describe_environment({}).entries)
     if (name != "started") table.add({name, value});
-  const std::string charts(report::chart_library_version());
-  table.add({"charts", charts.empty()
-                           ? "not built in: reports have tables only (run `npm ci` in runners/report and build again)"
-                           : "ECharts " + charts + ", built in"});
   const fs::path data = installed_data();
   table.add({"pages, studies", data.empty() ? "not installed: those of the source tree" : data.string()});
   out << table.text() << "\n";

@@ -50,41 +50,27 @@
         threshold, ...rows.flatMap((row) => [row.effect, row.largest, row.left]).filter((value) => value > 0));
     const x = ["difference", "% of the scale"],
           along = ricochet.logarithmicSweep(range) ?
-        ricochet.logAxis(x, range, false) :
-        ricochet.valueAxis(x, ricochet.roundOutwards(new ricochet.Interval(0, range.high), 1e-9), false);
-    along.startValue = along.min;
+        ricochet.logAxis(x, range) :
+        ricochet.valueAxis(x, ricochet.roundOutwards(new ricochet.Interval(0, range.high), 1e-9));
     const out = ricochet.namedRows(rows.map((row) => row.name), x, along), legend = [];
     const drawn = rows.map((row) => ({...row, effect: row.effect > along.min ? row.effect : along.min}));
     // A band is a wide line: bars of two widths do not share a middle.
     const bands = ricochet.ends(
         drawn.filter((row) => row.left > along.min).map((row) => ({...row, from: along.min})), "from", "left");
-    if (bands.length)
-      ricochet.draw(
-          out, bands, {x: "end", y: "name"},
-          {...ricochet.line(left, leftColour, 18), lineStyle: {width: 18, color: leftColour, cap: "butt"}, z: 1});
+    if (bands.length) ricochet.draw(out, bands, {x: "end", y: "name"}, ricochet.line(left, leftColour, 18));
     if (bands.length) legend.push(ricochet.swatch(left, leftColour));
     for (const [verdict, colour] of Object.entries(verdicts)) {
       if (!rows.some((row) => row.verdict === verdict)) continue;
       ricochet.draw(
-          out, drawn, {x: "effect", y: "name"},
-          {type: "bar", name: verdict, color: colour, barWidth: 9, barGap: "-100%", z: 3, itemStyle: {color: colour}},
-          {verdict});
+          out, drawn, {x: "effect", y: "name"}, {mark: "bars", name: verdict, colour, thick: 9, z: 3}, {verdict});
       const more = drawn.filter((row) => row.verdict === verdict && row.largest > row.effect);
       if (more.length)
         ricochet.draw(
             out, ricochet.ends(more, "effect", "largest"), {x: "end", y: "name"},
-            {...ricochet.line(verdict, colour, 1.4), symbol: "rect", symbolSize: [1.5, 9], z: 4});
+            {...ricochet.line(verdict, colour, 1.4), symbol: "tick", size: 9, z: 4});
       legend.push(ricochet.swatch(verdict, colour));
     }
-    const line = {
-      silent: true,
-      symbol: "none",
-      animation: false,
-      label: {show: true, formatter: threshold + " %", position: "start", distance: 3, fontSize: 10, color: "#777777"},
-      lineStyle: {color: "#777777", type: "dashed", width: 1}
-    };
-    out.option.series.push(
-        {type: "line", name: "threshold", data: [], silent: true, markLine: {...line, data: [{xAxis: threshold}]}});
+    out.marks.push(ricochet.rule("threshold", {x: threshold}, threshold + " %", {dash: [4, 3]}));
     if (ordered.length > rows.length) out.notes.push(ordered.length - rows.length + " more are in differences.csv.");
     return [{
       id: "choice-effects",

@@ -11,17 +11,9 @@
 
   function chart(measure, shares) {
     const {percent, spaced} = ricochet.format, name = spaced(measure.measure), x = ["share of the variance", "%"];
-    const y = {
-      type: "category",
-      data: shares.map((row) => ricochet.shorten(row.factor)),
-      inverse: true,
-      axisTick: {show: false},
-      axisLine: {show: true, lineStyle: {color: ricochet.faint}},
-      axisLabel: {color: ricochet.ink, fontSize: 11, width: 150, overflow: "truncate", interval: 0},
-    };
-    const out = ricochet.view(
-        x, [measure.log ? "log₁₀ " + name : name, "1"], ricochet.valueAxis(x, new ricochet.Interval(0, 100), false), y);
-    out.option.grid.left = 165;
+    const out = ricochet.namedRows(
+        shares.map((row) => ricochet.shorten(row.factor)), x, ricochet.valueAxis(x, new ricochet.Interval(0, 100)), 17);
+    out.y = [measure.log ? "log₁₀ " + name : name, "1"];
     const rows = shares.map((row) => ({
                               factor: ricochet.shorten(row.factor),
                               kind: kindOf(row.factor),
@@ -32,20 +24,13 @@
                             }));
     for (const [kind, colour] of kinds)
       ricochet.draw(
-          out, rows, {x: "share", y: "factor"}, {
-            type: "bar",
-            name: kind,
-            stack: "share",
-            barWidth: "58%",
-            color: colour,
-            itemStyle: {color: ricochet.lighten(colour, 0.25)}
-          },
-          {kind});
+          out, rows, {x: "share", y: "factor"},
+          {mark: "bars", name: kind, thick: 0.58, colour: ricochet.lighten(colour, 0.25)}, {kind});
     const ends = ricochet.ends(rows, "low", "high");
     for (const [kind] of kinds)
       ricochet.draw(
-          out, ends, {x: "end", y: "factor"},
-          {...ricochet.line(kind, "#222222", 1.4), symbol: "rect", symbolSize: [1.4, 9], z: 4}, {kind});
+          out, ends, {x: "end", y: "factor"}, {...ricochet.line(kind, "#222222", 1.4), symbol: "tick", size: 9, z: 4},
+          {kind});
     return out;
   }
 

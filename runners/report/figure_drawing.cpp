@@ -98,9 +98,9 @@ void Drawing::line(double x1, double y1, double x2, double y2, const std::string
 
 void Drawing::box(double x, double y, double w, double h, const std::string& classes, const std::string& title,
                   const std::string& colour) {
-  out_ += fmt::format(
-      "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" class=\"{}\"{}>{}</rect>\n", x, y, w, h, classes,
-      colour.empty() ? "" : fmt::format(" style=\"--c:{}\"", escape(colour)), titled(title));
+  out_ +=
+      fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" class=\"{}\"{}>{}</rect>\n", x, y,
+                  w, h, classes, colour.empty() ? "" : fmt::format(" style=\"--c:{}\"", escape(colour)), titled(title));
 }
 
 void Drawing::text(double x, double y, const std::string& words, const std::string& classes, const char* anchor) {

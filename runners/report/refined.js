@@ -3,20 +3,7 @@
 {
   const mostNamed = 12, tiers = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"], none = "#7A7A7A";
   const colourOf = (row) => (row.tier ? tiers[(row.tier - 1) % tiers.length] : none);
-  const height = 400, plot = height - 58, line = 12;  // pixels: of the chart, of its frame, of a line of text
-  // How far each label is moved down or up so that none covers another: `at` are their places, 0 to 1 from below.
-  function apart(at) {
-    const order = at.map((_, k) => k).sort((a, b) => at[b] - at[a]), out = [];
-    let least = -Infinity;
-    for (const k of order) out[k] = least = Math.max(plot * (1 - at[k]), least + line);
-    // What ran out below goes up again.
-    let most = plot;
-    for (const k of [...order].reverse()) {
-      out[k] = Math.min(out[k], most);
-      most = out[k] - line;
-    }
-    return out.map((y, k) => y - plot * (1 - at[k]));
-  }
+  const height = 400;  // pixels
   const told = ["keeps", "differ", "gains", "none", "open", "value"];
 
   ricochet.figure("refined", (data) => {
@@ -35,12 +22,15 @@
     const heights = new ricochet.Interval().include(
         ...methods.flatMap((row) => [row.value, ...points(row).map((one) => one.value)]),
         ...methods.map((row) => row.truth).filter((value) => value !== null));
+    // The axis holds the intervals of what has a name.
+    heights.include(...named.flatMap((row) => [row.low, row.high])
+                        .filter((value) => value !== null && (value > 0 || heights.low <= 0)));
     const logarithmic = ricochet.logarithmicSweep(heights),
-          y = logarithmic ? ricochet.logAxis(quantity, heights, true) :
+          y = logarithmic ? ricochet.logAxis(quantity, heights) :
                             ricochet.heightAxis(quantity, ricochet.roundOutwards(heights, 1e-9));
     // Refinement goes to the right, the limit behind it.
     const unit = along === "step" ? data.view.unit("step") || "s" : "elements",
-          x = ricochet.logAxis([along === "step" ? "step h" : "mesh", unit], sizes, false), step = along === "step";
+          x = ricochet.logAxis([along === "step" ? "step h" : "mesh", unit], sizes), step = along === "step";
     const beyond = 0.3, spread = Math.max(sizes.high / sizes.low, 2),
           end = step ? sizes.low / Math.pow(spread, 0.5 * beyond) : sizes.high * Math.pow(spread, 0.5 * beyond);
     Object.assign(
@@ -48,16 +38,13 @@
     // A decade has no label of its own in so short a range.
     const ticks = ricochet.distinct(methods.flatMap((row) => points(row).map((one) => one.size)));
     if (spread < 30 && ticks.length <= 8) {
-      x.axisTick.customValues = x.axisLabel.customValues = ticks;
-      x.axisLabel.formatter = (value) => ricochet.format.shown(value, 3);
+      x.ticks = ticks;
+      x.format = (value) => ricochet.format.shown(value, 3);
     }
     const out = ricochet.view([step ? "step h" : "mesh", unit], quantity, x, y), narrow = window.innerWidth < 600;
-    out.option.grid.right = narrow ? 96 : 170;
-    const clip = (value) => Math.min(Math.max(value, y.min), y.max),
-          share = (value) =>
-              (logarithmic ? Math.log(clip(value) / y.min) / Math.log(y.max / y.min) :
-                             (clip(value) - y.min) / (y.max - y.min));
-    const styles = new Map(), moved = apart(named.map((row) => share(row.value)));
+    out.frames[0].right = narrow ? 96 : 170;
+    const clip = (value) => Math.min(Math.max(value, y.min), y.max);
+    const styles = new Map();
     methods.forEach((row) => {
       const colour = colourOf(row), style = styles.get(colour) || 0, isNamed = named.includes(row), curve = {
         name: row.method || "the one method",
@@ -77,45 +64,14 @@
           ricochet.format.unit(quantity);
       const bar = [low, high].map((height) => ({case: row.case, at: end, height: clip(height), text}));
       ricochet.draw(
-          out, bar, {x: "at", y: "height"},
-          {...ricochet.line(curve.name, colour, 3), symbol: "rect", symbolSize: [10, 2], z: 4});
-      ricochet.draw(out, [{case: row.case, at: end, height: clip(row.value), text}], {x: "at", y: "height"}, {
-        type: "scatter",
-        name: curve.name,
-        symbol: "circle",
-        symbolSize: 5,
-        color: colour,
-        itemStyle: {color: colour},
-        z: 5,
-        label: {
-          show: true,
-          position: "right",
-          distance: 8,
-          offset: [0, moved[named.indexOf(row)]],
-          formatter: ricochet.shorten(curve.name),
-          color: colour,
-          fontSize: 11,
-          width: narrow ? 84 : 156,
-          overflow: "truncate"
-        },
-      });
+          out, bar, {x: "at", y: "height"}, {...ricochet.line(curve.name, colour, 3), symbol: "bar", size: 10, z: 4});
+      ricochet.draw(
+          out, [{case: row.case, at: end, height: clip(row.value), text}], {x: "at", y: "height"},
+          {...ricochet.dot(curve.name, colour, "circle", 5, 5), side: ricochet.shorten(curve.name)});
     });
     const truth = all[0].truth;
     if (truth !== null && truth !== undefined)
-      out.option.series.push({
-        type: "line",
-        name: "exact",
-        data: [],
-        silent: true,
-        markLine: {
-          silent: true,
-          symbol: "none",
-          animation: false,
-          label: {show: true, formatter: "exact", position: "insideStartTop", fontSize: 10, color: "#777777"},
-          lineStyle: {color: "#777777", type: "dashed", width: 1},
-          data: [{yAxis: truth}]
-        }
-      });
+      out.marks.push(ricochet.rule("exact", {y: truth}, "exact", {dash: [4, 3]}));
     if (methods.length > named.length)
       out.notes.push(methods.length - named.length + " more methods are grey; all are in limits.csv.");
     ricochet.answeredFirst("refined");

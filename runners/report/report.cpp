@@ -52,9 +52,9 @@ Fill html_section(const std::string& html) {
 
 /// What every page has, around the figures of its kind.
 constexpr const char* shared_scripts[] = {
-    "format",       "later",         "data",   "cases",          "short_names", "dataset",    "options",
-    "fitted_lines", "method_curves", "strips", "figure_section", "theme",       "chart_data", "figure",
-    "case_map",     "picture",       "paper",  "dot_rows",       "side_panel",  "case_panel", "case_pick"};
+    "format",     "later",  "data",     "cases",   "short_names",   "axes",       "theme",
+    "pens",       "plot",   "chart",    "marks",   "method_curves", "strips",     "figure_section",
+    "chart_data", "figure", "case_map", "picture", "paper",         "side_panel", "case_panel"};
 constexpr const char* page_scripts[] = {"snapshots",     "film_stage", "space_time",    "film", "sorting",
                                         "column_filter", "case_table", "verdict_words", "page"};
 
@@ -82,13 +82,15 @@ std::string answer_html(const CaseView& view, const KindPage& kind) {
   return answer;
 }
 
-std::string render_page(const StudyResults& results, const KindPage& kind, std::string_view library,
-                        std::string_view library_version) {
+}  // namespace report
+
+std::string render_report(const StudyResults& results, const report::KindPage& kind) {
+  using namespace report;
   const CaseView view(results);
   const std::optional<StudyResults> some = shown_cases(results);
   const std::optional<CaseView> fewer = some ? std::make_optional<CaseView>(*some) : std::nullopt;
   const CaseView& shown = fewer ? *fewer : view;
-  PageData data = library.empty() ? PageData() : page_data(shown, kind, results);
+  PageData data = page_data(shown, kind, results);
   if (some) data.thinning = shown_sentence(*some, results) + (data.thinning.empty() ? "" : " ") + data.thinning;
   const auto truth = [](bool value) { return value ? Fill::type::bool_true : Fill::type::bool_false; };
   Fill page;
@@ -103,10 +105,8 @@ std::string render_page(const StudyResults& results, const KindPage& kind, std::
   page.set("answer", answer_html(view, kind));
   if (const std::string beneath = kind.answer ? kind.answer(view) : ""; !beneath.empty())
     page.set("beneath", html_section(beneath));
-  page.set("charts", truth(!library.empty()));
   page.set("masses", truth(kind.masses));
   if (!data.thinning.empty()) page.set("thinning", data.thinning);
-  if (!library_version.empty()) page.set("version", std::string(library_version));
   if (const std::string methods = kind.methods ? kind.methods(view) : ""; !methods.empty())
     page.set("methods", html_section(methods));
   if (const std::string effects = effects_html(view); !effects.empty()) page.set("effects", html_section(effects));
@@ -118,18 +118,9 @@ std::string render_page(const StudyResults& results, const KindPage& kind, std::
   page.set("environment", environment_html(view));
   // Scripts follow what they work on; the data are too long to pass through a template.
   std::string out = filled("page", page) + script("", script_text(page_program(kind)));
-  if (!library.empty()) {
-    out += script(" type=\"application/json\" id=\"page-data\"", script_json(data.results));
-    out += script(" type=\"application/json\" id=\"curve-data\"", script_json(data.blocks));
-    out += script("", script_text(library));
-  }
+  out += script(" type=\"application/json\" id=\"page-data\"", script_json(data.results));
+  out += script(" type=\"application/json\" id=\"curve-data\"", script_json(data.blocks));
   return out + "</body>\n</html>\n";
-}
-
-}  // namespace report
-
-std::string render_report(const StudyResults& results, const report::KindPage& kind) {
-  return report::render_page(results, kind, report::chart_library(), report::chart_library_version());
 }
 
 }  // namespace ricochet

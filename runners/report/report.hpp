@@ -8,10 +8,6 @@
 
 namespace ricochet::report {
 
-/// render_report() with the chart library given: `library` empty writes the tables alone and says how to get charts.
-std::string render_page(const StudyResults& results, const KindPage& kind, std::string_view library,
-                        std::string_view library_version);
-
 /// The section "Answer" as HTML: what the kind says, or why there is nothing to say.
 std::string answer_html(const CaseView& view, const KindPage& kind);
 
@@ -19,9 +15,8 @@ std::string answer_html(const CaseView& view, const KindPage& kind);
 
 namespace ricochet {
 
-/// The report of a study as one HTML file. It uses no network (a Content-Security-Policy forbids it): the chart library
-/// is inlined. `kind` says what the kind of study shows. Without the library (built where npm is missing) the tables
-/// alone, saying so.
+/// The report of a study as one HTML file. It uses no network (a Content-Security-Policy forbids it): its scripts, which
+/// draw the charts, stand in it. `kind` says what the kind of study shows.
 std::string render_report(const StudyResults& results, const report::KindPage& kind);
 
 }  // namespace ricochet

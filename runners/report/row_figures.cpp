@@ -241,7 +241,8 @@ class Ranges : public RowFigure {
     std::vector<std::string> groups;
     std::vector<double> values;
     for (const Json& row : list_of(figure_, "rows")) {
-      const std::string motion = text_of(row, "motion"), own = text_of(row, "group"), group = own.empty() ? motion : own;
+      const std::string motion = text_of(row, "motion"), own = text_of(row, "group"),
+                        group = own.empty() ? motion : own;
       auto place = std::find(groups.begin(), groups.end(), group);
       if (place == groups.end()) {
         place = groups.insert(place, group);

@@ -19,8 +19,7 @@
                         .sort((a, b) => largest(b) - largest(a))
                         .slice(0, mostParts);
     const x = ["share of the variance", "%"],
-          out = ricochet.namedRows(
-              measures.map(spaced), x, ricochet.valueAxis(x, new ricochet.Interval(0, 100), false), 46);
+          out = ricochet.namedRows(measures.map(spaced), x, ricochet.valueAxis(x, new ricochet.Interval(0, 100)), 46);
     const part = (row, factor) => ({
       measure: spaced(row.measure),
       factor: ricochet.shorten(factor),
@@ -48,23 +47,16 @@
       if (!rows.some((row) => row.factor === name)) return;
       const colour = name === others ? grey : ricochet.lighten(ricochet.methodColours[k], 0.35);
       // Dark words on any screen, where the bars are bright: a colour by name is not carried over.
-      const label = {
-        show: true,
-        position: "inside",
-        formatter: "{@label}",
-        color: name === others ? "#222222" : "black",
-        fontSize: 10,
-        lineHeight: 12
-      };
       ricochet.draw(
           out, rows, {x: "share", y: "measure"}, {
-            type: "bar",
+            mark: "bars",
             name,
             stack: "shares",
-            barWidth: 34,
-            color: colour,
-            itemStyle: {color: colour, borderColor: "#ffffff", borderWidth: 1},
-            label
+            thick: 34,
+            colour,
+            edge: 1,
+            said: (row) => row.label,
+            letters: name === others ? "#222222" : "black"
           },
           {factor: name});
       legend.push(ricochet.swatch(name, colour));

@@ -273,7 +273,7 @@ TEST_CASE("a kind of study is known by name in the folders of the kinds alone") 
 TEST_CASE("core and runners know no method by name") {
   // These are words of every day as well; they may stand in a sentence.
   const std::set<std::string> ordinary = {"consistent", "exact", "layer", "lumped", "none", "penalty", "singular"};
-  // "exact" is how well a scheme keeps the restitution coefficient. "none" is also what ECharts calls no symbol, what a
+  // "exact" is how well a scheme keeps the restitution coefficient. "none" is also what a
   // table shows for no value, and a projection of the initial state. "layer" is a function of every law. They may stand
   // alone where nothing is decided by them.
   const auto decides = [](const std::string& before) {

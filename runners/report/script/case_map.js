@@ -257,7 +257,8 @@
         if (!charts.some((chart) => chart.views.length)) continue;
         const used = ricochet.drawnNames(charts),
               legend = figure.legend.filter(
-                  (entry) => used.has(entry.name) || charts.some((chart) => chart.views.some((one) => one.sources)));
+                  (entry) => used.has(entry.name) ||
+                      charts.some((chart) => chart.views.some(({marks}) => marks.some(({tags}) => tags))));
         ricochet.mount(
             {...figure, id: figure.id + "-row", charts, legend, choices: []}, (section) => this.chosen.append(section));
       }

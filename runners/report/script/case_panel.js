@@ -36,26 +36,14 @@
     const {sidePanel, format} = ricochet, held = (data.page.curves || {})[one.id] || {}, colour = data.view.colour(one);
     for (const column of inCurve.filter((name) => held[name])) {
       const {x, y} = data.curve(one, column);
-      sidePanel.plot(
-          "t (s)", format.withUnit(quantityOf(column)), [{
-            source: {t: x, value: y},
-            encode: {x: "t", y: "value"},
-            type: "line",
-            symbol: "none",
-            color: colour,
-            lineStyle: {width: 1.3}
-          }],
-          "in-time");
+      const line = {...ricochet.line(column, colour, 1.3), rows: {t: x, value: y}, x: "t", y: "value", rising: true};
+      sidePanel.plot(["t", "s"], quantityOf(column), [line], "in-time");
     }
     const [u, v] = ["tip_displacement", "tip_velocity"].map((column) => data.block(one.id + "/portrait/" + column));
     if (!u || !v) return;
     sidePanel.heading("Phase portrait");
-    sidePanel.plot(
-        "tip displacement (m)", "tip velocity (m/s)",
-        [
-          {source: {u, v}, encode: {x: "u", y: "v"}, type: "line", symbol: "none", color: colour, lineStyle: {width: 1}}
-        ],
-        "portrait");
+    const portrait = {...ricochet.line("phase portrait", colour, 1), rows: {u, v}, x: "u", y: "v"};
+    sidePanel.plot(quantities.tip_displacement, quantities.tip_velocity, [portrait], "portrait");
   }
 
   function showImpacts(data, one) {

@@ -5,33 +5,17 @@
   const listed = (names, most = 8) =>
       names.slice(0, most).join(", ") + (names.length > most ? " and " + (names.length - most) + " more" : "");
 
-  // What the library draws and what is drawn by hand, as rows [name, x, y, what is said of it].
+  // What is drawn as rows [name, x, y, what is said of it]; a mark whose place says nothing has neither.
   function rowsOf(figure, slot) {
-    const rows = [], view = figure.viewOf(slot), {selected} = slot.drawn.legend;
-    slot.chart.getModel().eachSeries((series) => {
-      if (series.subType === "custom" || selected[series.name] === false) return;
-      const data = series.getRawData(),
-            along = (axis) =>
-                data.mapDimensionsAll(axis).find((name) => !data.getDimensionInfo(name).isCalculationCoord),
-            x = along("x"), y = along("y");
-      const read = (dimension, i) => {
-        const {ordinalMeta} = data.getDimensionInfo(dimension), value = data.get(dimension, i);
-        return ordinalMeta ? ordinalMeta.categories[value] : value;
-      };
-      if (!x || !y) return;
-      for (let i = 0; i < data.count(); ++i) {
-        const item = data.getRawDataItem(i),
-              row = [series.name, read(x, i), read(y, i), (item && !Array.isArray(item) && item.text) || ""];
-        if (!Number.isNaN(row[1]) && !Number.isNaN(row[2])) rows.push(row);
-      }
-    });
-    for (const {tags, values, glyph} of view.sources ? view.sources() : []) {
-      if (tags.some((tag) => figure.hidden.has(tag))) continue;
-      const parts = glyph.shape === "whisker" ? 3 : 2, name = tags.join(", ");
-      for (let i = 0; i < values.length; i += parts)
-        rows.push([
-          name, values[i], values[i + parts - 1], parts === 3 ? "from " + ricochet.format.shown(values[i + 1]) : ""
-        ]);
+    const {countOf, reader, rowAt, isShown} = ricochet.plot, rows = [], view = figure.viewOf(slot),
+                                   known = (value) => value !== null && value !== undefined && !Number.isNaN(value);
+    for (const mark of view ? view.marks : []) {
+      if (!isShown(mark, figure.hidden) || mark.mark === "image" || Array.isArray(mark.x)) continue;
+      const x = reader(mark, "x"), y = reader(mark, "y"), name = mark.tags ? mark.tags.join(", ") : mark.name,
+            low = mark.mark === "whiskers" ? (i) => "from " + ricochet.format.shown(mark.values[3 * i + 1]) : () => "";
+      for (let i = 0; i < countOf(mark); ++i)
+        if (mark.apart !== undefined) rows.push([name, mark.apart ? "" : x(i), "", rowAt(mark, i).text || ""]);
+        else if (known(x(i)) && known(y(i))) rows.push([name, x(i), y(i), rowAt(mark, i).text || low(i)]);
     }
     return rows;
   }
@@ -114,27 +98,23 @@
     },
     // The text alternative: what is drawn, along which axes, over which ranges; a table that stands open follows.
     describe(figure, slot) {
-      const {title} = figure.chartOf(slot), view = figure.viewOf(slot), {shown, unit, count} = ricochet.format,
-            {selected} = slot.drawn.legend;
-      const extent = (name) => {
-        const part = slot.chart.getModel().getComponent(name, 0);
-        return part && part.axis ? part.axis.scale.getExtent() : [];
-      };
-      const range = (name, quantity, [low, high]) => quantity[0] +
-          (slot.drawn[name] && [].concat(slot.drawn[name])[0].type === "category" ?
-               "" :
-               " from " + shown(low, 4) + " to " + shown(high, 4) + unit(quantity));
-      const tagged =
-                figure.description.legend.filter((entry) => !figure.hidden.has(entry.name)).map((entry) => entry.name),
-            drawn = ricochet.distinct(
-                slot.drawn.series.filter((one) => one.type !== "custom" && selected[one.name] !== false)
-                    .map((one) => one.name));
-      const names = view.sources ? tagged : drawn;
+      const view = figure.viewOf(slot), {title} = figure.chartOf(slot), {shown, unit, count} = ricochet.format,
+            {hidden} = figure;
+      if (!view)
+        return slot.element.setAttribute("aria-label", figure.description.title + ", " + title + ": nothing to show");
+      const range = (quantity, {axis}) => quantity[0] +
+          (axis.type === "category" ? "" :
+                                      " from " + shown(axis.min, 4) + " to " + shown(axis.max, 4) + unit(quantity));
+      const tagged = view.marks.some((mark) => mark.values),
+            names = tagged ?
+          figure.description.legend.map((entry) => entry.name).filter((name) => !hidden.has(name)) :
+          ricochet.distinct(view.marks.filter((mark) => mark.mark !== "rule" && ricochet.plot.isShown(mark, hidden))
+                                .map((mark) => mark.name));
       slot.element.setAttribute(
           "aria-label",
           figure.description.title + ", " + title + ": " + count(names.length, "series", "series") +
-              (names.length ? " (" + listed(names) + ")" : "") + "; across " + range("xAxis", view.x, extent("xAxis")) +
-              "; upwards " + range("yAxis", view.y, extent("yAxis")) + ". Enter shows the points as a table.");
+              (names.length ? " (" + listed(names) + ")" : "") + "; across " + range(view.x, slot.chart.plot.xs[0]) +
+              "; upwards " + range(view.y, slot.chart.plot.ys[0]) + ". Enter shows the points as a table.");
       const open = slot.element.closest("figure").querySelector(".chart-data");
       if (open) open.replaceWith(table(figure, slot));
     },

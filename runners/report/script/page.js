@@ -6,13 +6,6 @@
   };
   const figures = ricochet.figures = [];
 
-  // A finger on a chart is the page's: the chart library hears of taps alone, as clicks.
-  const ofPage = (event) => {
-    if (event.target.closest && event.target.closest("[_echarts_instance_]")) event.stopPropagation();
-  };
-  for (const name of ["touchstart", "touchmove", "touchend", "touchcancel"])
-    document.addEventListener(name, ofPage, {capture: true, passive: true});
-
   // Says of a box whether it holds more than it shows, and whether there is more to the right or below. Such a box can
   // be reached and scrolled by keys. All boxes are measured before any is changed: a page is laid out once for all.
   const resized = new Set(), widths = new ResizeObserver((entries) => entries.forEach(({target}) => lookAt(target)));
@@ -20,9 +13,9 @@
     if (!resized.size)
       requestAnimationFrame(() => {
         const found = Array.from(resized, (one) => [one, [
-                                   ["wide", one.scrollWidth - one.clientWidth, one.scrollLeft],
-                                   ["tall", one.scrollHeight - one.clientHeight, one.scrollTop]
-                                 ]]);
+                                            ["wide", one.scrollWidth - one.clientWidth, one.scrollLeft],
+                                            ["tall", one.scrollHeight - one.clientHeight, one.scrollTop]
+                                          ]]);
         resized.clear();
         for (const [one, ways] of found) {
           for (const [way, more, at] of ways) {
@@ -86,7 +79,7 @@
 
   function startFigures() {
     const page = read("page-data"), place = document.getElementById("figures");
-    if (!page || !place || typeof echarts === "undefined") return;
+    if (!page || !place) return;
     const data = new ricochet.PageData(page, read("curve-data"));
     data.view = new ricochet.Cases(data);
     ricochet.data = data;
@@ -115,7 +108,7 @@
     let pending = 0;
     window.addEventListener("resize", () => {
       clearTimeout(pending);
-      pending = setTimeout(() => figures.forEach((f) => f.slots.forEach((s) => s.chart && s.chart.resize())), 120);
+      pending = setTimeout(() => figures.forEach((f) => f.slots.forEach((s) => s.chart && s.chart.draw())), 120);
     });
   }
 

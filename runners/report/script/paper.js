@@ -5,13 +5,10 @@
   const place = (classes) => Object.assign(document.createElement("div"), {className: classes});
 
   function drawn(figure, slot, width, height) {
-    const option = figure.option(slot);
-    if (!option) return null;
-    delete option.toolbox;
-    if (figure.zoom)
-      Object.assign(option.dataZoom[0], {startValue: figure.zoom.startValue, endValue: figure.zoom.endValue});
+    const view = figure.viewOf(slot);
+    if (!view) return null;
     const out = place("on-paper");
-    out.innerHTML = ricochet.drawing(option, {width, height});
+    out.innerHTML = ricochet.drawing(view, {width, height}, {hidden: figure.hidden, windows: figure.windows(slot)});
     return out;
   }
   // As many charts side by side as the style of paper has columns.
@@ -74,11 +71,10 @@
 
   function showFirst(place) {
     // The figure that stands beside the answer, where there is one.
-    const usable =
-              ricochet.figures.filter((one) => one.slots.some((slot) => one.visible(slot) && one.viewOf(slot).option)),
+    const usable = ricochet.figures.filter((one) => one.slots.some((slot) => one.visible(slot) && one.viewOf(slot))),
           figure = usable.find((one) => one.section.closest("#answer")) || usable[0];
     if (!figure || place.childElementCount) return;
-    const slot = figure.slots.find((one) => figure.visible(one) && figure.viewOf(one).option),
+    const slot = figure.slots.find((one) => figure.visible(one) && figure.viewOf(one)),
           given = figure.chartOf(slot).height, drawing = drawn(figure, slot, sheet, given ? Math.min(given, 330) : 230);
     drawing.className = "drawing";
     const caption = document.createElement("figcaption"), legend = figure.section.querySelector(".legend");

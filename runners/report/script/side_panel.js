@@ -92,61 +92,25 @@
     box.appendChild(out);
     panel.appendChild(box);
   }
-  // Series that give the columns they draw as `source`.
-  function plot(x, y, series, classes) {
-    const {shown: number, escape} = ricochet.format, box = element("div", classes);
-    const axis = (name, vertical) => ({
-      type: "value",
-      scale: true,
-      name,
-      nameLocation: "middle",
-      nameGap: vertical ? 48 : 24,
-      splitNumber: 4,
-      axisLine: {show: true, onZero: false, lineStyle: {color: ricochet.faint}},
-      axisLabel: {fontSize: 10, color: ricochet.ink, hideOverlap: true, formatter: (v) => number(v)},
-      nameTextStyle: {fontSize: 11, color: ricochet.ink},
-      splitLine: {lineStyle: {color: "#ececec"}},
-    });
+  // Marks over axes that fit them.
+  function plot(x, y, marks, classes) {
+    const box = element("div", classes), {reader, countOf} = ricochet.plot, range = (along) => {
+      const out = new ricochet.Interval();
+      for (const mark of marks) {
+        const at = reader(mark, along);
+        for (let i = 0; i < countOf(mark); ++i) out.include(at(i));
+      }
+      return ricochet.roundOutwards(out.empty ? new ricochet.Interval(0, 1) : out, 1e-12);
+    };
     panel.appendChild(box);
-    const chart = ricochet.openChart(box);
-    chart.setOption({
-      animation: false,
-      backgroundColor: "#fff",
-      grid: {left: 62, right: 14, top: 10, bottom: 38},
-      tooltip: {
-        trigger: "item",
-        confine: true,
-        formatter: (p) => escape(x) + " = " + number(ricochet.cell(p, "x"), 7) + "<br>" + escape(y) + " = " +
-            number(ricochet.cell(p, "y"), 7)
-      },
-      dataZoom: [{type: "inside", xAxisIndex: 0, filterMode: "none", zoomOnMouseWheel: "shift"}],
-      xAxis: axis(x, false),
-      yAxis: axis(y, true),
-      dataset: series.map(({source}) => ({source})),
-      series: series.map(({source, ...one}, datasetIndex) => ({...one, datasetIndex})),
-    });
+    const chart = new ricochet.Chart(box),
+          view = ricochet.view(x, y, ricochet.valueAxis(x, range("x")), ricochet.valueAxis(y, range("y")));
+    chart.show(Object.assign(view, {marks}));
     charts.push(chart);
   }
   document.addEventListener("keydown", (event) => {
     if (event.key === "Escape") close();
   });
-
-  // What lies under the mouse, where the chart library knows nothing of it.
-  let tip = null;
-  function hover(html, where) {
-    if (!html) {
-      if (tip) tip.remove();
-      tip = null;
-      return;
-    }
-    if (!tip) {
-      tip = element("div", "orbit-tip");
-      document.body.appendChild(tip);
-    }
-    tip.innerHTML = html;
-    tip.style.left = Math.max(0, Math.min(where[0] + 14, window.innerWidth - 300)) + "px";
-    tip.style.top = Math.max(0, Math.min(where[1] + 14, window.innerHeight - 140)) + "px";
-  }
 
   const quoted = (text) => (/^[\w./+-]+$/.test(text) ? text : "'" + text.replace(/'/g, "'\\''") + "'");
   // Words of a command, `point` or `case`, that speaks of a case of this study.
@@ -168,7 +132,6 @@
     table,
     plot,
     button,
-    hover,
     quoted,
     commandOf,
     panel: () => panel,

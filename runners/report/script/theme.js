@@ -32,7 +32,7 @@
     if (least >= pale * 255) return [0, 1, 2].map((k) => rgb[k] - least / 255 * (255 - paper[k]));
     for (let share = 0; share < 1; share += 0.05) {
       const lighter = mix(rgb, white, share);
-      if (contrast(lighter, paper) >= enough) return lighter;
+      if (contrast(lighter.map(Math.round), paper) >= enough) return lighter;
     }
     return white;
   }
@@ -44,19 +44,17 @@
     return rgb.length > 3 ? "rgba(" + on.join(",") + "," + rgb[3] + ")" :
                             "#" + on.map((c) => c.toString(16).padStart(2, "0")).join("");
   }
-  // The same for all that an option holds, but for its rows.
-  function carry(part, key) {
-    if (typeof part === "string") return colour(part);
-    if (typeof part === "function" && /color$/i.test(key)) return (...given) => colour(part(...given));
-    if (Array.isArray(part)) return part.length > 2000 ? part : part.map((one) => carry(one, key));
-    if (!part || typeof part !== "object" || Object.getPrototypeOf(part) !== Object.prototype) return part;
-    return Object.fromEntries(
-        Object.entries(part).map(([name, value]) => [name, name === "dataset" ? value : carry(value, name)]));
-  }
-  function onScreen(option) {
-    if (!dark.matches) return option;
-    const tooltip = option.tooltip && {backgroundColor: "#ffffff", borderColor: "#bbbbbb", ...option.tooltip};
-    return carry({...option, ...(tooltip ? {tooltip} : {})}, "");
+  // A colour in which words can be read on white paper: darkened until its contrast is enough.
+  const readable = new Map();
+  function letters(said) {
+    if (!readable.has(said)) {
+      const rgb = channels(said);
+      let out = said;
+      for (let share = 0; rgb && share <= 1 && contrast(channels(out), white) < 1.02 * enough; share += 0.05)
+        out = "#" + mix(rgb, [0, 0, 0], share).map((c) => Math.round(c).toString(16).padStart(2, "0")).join("");
+      readable.set(said, out);
+    }
+    return readable.get(said);
   }
 
   // Patches of colour in the page's own text, or in a part of it.
@@ -83,24 +81,23 @@
     else if (ricochet.film) ricochet.film.paint();
   }
 
-  const redraws = new Map();
+  const charts = new Set();
   dark.addEventListener("change", () => {
     paint();
     if (ricochet.film) ricochet.film.paint();
-    for (const [chart, redraw] of redraws) chart.isDisposed() ? redraws.delete(chart) : redraw();
+    charts.forEach((chart) => chart.draw());
   });
-  // A chart of this screen. `redraw` draws it again when the screen turns dark or light; without it, the last option
-  // is.
-  function openChart(element, redraw) {
-    const chart = echarts.init(element, null, {renderer: "canvas"}), set = chart.setOption.bind(chart);
-    let last = {};
-    chart.setOption = (option, ...rest) => {
-      last = option;
-      return set(onScreen(option), ...rest);
-    };
-    redraws.set(chart, redraw || (() => set(onScreen(last), true)));
-    return chart;
-  }
 
-  Object.assign(ricochet, {openChart, theme: {colour, ink, paint, onPaper, contrast, channels}});
+  ricochet.theme = {
+    colour,
+    letters,
+    ink,
+    paint,
+    onPaper,
+    contrast,
+    channels,
+    // Charts that are drawn again when the screen turns dark or light.
+    follow: (chart) => charts.add(chart),
+    forget: (chart) => charts.delete(chart)
+  };
 }

@@ -326,7 +326,8 @@ TEST_CASE("stretches of one group have one colour, that of its name in the legen
   const std::string svg = figure_svg(figure);
   for (std::size_t k = 0; k < colours.size(); ++k) {
     std::size_t count = 0;
-    for (std::size_t at = svg.find("--c:" + colours[k]); at != std::string::npos; at = svg.find("--c:" + colours[k], at + 1))
+    for (std::size_t at = svg.find("--c:" + colours[k]); at != std::string::npos;
+         at = svg.find("--c:" + colours[k], at + 1))
       ++count;
     CHECK(count == 11);  // ten stretches, and the name
     check_named(read(svg), "g" + std::to_string(k) + "q");

@@ -72,7 +72,7 @@ TEST_CASE("what was not asked stands beneath what was", "[report][asks]") {
   KindPage kind;
   kind.answer = [](const CaseView&) { return std::string("<p>the kind's own</p>"); };
   kind.asked.parts = {part_of(1, 3)};
-  const std::string page = render_page(results, kind, "", "");
+  const std::string page = render_report(results, kind);
   const std::size_t asked = page.find("id=\"ask-1\""), beneath = page.find("id=\"beneath\""),
                     own = page.find("the kind's own");
   REQUIRE(own != std::string::npos);

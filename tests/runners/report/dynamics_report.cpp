@@ -179,7 +179,7 @@ TEST_CASE("nothing is written of cases that left nothing", "[report]") {
   CHECK(curves.blocks().empty());
   CHECK(page_tables(results, bifurcation_page()).empty());
   CHECK(dynamics_answer_html(view).empty());
-  const std::string page = synthetic::rendered(results, "/* charts */", "6");
+  const std::string page = synthetic::rendered(results);
   CHECK_THAT(page, Contains("No case has finished with a result"));
 }
 
@@ -306,9 +306,9 @@ TEST_CASE("cells that were not marched themselves are said", "[report]") {
 
 TEST_CASE("cases that are still being worked on are said to be", "[report]") {
   StudyResults results = synthetic::dynamics();
-  CHECK_THAT(synthetic::rendered(results, "/* charts */", "6"), !Contains("still being worked on.</strong>"));
+  CHECK_THAT(synthetic::rendered(results), !Contains("still being worked on.</strong>"));
   results.cases[1].partial = true;
-  const std::string page = synthetic::rendered(results, "/* charts */", "6");
+  const std::string page = synthetic::rendered(results);
   CHECK_THAT(page, Contains("<strong>One case is still being worked on.</strong>"));
   CHECK_THAT(page, Contains("<em>(partial)</em>") && Contains("\"partial\":[false,true]"));
 }
@@ -325,7 +325,7 @@ TEST_CASE("a page of dynamics keeps what studies say in its place", "[report]") 
     for (auto& row : table.rows)
       for (auto& cell : row)
         if (cell.words() && cell != "robust") cell = attack;
-  const std::string page = synthetic::rendered(results, "/* charts */", "6");
+  const std::string page = synthetic::rendered(results);
   CHECK(page.find("<script>alert") == std::string::npos);
   CHECK(page.find("<!--") == std::string::npos);
 }

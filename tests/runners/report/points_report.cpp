@@ -16,7 +16,7 @@ TEST_CASE("the page has branches, points, multipliers and turns", "[report]") {
   const std::string html = report::points_html(report::CaseView(all), points);
   CHECK_THAT(html, Contains("fold at 0.1006") && Contains("order in h") && Contains("12 without"));
   CHECK_THAT(report::point_methods_html(report::CaseView(all), points), Contains("mesh leaves open"));
-  const std::string page = synthetic::rendered(all, "0;", "5");
+  const std::string page = synthetic::rendered(all);
   CHECK_THAT(page, Contains("point_levels") && Contains("smooth0-20-8000/branch/parameter:f64"));
 }
 

@@ -32,9 +32,9 @@ StudyResults with_page_tables(StudyResults results) {
   return with_tables_of(own.analysis.page, std::move(results));
 }
 
-std::string rendered(const StudyResults& results, std::string_view library, std::string_view version) {
+std::string rendered(const StudyResults& results) {
   const OwnAnalysis own(results);
-  return report::render_page(with_tables_of(own.analysis.page, results), own.analysis.page, library, version);
+  return render_report(with_tables_of(own.analysis.page, results), own.analysis.page);
 }
 
 }  // namespace ricochet::synthetic

@@ -1,6 +1,5 @@
 #pragma once
 #include <string>
-#include <string_view>
 
 #include "runners/store/record.hpp"
 
@@ -10,6 +9,6 @@ namespace ricochet::synthetic {
 StudyResults with_page_tables(StudyResults results);
 
 /// Their page.
-std::string rendered(const StudyResults& results, std::string_view library, std::string_view version);
+std::string rendered(const StudyResults& results);
 
 }  // namespace ricochet::synthetic

@@ -57,15 +57,11 @@
       return out;
     }
     frame(id, other) {
-      const x = ricochet.valueAxis(this.x, this.across, false), y = ricochet.valueAxis(this.y, this.up, true);
-      for (const axis of [x, y]) {
-        axis.splitLine = {show: false};
-        ricochet.withoutEnds(axis);
-      }
-      const out = ricochet.view(this.x, this.y, x, y);
-      out.option.tooltip.formatter = this.tooltip(out, id, other);
-      out.pick = (chart, option, hidden, at) => this.cellAt(id, chart, at);
-      out.open = (place) => this.open(place);
+      const [x, y] = [[this.x, this.across], [this.y, this.up]].map(
+          ([quantity, range]) => ({...ricochet.valueAxis(quantity, range), plain: true})),
+                out = ricochet.view(this.x, this.y, x, y);
+      out.words = ({x: across, y: up}) => this.words(id, other, this.cellAt(id, across, up));
+      out.open = ({x: across, y: up}) => this.open(this.cellAt(id, across, up));
       return out;
     }
     // Cells that `wanted` takes in one colour, the others clear; several pixels a cell, so that edges stay sharp.
@@ -87,37 +83,20 @@
         drawn.set(fill, canvas);
         return canvas;
       };
-      const render = (params, api) => {
-        const fill = api.visual("color") || colour, low = api.coord([api.value(0), api.value(2)]),
-              high = api.coord([api.value(1), api.value(3)]);
-        return {
-          type: "image",
-          style: {
-            image: drawn.get(fill) || draw(fill),
-            x: low[0],
-            y: high[1],
-            width: high[0] - low[0],
-            height: low[1] - high[1]
-          }
-        };
-      };
+      const {across, up} = this;
       return {
-        type: "custom",
+        mark: "image",
         name,
-        tags: [name],
-        renderItem: render,
-        encode: {x: [0, 1], y: [2, 3]},
-        clip: true,
-        progressive: 0,
-        color: colour,
-        itemStyle: {color: colour},
-        data: [[this.across.low, this.across.high, this.up.low, this.up.high]]
+        colour,
+        x: [across.low, across.high],
+        y: [up.low, up.high],
+        picture: (fill) => drawn.get(fill) || draw(fill)
       };
     }
     image(id) {
       const out = this.frame(id), cells = this.cells(id);
       this.labels.forEach((label, k) => {
-        if (cells.includes(k)) out.option.series.push(this.series(label, (i) => cells[i] === k));
+        if (cells.includes(k)) out.marks.push(this.series(label, (i) => cells[i] === k));
       });
       return out;
     }
@@ -134,9 +113,9 @@
       const neither = this.labels.find((label) => !label[3]);
       outcomes.forEach((one, k) => {
         if ([counts.differ, counts.same, counts.undecided][k] > 0)
-          out.option.series.push(this.series(one, (i) => outcome(i) === k));
+          out.marks.push(this.series(one, (i) => outcome(i) === k));
       });
-      if (neither) out.option.series.push(this.series(neither, (i) => outcome(i) === 3));
+      if (neither) out.marks.push(this.series(neither, (i) => outcome(i) === 3));
       const share = counts.share === null ? "" : " (" + ricochet.format.share(counts.share) + ")";
       out.notes.push(
           id === first ? "This is what the others are compared with." :
@@ -144,35 +123,28 @@
       return out;
     }
 
-    // The cell at a place of the chart.
-    cellAt(id, chart, at) {
-      if (!chart.containPixel({gridIndex: 0}, at)) return null;
-      const place = chart.convertFromPixel({xAxisIndex: 0, yAxisIndex: 0}, at),
-            part = (value, range, n) => Math.floor((value - range.low) / (range.high - range.low) * n);
-      const column = part(place[0], this.across, this.xs.length), row = part(place[1], this.up, this.ys.length);
-      return column < 0 || row < 0 || column >= this.xs.length || row >= this.ys.length ? null : {id, column, row};
+    // The cell at values of the axes.
+    cellAt(id, x, y) {
+      const part = (value, {low, high}, n) =>
+          Math.min(n - 1, Math.max(0, Math.floor((value - low) / (high - low) * n)));
+      return {id, column: part(x, this.across, this.xs.length), row: part(y, this.up, this.ys.length)};
     }
-    words({column, row}) {
+    placeWords({column, row}) {
       const {unit} = ricochet.format;
       return [this.x[0] + " = " + this.xs[column] + unit(this.x), this.y[0] + " = " + this.ys[row] + unit(this.y)];
     }
-    tooltip(view, id, other) {
-      const {escape, shown} = ricochet.format;
-      return (given) => {
-        const p = [].concat(given)[0], place = view.mouse && this.cellAt(id, view.mouse.chart, view.mouse.at);
-        if (!view.mouse) return p && p.value ? escape(view.x[0]) + " = " + shown(p.value[0], 6) : "";
-        if (!place) return "";
-        return "<div>" + this.words(place).map(escape).join("<br>") + '</div><div class="tip-row">' +
-            escape(this.end(id, place)[0]) + "</div>" +
-            (other !== undefined && other !== id ?
-                 '<div class="fine">the other: ' + escape(this.end(other, place)[0]) + "</div>" :
-                 "") +
-            '<div class="fine">click: its command</div>';
-      };
+    words(id, other, place) {
+      const {escape} = ricochet.format;
+      return "<div>" + this.placeWords(place).map(escape).join("<br>") + '</div><div class="tip-row">' +
+          escape(this.end(id, place)[0]) + "</div>" +
+          (other !== undefined && other !== id ?
+               '<div class="fine">the other: ' + escape(this.end(other, place)[0]) + "</div>" :
+               "") +
+          '<div class="fine">click: its command</div>';
     }
     open(place) {
       const {sidePanel} = ricochet;
-      sidePanel.open(place, "The chosen cell", this.end(place.id, place)[1], this.words(place).join(", "), []);
+      sidePanel.open(place, "The chosen cell", this.end(place.id, place)[1], this.placeWords(place).join(", "), []);
       for (const id of this.grids) {
         sidePanel.say(
             this.name(id) + ": " + this.end(id, place)[0] + (id === place.id ? ". The same cell again:" : ""));

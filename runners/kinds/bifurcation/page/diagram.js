@@ -76,7 +76,7 @@
       if (cases.length > methodColours.length)
         out.caption +=
             " Overlaid, colours repeat after " + methodColours.length + " methods: the legend shows any of them alone.";
-      out.legend = this.legend(out.charts);
+      out.legend = this.legend();
       return out;
     }
     caption() {
@@ -171,107 +171,75 @@
     }
 
     draw(panel, frame, lanes) {
-      const {orbits} = this, withBand = lanes.length <= mostLanes, grid = [], x = [],
-            y = [ricochet.valueAxis(tip, frame.range, true), ricochet.gutterAxis()];
+      const {orbits} = this, withBand = lanes.length <= mostLanes, frames = [],
+            yAxes = [ricochet.valueAxis(tip, frame.range), ricochet.gutterAxis()];
       let top = 10;
       const place = (height, gap) => {
-        const index = grid.push({left: 74, right: 14, top, height}) - 1;
+        const index = frames.push({left: 74, right: 14, top, height}) - 1;
         top += height + gap;
         return index;
       };
       place(panel.byMethod || this.cases.length === 1 ? 380 : 270, 16);
       const growth = this.exponents ? place(110, 8) : -1;
-      const band = withBand ? place(Math.max(10, lanes.length * (lanes.length > 6 ? 8 : 12)), 6) : -1;
-      const verdict = this.verdicts.length ? place(12, 6) : -1;
-      for (let g = 0; g < grid.length; ++g) x.push(this.xAxis(g, g + 1 === grid.length));
-      const out = ricochet.view(orbits.parameter, tip, x, y), sources = [() => diagramPanels.points(this, panel)];
-      out.option.grid = grid;
+      const band = withBand ? place(Math.max(10, lanes.length * (lanes.length > 6 ? 8 : 14)), 6) : -1;
+      const verdict = this.verdicts.length ? place(14, 6) : -1;
+      const out = Object.assign(
+          ricochet.view(orbits.parameter, tip, frames.map((_, f) => this.xAxis(f + 1 === frames.length)), yAxes),
+          {frames});
+      const axis = (more) => out.yAxes.push(more) - 1,
+            names = (rows, frame, bare) => axis({type: "category", frame, data: rows, bare, plain: true});
       diagramPanels.edgeMarks(this, out, panel);
-      if (growth >= 0) {
-        const axis =
-            y.push(
-                {...ricochet.valueAxis(["exponent", "1/s"], this.exponents, true), gridIndex: growth, splitNumber: 3}) -
-            1;
-        diagramPanels.zeroLine(this, out, growth, axis);
-        sources.push(() => diagramPanels.exponents(this, panel, growth, axis));
-      }
+      const growthAxis =
+          growth < 0 ? -1 : axis({...ricochet.valueAxis(["exponent", "1/s"], this.exponents), frame: growth});
+      if (growth >= 0) out.marks.push(ricochet.rule("zero", {y: 0}, "", {colour: "#555555", yAxis: growthAxis, z: 1}));
       if (band >= 0)
         diagramPanels.regimes(
-            this, out, lanes, band,
-            y.push(bandAxis(band, lanes.map((lane) => lane.name), panel.cases.length === 1 && lanes.length <= 6)) - 1);
-      if (verdict >= 0) diagramPanels.verdictBand(this, out, verdict, y.push(bandAxis(verdict, ["verdict"], true)) - 1);
-      out.option.dataZoom[0].xAxisIndex = grid.map((_, g) => g);
-      out.option.tooltip.formatter = this.tooltip(out);
-      let made = null;
-      out.sources = () => (made = made || sources.flatMap((make) => make()));
-      out.pick = (chart, option, hidden, at, pointsOnly) => this.pick(out, chart, option, hidden, at, pointsOnly);
-      out.open = (found) => ricochet.showOrbit(orbits, found.id, found.orbit);
-      out.hover = (found) =>
-          orbits.words(found.id, found.orbit, tip, found.value) + '<div class="fine">click: its orbit</div>';
+            this, out, lanes, names(lanes.map((lane) => lane.name), band, panel.cases.length > 1 || lanes.length > 6));
+      if (verdict >= 0) diagramPanels.verdictBand(this, out, names(["verdict"], verdict, false));
+      out.open = ({mark, row, i}) => {
+        const id = row.id || mark.id, orbit = mark.orbits ? mark.orbits[i] : row.orbit;
+        if (id !== undefined) ricochet.showOrbit(orbits, id, orbit);
+      };
+      out.words = (found) => this.words(out, found);
       out.height = top - 6 + 48;
+      // Points are unpacked when the chart is drawn.
+      const {marks} = out;
+      let all = null;
+      Object.defineProperty(out, "marks", {
+        enumerable: true,
+        get: () => all ||
+            (all =
+                 [
+                   ...diagramPanels.points(this, panel),
+                   ...(growth < 0 ? [] : diagramPanels.exponents(this, panel, growthAxis)), ...marks
+                 ])
+      });
       return out;
     }
-    xAxis(grid, last) {
+    xAxis(last) {
       let range = this.parameters;
       if (!(range.high > range.low)) {
         const slack = range.low === 0 ? 1 : 0.01 * Math.abs(range.low);
         range = new Interval(range.low - slack, range.high + slack);
       }
       const logarithmic = ricochet.logarithmicSweep(this.parameters),
-            out = ricochet.axisOf(logarithmic, this.orbits.parameter, range, false);
-      if (!logarithmic) {
-        const slack = 0.012 * (range.high - range.low);
-        Object.assign(out, {min: range.low - slack, max: range.high + slack});
-        ricochet.withoutEnds(out);
-      }
-      out.gridIndex = grid;
-      if (!last) {
-        out.axisLabel.show = out.axisTick.show = false;
-        out.name = "";
-      }
-      return out;
+            out = ricochet.axisOf(logarithmic, this.orbits.parameter, range), slack = 0.012 * (range.high - range.low);
+      if (!logarithmic) Object.assign(out, {min: range.low - slack, max: range.high + slack});
+      return {...out, bare: !last};
     }
-    tooltip(view) {
-      const {escape, shown, unit} = ricochet.format;
-      return (given) => {
-        const [p] = [].concat(given), {id, orbit, text} = (p && p.value) || {}, x = p && ricochet.cell(p, "x");
-        if (x === undefined) return "";
-        if (id !== undefined && !text) return this.orbits.words(id, orbit, tip);
-        const row = '</div><div class="tip-row">' + escape(p.seriesName);
-        if (text)
-          return "<div>" + escape(view.x[0]) + " = " + shown(x, 8) + row + '</div><div class="tip-text">' +
-              escape(text) + "</div>";
-        return "<div>" + escape(view.x[0]) + " = " + shown(x, 9) + escape(unit(view.x)) + row + "<b>" +
-            shown(ricochet.cell(p, "y"), 8) + "</b></div>";
-      };
-    }
-    // The orbit of the mark or of the cell of the band of regimes at a place of the chart.
-    pick(view, chart, option, hidden, at, pointsOnly) {
-      const grid = option.grid.findIndex((_, k) => chart.containPixel({gridIndex: k}, at));
-      if (grid < 0) return null;
-      const found = ricochet.handDrawn.nearest(chart, option, view.sources(), hidden, grid, at, pointsOnly ? 7 : 14);
-      if (found)
-        return {
-          id: found.source.id,
-          orbit: found.source.orbits[found.index],
-          value: found.source.what === "points" ? found.value : undefined
-        };
-      // Cells of all regimes are the rows of one table.
-      const band = option.series.find(
-          (series) => !pointsOnly && series.type === "custom" && series.xAxisIndex === grid && !series.silent);
-      if (!band) return null;
-      const rows = option.dataset[option.dataset[band.datasetIndex].fromDatasetIndex].source,
-            place = chart.convertFromPixel({xAxisIndex: grid, yAxisIndex: band.yAxisIndex}, at);
-      const cell = rows.find((row) => row.from <= place[0] && place[0] <= row.to && row.row === Math.round(place[1]));
-      if (cell && cell.orbit !== undefined && !hidden.has(this.orbits.groups[cell.group][0]))
-        return {id: cell.id, orbit: cell.orbit};
-      return null;
+    words(view, {mark, row, i, x, y}) {
+      const {escape, shown} = ricochet.format, id = row.id || mark.id;
+      if (row.text)
+        return "<div>" + escape(view.x[0]) + " = " + shown(x, 8) + '</div><div class="tip-row">' + escape(mark.name) +
+            '</div><div class="tip-text">' + escape(row.text) + "</div>";
+      return id === undefined ?
+          "" :
+          this.orbits.words(id, mark.orbits ? mark.orbits[i] : row.orbit, tip, mark.what === "points" ? y : undefined) +
+              '<div class="fine">click: its orbit</div>';
     }
 
-    legend(charts) {
-      const {groups, kinds} = this.orbits,
-                     used = new Set(charts.flatMap(
-                         (chart) => chart.views[0].option.series.flatMap((series) => series.tags || [])));
+    legend() {
+      const {groups, kinds} = this.orbits, used = new Set(this.verdicts.map((row) => row.verdict));
       const {swatch} = ricochet, mark = (name, colour, symbol) => out.push(swatch(name, colour, symbol, "Marks"));
       const out = this.groups.map((group) => swatch(...groups[group], "rect", "Regime"));
       if (this.kinds.length > 1)
@@ -281,22 +249,13 @@
             (one) => swatch(this.methodName(one), this.colourOf(one), "roundRect", "Method (overlaid)")));
       for (const [word, colour] of diagramPanels.verdicts)
         if (used.has(word)) out.push(swatch(word, colour, "rect", "Verdict"));
-      if (used.has("located change")) mark("located change", diagramPanels.dark, "triangle-down");
+      if (this.cases.some((one) => this.data.ownRows("bifurcations", one.id).some((row) => row.value !== null)))
+        mark("located change", diagramPanels.dark, "triangle-down");
       if (this.exponents && this.mostExponents > 1) mark("further exponents", ricochet.faint, "circle");
       if (this.exponents && this.twins) mark("twin check", diagramPanels.dark, "cross");
       return out;
     }
   }
-
-  const bandAxis = (grid, names, labels) => ({
-    type: "category",
-    gridIndex: grid,
-    data: names,
-    inverse: true,
-    axisLine: {show: false},
-    axisTick: {show: false},
-    axisLabel: {show: labels, interval: 0, fontSize: 10, color: "#5c5c5c", margin: 6},
-  });
 
   ricochet.answeredBy("diagram");
   ricochet.figure("diagram", (data) => {

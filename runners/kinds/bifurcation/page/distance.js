@@ -82,9 +82,9 @@
       if (none && none.median > 0) heights.include(0.5 * none.median);
       if (heights.empty) heights.include(0.1, 1);
       const logarithmic = ricochet.logarithmicAxis(values),
-            xAxis = ricochet.axisOf(logarithmic, x, logarithmic ? values : padded(values), false);
-      const out = ricochet.view(x, quantity(kind), xAxis, ricochet.logAxis(quantity(kind), heights, true));
-      if (none && none.high > 0) band(out, xAxis, ricochet.wholeDecades(heights).low, none.high);
+            xAxis = ricochet.axisOf(logarithmic, x, logarithmic ? values : padded(values));
+      const out = ricochet.view(x, quantity(kind), xAxis, ricochet.logAxis(quantity(kind), heights));
+      if (none && none.high > 0) band(out, none.high);
       for (const {curve, rows} of curves) {
         const points =
                   rows.map((row) => ({at: row.at, median: row.median > 0 ? row.median : null, text: spreadText(row)})),
@@ -126,8 +126,8 @@
       // What is nearer than a millionth of the farthest is round-off of one and the same orbit.
       heights.low = Math.max(heights.low, 1e-6 * heights.high);
       const floor = ricochet.wholeDecades(heights).low, logarithmic = ricochet.logarithmicSweep(this.parameters);
-      const xAxis = ricochet.axisOf(logarithmic, x, logarithmic ? this.parameters : padded(this.parameters), false),
-            out = ricochet.view(x, quantity(kind), xAxis, ricochet.logAxis(quantity(kind), heights, true));
+      const xAxis = ricochet.axisOf(logarithmic, x, logarithmic ? this.parameters : padded(this.parameters)),
+            out = ricochet.view(x, quantity(kind), xAxis, ricochet.logAxis(quantity(kind), heights));
       const medians = this.medians.filter((row) => row.kind === kind.key && row.median !== null)
                           .map((row) => ({...row, drawn: Math.max(row.median, floor)})),
             encode = {x: "parameter", y: "drawn"};
@@ -135,13 +135,9 @@
       for (const curve of facet.curves) {
         const own = medians.filter((row) => curve.cases.some((one) => one.id === row.case));
         below += own.filter((row) => row.median < floor).length;
-        ricochet.draw(out, own, encode, {...ricochet.curve(curve, 4), lineStyle: {width: 1.1}, z: 3});
+        ricochet.draw(out, own, encode, {...ricochet.curve(curve, 4, 1.1), z: 3});
       }
-      const level = {
-        ...ricochet.line(nullName, nullColour, 0),
-        silent: true,
-        areaStyle: {color: nullColour, opacity: 0.75, origin: "start"}
-      };
+      const level = {...ricochet.line(nullName, nullColour, 0), silent: true, area: 0.75};
       ricochet.draw(out, medians, encode, level, {case: ""});
       if (below)
         out.notes.push(
@@ -157,16 +153,16 @@
         "; 10 % to 90 %: " + text(row.low) + " to " + text(row.high) + "; " + row.zeros + " are exactly zero";
   }
   // The null level across a chart.
-  function band(out, x, low, high) {
-    const markArea = {
-      silent: true,
-      itemStyle: {color: nullColour, opacity: 0.75},
-      data: [[{coord: [x.min, low]}, {coord: [x.max, high]}]]
-    };
-    ricochet.draw(
-        out, [{at: x.min, high}], {x: "at", y: "high"},
-        {...ricochet.line(nullName, nullColour, 2), silent: true, markArea});
-  }
+  const band = (out, high) => out.marks.push({
+    mark: "cells",
+    name: nullName,
+    colour: nullColour,
+    opacity: 0.75,
+    silent: true,
+    z: 0,
+    rows: [{high}],
+    y: [null, "high"]
+  });
 
   ricochet.figure("distance", (data) => {
     const distances = new Distances(data), out = [];

@@ -78,14 +78,12 @@
     const motion = columnsOf(orbits, id, "portrait", ["u", "v", "t"], o),
           section = columnsOf(orbits, id, "points", ["u", "v"], o), moves = motion.u.length > 0,
           dotted = section.u.length > 0;
-    const line = (x, y) =>
-        ({source: motion, encode: {x, y}, type: "line", symbol: "none", color: colour, lineStyle: {width: 1.3}});
-    const dots = {source: section, encode: {x: "u", y: "v"}, type: "scatter", symbolSize: 5, z: 3, color: "#111"};
+    const line = (x, y) => ({...ricochet.line("motion", colour, 1.3), rows: motion, x, y});
+    const dots = {...ricochet.dot("section", "#111111", "circle", 5), rows: section, x: "u", y: "v"},
+          u = ["tip displacement", "m"], v = ["tip velocity", "m/s"];
     if (moves || dotted)
-      sidePanel.plot(
-          "tip displacement (m)", "tip velocity (m/s)", [...(moves ? [line("u", "v")] : []), ...(dotted ? [dots] : [])],
-          "portrait");
-    if (moves) sidePanel.plot("time from the strobe (s)", "tip displacement (m)", [line("t", "u")], "in-time");
+      sidePanel.plot(u, v, [...(moves ? [line("u", "v")] : []), ...(dotted ? [dots] : [])], "portrait");
+    if (moves) sidePanel.plot(["time from the strobe", "s"], u, [line("t", "u")], "in-time");
     else
       sidePanel.say(
           (dotted ? "Dots: the section. " : "") +

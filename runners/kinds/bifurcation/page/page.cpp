@@ -13,7 +13,7 @@ namespace ricochet::report {
 
 KindPage bifurcation_page() {
   KindPage page;
-  page.scripts = scripts({"orbits", "hand_drawn", "orbit_panel", "diagram_panels", "diagram", "distance"});
+  page.scripts = scripts({"orbits", "orbit_panel", "diagram_panels", "diagram", "distance"});
   page.tables = {"intervals", "exponent_methods", "distance_spreads", "distance_medians"};
   page.own_tables = {"bifurcations"};
   page.derived = {distance_spreads, distance_medians, exponent_methods};

@@ -6,11 +6,8 @@
     floorName,
     floorLine: ricochet.line(floorName, floorColour, 1.2, ricochet.dash(2)),
     floorEntry: {name: floorName, colour: floorColour, dash: ricochet.svgDash(2)},
-    // Points at or below the floor are grey.
-    curve: (curve) => ({
-      ...ricochet.curve(curve),
-      itemStyle: {color: ({value: row}) => (row.value <= row.floor ? grey : curve.colour)}
-    }),
+    // Points at or below the floor are grey; its line has the curve's colour.
+    curve: (curve) => ({...ricochet.curve(curve), colour: (row) => (row.value <= row.floor ? grey : curve.colour)}),
     // A kind of error with its unit; "1" where the unit depends on the structure.
     quantity: (error) =>
         ["error " + error,

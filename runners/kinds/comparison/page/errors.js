@@ -88,13 +88,11 @@
     }
 
     chart(error, facet, range) {
-      const quantity = errors.quantity(error), y = ricochet.logAxis(quantity, range, true), lowest = y.min,
+      const quantity = errors.quantity(error), y = ricochet.logAxis(quantity, range), lowest = y.min,
             {exact, text, count} = ricochet.format;
       y.max = y.max * Math.pow(y.max / y.min, this.gutter / (1 - this.gutter));
-      const out = ricochet.view(
-                this.x, quantity, ricochet.logAxis(this.x, this.xRange, false), [y, ricochet.gutterAxis()]),
+      const out = ricochet.view(this.x, quantity, ricochet.logAxis(this.x, this.xRange), [y, ricochet.gutterAxis()]),
             mark = ricochet.outcomeMarks();
-      const lines = new ricochet.FittedLines(out);
       const ofCase = (curve, find) => curve.cases.map((one) => find(one, [this.refined, error])).find(Boolean),
             all = [], zeros = [];
       for (const curve of facet.curves) {
@@ -103,12 +101,11 @@
         const rows = this.rows(done, error).map((row) => ({...row, text: pointText(row, quantity, said)}));
         all.push(...rows);
         zeros.push(...rows.filter((row) => !(row.value > 0)).map((row) => curve.name + " at " + exact(row.at)));
-        if (line) lines.draw(lineRows(line, said), {x: "at", y: "error"}, curve, line.order);
+        if (line) ricochet.fitted(out, lineRows(line, said), {x: "at", y: "error"}, curve, line.order);
         ricochet.draw(out, rows.filter((row) => row.value > 0), {x: "at", y: "value"}, errors.curve(curve));
         ricochet.drawMarks(
             out, curve, curve.cases.filter((one) => !done.includes(one)).map((one) => mark(one, this.place(one))));
       }
-      lines.label();
       // The highest at each place.
       const floors =
           all.filter((row) => row.floor > 0 && all.every((other) => other.at !== row.at || other.floor <= row.floor))
@@ -141,12 +138,7 @@
   }
   const lineRows =
       (line, text) => [{at: line.from, error: line.error_from, text}, {at: line.to, error: line.error_to, text}];
-  const floorArea = (alone) => ({
-    ...errors.floorLine,
-    symbol: alone ? "rect" : "none",
-    symbolSize: [24, 1.5],
-    areaStyle: {color: "#000000", opacity: 0.05, origin: "start"},
-  });
+  const floorArea = (alone) => ({...errors.floorLine, ...(alone ? {symbol: "bar", size: 24} : {}), area: 0.05});
 
   ricochet.figure("errors", (data) => {
     if (!data.rows("errors").length) return [];

@@ -33,7 +33,7 @@
               0, ...rows.map((row) => row.order), ...rows.map((row) => row.declared).filter((value) => value !== null));
     const x = ["order in the step", "1"],
           out = ricochet.namedRows(
-              names, x, ricochet.valueAxis(x, ricochet.roundOutwards(range, 1), false), names.length > 12 ? 18 : 24),
+              names, x, ricochet.valueAxis(x, ricochet.roundOutwards(range, 1)), names.length > 12 ? 18 : 24),
           legend = [];
     const ticks = rows.filter(
         (row, k) => row.declared !== null &&
@@ -41,14 +41,13 @@
     if (ticks.length) {
       ricochet.draw(
           out, ticks.map((row) => ({...row, text: "declared " + row.declared})), {x: "declared", y: "name"},
-          ricochet.dot(declared, "#222222", "rect", [2, 16], 2));
+          ricochet.dot(declared, "#222222", "tick", 16, 2));
       legend.push(ricochet.swatch(declared, "#222222"));
     }
     for (const [verdict, [colour, symbol]] of [...Object.entries(verdicts), [none, ["#56B4E9", "circle"]]]) {
       if (!rows.some((row) => row.verdict === verdict)) continue;
       ricochet.draw(
-          out, rows, {x: "order", y: "name"},
-          {...ricochet.dot(verdict, colour, symbol, 8), itemStyle: {color: colour, opacity: 0.75}}, {verdict});
+          out, rows, {x: "order", y: "name"}, {...ricochet.dot(verdict, colour, symbol, 8), opacity: 0.75}, {verdict});
       legend.push(ricochet.swatch(verdict, colour, symbol));
     }
     return [{

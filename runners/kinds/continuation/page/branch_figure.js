@@ -1,30 +1,9 @@
 // Branches over the parameter: tip at the strobe, solid where stable, dashed where not; special points as marks with
 // their intervals.
 {
-  const {Interval, methodColours} = ricochet, reach = 12;  // pixels
+  const {Interval, methodColours} = ricochet;
   const tip = ["tip displacement", "m"], colourOf = (k) => methodColours[k % methodColours.length];
   const both = "stable (solid), unstable (dashed)";
-
-  // The row of a case that lies nearest to a place of the chart; one whose portrait is carried before another.
-  function nearest(branches, drawn, chart, at) {
-    const a = chart.convertFromPixel({xAxisIndex: 0, yAxisIndex: 0}, at),
-          b = chart.convertFromPixel({xAxisIndex: 0, yAxisIndex: 0}, [at[0] + 1, at[1] + 1]);
-    let found = null, best = 2 * reach;
-    for (const curve of drawn) {
-      const portrayed = branches.portrayed(curve.one.id), parameter = branches.column(curve.one.id, "parameter"),
-            tips = branches.column(curve.one.id, "tip");
-      for (let i = 0; i < parameter.length; ++i) {
-        const away = Math.hypot((parameter[i] - a[0]) / (b[0] - a[0]), (tips[i] - a[1]) / (b[1] - a[1]));
-        if (away > reach) continue;
-        const far = away + (portrayed.has(i) ? 0 : reach);
-        if (far < best) {
-          best = far;
-          found = {curve, id: curve.one.id, row: i};
-        }
-      }
-    }
-    return found;
-  }
 
   class BranchFigure {
     constructor(branches) {
@@ -99,28 +78,36 @@
     draw(curves) {
       const {branches} = this, {parameter} = branches,
             wide = (range) => ricochet.roundOutwards(range.empty ? new Interval(0, 1) : range, 1e-9);
-      const xAxis = ricochet.valueAxis(parameter, this.xs.empty ? wide(this.xs) : this.xs, false),
-            out = ricochet.view(parameter, tip, xAxis, ricochet.valueAxis(tip, wide(this.ys), true));
-      ricochet.withoutEnds(xAxis);
+      const xAxis = ricochet.valueAxis(parameter, this.xs.empty ? wide(this.xs) : this.xs),
+            out = ricochet.view(parameter, tip, xAxis, ricochet.valueAxis(tip, wide(this.ys)));
       if (this.beneath.tip.length)
         ricochet.draw(
             out, () => this.beneath, {x: "parameter", y: "tip"},
-            {...ricochet.dot("bifurcation", "#b3b3b3", "circle", 2, 0), silent: true});
+            {...ricochet.dot("bifurcation", "#b3b3b3", "dot", 2, 0), silent: true});
       for (const {one, name, colour} of curves) {
-        for (const [look, width, dash] of [
-                 ["stable", 2.2, "solid"], ["unstable", 1.4, [5, 4]], ["flickering", 0.8, "solid"]])
+        for (const [look, width, dash] of [["stable", 2.2, []], ["unstable", 1.4, [5, 4]], ["flickering", 0.8, []]])
           if (look !== "flickering" || branches.flickering(one.id).includes(1))
-            ricochet.draw(
-                out, () => branches.curve(one.id, look), {x: "parameter", y: "tip"},
-                {...ricochet.line(name, colour, width, dash), case: one.id, showSymbol: false, z: 2});
+            ricochet.draw(out, () => branches.curve(one.id, look), {x: "parameter", y: "tip"}, {
+              ...ricochet.line(name, colour, width, dash),
+              case: one.id,
+              z: 2,
+              prefer: (i, {row}) => branches.portrayed(one.id).has(row[i])
+            });
         for (const rows of ricochet.groupBy(branches.points(one), (row) => [branches.kind(row), Boolean(row.name)])
                  .values())
           this.mark(out, name, colour, rows);
       }
-      out.pick = (chart, option, hidden, at) =>
-          nearest(branches, curves.filter(({name}) => !hidden.has(name)), chart, at);
-      out.open = ({id, row, curve}) => ricochet.showBranchOrbit(branches, id, row, curve.colour);
-      out.hover = ({id, row, curve}) => this.words(id, row, curve.name);
+      // A special point opens the orbit that it is.
+      const rowOf = ({mark, row, i}) =>
+                (row.branch ? branches.rowOf(row.case, row) : ricochet.plot.rowsOf(mark).row[i]),
+            curveOf = ({mark, row}) => curves.find(({one}) => one.id === (row.case || mark.case));
+      out.open = (found) => {
+        const {one, colour} = curveOf(found), row = rowOf(found);
+        if (row >= 0) ricochet.showBranchOrbit(branches, one.id, row, colour);
+      };
+      out.words = (found) =>
+          (found.row.text ? ricochet.pointWords(out, [found]) :
+                            this.words(curveOf(found).one.id, rowOf(found), curveOf(found).name));
       return out;
     }
     // Points of one kind; those without a name are small.
@@ -133,23 +120,23 @@
                ", " + text(row.low, 8) + " to " + text(row.high, 8) + unit(branches.parameter) :
                "") +
           (row.note ? "; " + row.note : "");
-      const points =
-          rows.map((row) => ({case: row.case, parameter: row.parameter, tip: row.tip_displacement, text: said(row)}));
+      const points = rows.map((row) => ({
+                                case: row.case,
+                                branch: row.branch,
+                                point: row.point,
+                                parameter: row.parameter,
+                                tip: row.tip_displacement,
+                                text: said(row)
+                              }));
       const bars = rows.filter((row) => row.low !== null && row.high !== null && row.high > row.low)
                        .map((row) => ({low: row.low, high: row.high, tip: row.tip_displacement}));
       if (named && bars.length)
-        ricochet.draw(out, ricochet.ends(bars, "low", "high"), {x: "end", y: "tip"}, {
-          ...ricochet.line(own, colour, 4),
-          tags,
-          silent: true,
-          z: 3,
-          lineStyle: {width: 5, color: ricochet.lighten(colour, 0.5)}
-        });
-      ricochet.draw(out, points, {x: "parameter", y: "tip"}, {
-        ...ricochet.dot(own, colour, symbol, size, named ? 5 : 4),
-        tags,
-        itemStyle: {color: named ? "#ffffff" : colour, borderColor: colour, borderWidth: named ? 2 : 0}
-      });
+        ricochet.draw(
+            out, ricochet.ends(bars, "low", "high"), {x: "end", y: "tip"},
+            {...ricochet.line(own, ricochet.lighten(colour, 0.5), 5), tags, silent: true, z: 3});
+      ricochet.draw(
+          out, points, {x: "parameter", y: "tip"},
+          {...ricochet.dot(own, colour, symbol, size, named ? 5 : 4), tags, hollow: named, edge: 2});
     }
     words(id, row, name) {
       const {branches} = this, {escape, shown, unit} = ricochet.format,

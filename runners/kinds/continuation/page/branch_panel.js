@@ -1,10 +1,11 @@
 // An orbit of a branch beside the page: what was found of it, its motion, its multipliers, and the special point that
 // it is.
 {
-  const circle = {x: [], y: []}, stopColour = "#777777", pushColour = "#111111", mostRuns = 40, aspect = 4 / 3;
+  const circle = {re: [], im: []}, stopColour = "#777777", pushColour = "#111111", mostRuns = 40, aspect = 4 / 3,
+        tip = ["tip displacement", "m"];
   for (let k = 0; k <= 120; ++k) {
-    circle.x.push(Math.cos((2 * Math.PI * k) / 120));
-    circle.y.push(Math.sin((2 * Math.PI * k) / 120));
+    circle.re.push(Math.cos((2 * Math.PI * k) / 120));
+    circle.im.push(Math.sin((2 * Math.PI * k) / 120));
   }
 
   function neighbour(branches, id, row, step) {
@@ -57,20 +58,17 @@
             () => show(branches, id, near, colour)));
       return;
     }
-    const line = (source, x, y, more) =>
-              ({source, encode: {x, y}, type: "line", symbol: "none", color: colour, lineStyle: {width: 1.4}, ...more}),
-          grey = {silent: true, color: stopColour, lineStyle: {width: 1.2, type: [4, 3]}};
+    const line = (rows, x, y, more) => ({...ricochet.line("motion", colour, 1.4), rows, x, y, ...more}),
+          grey = {silent: true, colour: stopColour, width: 1.2, dash: [4, 3]};
     const fastest = Math.max(...motion.v.map(Math.abs)), stops = [motion.lower, motion.upper].filter(Number.isFinite);
     const strobe = {
-      source: {u: motion.u.slice(0, 1), v: motion.v.slice(0, 1)},
-      encode: {x: "u", y: "v"},
-      type: "scatter",
-      symbolSize: 6,
-      z: 3,
-      color: "#111"
+      ...ricochet.dot("strobe", "#111111", "circle", 6),
+      rows: {u: motion.u.slice(0, 1), v: motion.v.slice(0, 1)},
+      x: "u",
+      y: "v"
     };
     sidePanel.plot(
-        "tip displacement (m)", "tip velocity (m/s)",
+        tip, ["tip velocity", "m/s"],
         [
           line(motion, "u", "v"), strobe,
           ...stops.map((at) => line({u: [at, at], v: [-fastest, fastest]}, "u", "v", grey))
@@ -86,13 +84,13 @@
                                    [{...run, to: end}];
     });
     sidePanel.plot(
-        "phase (forcing periods)", "tip displacement (m)",
+        ["phase", "forcing periods"], tip,
         [
           line(motion, "phase", "u"),
           ...parts.map(
               (run) => line(
                   {phase: [run.begin, run.to], u: [run.bound, run.bound]}, "phase", "u",
-                  {color: pushColour, lineStyle: {width: 6, cap: "butt"}, z: 3}))
+                  {colour: pushColour, width: 6, z: 3}))
         ],
         "in-time");
     if (!motion.runs.length) {
@@ -122,27 +120,16 @@
     const {sidePanel} = ricochet, own = branches.multipliers(id, row), smooth = branches.smooth(id, row);
     if (!own.length) return;
     const reach = 1.1 * Math.max(1, ...own.concat(smooth).flatMap(({re, im}) => [Math.abs(re), Math.abs(im)]));
-    const dots = (list, more) => ({
-      source: {re: list.map(({re}) => re), im: list.map(({im}) => im)},
-      encode: {x: "re", y: "im"},
-      type: "scatter",
-      ...more
-    });
+    const dots = (list, name, colour, size, more) =>
+              ({...ricochet.dot(name, colour, "circle", size), rows: list, x: "re", y: "im", ...more}),
+          corner = {re: aspect * reach, im: reach};
     sidePanel.plot(
-        "real part", "imaginary part",
+        ["real part", "1"], ["imaginary part", "1"],
         [
-          {
-            source: circle,
-            encode: {x: "x", y: "y"},
-            type: "line",
-            symbol: "none",
-            silent: true,
-            color: ricochet.faint,
-            lineStyle: {width: 1}
-          },
-          dots([{re: -aspect * reach, im: -reach}, {re: aspect * reach, im: reach}], {silent: true, symbolSize: 0}),
-          dots(own, {symbolSize: 8, color: colour}),
-          ...(smooth.length ? [dots(smooth, {symbol: "emptyCircle", symbolSize: 12, color: "#111"})] : []),
+          {...ricochet.line("unit circle", ricochet.faint, 1), rows: circle, x: "re", y: "im", silent: true},
+          dots([corner, {re: -corner.re, im: -corner.im}], "frame", "transparent", 0.01, {silent: true}),
+          dots(own, "multiplier", colour, 8),
+          ...(smooth.length ? [dots(smooth, "half-step rule", "#111111", 12, {hollow: true, clear: true})] : []),
         ],
         "portrait");
     sidePanel.say(

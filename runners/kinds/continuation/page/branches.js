@@ -60,23 +60,24 @@
     // where they end is a gap.
     curve(id, look) {
       const of = this.column(id, "of"), counts = this.column(id, "unstable"), parameter = this.column(id, "parameter"),
-            tip = this.column(id, "tip"), out = {parameter: [], tip: []};
+            tip = this.column(id, "tip"), out = {parameter: [], tip: [], row: []};
       const shaky = this.flickering(id);
       const looks = (i) => shaky[i] ? "flickering" : counts[i] > 0 ? "unstable" : "stable";
       const is = (i) => Number.isFinite(counts[i]) && looks(i) === look;
-      const put = (x, y) => {
-        out.parameter.push(x);
-        out.tip.push(y);
+      const put = (i) => {
+        out.parameter.push(i < 0 ? NaN : parameter[i]);
+        out.tip.push(i < 0 ? NaN : tip[i]);
+        out.row.push(i);
       };
       for (let i = 0; i + 1 < of.length; ++i) {
         // Between two rows the curve looks as the second does, so that it changes at a point.
         if (of[i] !== of[i + 1] || !is(i + 1)) continue;
         const goes = i > 0 && of[i - 1] === of[i] && is(i);
         if (!goes) {
-          if (out.tip.length) put(NaN, NaN);
-          put(parameter[i], tip[i]);
+          if (out.tip.length) put(-1);
+          put(i);
         }
-        put(parameter[i + 1], tip[i + 1]);
+        put(i + 1);
       }
       return out;
     }

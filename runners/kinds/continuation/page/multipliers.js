@@ -32,7 +32,7 @@
 
   function chart(branches, label, one) {
     const x = ["real part", "1"], y = ["imaginary part", "1"], all = new Interval(-frame, frame),
-          out = ricochet.view(x, y, ricochet.valueAxis(x, all, false), ricochet.valueAxis(y, all, true));
+          out = ricochet.view(x, y, ricochet.valueAxis(x, all), ricochet.valueAxis(y, all));
     ricochet.draw(
         out, circle, {x: "re", y: "im"}, {...ricochet.line("unit circle", ricochet.faint, 1.2), silent: true});
     const {exact, count} = ricochet.format, parameter = branches.column(one.id, "parameter"),
@@ -57,14 +57,13 @@
     }
     for (const [name, colour] of Object.entries(looks))
       ricochet.draw(
-          out, rows, {x: "re", y: "im"},
-          {...ricochet.dot(name, colour, "circle", 3.5), itemStyle: {color: colour, opacity: 0.55}}, {orbit: name});
+          out, rows, {x: "re", y: "im"}, {...ricochet.dot(name, colour, "circle", 3.5), opacity: 0.55}, {orbit: name});
     const line = halfStep(branches, one.id);
     if (line.length)
       ricochet.draw(out, line, {x: "re", y: "im"}, {...ricochet.line(lineName, lineColour, 1), silent: true, z: 3});
     if (outside) out.notes.push(count(outside, "multiplier lies", "multipliers lie") + " outside this frame.");
     // A square frame: the circle is round.
-    Object.assign(out.option.grid, {right: undefined, width: side, height: side});
+    Object.assign(out.frames[0], {width: side, height: side});
     return {title: label || "all cases", cases: [one], height: side + 58, views: [out], notes: []};
   }
 

@@ -62,15 +62,15 @@
             ys = new Interval().include(...shown.flatMap((row) => [row.distance, row.distance + row.half]));
       if (xs.empty) return null;
       if (ys.empty) ys.include(1e-9, 1e-6);
-      const up = ricochet.logAxis(y, ys, true),
-            out = ricochet.view(x, y, ricochet.logAxis(x, xs, false), [up, ricochet.gutterAxis()]);
-      const fitted = new ricochet.FittedLines(out);
+      const up = ricochet.logAxis(y, ys),
+            out = ricochet.view(x, y, ricochet.logAxis(x, xs), [up, ricochet.gutterAxis()]);
       const without = rows.filter((row) => row.distance === 0);
       for (const [k, method] of this.methods.entries()) {
         const own = {name: this.methodName(method), colour: colourOf(k), style: 0};
         const line = this.lines.find((one) => one.name === name && one.refined === refined && one.method === method);
         if (line)
-          fitted.draw(
+          ricochet.fitted(
+              out,
               [{at: line.from, distance: line.distance_from}, {at: line.to, distance: line.distance_to}].map(
                   (one) => ({...one, text: "order " + ricochet.format.order(line.order)})),
               {x: "at", y: "distance"}, own, line.order);
@@ -102,7 +102,6 @@
                                 }));
         ricochet.drawMarks(out, own, absent);
       }
-      fitted.label();
       if (without.length)
         out.notes.push(
             ricochet.format.count(without.length, "point is", "points are") +

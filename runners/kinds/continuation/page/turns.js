@@ -19,7 +19,7 @@
     for (const one of branches.cases)
       ys.include(...counted(one).filter((row) => row.folds > 0).map((row) => row.folds));
     const charts = branches.methods().map(({label, cases}) => {
-      const out = ricochet.view(x, y, ricochet.logAxis(x, xs, false), ricochet.logAxis(y, ys, true));
+      const out = ricochet.view(x, y, ricochet.logAxis(x, xs), ricochet.logAxis(y, ys));
       for (const one of cases) {
         const name = branches.refinedLabel(one), k = names.indexOf(name),
               own = counted(one).filter((row) => row.folds > 0);

@@ -36,23 +36,22 @@
               ...rows.flatMap((row) => [row.predicted, row.observed]).filter((value) => value > 0));
     if (range.empty) return [];
     const x = ["largest step h", "s"],
-          out = ricochet.namedRows(names, x, ricochet.logAxis(x, range, false), names.length > 12 ? 19 : 26),
-          legend = [];
+          out = ricochet.namedRows(names, x, ricochet.logAxis(x, range), names.length > 12 ? 19 : 26), legend = [];
     for (const [contact, colour] of Object.entries(colours))
       for (const [what, draw] of [
                ["predicted", (name) => ricochet.ring(name, colour, 10)],
                ["observed", (name) => ricochet.dot(name, colour, "circle", 4, 4)]]) {
         const own = rows.filter((row) => row.contact === contact && row[what] > 0), name = contact + ", " + what;
         if (!own.length) continue;
-        ricochet.draw(out, own, {x: what, y: "name"}, {...draw(name), symbolOffset: [0, contact === "open" ? -4 : 4]});
+        ricochet.draw(out, own, {x: what, y: "name"}, {...draw(name), shift: [0, contact === "open" ? -4 : 4]});
         legend.push(ricochet.swatch(name, what === "predicted" ? ricochet.lighten(colour, 0.6) : colour, "circle"));
       }
     if (arrows && unlimited.length) {
       ricochet.draw(
           out,
           unlimited.map(
-              (name) => ({name, end: out.option.xAxis.max, text: name + ": no limit within the steps of the study"})),
-          {x: "end", y: "name"}, {...ricochet.dot(none, "#009E73", "triangle", 10, 4), symbolRotate: -90});
+              (name) => ({name, end: out.xAxes[0].max, text: name + ": no limit within the steps of the study"})),
+          {x: "end", y: "name"}, {...ricochet.dot(none, "#009E73", "triangle-right", 10, 4), shift: [-6, 0]});
       legend.push(ricochet.swatch(none, "#009E73", "triangle"));
     }
     if (without.length && !arrows)

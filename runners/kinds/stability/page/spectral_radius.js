@@ -26,9 +26,8 @@
     let frame = range.empty ? new Interval(...height.frame) : range.copy();
     if (!grows) frame = ricochet.wholeDecades(frame).include(0.1, 10);
     const out = ricochet.view(
-              x, y, ricochet.logAxis(x, stability.steps, false),
-              [ricochet.logAxis(y, frame, true), ricochet.gutterAxis()]),
-          {min, max} = out.option.xAxis;
+              x, y, ricochet.logAxis(x, stability.steps), [ricochet.logAxis(y, frame), ricochet.gutterAxis()]),
+          [{min, max}] = out.xAxes;
     if (range.empty) out.notes.push(height.none);
     if (!grows)  // |r| = 1
       ricochet.draw(

@@ -15,7 +15,7 @@
   const boundaries = [["predicted", "expected", "#0072B2", 4, 0], ["observed", "observed", dark, 1.8, 1]];
   const observations = [
     ["observed stable", "circle", 4, "#5a5a5a"], ["observed unstable", "diamond", 8, dark],
-    ["prediction", "circle", 8, "rgba(0,0,0,0)"]
+    ["prediction", "circle", 8, "transparent"]
   ];
   const seen = (cell) => (cell.behaviour ? (cell.unstable ? "observed unstable" : "observed stable") : "prediction");
 
@@ -38,15 +38,8 @@
 
   // The axis ends with the outer cells; over many decades, where labels need whole ones, with the next decade.
   function frame(axis, range) {
-    axis.splitLine = {show: false};
-    let shown = range;
-    if (axis.type === "log" && range.high > 1e9 * range.low) {
-      shown = ricochet.wholeDecades(range);
-      axis.interval = Math.ceil(Math.log10(shown.high / shown.low) / 6);
-    } else {
-      ricochet.withoutEnds(axis);
-    }
-    return Object.assign(axis, {min: shown.low, max: shown.high});
+    const {low, high} = axis.type === "log" && range.high > 1e9 * range.low ? ricochet.wholeDecades(range) : range;
+    return {...axis, min: low, max: high, plain: true};
   }
 
   class StabilityMap {
@@ -121,9 +114,9 @@
       const x = ["step h", "s"], y = [this.column, this.view.unit(this.column) || "1"];
       const xs = new Interval().include(...bands.flatMap((band) => stepEdges(band.cells))),
             ys = new Interval().include(...bands.flatMap((band) => [band.low, band.high]));
-      const along = frame(ricochet.logAxis(x, xs, false), xs),
-            up = frame(ricochet.axisOf(this.logarithmic, y, ys, true), ys), out = ricochet.view(x, y, along, up);
-      out.option.series.push(...background(bands, along, up));
+      const along = frame(ricochet.logAxis(x, xs), xs), up = frame(ricochet.axisOf(this.logarithmic, y, ys), ys),
+            out = ricochet.view(x, y, along, up);
+      out.marks.push(...background(bands, along, up));
       // A boundary is a line across the band of its value, and there is none where the band has no limit.
       for (const [name, column, colour, width, dash] of boundaries) {
         if (bands.every((band) => band.limits[column] === null)) continue;
@@ -140,9 +133,7 @@
               (cell) =>
                   ({case: band.one.id, step: cell.step, value: band.value, seen: seen(cell), text: cellText(cell)})));
       for (const [name, symbol, size, colour] of observations)
-        ricochet.draw(
-            out, cells, {x: "step", y: "value"}, {type: "scatter", name, symbol, symbolSize: size, z: 5, color: colour},
-            {seen: name});
+        ricochet.draw(out, cells, {x: "step", y: "value"}, ricochet.dot(name, colour, symbol, size, 5), {seen: name});
       return out;
     }
     notes(bands, contact) {
@@ -162,32 +153,25 @@
     }
   }
 
-  // Areas that belong to no series of points: the library takes them from no data set.
+  // A cell per step and value, to the edges of the frame; a mark per prediction.
   function background(bands, x, y) {
-    const areas = bands.flatMap((band) => {
+    const cells = bands.flatMap((band) => {
       const at = stepEdges(band.cells), low = band === bands[0] ? y.min : band.low,
             high = band === bands[bands.length - 1] ? y.max : band.high;
       at[0] = Math.min(at[0], x.min);
       at[at.length - 1] = Math.max(at[at.length - 1], x.max);
-      return band.cells.map((cell, i) => ({
-                              name: cell.prediction,
-                              area: [{coord: [at[i], low], itemStyle: {color: shade(cell)}}, {coord: [at[i + 1], high]}]
-                            }));
+      return band.cells.map(
+          (cell, i) => ({name: cell.prediction, from: at[i], to: at[i + 1], low, high, shade: shade(cell)}));
     });
-    return Array.from(ricochet.groupBy(areas, (one) => [one.name]), ([name, own]) => ({
-                                                                      type: "line",
+    return Array.from(ricochet.groupBy(cells, (one) => [one.name]), ([name, rows]) => ({
+                                                                      mark: "cells",
                                                                       name,
-                                                                      symbol: "none",
-                                                                      color: colours[name],
-                                                                      data: [],
-                                                                      markArea: {
-                                                                        silent: true,
-                                                                        z: 0,
-                                                                        label: {show: false},
-                                                                        animation: false,
-                                                                        itemStyle: {opacity: 1, borderWidth: 0},
-                                                                        data: own.map(({area}) => area)
-                                                                      },
+                                                                      rows,
+                                                                      x: ["from", "to"],
+                                                                      y: ["low", "high"],
+                                                                      colour: (row) => row.shade,
+                                                                      silent: true,
+                                                                      z: 0
                                                                     }));
   }
 

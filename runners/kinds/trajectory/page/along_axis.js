@@ -67,10 +67,10 @@
       const {quantity, logarithmic} = value,
                        counts = facet.curves.every(
                            (curve) => this.rows(curve.cases, value).every((row) => Number.isInteger(row.height)));
-      const y = logarithmic ? ricochet.logAxis(quantity, frame.range, true) :
+      const y = logarithmic ? ricochet.logAxis(quantity, frame.range) :
                               ricochet.heightAxis(quantity, ricochet.roundOutwards(frame.range, counts ? 4 : 2e-3));
       const whole = ricochet.logarithmicAxis(this.xRange),
-            x = ricochet.axisOf(whole, this.x, whole ? this.xRange : ricochet.roundOutwards(this.xRange, 1e-12), false);
+            x = ricochet.axisOf(whole, this.x, whole ? this.xRange : ricochet.roundOutwards(this.xRange, 1e-12));
       const out = ricochet.view(this.x, quantity, x, [y, ricochet.gutterAxis()]), mark = ricochet.outcomeMarks(),
             zeros = [];
       if (!logarithmic && frame.own) out.notes.push(ricochet.ownScale);
@@ -84,7 +84,7 @@
         if (curve.across)
           ricochet.draw(
               out, shown.flatMap((row) => [x.min, x.max].map((at) => ({...row, at}))), {x: "at", y: "height"},
-              {...ricochet.curve(curve, 8, 1.2), symbol: "none"});
+              {...ricochet.curve(curve, 8, 1.2), symbol: ""});
         else ricochet.draw(out, shown, {x: "at", y: "height"}, ricochet.hollowCurve(curve, shown));
         ricochet.drawMarks(
             out, curve,

@@ -15,10 +15,9 @@ ricochet.figure("clearances", (data) => {
     const said = [].concat(data.page.study.resolved?.scene?.stops ?? []).find((one) => one.name === stop),
           [first, second] = said?.clearance?.components ?? ["first component", "second component"];
     const x = [first, "m"], y = [second, "m"], frame = new ricochet.Interval(-reach, reach);
-    const across = ricochet.valueAxis(x, frame, false), up = ricochet.valueAxis(y, frame, true),
+    const across = ricochet.valueAxis(x, frame), up = ricochet.valueAxis(y, frame),
           out = ricochet.view(x, y, across, [up, ricochet.gutterAxis()]);
-    for (const axis of [across, up]) ricochet.withoutEnds(axis);
-    out.option.grid = {left: 84, top: 14, width: side, height: side};
+    out.frames = [{left: 84, top: 14, width: side, height: side}];
     const circle = Array.from({length: corners + 1}, (_, k) => ({
                                                        first: radius * Math.cos(2 * Math.PI * k / corners),
                                                        second: radius * Math.sin(2 * Math.PI * k / corners)
@@ -31,8 +30,7 @@ ricochet.figure("clearances", (data) => {
             colour = ricochet.methodColours[k % ricochet.mostCurves];
       if (own.length)
         ricochet.draw(
-            out, own, {x: "first", y: "second"},
-            {...ricochet.dot(nameOf(one), colour, "circle", 3), itemStyle: {color: colour, opacity: 0.5}});
+            out, own, {x: "first", y: "second"}, {...ricochet.dot(nameOf(one), colour, "circle", 3), opacity: 0.5});
     });
     return {title: stop, views: [out], notes: [], height: side + 62};
   });

@@ -179,7 +179,7 @@
       if (frame.range.empty && scale === "change")
         return {
           ...ricochet.view(x, quantity, {}, {}),
-          option: null,
+          nothing: true,
           notes: ["No sample differs from the start: a logarithmic axis has nothing to show."]
         };
       let range = frame.range.empty ? new Interval(0, 1) : frame.range.copy();
@@ -189,8 +189,8 @@
                                    ricochet.roundOutwards(range, scale === "ratio" ? 2e-3 : 1e-12);
       for (const {t} of facet.curves) time.include(t[0], t[t.length - 1]);
       if (time.low > 0 && time.low < 0.01 * time.high) time.low = 0;
-      const y = scale === "change" ? ricochet.logAxis(quantity, range, true) : ricochet.heightAxis(quantity, range),
-            out = ricochet.view(x, quantity, ricochet.valueAxis(x, time, false), y, true);
+      const y = scale === "change" ? ricochet.logAxis(quantity, range) : ricochet.heightAxis(quantity, range),
+            out = ricochet.view(x, quantity, ricochet.valueAxis(x, time), y, true);
       if (frame.own) out.notes.push(ricochet.ownScale);
       for (const curve of facet.curves) {
         if (scale === "difference" && !curve.base) continue;
@@ -209,24 +209,23 @@
         out.notes.push(
             "Samples equal to the start exactly, which a logarithmic axis cannot show: " +
             unseen.map(({curve, zeros}) => curve.name + " " + zeros + " of " + curve.values.length).join(", ") + ".");
-      if (stops.length) out.option.series.push(stopLines(stops, range));
+      // Stops that lie on each other in a wide frame share a label.
+      stops.forEach(
+          (stop, k) => out.marks.push(ricochet.rule(
+              "stops", {y: stop},
+              k === 0 || Math.abs(stop - stops[k - 1]) > 0.12 * (range.high - range.low) ? "stop" : "")));
       return out;
     }
     draw(out, curve, scale, range) {
       const {text, unit, mark} = ricochet.format, values = valuesOf(curve, scale), {name, width} = curve,
                          {status, reason} = curve.one;
       const style = {
-        type: "line",
-        name,
+        ...ricochet.line(name, curve.colour, width, ricochet.dash(curve.dash)),
         case: curve.one.id,
-        color: curve.colour,
-        showSymbol: values.length < 2,
-        emphasis: {disabled: true},
-        lineStyle: {width, type: ricochet.dash(curve.dash)}
+        rising: true,
+        ...(values.length < 2 ? {symbol: "circle", size: 5} : {})
       };
-      ricochet.draw(
-          out, () => ({t: curve.t, value: valuesOf(curve, scale)}), {x: "t", y: "value"},
-          values.length > drawnWhole ? {...style, sampling: "minmax"} : style);
+      ricochet.draw(out, () => ({t: curve.t, value: valuesOf(curve, scale)}), {x: "t", y: "value"}, style);
       const largest = values.reduce((most, y) => (Number.isFinite(y) && Math.abs(y) > Math.abs(most) ? y : most), 0);
       if (largest > range.high || largest < range.low)
         out.notes.push(name + ": leaves the frame, up to " + text(largest) + unit(out.y) + ".");
@@ -240,7 +239,7 @@
         mark: mark(status),
         text: status + " at t = " + text(curve.t[last]) + " s: " + reason
       };
-      ricochet.drawMarks(out, curve, [row], {yAxisIndex: 0});
+      ricochet.drawMarks(out, curve, [row], {yAxis: 0, apart: undefined});
     }
     // Positions of the stops where the study gives them as plain numbers.
     stops() {
@@ -252,25 +251,6 @@
           .filter(Number.isFinite);
     }
   }
-
-  // Stops that lie on each other in a wide frame share a label.
-  const apart = (stops, range) =>
-      stops.every((stop, k) => k === 0 || Math.abs(stop - stops[k - 1]) > 0.12 * (range.high - range.low));
-  const stopLines = (stops, range) => ({
-    type: "line",
-    name: "stops",
-    data: [],
-    silent: true,
-    tooltip: {show: false},
-    markLine: {
-      silent: true,
-      symbol: "none",
-      animation: false,
-      label: {show: true, formatter: "stop", position: "insideStartTop", fontSize: 10, color: "#777777"},
-      lineStyle: {color: "#777777", type: "solid", width: 1},
-      data: stops.map((stop, k) => ({yAxis: stop, label: {show: k === 0 || apart(stops, range)}})),
-    },
-  });
 
   ricochet.overTime = (data, subject) => [new OverTime(data, subject).figure()].filter(Boolean);
 }

@@ -13,7 +13,7 @@ ricochet.figure("shocks", (data) => {
     symbolOf.set(one.id, symbols[(used[view.colour(one)] = (used[view.colour(one)] || 0) + 1) % symbols.length]);
   const legend = [], charts = stops.map((stop) => {
     const out = ricochet.view(
-        x, y, ricochet.axisOf(false, x, ricochet.roundOutwards(times, 1e-12), false),
+        x, y, ricochet.valueAxis(x, ricochet.roundOutwards(times, 1e-12)),
         [ricochet.heightAxis(y, ricochet.roundOutwards(peaks, 2e-3)), ricochet.gutterAxis()]);
     for (const one of cases) {
       const name = view.label(one, view.varyingWithout(["step", "elements"])) || "all cases", colour = view.colour(one),
@@ -25,9 +25,7 @@ ricochet.figure("shocks", (data) => {
                                   ricochet.format.count(row.rebounds, "rebound", "rebounds")
                             }));
       if (rows.length)
-        ricochet.draw(
-            out, rows, {x: "t", y: "peak"},
-            {...ricochet.dot(name, colour, symbol, 6), itemStyle: {color: colour, opacity: 0.7}});
+        ricochet.draw(out, rows, {x: "t", y: "peak"}, {...ricochet.dot(name, colour, symbol, 6), opacity: 0.7});
       if (!legend.some((entry) => entry.name === name)) legend.push(ricochet.swatch(name, colour, symbol));
     }
     return {title: "stop " + stop, views: [out], notes: []};

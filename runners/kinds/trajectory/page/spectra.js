@@ -16,12 +16,11 @@ ricochet.figure("spectra", (data) => {
       return {
         title: of + ", " + quantity,
         views: [ricochet.view(
-            x, y, ricochet.logAxis(x, along, false),
+            x, y, ricochet.logAxis(x, along),
             [ricochet.heightAxis(y, new ricochet.Interval(0, 1)), ricochet.gutterAxis()])],
         notes: ["Zero at every frequency."]
       };
-    const out = ricochet.view(
-        x, y, ricochet.logAxis(x, along, false), [ricochet.logAxis(y, range, true), ricochet.gutterAxis()]);
+    const out = ricochet.view(x, y, ricochet.logAxis(x, along), [ricochet.logAxis(y, range), ricochet.gutterAxis()]);
     const shown = rows.map(
         (row) => Object.fromEntries(Object.entries(row).map(
             ([name,
@@ -29,7 +28,7 @@ ricochet.figure("spectra", (data) => {
     for (const [column, name, tint, width] of [
              ["low", "widened by the last refinement", pale, 1], ["high", "widened by the last refinement", pale, 1],
              ["least", "all methods", colour, 1.4], ["largest", "all methods", colour, 1.4]])
-      ricochet.draw(out, shown, {x: "frequency", y: column}, {...ricochet.line(name, tint, width), symbol: "none"});
+      ricochet.draw(out, shown, {x: "frequency", y: column}, ricochet.line(name, tint, width));
     return {title: of + ", " + quantity, views: [out], notes: []};
   });
   return [{

@@ -3,7 +3,6 @@
 {
   const {Interval, errors} = ricochet;
   const frontColour = "#E8D95A", frontName = "Pareto front";
-  const slots = 40;                                              // of the hidden axis that places marks in the gutter
   const gutterColumns = 4, gutterRows = 11, gutterShare = 0.13;  // of the decades of the axis
 
   // `work`: id, title, caption, quantity, column of `work_points` on the vertical axis, spread (whether to draw the
@@ -58,28 +57,36 @@
     chart({error, x: xRange, y: yRange, gutter}, facet) {
       const {work} = this, quantity = errors.quantity(error), edge = xRange.high,
             far = gutter ? edge * Math.pow(edge / xRange.low, gutterShare) : edge;
-      const x = Object.assign(ricochet.logAxis(quantity, xRange, false), {max: far}),
-            y = ricochet.logAxis(work.quantity, yRange, true);
-      // Marks of cases without an error have no place along x: a hidden axis of slots puts them into the gutter.
-      const names = Array.from({length: slots}, (_, k) => "slot " + k);
-      const out = ricochet.view(
-                quantity, work.quantity, [x, {type: "category", data: names, show: false}], [y, ricochet.gutterAxis()]),
-            {series} = out.option;
+      const x = Object.assign(ricochet.logAxis(quantity, xRange), {max: far}),
+            y = ricochet.logAxis(work.quantity, yRange);
+      const out = ricochet.view(quantity, work.quantity, x, [y, ricochet.gutterAxis()]);
+      if (gutter)
+        out.marks.push({
+          mark: "cells",
+          name: "no error",
+          colour: "#f2f2f2",
+          said: "no error",
+          letters: "#7a7a7a",
+          low: true,
+          silent: true,
+          z: 0,
+          rows: [{}],
+          x: [edge, null]
+        });
       if (work.front) this.drawFront(error, facet, out);
-      let drawn = 0, area = gutter ? gutterArea(edge, far) : undefined;
+      let drawn = 0;
       for (const curve of facet.curves) {
         const rows = this.rows(curve.cases, error).map((row) => ({...row, text: this.pointText(row)}));
         const bars = work.spread ? ricochet.ends(rows.filter((row) => row.high > row.low), "low", "high") : [];
         if (bars.length)
           ricochet.draw(
               out, bars, {x: "value", y: "end"},
-              {...ricochet.line(curve.name, curve.colour, 1), symbol: "rect", symbolSize: [9, 1.2], z: 3});
+              {...ricochet.line(curve.name, curve.colour, 1), symbol: "bar", size: 9, z: 3});
         const size = (row) => (work.front && row[work.front] ? 12 : 8);
-        ricochet.draw(
-            out, rows, {x: "value", y: work.column}, {...errors.curve(curve), symbolSize: size, markArea: area});
-        area = undefined;
+        ricochet.draw(out, rows, {x: "value", y: work.column}, {...errors.curve(curve), size});
         const without = gutter ? curve.cases.filter((one) => !this.rows([one], error).length) : [];
-        ricochet.drawMarks(out, curve, without.map((one) => this.gutterMark(one, error, drawn++)), {xAxisIndex: 1});
+        ricochet.drawMarks(
+            out, curve, without.map((one) => this.gutterMark(one, error, drawn++, edge, far)), {apart: true});
       }
       const all = this.rows(facet.cases, error), floor = Math.max(0, ...all.map((row) => row.floor)),
             text = "errors below " + ricochet.format.text(floor, 3) + " are not told apart";
@@ -111,22 +118,18 @@
         out.notes.push(
             "Not told from the front, since the spreads of their times overlap it: " + near.join("; ") + ".");
       const style = {
-        type: "line",
-        name: frontName,
-        symbol: front.length === 1 ? "circle" : "none",
-        symbolSize: 18,
-        z: 1,
-        color: frontColour,
-        lineStyle: {width: 9, cap: "round"}
+        ...ricochet.line(frontName, frontColour, 9),
+        ...(front.length === 1 ? {symbol: "circle", size: 18} : {}),
+        cap: "round"
       };
       ricochet.draw(out, front, {x: "known", y: work.column}, style);
     }
-    gutterMark(one, error, count) {
+    gutterMark(one, error, count, edge, far) {
       const done = one.status === "done", who = this.view.label(one, this.curves.said),
             why = done ? this.none(one, error) : one.status + ": " + one.reason;
       return {
         case: one.id,
-        at: "slot " + (slots - 1 - Math.floor(count / gutterRows) % gutterColumns),
+        at: far * Math.pow(edge / far, (Math.floor(count / gutterRows) % gutterColumns + 0.5) / gutterColumns),
         height: ricochet.markAt(count % gutterRows),
         mark: done ? "–" : ricochet.format.mark(one.status),
         text: who ? who + ": " + why : why,
@@ -148,13 +151,6 @@
       return out + (this.work.front && row[this.work.front] ? "; on the front" : "");
     }
   }
-
-  const gutterArea = (from, to) => ({
-    silent: true,
-    itemStyle: {color: "#000000", opacity: 0.05},
-    label: {show: true, position: "insideBottom", color: "#7a7a7a", fontSize: 10},
-    data: [[{name: "no error", xAxis: from}, {xAxis: to}]],
-  });
 
   const gutter =
       " The grey strip at the right holds the cases without an error: refused ⊘, diverged ✕, failed !, or no such " +

@@ -41,11 +41,9 @@
           names = ricochet.distinct(front.map((row) => row.shown)).slice(0, mostNames), legend = [];
     const x = ricochet.errors.quantity(error), y = ["run time", "s"],
           range = (column) => new ricochet.Interval().include(...rows.map((row) => row[column]));
-    const out =
-        ricochet.view(x, y, ricochet.logAxis(x, range("value"), false), ricochet.logAxis(y, range("seconds"), true));
+    const out = ricochet.view(x, y, ricochet.logAxis(x, range("value")), ricochet.logAxis(y, range("seconds")));
     ricochet.draw(
-        out, front, {x: "value", y: "seconds"},
-        {...ricochet.line("Pareto front", "#E8D95A", 9), lineStyle: {width: 9, color: "#E8D95A", cap: "round"}});
+        out, front, {x: "value", y: "seconds"}, {...ricochet.line("Pareto front", "#E8D95A", 9), cap: "round"});
     ricochet.draw(out, rows, {x: "value", y: "seconds"}, ricochet.dot(beaten, grey, "circle", 5, 2), {shown: beaten});
     names.forEach((name, k) => {
       ricochet.draw(
@@ -58,10 +56,9 @@
     const chosen = new Set(said.flatMap((row) => row.methods.split(" "))),
           ringed = error === named ? rows.filter((row) => chosen.has(row.case)) : [];
     if (ringed.length) {
-      ricochet.draw(out, ringed, {x: "value", y: "seconds"}, {
-        ...ricochet.dot(answered, "#222222", "circle", 17, 5),
-        itemStyle: {color: "transparent", borderColor: "#222222", borderWidth: 1.4}
-      });
+      ricochet.draw(
+          out, ringed, {x: "value", y: "seconds"},
+          {...ricochet.dot(answered, "#222222", "circle", 17, 5), hollow: true, clear: true, edge: 1.4});
       legend.push(ricochet.swatch(answered, "#222222", "circle"));
     }
     if (rows.some((row) => row.shown === beaten)) legend.push(ricochet.swatch(beaten, grey, "circle"));

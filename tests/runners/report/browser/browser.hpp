@@ -7,7 +7,7 @@
 #include "runners/store/record.hpp"
 
 /// \file
-/// Reports opened in headless Chromium: what is drawn is read back from the chart library.
+/// Reports opened in headless Chromium: what is drawn is read back from the charts.
 namespace ricochet::browser {
 
 using Json = nlohmann::json;
@@ -19,7 +19,7 @@ struct Page {
   std::vector<std::pair<double, double>> numbers = {};  ///< written and rounded by the page's script
 };
 
-/// The same with the chart library of this tree inlined.
+/// The report of these results.
 Page page_of(const std::string& name, const StudyResults& results);
 
 /// Whether RICOCHET_WITHOUT_BROWSER leaves these checks out; a missing browser is a failure.

@@ -19,10 +19,10 @@ void check_branches(const browser::Json& page) {
   size_t lines = 0, thin = 0, folds = 0;
   for (const browser::Json& one : branches.at("charts")[0].at("views")[0].at("series")) {
     const auto name = one.at("name").get<std::string>();
-    const bool line = one.at("type") == "line" && name.find("smooth") == 0;
-    lines += line && one.at("lineStyle").at("width") > 1;
-    thin += line && one.at("lineStyle").at("width") < 1;
-    folds += one.at("type") == "scatter" && name.starts_with("fold");
+    const bool line = one.at("mark") == "line" && name.find("smooth") == 0;
+    lines += line && one.at("width") > 1;
+    thin += line && one.at("width") < 1;
+    folds += one.at("mark") == "dots" && name.starts_with("fold");
   }
   // Of each of four methods a stable and an unstable part.
   CHECK(lines == 8);
@@ -67,7 +67,7 @@ void check_points(const browser::Json& page) {
     for (const char* axis : {"xAxis", "yAxis"}) CHECK(chart.at("views")[0].at(axis)[0].at("type") == "log");
     if (chart.at("title").get<std::string>().find("fold at 0.1006 · over the step") != 0) continue;
     for (const browser::Json& one : chart.at("views")[0].at("series")) {
-      if (one.at("type") != "line" || one.at("data").size() != 2) continue;
+      if (one.at("mark") != "line" || one.at("data").size() != 2) continue;
       const auto at = [&](size_t k, size_t part) { return std::log(one["data"][k]["value"][part].get<double>()); };
       CHECK((at(1, 1) - at(0, 1)) / (at(1, 0) - at(0, 0)) == Approx(2).epsilon(1e-6));
       ++lines;
@@ -107,7 +107,7 @@ TEST_CASE("labels of fitted orders never lie on each other, however near their l
     size_t labels = 0;
     for (const browser::Json& chart : figure(page, "points").at("charts")) {
       CHECK(chart.at("views")[0].at("collisions") == browser::Json::array());
-      for (const browser::Json& one : chart.at("views")[0].at("series")) labels += one.contains("endLabel");
+      for (const browser::Json& one : chart.at("views")[0].at("series")) labels += one.contains("end");
     }
     CHECK(labels > 0);
   }

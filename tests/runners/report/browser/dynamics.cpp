@@ -16,7 +16,7 @@ using report::regime_groups;
 
 namespace {
 
-/// Sources of marks drawn by hand in a chart.
+/// Marks of packed points in a chart.
 std::vector<browser::Json> sources(const browser::Json& chart, const std::string& what) {
   std::vector<browser::Json> out;
   for (const browser::Json& source : chart.at("views").at(0).at("sources"))
@@ -43,7 +43,7 @@ void check_orbit(const browser::Json& panel) {
   REQUIRE(panel.at("charts").size() == 2);
   const browser::Json &portrait = panel["charts"][0], &in_time = panel["charts"][1];
   REQUIRE(portrait.size() == 2);
-  CHECK(portrait[0].at("type") == "line");
+  CHECK(portrait[0].at("mark") == "line");
   CHECK(std::any_of(portrait[1].at("data").begin(), portrait[1].at("data").end(),
                     [&](const browser::Json& dot) { return dot.at("value")[0] == panel.at("point")[1]; }));
   REQUIRE(in_time[0].at("count") == portrait[0].at("count"));
@@ -66,8 +66,7 @@ void check_diagram(const StudyResults& results, const browser::Json& page) {
       CHECK(axis["min"] == view["xAxis"][0]["min"]);
       CHECK(axis["max"] == view["xAxis"][0]["max"]);
     }
-    CHECK(view["dataZoom"][0]["xAxisIndex"] == browser::Json({0, 1, 2, 3}));
-    for (const browser::Json& grid : view["grid"]) CHECK(grid["left"] == view["grid"][0]["left"]);
+    for (const browser::Json& frame : view["frames"]) CHECK(frame["x"] == view["frames"][0]["x"]);
   }
   // Side by side: colour is the regime; overlaid: the case.
   for (const browser::Json& source : sources(charts[0], "points"))
@@ -140,7 +139,7 @@ void check_distances(const browser::Json& page) {
   REQUIRE(against.at("charts").size() == 1);
   std::vector<double> medians;
   for (const browser::Json& item :
-       items_of(against, 0, [](const browser::Json& s) { return s.value("symbolSize", browser::Json()) == 7; }))
+       items_of(against, 0, [](const browser::Json& s) { return s.value("size", browser::Json()) == 7; }))
     medians.push_back(item.at("value")[1]);
   // The cases' distances are as 1 : 2 : 3, in the order 0.25, 0.3, 0.4; so are their medians.
   REQUIRE(medians.size() == 3);
@@ -148,9 +147,8 @@ void check_distances(const browser::Json& page) {
   CHECK(medians[2] == Approx(3 * medians[0]));
   CHECK(says(against.at("charts")[0].at("views")[0].at("notes"), "Null level: median 0.01"));
   CHECK(figure(page, "distance").at("linked_along") == true);
-  for (const browser::Json& series : series_of(figure(page, "distance"), 0, [](const browser::Json& s) {
-         return s.value("symbolSize", browser::Json()) == 4;
-       }))
+  for (const browser::Json& series : series_of(
+           figure(page, "distance"), 0, [](const browser::Json& s) { return s.value("size", browser::Json()) == 4; }))
     CHECK(series.at("count") > 50);
   const auto level = series_of(figure(page, "distance"), 0, named("null level"));
   REQUIRE(level.size() == 1);
@@ -236,7 +234,7 @@ TEST_CASE("images of basins draw every cell and their differences, and a click o
         continue;
       REQUIRE(drawn < series.size());
       CHECK(series[drawn].at("name") == grids.labels[k].name);
-      CHECK(series[drawn++].at("color") == grids.labels[k].colour);
+      CHECK(series[drawn++].at("colour") == grids.labels[k].colour);
     }
     CHECK(series.size() == drawn);
   }

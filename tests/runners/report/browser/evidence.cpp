@@ -38,7 +38,7 @@ void check_errors(const StudyResults& results, const browser::Json& page) {
   for (const browser::Json& item : items_of(steps, 0, is_curve)) {
     // Grey exactly where the error is at or below its floor, and the tooltip says so.
     const bool below = item.at("value")[1].get<double>() <= 3e-5;
-    CHECK(item.contains("itemStyle") == below);
+    CHECK(item.contains("colour") == below);
     CHECK(text_contains(item.at("text"), "at or below the floor") == below);
   }
   CHECK(items_of(steps, 0, named("error floor")).size() == 6);
@@ -59,13 +59,13 @@ void check_slopes(const browser::Json& page) {
           if (is_curve(series))
             for (const browser::Json& item : series.at("data")) sizes.insert(item.at("value")[0].get<double>());
         for (const browser::Json& series : view.at("series")) {
-          if (!series.contains("lineStyle") || series.at("lineStyle").value("width", 0) != 7) continue;
+          if (!series.contains("width") || series.at("width") != 7) continue;
           ++lines;
           const browser::Json &from = series.at("data")[0].at("value"), &to = series.at("data")[1].at("value");
           const double slope = std::log(to[1].get<double>() / from[1].get<double>()) /
                                std::log(to[0].get<double>() / from[0].get<double>());
           // The label has three digits; lines that end together share one.
-          if (const std::string label = series.value("endLabel", ""); !label.empty() && !text_contains(label, " to ")) {
+          if (const std::string label = series.value("end", ""); !label.empty() && !text_contains(label, " to ")) {
             const double said = std::stod(label);
             CHECK(slope == Approx(one.at("id") == "error-step" ? said : -said).epsilon(1e-2));
           }
@@ -89,8 +89,11 @@ void check_work(const StudyResults& results, const browser::Json& page) {
   }
   CHECK(drawn == rows);
   CHECK(drawn + marks == derived_table(results, "work_precision").rows.size());  // nothing vanishes
+  double largest = 0;
+  for (const browser::Json& item : items_of(work, 0, is_curve))
+    largest = std::max(largest, item.at("value")[0].get<double>());
   for (const browser::Json& item : items_of(work, 0, is_mark)) {
-    CHECK(item.at("value")[0].is_string());  // a slot of the gutter, no error that could be read off
+    CHECK(item.at("value")[0] > largest);  // in the gutter, right of every error
     CHECK(text_contains(item.at("text"), ": "));
   }
   // Finished, but without this error: said in the gutter and below.
@@ -105,9 +108,8 @@ void check_work(const StudyResults& results, const browser::Json& page) {
     CHECK(says(notes, "✕ diverged"));
   }
   // Bars from the fastest to the slowest repeat: two ends and a gap per point.
-  const auto bars = items_of(work, 0, [](const browser::Json& s) {
-    return s.at("type") == "line" && s.at("symbol") == "rect" && s.at("symbolSize").is_array();
-  });
+  const auto bars =
+      items_of(work, 0, [](const browser::Json& s) { return s.at("mark") == "line" && s.at("symbol") == "bar"; });
   CHECK(bars.size() == 3 * items_of(work, 0, is_curve).size());
   // The front is what no other point beats, and its points are the larger ones.
   std::vector<std::pair<double, double>> all;
@@ -115,8 +117,8 @@ void check_work(const StudyResults& results, const browser::Json& page) {
   for (const browser::Json& item : items_of(work, 0, is_curve)) {
     // The floor of this error is 3e-5: below it errors are not told apart.
     all.emplace_back(std::max(item.at("value")[0].get<double>(), 3e-5), item.at("value")[1].get<double>());
-    if (item.contains("symbolSize")) large.insert(all.back());
-    CHECK(item.contains("symbolSize") == text_contains(item.at("text"), "on the front"));
+    if (item.contains("size")) large.insert(all.back());
+    CHECK(item.contains("size") == text_contains(item.at("text"), "on the front"));
   }
   for (const auto& p : all)
     if (std::none_of(all.begin(), all.end(),
@@ -129,8 +131,8 @@ void check_work(const StudyResults& results, const browser::Json& page) {
   CHECK(line == front);
   for (const browser::Json& one : page.at("figures"))
     for (const browser::Json& chart : one.at("charts")) CHECK(chart.at("views").size() == one.at("views").size());
-  for (const browser::Json& series : series_of(work, 0, [](const browser::Json& s) { return s.contains("markArea"); }))
-    CHECK(series.at("markArea")[0][0].at("name") == "no error");
+  for (const browser::Json& series : series_of(work, 0, [](const browser::Json& s) { return s.at("mark") == "cells"; }))
+    CHECK(series.at("said") == "no error");
 }
 
 /// Shares are bars that add up, with the table's sentence below.
@@ -141,7 +143,7 @@ void check_effects(const StudyResults& results, const browser::Json& page) {
     double sum = 0;
     size_t bars = 0;
     for (const browser::Json& series : chart.at("views")[0].at("series"))
-      if (series.at("type") == "bar")
+      if (series.at("mark") == "bars")
         for (const browser::Json& item : series.at("data")) {
           sum += item.at("value")[0].get<double>();
           CHECK(says(chart.at("views")[0].at("yAxis")[0].at("data"), item.at("value")[1]));

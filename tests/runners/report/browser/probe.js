@@ -1,4 +1,4 @@
-// Goes into a copy of a report. It draws every figure in every view, reads back what the chart library then holds, and
+// Goes into a copy of a report. It draws every figure in every view, reads back what the charts then hold, and
 // works the page's controls. It promises all of it as `probed`.
 (() => {
   "use strict";
@@ -7,23 +7,19 @@
   window.addEventListener("unhandledrejection", (e) => errors.push(String(e.reason)));
   document.addEventListener(
       "securitypolicyviolation", (e) => errors.push("policy: " + e.violatedDirective + " " + e.blockedURI));
-  const {all, coloured, pick, seriesIn, sourceOf, readBack, notesIn} = window.readback;
+  const {all, coloured, pick, marksIn, readBack, notesIn} = window.readback;
 
   function checkLegend(figure, first, out) {
     const buttons = all(".legend button", figure.section), legend = buttons[0];
     if (!legend) return;
     legend.click();
     const name = legend.dataset.name, named = (one) => one.name === name || (one.tags || []).includes(name);
-    out.hidden = figure.slots.every(
-        (s) => !s.chart || !figure.visible(s) ||
-            s.drawn.series.filter(named).every((one) => s.chart.getOption().legend[0].selected[one.name] === false));
+    out.hidden =
+        figure.slots.every((s) => !s.chart || !figure.visible(s) || !s.chart.plot || !s.chart.plot.marks.some(named));
     legend.click();
-    if (!first || !figure.viewOf(first).sources) return;
+    if (!first || !figure.viewOf(first) || !figure.viewOf(first).marks.some((mark) => mark.values)) return;
     // Without any entry of the legend nothing coloured is left, and with all of them everything is back.
-    const full = coloured(first), redraw = () => {
-      figure.draw(first);
-      first.chart.getZr().flush();
-    };
+    const full = coloured(first), redraw = () => figure.draw(first);
     buttons.forEach((b) => figure.hidden.add(b.dataset.name));
     redraw();
     out.hidden = out.hidden && coloured(first) < full / 10;
@@ -31,29 +27,41 @@
     redraw();
     out.hidden = out.hidden && coloured(first) === full;
   }
-  function checkZoom(figure, first, last, out) {
-    const range = first.chart.getOption().xAxis[0], low = range.min || 0, wide = range.max - low,
-          from = low + 0.25 * wide, to = low + 0.5 * wide;
-    first.chart.dispatchAction({type: "dataZoom", dataZoomId: "along-x", startValue: from, endValue: to});
-    const zoom = last.chart.getOption().dataZoom[0], axes = last.chart.getOption().xAxis,
-          pixel = (k) => last.chart.convertToPixel({xAxisIndex: k}, from);
-    out.linked = Math.abs(zoom.startValue - from) < 1e-6 * wide && Math.abs(zoom.endValue - to) < 1e-6 * wide;
-    out.aligned = axes.every((axis, k) => Math.abs(pixel(k) - pixel(0)) < 0.5);
-    figure.reset();
-    out.reset = last.chart.getOption().dataZoom[0].start === 0 && last.chart.getOption().dataZoom[0].end === 100;
+  // A drag over a chart shows that part of its axis, in all charts that are linked; a double click shows all.
+  function checkZoom(figure, {chart: first}, {chart: last}, out) {
+    const axis = () => first.plot.xs[0].axis, {min, max} = axis(), wide = max - min, frame = first.plot.frames[0],
+          [left, right] = [0.25, 0.5].map((share) => first.plot.xs[0].at(min + share * wide)),
+          middle = frame.y + 0.5 * frame.height, place = first.canvas.getBoundingClientRect();
+    const send = (name, x) => first.canvas.dispatchEvent(new PointerEvent(name, {
+      clientX: place.left + x,
+      clientY: place.top + middle,
+      pointerType: "mouse",
+      pointerId: 1,
+      button: 0,
+      bubbles: true
+    }));
+    first.canvas.setPointerCapture = () => {};
+    send("pointerdown", left);
+    send("pointermove", 0.5 * (left + right));
+    send("pointerup", right);
+    const {windows, plot} = last, near = (value, share) => Math.abs(value - min - share * wide) < 0.01 * wide,
+                    [from] = windows.x || [NaN];
+    out.linked = Boolean(windows.x) && near(windows.x[0], 0.25) && near(windows.x[1], 0.5) && near(axis().min, 0.25);
+    out.aligned = plot.xs.every((x) => Math.abs(x.at(from) - plot.xs[0].at(from)) < 0.5);
+    first.canvas.dispatchEvent(new MouseEvent("dblclick", {bubbles: true}));
+    out.reset = last.windows.x === null && last.plot.xs[0].axis.min === last.view.xAxes[0].min;
   }
   // A click on a drawn point opens that very orbit.
   function checkPanel(figure, slot, view) {
-    const source = view.sources().find((one) => one.what === "points" && one.values.length),
+    const source = view.marks.find((one) => one.what === "points" && one.values.length),
           middle = source.orbits.length >> 1, parameter = source.values[2 * middle];
-    figure.pick(
-        slot, slot.chart.convertToPixel({xAxisIndex: 0, yAxisIndex: 0}, [parameter, source.values[2 * middle + 1]]));
+    slot.chart.pick(slot.chart.plot.pixel([parameter, source.values[2 * middle + 1]]));
     const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown(),
           charts = panel ? ricochet.sidePanel.charts() : [];
     const out = {
       opened: Boolean(panel),
       point: [parameter, source.values[2 * middle + 1]],
-      charts: charts.map(seriesIn),
+      charts: charts.map(marksIn),
       orbit: Boolean(shown) && shown.id === source.id &&
           ricochet.data.page.orbits.cases[shown.id].columns.parameter[shown.orbit] === parameter,
       canvases: panel ? all("canvas", panel).length : 0,
@@ -70,13 +78,13 @@
           row = rows[rows.length >> 1];
     if (row === undefined) return null;
     const column = (name) => branches.column(id, name)[row];
-    figure.pick(slot, slot.chart.convertToPixel({xAxisIndex: 0, yAxisIndex: 0}, [column("parameter"), column("tip")]));
+    slot.chart.pick(slot.chart.plot.pixel([column("parameter"), column("tip")]));
     const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown() || {},
           charts = panel ? ricochet.sidePanel.charts() : [];
     const out = {
       opened: Boolean(panel),
       has: branches.portrayed(shown.id).has(shown.orbit),
-      charts: charts.map(seriesIn),
+      charts: charts.map(marksIn),
       commands: panel ? all("pre", panel).map((pre) => pre.textContent) : [],
       text: panel ? panel.textContent : "",
       tables: panel ? all("table", panel).map((table) => table.rows.length) : [],
@@ -89,7 +97,7 @@
   // A click in an image of basins opens the cell that lies there.
   function checkCell(figure, slot) {
     const {xs, ys} = ricochet.data.page.basins, column = xs.length >> 1, row = ys.length >> 2;
-    figure.pick(slot, slot.chart.convertToPixel({xAxisIndex: 0, yAxisIndex: 0}, [xs[column], ys[row]]));
+    slot.chart.pick(slot.chart.plot.pixel([xs[column], ys[row]]));
     const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown();
     const out = {
       opened: Boolean(panel),
@@ -143,28 +151,20 @@
   }
   // A click on a drawn point, or on a curve, of a case opens that case.
   function checkDoor(figure, slot) {
-    for (const series of slot.drawn.series) {
-      if (series.datasetIndex === undefined || slot.drawn.legend.selected[series.name] === false) continue;
-      const {source, fromDatasetIndex} = slot.drawn.dataset[series.datasetIndex],
-                     rows = source || slot.drawn.dataset[fromDatasetIndex].source, columns = !Array.isArray(rows);
-      const cell = (name) => (i) => (columns ? rows[name][i] : rows[i][name]), x = cell(series.encode.x),
-            y = cell(series.encode.y), count = columns ? rows[series.encode.x].length : rows.length;
-      const isDrawn = (i) =>
-          (columns ? series.case : rows[i].case) && Number.isFinite(y(i)) && (columns || !source || source === rows);
-      const at = Array.from({length: count}, (_, i) => i).filter(isDrawn), i = at[at.length >> 1];
-      if (i === undefined) continue;
-      const pixel = slot.chart.convertToPixel(
-          {xAxisIndex: series.xAxisIndex || 0, yAxisIndex: series.yAxisIndex || 0}, [x(i), y(i)]);
+    const {rowsOf, countOf, reader} = ricochet.plot, {plot} = slot.chart;
+    for (const mark of plot.marks.filter((one) => !one.values && (one.rows || one.case) && one.mark !== "cells")) {
+      const rows = rowsOf(mark), x = reader(mark, "x"), y = reader(mark, "y"),
+            isDrawn = (i) => (mark.case || (Array.isArray(rows) && rows[i].case)) && Number.isFinite(y(i)),
+            at = Array.from({length: countOf(mark)}, (_, i) => i).filter(isDrawn), i = at[at.length >> 1];
+      if (i === undefined || mark.mark === "bars") continue;
+      const pixel = plot.pixel([x(i), y(i)], mark.yAxis);
       if (!pixel.every(Number.isFinite)) continue;
-      figure.pick(slot, pixel);
+      slot.chart.pick(pixel);
       const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown() || {},
             text = panel ? panel.textContent : "";
       // Curves of other cases may pass through the same pixel.
-      const sourceOf = ({source: own, fromDatasetIndex: from}) => own || sourceOf(slot.drawn.dataset[from]);
-      const there = slot.drawn.series.filter((one) => one.datasetIndex !== undefined).flatMap((one) => {
-        const own = sourceOf(slot.drawn.dataset[one.datasetIndex]);
-        return Array.isArray(own) ? own.map((row) => row.case) : [one.case];
-      });
+      const there =
+          plot.marks.flatMap((one) => one.case || (Array.isArray(one.rows) ? one.rows.map((row) => row.case) : []));
       const out = {
         opened: Boolean(panel),
         id: shown.id || "",
@@ -202,6 +202,19 @@
     out.closed = !sidePanel.panel();
     out.focus = document.activeElement === row;
     return out;
+  }
+  // What hovering says somewhere over a chart.
+  function hovered({chart}) {
+    const {x, y, width, height} = chart.plot.frames[0];
+    for (const share of [0.5, 0.25, 0.75, 0.1, 0.9])
+      for (let at = 0; at < height; at += 2) {
+        const said = chart.words([x + share * width, y + at]);
+        if (said) return said;
+      }
+    // Marks may be few.
+    const {reader, countOf} = ricochet.plot,
+                   mark = chart.plot.marks.find((one) => !one.silent && one.x && !Array.isArray(one.x) && countOf(one));
+    return mark ? chart.words(chart.plot.pixel([reader(mark, "x")(0), reader(mark, "y")(0)], mark.yAxis)) : "";
   }
   // The film: what the slider's place shows is the state of that instant, the map has its marks, and playing goes on.
   async function checkFilm() {
@@ -298,18 +311,17 @@
     });
     if (views > 1) figure.show(0);
     if (!controls) return out;
-    const seen = figure.slots.filter((slot) => figure.visible(slot) && slot.chart), first = seen[0];
+    const seen = figure.slots.filter((slot) => figure.visible(slot) && slot.chart && slot.chart.view), first = seen[0];
     checkLegend(figure, first, out);
     // A chart whose curves all ended early has a shorter axis of its own.
-    const end = (slot) => slot.chart.getOption().xAxis[0].max;
+    const end = (slot) => slot.chart.plot.xs[0].axis.max;
     if (description.linked && first)
       checkZoom(figure, first, seen.filter((slot) => end(slot) === end(first)).pop(), out);
     if (!first) return out;
     out.svg = ricochet.picture(figure, first, "svg").size;
     out.png = ricochet.picture(figure, first, "png").size;
-    const sample = first.chart.getModel().getSeries().find((series) => series.getData().count());
-    out.tooltip = sample ? figure.option(first).tooltip.formatter([{...sample.getDataParams(0), marker: ""}]) : "";
-    const apart = figure.viewOf(first).pick;  // has a panel of its own
+    out.hovered = hovered(first);
+    const apart = figure.viewOf(first).open;  // has a panel of its own
     out.door = apart ? null : seen.map((slot) => checkDoor(figure, slot)).find(Boolean) || null;
     if (description.id === "diagram") out.panel = checkPanel(figure, first, figure.viewOf(first));
     if (description.id === "branches") out.branch = checkBranch(figure, first);

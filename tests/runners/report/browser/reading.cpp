@@ -141,10 +141,11 @@ TEST_CASE("a dark screen is dark, and its words and charts stand out", "[report]
   })())js";
   const char* const paper = "ricochet.theme.channels(getComputedStyle(document.body).backgroundColor)";
   const char* const chart = R"js((() => {
-    const slot = ricochet.figures.flatMap((f) => f.slots.map((s) => [f, s])).find(([f, s]) => f.visible(s) && f.viewOf(s).option), [figure, first] = slot;
+    const slot = ricochet.figures.flatMap((f) => f.slots.map((s) => [f, s])).find(([f, s]) => f.visible(s) && f.viewOf(s)), [figure, first] = slot;
     if (!first.chart) figure.draw(first);
-    const option = first.chart.getOption(), { contrast, channels } = ricochet.theme, ground = channels(option.backgroundColor), colours = option.series.map((s) => s.color).filter((c) => typeof c === "string" && channels(c));
-    return [ground, contrast(channels(option.xAxis[0].axisLabel.color), ground), Math.min(99, ...colours.map((c) => contrast(channels(c), ground)))];
+    const { contrast, channels, colour, letters } = ricochet.theme, ground = channels(colour("#ffffff")), seen = (said) => contrast(channels(colour(said)), ground);
+    const colours = figure.viewOf(first).marks.map((mark) => mark.colour).filter((said) => typeof said === "string" && channels(said));
+    return [ground, Math.min(...colours.concat(ricochet.ink).map((said) => seen(letters(said)))), Math.min(99, ...colours.map(seen))];
   })())js";
   browser::Json steps = browser::Json::array();
   // The screen turns light while the page is read, which carries what is drawn along.
@@ -328,8 +329,8 @@ TEST_CASE("a report is worked by keys, and says in words what its charts show", 
          "document.querySelector('#figure-final-energy-step [data-points]').getAttribute('aria-expanded')",
          "document.querySelector('#figure-final-energy-step .chart').getAttribute('aria-label')",
          "ricochet.figures.find((one) => one.description.id === "
-         "'final-energy-step').slots[0].chart.getModel().getSeries().reduce((sum, one) => sum + "
-         "one.getRawData().count(), 0)"}}},
+         "'final-energy-step').slots[0].chart.view.marks.reduce((sum, one) => sum + "
+         "ricochet.plot.countOf(one), 0)"}}},
       {{"name", "again"},
        {"page", report_of("studies", "trajectory")},
        {"before", {"document.querySelector('#figure-final-energy-step .chart').focus()", show_chart}},

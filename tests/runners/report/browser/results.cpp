@@ -72,7 +72,7 @@ void check_trajectory(const Ran& ran, const browser::Json& page) {
     if (energy.at("views")[v] == "|E(T) / E_in − 1|") CHECK(heights(items_of(energy, v, is_curve)) == changes);
   }
   for (const browser::Json& series : series_of(figure(page, "tip"), 0, [](const browser::Json& s) {
-         return s.at("type") == "line" && s.at("name") != "stops";
+         return s.at("mark") == "line" && s.at("name") != "stops";
        }))
     drawn += series.at("count").get<size_t>();
   CHECK(drawn == samples);
@@ -88,7 +88,7 @@ void check_errors(const Ran& ran, const browser::Json& page) {
     values.erase(0.0);  // said below the chart: a logarithmic axis has no place for it
     CHECK(heights(items_of(steps, v, is_curve)) == values);
   }
-  for (const browser::Json& series : series_of(steps, 0, [](const browser::Json& s) { return s.contains("endLabel"); }))
+  for (const browser::Json& series : series_of(steps, 0, [](const browser::Json& s) { return s.contains("end"); }))
     CHECK(series.at("data").size() == 2);
 }
 
@@ -99,7 +99,7 @@ void check_work(const Ran& ran, const browser::Json& page) {
   for (size_t v = 0; v < times.at("views").size(); ++v) {
     drawn += items_of(times, v, is_curve).size();
     marks += items_of(times, v, is_mark).size();
-    for (const browser::Json& item : items_of(times, v, is_curve)) on_front += item.contains("symbolSize");
+    for (const browser::Json& item : items_of(times, v, is_curve)) on_front += item.contains("size");
   }
   // Each figure has its own column of the table on the vertical axis.
   const auto at = [&](const char* name) { return find_column(points.columns, name).value(); };
@@ -128,7 +128,7 @@ void check_stability(const Ran& ran, const browser::Json& page) {
   for (const browser::Json& chart : radii.at("charts"))
     if (chart.at("title").get<std::string>().rfind("closed", 0) == 0)
       for (const browser::Json& series : chart.at("views")[0].at("series"))
-        if (series.at("name") != "unit circle" && series.at("type") == "line")
+        if (series.at("name") != "unit circle" && series.at("mark") == "line")
           for (const browser::Json& item : series.at("data")) closed += item.at("value")[1].is_number();
   CHECK(closed == numbers_in(cells, "radius", [](const auto& row) { return row[1] == true; }).size());
   CHECK(closed > 0);
@@ -136,8 +136,8 @@ void check_stability(const Ran& ran, const browser::Json& page) {
   for (const browser::Json& chart : map.at("charts")) {
     size_t areas = 0, marks = 0;
     for (const browser::Json& series : chart.at("views")[0].at("series")) {
-      if (series.contains("markArea")) areas += series.at("markArea").size();
-      if (series.at("type") == "scatter") marks += series.at("count").get<size_t>();
+      if (series.at("mark") == "cells") areas += series.at("count").get<size_t>();
+      if (series.at("mark") == "dots") marks += series.at("count").get<size_t>();
     }
     CHECK(areas == marks);
     CHECK(areas > 0);
@@ -167,9 +167,8 @@ void check_bifurcation(const Ran& ran, const browser::Json& page) {
     return row[1] == "wasserstein" && !row[0].text().empty() && row[0].text() != reference;
   });
   medians.erase(0.0);
-  CHECK(heights(items_of(against, 0, [](const browser::Json& s) {
-          return s.value("symbolSize", browser::Json()) == 7;
-        })) == medians);
+  CHECK(heights(items_of(against, 0, [](const browser::Json& s) { return s.value("size", browser::Json()) == 7; })) ==
+        medians);
 }
 
 void check_basins(const Ran& ran, const browser::Json& page) {
@@ -185,7 +184,8 @@ void check_basins(const Ran& ran, const browser::Json& page) {
     const browser::Json& view = basins.at("charts")[c].at("views")[0];
     const browser::Json &x = view.at("xAxis")[0], &y = view.at("yAxis")[0];
     for (const browser::Json& series : view.at("series"))
-      CHECK(series.at("data")[0].at("value") == browser::Json({x.at("min"), x.at("max"), y.at("min"), y.at("max")}));
+      CHECK((series.at("x") == browser::Json({x.at("min"), x.at("max")}) &&
+             series.at("y") == browser::Json({y.at("min"), y.at("max")})));
   }
   for (const auto& row : stored_table(ran.results, "basin_differences").rows)
     CHECK(says(basins.at("charts")[1].at("views")[1].at("notes"),

@@ -40,12 +40,11 @@ void check_radii(const browser::Json& page) {
   REQUIRE(full.at("data").size() == 9);
   CHECK(full["data"].back()["value"][1].get<double>() == Approx(5));
   CHECK(full["data"].back()["value"][0].get<double>() == Approx(1e-2));
-  for (const browser::Json& item : series_in(open, "poor").at("data"))
-    CHECK(item.at("itemStyle").at("color") == "#ffffff");
-  for (const browser::Json& item : full.at("data")) CHECK_FALSE(item.contains("itemStyle"));
+  for (const browser::Json& item : series_in(open, "poor").at("data")) CHECK(item.at("hollow") == true);
+  for (const browser::Json& item : full.at("data")) CHECK_FALSE(item.contains("hollow"));
   // Growth is the radius less one, and absent where nothing grows.
   CHECK(series_in(open, "full", 1)["data"].back()["value"][1].get<double>() == Approx(4));
-  CHECK(series_in(open, "full", 1)["data"].front()["value"][1] == "-");
+  CHECK(series_in(open, "full", 1)["data"].front()["value"][1].is_null());
   CHECK(says(open.at("views")[1].at("notes"), "No growth at any step: poor"));
   CHECK(open.at("views")[0].at("yAxis")[0].at("min") <= 0.1);
   CHECK(open.at("views")[0].at("yAxis")[0].at("max") >= 10);
@@ -61,8 +60,8 @@ void check_map(const browser::Json& page) {
     CHECK_THAT(chart.at("title").get<std::string>(), StartsWith("closed"));
     size_t cells = 0, marks = 0;
     for (const browser::Json& one : chart.at("views")[0].at("series")) {
-      if (one.contains("markArea")) cells += one["markArea"].size();
-      if (one.at("type") == "scatter") marks += one["data"].size();
+      if (one.at("mark") == "cells") cells += one["data"].size();
+      if (one.at("mark") == "dots") marks += one["data"].size();
       names.insert(one.at("name"));
     }
     CHECK(cells == 36);

@@ -1,0 +1,22 @@
+# Puts the page's style, scripts and templates inside ricochet_runners.
+set(report_dir ${CMAKE_CURRENT_LIST_DIR})
+file(GLOB embedded CONFIGURE_DEPENDS ${report_dir}/*.css ${report_dir}/*.js ${report_dir}/script/*.js
+  ${report_dir}/templates/*.html ${report_dir}/../kinds/*/page/*.js)
+
+set(RICOCHET_EMBEDDED "")
+set(RICOCHET_EMBEDDED_NAMES "")
+foreach(file ${embedded})
+  file(RELATIVE_PATH name ${report_dir} ${file})
+  string(REGEX REPLACE "^\\.\\./kinds/.*/" "kinds/" name ${name})
+  if(name IN_LIST names)
+    message(FATAL_ERROR "Two files of the page have the name ${name}: ${file} is the second")
+  endif()
+  list(APPEND names ${name})
+  string(MAKE_C_IDENTIFIER "ricochet_report_${name}" symbol)
+  string(APPEND RICOCHET_EMBEDDED "RICOCHET_EMBED(${symbol}, \"${file}\")\n")
+  string(APPEND RICOCHET_EMBEDDED_NAMES "    {\"${name}\", ${symbol}_begin, ${symbol}_end},\n")
+endforeach()
+set(assets ${CMAKE_BINARY_DIR}/generated/report_assets.cpp)
+configure_file(${report_dir}/assets.cpp.in ${assets} @ONLY)
+set_source_files_properties(${assets} PROPERTIES OBJECT_DEPENDS "${embedded}")
+target_sources(ricochet_runners PRIVATE ${assets})

@@ -1,0 +1,142 @@
+// Views of charts as figures write them: axes, rows drawn as marks, and how marks look.
+{
+  const dashes = [[], [7, 4], [2, 3], [9, 3, 2, 3], [14, 5], [9, 3, 2, 3, 2, 3]];
+  const symbols = ["circle", "rect", "triangle", "diamond", "roundRect", "arrow"];
+
+  // A view of quantities x and y over one frame. `along`: hovering reads all curves at one x.
+  const view = (x, y, xAxis, yAxis, along = false) => ({
+    x,
+    y,
+    along,
+    notes: [],
+    frames: [{left: 72, right: 18, top: 14, bottom: 46}],
+    xAxes: [].concat(xAxis),
+    yAxes: [].concat(yAxis),
+    marks: []
+  });
+  // Draws rows: `encode` names the columns along x and y, `look` is a mark. A row's `text`, where it has one, is what
+  // hovering says of it. `only` {column: value} picks some of the rows, and draws nothing where there are none.
+  function draw({marks}, rows, {x, y}, look, only) {
+    const some = only ? rows.filter((row) => Object.entries(only).every(([name, value]) => row[name] === value)) : rows;
+    if (!only || some.length) marks.push({mark: "line", ...look, rows: some, x, y});
+  }
+  // Two rows per row, at the two ends of a bar, and one that ends the line between them.
+  const ends = (rows, low, high) => rows.flatMap((row) => [row[low], row[high], null].map((end) => ({...row, end})));
+
+  // A view of named rows, the first on top; `along` is the horizontal axis, `height` that of a row.
+  function namedRows(names, x, along, height = 26) {
+    const most = window.innerWidth < 600 ? 130 : 250, letter = 13, frame = 64,
+          width = Math.min(most, 14 + Math.max(0, ...names.map((name) => ricochet.widthOf(name)))),
+          lines = Math.max(1, ...names.map((name) => ricochet.linesOf(name, width - 12).length));
+    const out = view(x, ["", "1"], along, {type: "category", data: names});
+    Object.assign(out.frames[0], {left: width + 4, right: 24});
+    return Object.assign(out, {height: frame + Math.max(height, letter * lines + 6) * names.length});
+  }
+  // Labels of cases for so many rows at most: by all columns given, else by the scheme with its parameters, else by its
+  // name.
+  const rowLabels = (view, cases, columns, rows) => {
+    const schemes = view.varying.filter((column) => ricochet.roleOf(column) === "time");
+    const tried = [columns, schemes, ["time"]].find((some) => view.group(cases, some).length <= rows) || [];
+    return (one) =>
+               ricochet.shorten(view.label(one, tried) || (tried.length ? ricochet.textOf(one, "time") : "all cases"));
+  };
+
+  // A line with marks on its points.
+  const curve = ({name, colour, style}, size = 8, width = 1.6) => ({
+    mark: "line",
+    name,
+    colour,
+    symbol: symbols[style % symbols.length],
+    size,
+    width,
+    dash: dashes[style % dashes.length]
+  });
+  // The same with hollow marks where a row says so.
+  const hollowCurve = (one, rows, size, width) =>
+      ({...curve(one, size, width), ...(rows.some((row) => row.hollow) ? {hollow: (row) => row.hollow} : {})});
+  // A line without marks.
+  const line = (name, colour, width, dash = []) => ({mark: "line", name, z: 1, colour, width, dash});
+  const dot = (name, colour, symbol, size, z = 3) => ({mark: "dots", name, symbol, size, colour, z});
+  // A hollow one, which another fits into.
+  const ring = (name, colour, size) => ({...dot(name, colour, "circle", size), hollow: true});
+  const rule = (name, at, said, more) => ({mark: "rule", name, at, said, silent: true, z: 5, ...more});
+
+  // Marks of text, which the legend filters with the curve of their name, along the upper edge on the gutter's axis.
+  function drawMarks({marks}, {name, colour}, rows, more) {
+    if (rows.length)
+      marks.push({mark: "words", name, colour, rows, x: "at", y: "height", z: 5, yAxis: 1, apart: false, ...more});
+  }
+  // Height of the mark with `below` others above it, as a share of the frame.
+  const markHeight = 0.085, markAt = (below) => 0.95 - markHeight * below;
+  // Rows of marks for cases without a point: what stands at one place is stacked.
+  function outcomeMarks() {
+    const stacked = new Map();
+    return (one, at) => {
+      const below = stacked.get(at) || 0;
+      stacked.set(at, below + 1);
+      return {
+        case: one.id,
+        at,
+        height: markAt(below),
+        mark: ricochet.format.mark(one.status),
+        text: one.status + ": " + one.reason
+      };
+    };
+  }
+  // The pale line of a fitted order, with the order at its end.
+  function fitted(view, rows, encode, {name, colour}, order) {
+    view.frames[0].right = 86;  // for the order
+    draw(view, rows, encode, {
+      ...line(name, ricochet.lighten(colour, 0.72), 7),
+      cap: "round",
+      end: ricochet.format.order(order),
+      endColour: colour
+    });
+  }
+
+  // Colour mixed with white: share 0 keeps it, 1 is white.
+  const lighten = (colour, share) => "#" +
+      [1, 3, 5]
+          .map((k) => {
+            const value = parseInt(colour.slice(k, k + 2), 16);
+            return Math.round(value + share * (255 - value)).toString(16).padStart(2, "0").toUpperCase();
+          })
+          .join("");
+  const slug = (column) => column.replace(/\./g, "-");
+  // The names of the marks in some charts.
+  const drawnNames = (charts) =>
+      new Set(charts.flatMap(({views}) => views.flatMap(({marks}) => marks.map(({name}) => name))));
+  // An entry of a legend without a line; entries of which the first of each name stays.
+  const swatch = (name, colour, symbol = "rect", heading) => ({name, colour, dash: "0 30", symbol, heading});
+  const firstOfName = (entries) =>
+      entries.filter((entry, k) => entries.findIndex((other) => other.name === entry.name) === k);
+
+  Object.assign(ricochet, {
+    view,
+    draw,
+    ends,
+    namedRows,
+    rowLabels,
+    curve,
+    hollowCurve,
+    line,
+    dot,
+    ring,
+    rule,
+    drawMarks,
+    markHeight,
+    markAt,
+    outcomeMarks,
+    fitted,
+    lighten,
+    slug,
+    drawnNames,
+    swatch,
+    firstOfName,
+    unseenZeros: "Exactly 0, which a logarithmic axis cannot show: ",
+    ownScale: "This chart has its own scale: its values are over 4 times those of most others.",
+    dash: (k) => dashes[k % dashes.length],
+    svgDash: (k) => dashes[k % dashes.length].join(" "),
+    symbol: (k) => symbols[k % symbols.length],
+  });
+}
