@@ -16,7 +16,7 @@
   function colourAt(share) {
     const at = Math.min(Math.max(share, 0), 1) * (ramp.length - 1), k = Math.min(Math.floor(at), ramp.length - 2),
           from = channels(ramp[k]), to = channels(ramp[k + 1]);
-    return "rgb(" + from.map((value, c) => Math.round(value + (at - k) * (to[c] - value))).join(",") + ")";
+    return from.map((value, c) => Math.round(value + (at - k) * (to[c] - value)));
   }
 
   // Which columns of the cases become rows of the map and which columns. What is no method joins the columns, longest
@@ -216,8 +216,9 @@
       if (one.status !== "done") return start + ' class="' + one.status + '">' + mark(one.status) + "</td>";
       if (found === null) return start + ">" + (this.value ? "–" : mark("done")) + "</td>";
       const share = scale.share(found), said = written ? text(found, 3) : scale.logarithmic && found === 0 ? "0" : "";
-      return start + ' style="background:' + colourAt(share) + (share > 0.55 ? ";color:#fff" : ";color:#222") + '">' +
-          escape(said) + "</td>";
+      const {contrast} = ricochet.theme, ground = colourAt(share), light = contrast([255, 255, 255], ground) >= 4.6;
+      return start + ' style="background:rgb(' + ground + ");color:" + (light ? "#fff" : "#000") + '">' + escape(said) +
+          "</td>";
     }
     extremes() {
       const known =

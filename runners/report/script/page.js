@@ -136,7 +136,7 @@
   document.addEventListener("DOMContentLoaded", () => {
     document.querySelectorAll("table.sortable, table.cases").forEach(ricochet.startSorting);
     if (document.getElementById("cases")) ricochet.startCaseTable();
-    document.querySelectorAll(".scroll").forEach(watchWidth);
+    document.querySelectorAll(".scroll, .scene").forEach(watchWidth);
     ricochet.later.startTables((box) => {
       box.querySelectorAll("table").forEach(ricochet.startSorting);
       if (box.querySelector("#cases")) ricochet.startCaseTable();

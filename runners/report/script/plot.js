@@ -401,7 +401,9 @@
       const {at, colour = "#777777", dash, width} = mark, px = x.at(at.x), py = y.at(at.y);
       if (at.x !== undefined) {
         this.pen.path("M" + n(px) + " " + frame.y + "V" + (frame.y + frame.height), {stroke: colour, dash, width});
-        if (mark.said) this.pen.text(mark.said, px + 4, frame.y + 9, {colour, halo: true});
+        const before = px + 8 + ricochet.widthOf(mark.said || "") > this.width;
+        this.pen.text(
+            mark.said, before ? px - 4 : px + 4, frame.y + 9, {colour, halo: true, align: before ? "right" : "left"});
       } else {
         this.pen.path("M" + frame.x + " " + n(py) + "h" + frame.width, {stroke: colour, dash, width});
         if (mark.said) this.pen.text(mark.said, frame.x + 6, py - 8, {colour, halo: true});

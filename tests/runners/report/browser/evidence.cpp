@@ -109,7 +109,7 @@ void check_work(const StudyResults& results, const browser::Json& page) {
   }
   // Bars from the fastest to the slowest repeat: two ends and a gap per point.
   const auto bars =
-      items_of(work, 0, [](const browser::Json& s) { return s.at("mark") == "line" && s.at("symbol") == "bar"; });
+      items_of(work, 0, [](const browser::Json& s) { return s.at("mark") == "line" && s.value("symbol", "") == "bar"; });
   CHECK(bars.size() == 3 * items_of(work, 0, is_curve).size());
   // The front is what no other point beats, and its points are the larger ones.
   std::vector<std::pair<double, double>> all;

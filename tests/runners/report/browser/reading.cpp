@@ -7,6 +7,7 @@
 #include "tests/places.hpp"
 #include "tests/runners/report/browser/browser.hpp"
 #include "tests/runners/report/browser/driven.hpp"
+#include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
 using namespace ricochet::browser;
@@ -58,6 +59,28 @@ TEST_CASE("on a phone nothing is wider than the screen, and a swipe over a chart
     const double before = said.at(kind).at("before").at(0), after = values.at(1);
     CHECK(after > before + 60);  // a swipe of 140 pixels, less what a browser takes to see that it is one
     CHECK(values.at(2) == browser::Json::array());
+  }
+}
+
+TEST_CASE(
+    "nothing passes an edge, no words lie on each other, all letters can be read, at any width and on a dark screen",
+    "[report][browser]") {
+  if (left_out()) return;
+  const std::string audit = read_text(tests::places().source + "/tests/runners/report/browser/audit.js");
+  browser::Json steps = browser::Json::array();
+  for (const std::string kind :
+       {"trajectory", "convergence", "work-precision", "stability", "bifurcation", "basins", "asks", "film"})
+    for (const int width : {1400, 800, 390, -1400})
+      steps.push_back({{"name", kind + " " + std::to_string(width)},
+                       {"page", report_of("studies", kind)},
+                       {"width", std::abs(width)},
+                       {"height", 1000},
+                       {"dark", width < 0},
+                       {"evaluate", {audit}}});
+  const browser::Json said = driven("reading-audit", steps);
+  for (const auto& [name, answer] : said.items()) {
+    INFO(name);
+    CHECK(answer.at("values").at(0) == browser::Json::array());
   }
 }
 
