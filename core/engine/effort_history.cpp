@@ -124,7 +124,7 @@ void Marcher::connect_tests() {
   const auto connect = [&](StageProgram& program, StageState& state) {
     if (!state.delassus || !program.driven || program.gate || state.restored || program.effort.size() > 1) return;
     if (state.rate.rows() > 0 || state.before.rows() > 0) return;
-    if (!program.op->takes_points(program_.model->measured().view())) return;
+    if (!program.op->takes_points(program_.model->measured().view(), state.measure_weights.data())) return;
     PointTest& test = state.test.emplace();
     test.x = slot_pointers_.data();
     std::copy_n(state.measure_weights.begin(), 3, test.weight);

@@ -138,6 +138,7 @@ void Marcher::set_lane(int lane, const LaneSpec& spec, const LaneState& state) {
 }
 
 void Marcher::set_clock(long long step) {
+  if (step < step_) clamp_.expect(step_ + check_interval);
   step_ = step;
   // What comes depends on the state alone, whoever marched before.
   if (!lane_flight_) return;

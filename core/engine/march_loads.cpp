@@ -85,6 +85,23 @@ void ClampMotion::set_time(double t) {
   cosine_ = std::cos(pulsation_ * t);
 }
 
+void ClampMotion::set_step(long long step, double h) {
+  const auto at = static_cast<std::size_t>(step);
+  const double t = static_cast<double>(step) * h;
+  if (at >= known_.size()) return set_time(t);
+  Known& known = known_[at];
+  if (!(known.sine == known.sine)) known = {std::sin(pulsation_ * t), std::cos(pulsation_ * t)};
+  time_ = t;
+  sine_ = known.sine;
+  cosine_ = known.cosine;
+}
+
+void ClampMotion::expect(long long last_step) {
+  constexpr long long most = 1 << 17;  // 2 MB
+  if (const auto size = static_cast<std::size_t>(std::min(last_step, most) + 1); size > known_.size())
+    known_.resize(size);
+}
+
 void ClampMotion::offsets(const PhaseWeights& phase, double* out, bool rate) const {
   double s = sine_ * phase.along + cosine_ * phase.across, c = cosine_ * phase.along - sine_ * phase.across;
   if (rate) {

@@ -45,6 +45,9 @@ class ClampMotion {
 
   /// When the step begins, s. Asked for again, it costs nothing.
   void set_time(double t);
+  /// At the beginning of a step of length h, always the same. Steps up to one that was expected are asked for once.
+  void set_step(long long step, double h);
+  void expect(long long last_step);
   double time() const { return time_; }
   /// A sin ωt of a lane, then, where no lane has a phase; else nothing.
   std::optional<double> plain(double amplitude) const {
@@ -74,6 +77,10 @@ class ClampMotion {
   double pulsation_, time_ = 0, sine_ = 0, cosine_ = 1;  // ω, t, sin ωt, cos ωt
   Block amplitude_, cos_phase_, sin_phase_;              // 1 × T
   bool phases_ = false;                                  // whether some ψ is not zero
+  struct Known {
+    double sine = std::numeric_limits<double>::quiet_NaN(), cosine = 0;
+  };
+  std::vector<Known> known_;  // by steps; NaN: not asked for yet
 };
 
 }  // namespace ricochet

@@ -4,6 +4,7 @@
 #include <ricochet/engine/flight/lane_flight.hpp>
 #include <ricochet/engine/march_loads.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/engine/mode_run.hpp>
 #include <ricochet/engine/stage_state.hpp>
 #include <ricochet/kernels/band_ldlt.hpp>
 #include <ricochet/kernels/floating_point.hpp>
@@ -73,6 +74,7 @@ Marcher::Marcher(Program program)
   connect_efforts();
   connect_works();
   connect_tests();
+  prepare_run();
 }
 
 // What the integration does for its observers alone. Operators add up squares of unknowns that only efforts of the same
@@ -96,8 +98,10 @@ void Marcher::connect(const Observers& observers) {
     sum = asks && known && program.op->sums_squares() ? asks->asks().squares[k] : nullptr;
     if (sum) sum->x = slots_[1];
   }
-  keeps_sums_ =
-      !observers_.empty() && asking < 2 && program_.width == 1 && stage_states_.size() == 1 && !program_.flight;
+  const bool told_alone = asking > 0 || tells_tip_;  // of the one lane that there is
+  keeps_sums_ = !observers_.empty() && asking < 2 && (program_.width == 1 || !told_alone) &&
+                stage_states_.size() == 1 && !program_.flight;
+  runs_ = run_ && (observers_.empty() || (keeps_sums_ && !told_alone));
 }
 
 // Storage of a stage, and its combinations as the kernels read them.
@@ -183,10 +187,17 @@ long long Marcher::march(long long steps, const Observers& observers) {
   long long next_shown = keeps_sums_ ? observers_.next_shown() : 0;
   for (long long n = 0; n < steps; ++n) {
     if (lane_flight_) n += fly(steps - n - 1);
-    if (program_.support) clamp_.set_time(time());
+    if (runs_) {
+      n += run(steps - n);
+      if (n == steps || (step_ % check_interval == 0 && !any_running())) {
+        tell_free_steps();
+        return n;
+      }
+    }
+    if (program_.support) clamp_.set_step(step_, program_.h);
     // Whether nobody looks at the slots between this step and the next, and whether no observer need see it.
     const bool unchecked = (step_ + 1) % check_interval != 0, unseen = unchecked && step_ + 1 < next_shown;
-    const bool goes_on = (!observed || unseen) && !program_.flight && n + 1 < steps && unchecked;
+    const bool goes_on = (!observed || unseen) && !program_.flight && !runs_ && n + 1 < steps && unchecked;
     bool shown = observed;
     for (std::size_t k = 0; k < program_.stages.size(); ++k)
       shown = run_stage(program_.stages[k], program_.plan.stages[k], *stage_states_[k], static_cast<int>(k), unseen,
@@ -196,7 +207,7 @@ long long Marcher::march(long long steps, const Observers& observers) {
     if (lane_flight_) lane_flight_->step_made();
     if (shown) {
       // Observers ask where the clamp is now; the next step begins here.
-      if (program_.support) clamp_.set_time(time());
+      if (program_.support) clamp_.set_step(step_, program_.h);
       for (StepObserver* one : observers_) one->step_done(*this);
       if (keeps_sums_) next_shown = observers_.next_shown();
     }

@@ -67,6 +67,7 @@ struct LaneStatus {
 class EnergyBounds;
 class LaneFlight;
 class LoadWindow;
+struct ModeRunBlocks;
 struct StageState;
 
 /// The one time loop. Allocates in its constructor only.
@@ -198,6 +199,12 @@ class Marcher {
   void connect(const Observers& observers);
   bool run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, bool unseen, bool may_wait);
   long long fly(long long most);
+  // mode_run.cpp: steps in modes that nobody looks at.
+  bool may_run() const;
+  void prepare_run();
+  long long run(long long most);
+  void drive_run(int steps);
+  bool push_in_run();
   void keep_free_step(const StageState& state);
   void tell_free_steps();
   void free_step(StageProgram& program, const Stage& plan, StageState& state);
@@ -284,6 +291,8 @@ class Marcher {
   long long step_ = 0, visited_ = 0;
   std::unique_ptr<LaneFlight> lane_flight_;  // null: every step is marched
   Observers observers_;
+  std::unique_ptr<ModeRunBlocks> run_;               // null: steps are made one by one
+  bool runs_ = false;                                // whether this march makes them many at a time
   bool keeps_sums_ = false;                          // of steps that are not shown, for observers that can do without
   bool tells_tip_ = false;                           // of them too
   std::array<FreeStep, check_interval> free_steps_;  // of which nobody has been told

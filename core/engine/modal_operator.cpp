@@ -8,14 +8,7 @@
 namespace ricochet {
 namespace {
 
-// As ModeStep reads them for one lane.
-std::vector<double> mode_columns(int rows, const std::vector<double>& coefficient) {
-  const std::size_t stride = static_cast<std::size_t>(rows + 3) / 4 * 4;
-  std::vector<double> columns(3 * stride, 0.0);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(rows); ++i)
-    for (std::size_t j = 0; j < 3; ++j) columns[j * stride + i] = coefficient[3 * i + j];
-  return columns;
-}
+constexpr auto mode_numbers = static_cast<std::size_t>(Modes::numbers);
 
 /// Modal coordinates: S, K and M are diagonal, one multiplication per slot and mode.
 class ModalOperator final : public StageOperator {
@@ -46,7 +39,7 @@ class ModalOperator final : public StageOperator {
       }
       coefficient_.push_back(model.support_shape()[i] * inverse);
     }
-    if (lanes == 1 && slots_ == 2) columns_ = mode_columns(rows_, coefficient_);
+    if (slots_ == 2) describe_modes(nullptr, nullptr);
   }
 
   bool solves() const {
@@ -59,11 +52,12 @@ class ModalOperator final : public StageOperator {
   bool takes_update() const override { return slots_ == 2; }
 
   // One row is summed up with the modes; more of them wait for modes that are there.
-  bool takes_points(const LaneRows& rows) override {
+  bool takes_points(const LaneRows& rows, const double* weight) override {
     if (slots_ != 2 || rows.rows != 1 || rows.start[1] != rows_) return false;
-    point_ = rows.value;
+    describe_modes(rows.value, weight);
     return true;
   }
+  const Modes* modes() const override { return slots_ == 2 ? &modes_ : nullptr; }
 
   std::optional<int> sums_squares() const override {
     return slots_ == 2 && lanes_ == 1 ? std::optional(0) : std::nullopt;
@@ -72,14 +66,12 @@ class ModalOperator final : public StageOperator {
   void free_step(const FreeStepInput& input) override {
     if (input.update || input.test || input.sum) {
       ModeStep step;
-      step.rows = rows_;
-      step.coefficient = lanes_ == 1 ? columns_.data() : coefficient_.data();
+      step.modes = modes_;
       step.x = input.slots;
       step.scale = input.scale ? input.scale : zero_scale_.data();
       step.z = unknown_.data();
       step.update = input.update;
       step.test = input.test;
-      step.value = point_;
       step.sum = input.sum;
       kernels_.mode_step(step);
       return;
@@ -100,10 +92,30 @@ class ModalOperator final : public StageOperator {
   }
 
  private:
+  // As kernels of two slots read them: of a point that has the row `value` of H, in modes, and reads the slots and z
+  // with these weights; null: none.
+  void describe_modes(const double* value, const double* weight) {
+    const auto rows = static_cast<std::size_t>(rows_), padded = (rows + 7) / 8 * 8;
+    numbers_.assign(mode_numbers * padded, 0.0);
+    modes_ = {rows_, numbers_.data(), 0};
+    for (std::size_t i = 0; i < rows; ++i) {
+      const double* c = coefficient_.data() + 3 * i;
+      double one[mode_numbers] = {c[0], c[1], c[2], 0, 0};
+      if (value) {
+        one[3] = value[i] * (weight[0] + weight[2] * c[0]);
+        one[4] = value[i] * (weight[1] + weight[2] * c[1]);
+        modes_.direct += value[i] * (weight[2] * c[2]);
+      }
+      for (std::size_t j = 0; j < mode_numbers; ++j)
+        numbers_[lanes_ == 1 ? j * padded + i : mode_numbers * i + j] = one[j];
+    }
+  }
+
   const LaneKernels& kernels_;
   int rows_, slots_, lanes_, negative_ = -1;
-  std::vector<double> coefficient_, inverse_, columns_;
-  const double* point_ = nullptr;
+  std::vector<double> coefficient_, inverse_;
+  std::vector<double, CacheLineAllocator<double>> numbers_;
+  Modes modes_;
   Block unknown_, zero_scale_;
 };
 

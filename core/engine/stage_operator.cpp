@@ -170,7 +170,7 @@ class BandOperator final : public StageOperator {
   bool keeps_combination() const override { return assembly_.keeps_combination(); }
   // One lane's is faster apart, by vectors of rows.
   bool takes_update() const override { return !nodes_.empty() && slots_ == 2 && lanes_ > 1; }
-  bool takes_points(const LaneRows& rows) override {
+  bool takes_points(const LaneRows& rows, const double* /*weight*/) override {
     return !nodes_.empty() && slots_ == 2 && nodes_.place_points(rows);
   }
   std::optional<int> sums_squares() const override {

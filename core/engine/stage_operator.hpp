@@ -53,8 +53,13 @@ class StageOperator {
   virtual bool keeps_combination() const = 0;
   /// Whether it makes the update of two slots that came before it by itself, and needs no `k` then.
   virtual bool takes_update() const { return false; }
-  /// Whether it measures such points by itself from now on; `rows` stays where it is.
-  virtual bool takes_points([[maybe_unused]] const LaneRows& rows) { return false; }
+  /// Whether it measures such points by itself from now on, with these weights of two slots and z; `rows` stays where
+  /// it is.
+  virtual bool takes_points([[maybe_unused]] const LaneRows& rows, [[maybe_unused]] const double* weight) {
+    return false;
+  }
+  /// The numbers of modes with two slots, and of the point that it takes; null: it is no such operator.
+  virtual const Modes* modes() const { return nullptr; }
   /// Half-bandwidth of the squares of z° and the second of two slots that it adds up besides; nothing: it adds up none.
   virtual std::optional<int> sums_squares() const { return std::nullopt; }
   virtual void free_step(const FreeStepInput& input) = 0;

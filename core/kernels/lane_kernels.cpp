@@ -39,6 +39,7 @@ using namespace lane_bodies;
     TARGET static void band_step(const BandStep& step) { band_step_body<T>(step); }                                    \
     TARGET static void node_step(const NodeStep& step) { node_step_body<T>(step); }                                    \
     TARGET static void mode_step(const ModeStep& step) { mode_step_body<T>(step); }                                    \
+    TARGET static int mode_run(ModeRun& run) { return mode_run_body<T>(run); }                                         \
     TARGET static void sparse_step(const SparseStep& step) { sparse_step_body<T>(step); }                              \
     TARGET static void sparse_strain(const SparseBlocks& L, double* x) { sparse_strain_body(L, x); }                   \
     TARGET static void row_product(const LaneRows& h, bool add, const double* x, double* y) {                          \
@@ -69,7 +70,7 @@ using namespace lane_bodies;
       return triple_product_body(n, a, x, y);                                                                          \
     }                                                                                                                  \
     static constexpr LaneKernels table{combine,   update,  band_step,  node_step, diagonal_step,                        \
-                                       mode_step, sparse_step, sparse_strain, row_product, measure, add_column, outside, triple_product};              \
+                                       mode_step, mode_run,  sparse_step, sparse_strain, row_product, measure, add_column, outside, triple_product};   \
   };
 // clang-format on
 

@@ -96,17 +96,47 @@ struct NodeStep {
   SquareSum* sum = nullptr;                 ///< T = 1 alone; null: nothing is added up
 };
 
+/// Modes i of a step with two slots, and the one point that it measures:
+///
+///     z_i = c_0i x_0i + c_1i x_1i + c_2i scale
+///     y = Σ_i (a_0i x_0i + a_1i x_1i) + direct·scale + offset
+///
+/// of the slots after an update. y is what PointTest says, with z written out. Terms of y are added by i mod 8, and the
+/// eight sums as ((0+4)+(2+6)) + ((1+5)+(3+7)), whatever T is.
+struct Modes {
+  static constexpr int numbers = 5;
+  int rows = 0;
+  /// rows × 5: c_0, c_1, c_2, a_0, a_1. By columns where T = 1, each padded with zeros to a multiple of eight.
+  const double* coefficient = nullptr;
+  double direct = 0;
+};
+
 /// The step of a diagonal operator with update and test of one point: z as by diagonal_step of two slots.
 struct ModeStep {
-  int rows = 0;
-  const double* coefficient = nullptr;  ///< rows × 3; by columns where T = 1, each padded to a multiple of four
+  Modes modes;
   const double* const* x = nullptr;
   const double* scale = nullptr;
   double* z = nullptr;
   const IncrementUpdate* update = nullptr;
   PointTest* test = nullptr;
-  const double* value = nullptr;  ///< rows: the point's row of H
-  SquareSum* sum = nullptr;       ///< T = 1 alone; null: nothing is added up
+  SquareSum* sum = nullptr;  ///< T = 1 alone; null: nothing is added up
+};
+
+/// Steps of modes that nobody looks at: z of the step under way and its update, x_1 ← x_1 + z, x_0 ← x_0 + x_1, then
+/// the test of the next. It ends after `steps` of them, or before a step whose point is beyond a bound. Results are
+/// bitwise those of ModeStep with its update.
+struct ModeRun {
+  Modes modes;
+  int steps = 0;                   ///< 0: the step under way is tested
+  double* x[2] = {};               ///< rows × T, padded with zeros to a multiple of 64 bytes
+  const double* scale = nullptr;   ///< (steps + 1) × T: of the step under way, and of those to come
+  const double* offset = nullptr;  ///< likewise
+  const double* effort = nullptr;  ///< T, in the step under way; null: none
+  const double* column = nullptr;  ///< what z gets of it: rows, padded to a multiple of eight
+  const double* lower = nullptr;   ///< T, as upper
+  const double* upper = nullptr;
+  double* y = nullptr;        ///< T, of the step that is under way then
+  std::uint32_t outside = 0;  ///< a bit for each lane that is beyond a bound or not a number
 };
 
 /// A sparse L D Lᵀ by blocks of neighbouring columns, at most eight, that have the same rows below them. Where rows of
@@ -154,6 +184,8 @@ struct LaneKernels {
   void (*diagonal_step)(int rows, int count, const double* coefficient, const double* const* x, const double* scale,
                         double* z);
   void (*mode_step)(const ModeStep& step);
+  /// How many steps were made.
+  int (*mode_run)(ModeRun& run);
   void (*sparse_step)(const SparseStep& step);
   /// Lᵀ x in the place of x, rows + 1 numbers of one lane, whatever T.
   void (*sparse_strain)(const SparseBlocks& L, double* x);

@@ -1,5 +1,5 @@
-// Steps by nodes and by modes against the kernels that they stand for, bit by bit. Compared are update, product and
-// substitution, measures, test of the bounds, for each instruction set and each number of lanes.
+// Steps by nodes against the kernels that they stand for, bit by bit. Compared are update, product and substitution,
+// measures, test of the bounds, for each instruction set and each number of lanes.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -180,36 +180,6 @@ TEST_CASE("a step by nodes is bitwise that of a band, update and measures includ
   found.require_same(expected);
 }
 
-TEST_CASE("a step by modes is bitwise that of a diagonal one, update and measure included") {
-  const int T = GENERATE(1, 2, 4, 8, 16, 32);
-  const bool updates = GENERATE(false, true), tests = GENERATE(false, true);
-  const LaneKernels& kernels = lane_kernels(T, GENERATE(from_range(instruction_sets())));
-  std::vector<double> coefficient, value;
-  std::vector<int> start = {0, dofs}, index;
-  for (int i = 0; i < dofs; ++i) {
-    index.push_back(i);
-    value.push_back(number(i, 2, 8));
-    for (int s = 0; s < 3; ++s) coefficient.push_back(number(i, s, 9));
-  }
-  const LaneRows H{1, start.data(), index.data(), value.data()};
-  March expected(T, 1), found(T, 1);
-  if (updates) expected.update(kernels);
-  const double* read[] = {expected.q.data(), expected.d.data()};
-  kernels.diagonal_step(dofs, 2, coefficient.data(), read, expected.scale.data(), expected.z.data());
-  if (tests) expected.measure(kernels, H);
-
-  ModeStep step;
-  step.rows = dofs;
-  // One lane reads them by columns, of whole vectors of four.
-  std::vector<double> columns(3 * 16, 0.0);
-  for (std::size_t i = 0; i < dofs; ++i)
-    for (std::size_t s = 0; s < 3; ++s) columns[s * 16 + i] = coefficient[3 * i + s];
-  step.coefficient = T == 1 ? columns.data() : coefficient.data();
-  step.value = value.data();
-  found.make(kernels.mode_step, step, updates, tests);
-  found.require_same(expected);
-}
-
 TEST_CASE("the unknown of the step before may be where the next one goes") {
   const int T = GENERATE(1, 16);
   const LaneKernels& kernels = lane_kernels(T);
@@ -295,15 +265,11 @@ TEST_CASE(
 TEST_CASE(
     "squares added up beside a step by modes are those of a pass of their own, and the step stays bitwise equal") {
   const bool unit = GENERATE(false, true);
-  std::vector<double> columns(3 * 16, 0.0), value;
-  for (std::size_t i = 0; i < dofs; ++i) {
-    value.push_back(number(static_cast<int>(i), 2, 8));
-    for (std::size_t s = 0; s < 3; ++s) columns[s * 16 + i] = number(static_cast<int>(i), static_cast<int>(s), 9);
-  }
+  Block columns(Modes::numbers * 16, 1);
+  for (int i = 0; i < dofs; ++i)
+    for (int s = 0; s < Modes::numbers; ++s) columns.at(s * 16 + i, 0) = number(i, s, 9);
   ModeStep step;
-  step.rows = dofs;
-  step.coefficient = columns.data();
-  step.value = value.data();
+  step.modes = {dofs, columns.data(), 0.3};
   const SparseMatrix diagonal =
       Eigen::VectorXd::LinSpaced(dofs, 1, unit ? 1 : 3).asDiagonal().toDenseMatrix().sparseView();
   check_squares(&LaneKernels::mode_step, step, QuadraticForm(diagonal), 0, 1);

@@ -36,7 +36,7 @@ class SectionMarch::Watch final : public StepObserver {
     tips_.resize(orbits.size());
     thrown_ = thrown_points(marcher.program(), least_rebound);
     // Contact alone is read of most steps, and flights keep it; where extrema are wanted, the tip is told of each.
-    if (marcher.program().flight) asks_.next_shown = never;
+    if (marcher.program().flight || plan.section != SectionKind::extremum) asks_.next_shown = never;
   }
 
   bool begin_period() {
