@@ -135,6 +135,10 @@ Commands result_commands() {
                      "NAME.md: questions and answers in Markdown",
                      &Args::out};
   const Option json{"json", "", "print what the study asks with its verdicts as JSON (of one folder)", &Args::json};
+  const Option figures{"figures", "DIR",
+                       "also write each figure as SVG and its numbers as CSV into that folder, and all as pages of "
+                       "figures.pdf (of one folder). A browser draws them: chromium, or RICOCHET_BROWSER",
+                       &Args::figures};
   const Option merged{"out", "DIR",
                       "the folder that is made, whole or not at all: a new or an empty one (required). Folders that "
                       "one run would not have left are refused: of another study, program, plugin or arithmetic, or "
@@ -148,11 +152,11 @@ Commands result_commands() {
                       &Args::curves};
   return {
       {"report",
-       "DIR… [--out FILE] [--json]",
+       "DIR… [--out FILE] [--json] [--figures DIR]",
        "Rebuild the report and the tables of a results folder; of several, also a page that lists them.",
        1,
        1000,
-       {index, json},
+       {index, json, figures},
        command_report},
       {"merge",
        "DIR DIR… --out DIR",

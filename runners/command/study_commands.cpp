@@ -8,6 +8,7 @@
 #include <set>
 
 #include "runners/command/command.hpp"
+#include "runners/command/figure_files.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/march/study_identity.hpp"
@@ -117,8 +118,14 @@ std::string as_link(const std::filesystem::path& path) {
 int command_report(const Arguments& arguments, std::ostream& out) {
   if (arguments.operands.size() == 1) {
     if (arguments.out) throw UsageError("--out is for the page that lists several folders; only one was given");
-    return rebuild_report(arguments.operands.front(), arguments.json);
+    const int code = rebuild_report(arguments.operands.front(), arguments.json);
+    if (!arguments.figures || (code != exit_done && code != exit_some_failed && code != exit_not_met)) return code;
+    const std::size_t count =
+        write_figures(std::filesystem::path(arguments.operands.front()) / "report.html", *arguments.figures);
+    if (!arguments.json) out << "figures: " << count << " in " << arguments.figures->string() << "\n";
+    return code;
   }
+  if (arguments.figures) throw UsageError("--figures is for one folder; several were given");
   if (arguments.json) throw UsageError("--json is for one folder; several were given");
   std::vector<std::filesystem::path> folders;
   for (const std::string& operand : arguments.operands) {

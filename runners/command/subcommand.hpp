@@ -44,6 +44,7 @@ struct Arguments {
   bool isolate = false;                          ///< --isolate
   bool here = false;                             ///< --inline
   bool curves = false;                           ///< --curves
+  std::optional<std::filesystem::path> figures;  ///< --figures
   bool study = false;                            ///< --study
   std::optional<double> parameter;               ///< --parameter
   std::string start;                             ///< --start; "": none given

@@ -52,9 +52,9 @@ Fill html_section(const std::string& html) {
 
 /// What every page has, around the figures of its kind.
 constexpr const char* shared_scripts[] = {
-    "format",     "later",  "data",     "cases",   "short_names",   "axes",       "theme",
-    "pens",       "plot",   "chart",    "marks",   "method_curves", "strips",     "figure_section",
-    "chart_data", "figure", "case_map", "picture", "paper",         "side_panel", "case_panel"};
+    "format",   "later",   "data",  "cases",         "short_names", "axes",           "theme",      "pens",
+    "plot",     "chart",   "marks", "method_curves", "strips",      "figure_section", "chart_data", "figure",
+    "case_map", "picture", "paper", "side_panel",    "case_panel",  "address",        "copied",     "exported"};
 constexpr const char* page_scripts[] = {"snapshots",     "film_stage", "space_time",    "film", "sorting",
                                         "column_filter", "case_table", "verdict_words", "page"};
 

@@ -19,6 +19,7 @@ ricochet.startCaseTable = () => {
       count += row.hidden ? 0 : 1;
     }
     words.setAttribute("aria-invalid", String(asked.wrong !== ""));
+    if (document.activeElement === words) ricochet.address.ofCases(words.value);
     shown.textContent = asked.wrong || (count === rows.length ? "" : count + " of " + rows.length + " rows shown");
   }
   words.addEventListener("input", filter);

@@ -68,6 +68,7 @@
   ricochet.csvText = csv;
   ricochet.chartData = {
     mostRows,
+    csv: (figure, slot) => csv([heads(figure, slot)].concat(rowsOf(figure, slot))),
     rowsOf,
     // A button beside those of the picture files, and Enter on the chart itself.
     attach(figure, slot) {

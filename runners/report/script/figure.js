@@ -25,10 +25,14 @@
       Object.assign(this, {description, section, view: 0, own: false, zoom: null, hidden: new Set(), slots: []});
       for (const element of all(".chart", section))
         this.slots.push({element, chart: null, index: Number(element.dataset.chart)});
-      all("[data-view]", section).forEach((b) => b.addEventListener("click", () => this.show(Number(b.dataset.view))));
+      all("[data-view]", section).forEach((b) => b.addEventListener("click", () => {
+        this.show(Number(b.dataset.view));
+        ricochet.address.ofFigure(this);
+      }));
       all("[data-own]", section).forEach((b) => b.addEventListener("change", () => {
         this.own = b.checked;
         this.redraw();
+        ricochet.address.ofFigure(this);
       }));
       all(".legend button", section).forEach((b) => b.addEventListener("click", () => this.toggle(b)));
       all("[data-export]", section).forEach((b) => b.addEventListener("click", () => this.save(b)));
@@ -45,6 +49,7 @@
       const {only} = this.chartOf(slot);
       return only === undefined || only === this.view;
     }
+    get zoomsAsOne() { return this.description.linked || this.slots.length === 1; }
     // What of the axes is shown, for a drawing of it elsewhere.
     windows(slot) { return slot.chart ? slot.chart.windows : {x: this.zoom, y: null}; }
     draw(slot) {
@@ -52,20 +57,22 @@
       if (!slot.chart)
         slot.chart =
             new ricochet.Chart(slot.element, {zoomed: (chart) => this.follow(chart), reset: () => this.reset()});
-      slot.chart.windows = {x: this.zoom, y: null};
+      slot.chart.windows = {x: this.zoomsAsOne ? this.zoom : null, y: null};
       slot.chart.show(this.viewOf(slot), this.hidden);
       ricochet.chartData.describe(this, slot);
     }
     redraw() { this.slots.forEach((slot) => slot.chart && this.draw(slot)); }
     drawAll() { this.slots.forEach((slot) => slot.chart || this.draw(slot)); }
     follow({windows}) {
-      if (!this.description.linked) return;
+      if (!this.zoomsAsOne) return;
       this.zoom = windows.x;
+      ricochet.address.ofFigure(this);
       for (const {chart} of this.slots)
         if (chart && chart.windows.x !== windows.x) chart.zoom({x: windows.x}, true);
     }
     reset() {
       this.zoom = null;
+      ricochet.address.ofFigure(this);
       this.slots.forEach(({chart}) => chart && chart.zoom({x: null, y: null}, true));
     }
     show(view) {
@@ -80,12 +87,17 @@
       });
       this.redraw();
     }
-    toggle(button) {
-      const {name} = button.dataset, shown = this.hidden.has(name);
-      shown ? this.hidden.delete(name) : this.hidden.add(name);
-      button.setAttribute("aria-pressed", String(shown));
+    // Hides what the legend names, or shows it again.
+    hide(name, hidden = true) {
+      hidden ? this.hidden.add(name) : this.hidden.delete(name);
+      for (const button of all(".legend button", this.section))
+        if (button.dataset.name === name) button.setAttribute("aria-pressed", String(!hidden));
+    }
+    toggle({dataset: {name}}) {
+      this.hide(name, !this.hidden.has(name));
       for (const {chart} of this.slots)
         if (chart) chart.draw();
+      ricochet.address.ofFigure(this);
     }
     filter(text) {
       const words = text.toLowerCase().split(/\s+/).filter(Boolean);

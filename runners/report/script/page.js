@@ -101,10 +101,6 @@
     }
     ricochet.startFilm(data, after, link);
     if (!figures.length) place.remove();
-    // A link from elsewhere names a figure that was not there when the page was read.
-    const target =
-        location.hash.startsWith("#figure-") && document.getElementById(decodeURIComponent(location.hash.slice(1)));
-    if (target) target.scrollIntoView();
     let pending = 0;
     window.addEventListener("resize", () => {
       clearTimeout(pending);
@@ -135,10 +131,12 @@
 
   document.addEventListener("DOMContentLoaded", () => {
     document.querySelectorAll("table.sortable, table.cases").forEach(ricochet.startSorting);
+    document.querySelectorAll(".scroll > table").forEach(ricochet.startCopies);
     if (document.getElementById("cases")) ricochet.startCaseTable();
     document.querySelectorAll(".scroll, .scene").forEach(watchWidth);
     ricochet.later.startTables((box) => {
       box.querySelectorAll("table").forEach(ricochet.startSorting);
+      box.querySelectorAll("table").forEach(ricochet.startCopies);
       if (box.querySelector("#cases")) ricochet.startCaseTable();
       watchWidth(box);
       ricochet.theme.paint(box);
@@ -153,7 +151,9 @@
       // Answers of asks say what they mean.
       if (section && !section.querySelector(".asked")) ricochet.explainWords(section);
     }
+    if (ricochet.startExport()) return;
     startSummary();
+    ricochet.address.open();
     ricochet.theme.paint();
   });
 }

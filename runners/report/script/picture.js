@@ -1,6 +1,6 @@
 // A chart as a picture file, with title and legend; and its drawing as SVG for paper.
 {
-  const letter = 12, line = 20;
+  const line = 20;
 
   // Rows of the legend that fit a width: [{entry, x, y}], and how tall they are.
   function legendRows(entries, width) {
@@ -25,24 +25,30 @@
     }
   }
 
-  ricochet.picture = (figure, slot, format) => {
-    const view = figure.viewOf(slot), chart = figure.chartOf(slot), {title, legend} = figure.description;
-    if (!view) return null;
+  // How large a chart's picture is, and what draws it.
+  function drawingOf(figure, slot) {
+    const view = figure.viewOf(slot), chart = figure.chartOf(slot), {hidden, description: {title, legend}} = figure;
     // What the legend shows of what is drawn.
-    const {hidden} = figure, drawn = new Set(view.marks.flatMap((mark) => [mark.name, ...(mark.tags || [])])),
+    const drawn = new Set(view.marks.flatMap((mark) => [mark.name, ...(mark.tags || [])])),
           entries = legend.filter(({name}) => drawn.has(name) && !hidden.has(name)),
-          {rows, height} = legendRows(entries, 900), top = 32 + height;
-    const size = {width: 900, height: chart.height || 440};
-    const draw = (pen) => {
-      const plot = new ricochet.Plot(view, {...size, top}, {hidden, windows: figure.windows(slot)});
-      pen.rect(0, 0, size.width, size.height + top, {fill: "#ffffff"});
-      pen.text(chart.title === "all cases" ? title : title + ": " + chart.title, 12, 16, {size: 14});
-      drawLegend(pen, rows, 30);
-      plot.draw(pen);
-    };
-    const whole = {width: size.width, height: size.height + top};
-    return format === "svg" ? new Blob([ricochet.svgFile(svg(whole, draw))], {type: "image/svg+xml"}) :
-                              png(whole, draw);
+          {rows, height} = legendRows(entries, 900), top = 32 + height,
+          size = {width: 900, height: chart.height || 440};
+    return [
+      {width: size.width, height: size.height + top},
+      (pen) => {
+        pen.rect(0, 0, size.width, size.height + top, {fill: "#ffffff"});
+        pen.text(chart.title === "all cases" ? title : title + ": " + chart.title, 12, 16, {size: 14});
+        drawLegend(pen, rows, 30);
+        new ricochet.Plot(view, {...size, top}, {hidden, windows: figure.windows(slot)}).draw(pen);
+      }
+    ];
+  }
+  // A chart as the text of an SVG file; and as a file of either format.
+  ricochet.pictureText = (figure, slot) => svgFile(svg(...drawingOf(figure, slot)));
+  ricochet.picture = (figure, slot, format) => {
+    if (!figure.viewOf(slot)) return null;
+    return format === "svg" ? new Blob([ricochet.pictureText(figure, slot)], {type: "image/svg+xml"}) :
+                              png(...drawingOf(figure, slot));
   };
   function svg(size, draw) {
     const pen = new ricochet.SvgPen(size);
@@ -59,7 +65,7 @@
     return new Blob([Uint8Array.from(binary, (c) => c.charCodeAt(0))], {type: "image/png"});
   }
   // SVG of this page as a file: with its name space.
-  ricochet.svgFile = (text) => {
+  const svgFile = (text) => {
     const place = document.createElement("template");
     place.innerHTML = text;
     return new XMLSerializer().serializeToString(place.content.firstElementChild);

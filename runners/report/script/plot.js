@@ -148,8 +148,10 @@
       this.axes();
       for (const mark of this.marks) {
         const own = this.placed(mark);
+        // A symbol at an edge is whole, unless a part of the axes is shown.
+        const slack = this.windows.x || this.windows.y ? 1 : 7, {frame} = own;
         pen.within(
-            {x: own.frame.x - 1, y: own.frame.y - 1, width: own.frame.width + 2, height: own.frame.height + 2},
+            {x: frame.x - slack, y: frame.y - slack, width: frame.width + 2 * slack, height: frame.height + 2 * slack},
             () => this[mark.mark](mark, own));
       }
       this.sayEnds();

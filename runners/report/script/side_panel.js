@@ -50,18 +50,9 @@
   const say = (text) => panel.appendChild(element("p", "fine", text));
   // A command, and a button that copies it.
   function command(text) {
-    const line = element("pre", "", text), copy = button("copy", "copy this command", () => {
-                                             const done = () => {
-                                               copy.textContent = "copied";
-                                             };
-                                             const selected = () => {
-                                               getSelection().selectAllChildren(line);
-                                               if (document.execCommand("copy")) done();
-                                             };
-                                             if (navigator.clipboard)
-                                               navigator.clipboard.writeText(text).then(done, selected);
-                                             else selected();
-                                           });
+    const line = element("pre", "", text), copy = button("copy", "copy this command", () => ricochet.copy(text, () => {
+                                             copy.textContent = "copied";
+                                           }));
     copy.className = "copy";
     const box = element("div", "command");
     box.append(line, copy);

@@ -387,3 +387,67 @@ TEST_CASE("a report is worked by keys, and says in words what its charts show", 
     CHECK(page.at(5) == 0);
   }
 }
+
+TEST_CASE("tables are copied in three forms, and a view is sent by its address", "[report][browser]") {
+  if (left_out()) return;
+  const std::string page = report_of("studies", "trajectory");
+  const std::string copied =
+      "['CSV', 'Markdown', 'LaTeX'].map((form) => ricochet.tableText(document.querySelector('.asked table'), form))";
+  const std::string chosen =
+      "(() => { const figure = ricochet.figures.find((one) => one.description.id === 'energy'), {section} = figure; "
+      "figure.drawAll(); section.querySelectorAll('[data-view]')[1].click(); section.querySelector('.legend "
+      "button').click(); figure.slots[0].chart.zoom({x: [1, 2]}); return location.hash; })()";
+  const std::string shown =
+      "(() => { const figure = ricochet.figures.find((one) => one.description.id === 'energy'); figure.drawAll(); "
+      "return [figure.view, figure.hidden.size, figure.slots[0].chart.plot.xs[0].axis.min, scrollY > 0, "
+      "figure.section.querySelectorAll('.legend [aria-pressed=false]').length]; })()";
+  const browser::Json first =
+      driven("reading-address", {{{"name", "first"}, {"page", page}, {"evaluate", {copied, chosen}}}})
+          .at("first")
+          .at("values");
+  const std::string csv = first.at(0).at(0), markdown = first.at(0).at(1), latex = first.at(0).at(2),
+                    address = first.at(1);
+  const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
+  CHECK(lines(csv) > 2);
+  CHECK(lines(markdown) == lines(csv) + 1);
+  CHECK(lines(latex) == lines(csv) + 5);
+  CHECK_THAT(latex, Catch::Matchers::StartsWith("\\begin{tabular}{l"));
+  CHECK_THAT(address, Catch::Matchers::StartsWith("#figure-energy?view=1&hide=") && Contains("&from=1&to=2"));
+  const browser::Json again =
+      driven("reading-address", {{{"name", "sent"}, {"page", page + address}, {"evaluate", {shown}}},
+                                 {{"name", "cases"},
+                                  {"page", page + "#all-cases?filter=status+%3D+done"},
+                                  {"evaluate", {"document.getElementById('shown').textContent"}}}});
+  CHECK(again.at("sent").at("values").at(0) == browser::Json({1, 1, 1, true, 1}));
+  CHECK_THAT(again.at("cases").at("values").at(0).get<std::string>(), Contains(" rows shown"));
+}
+
+TEST_CASE("figures are written as SVG and CSV, and as pages of one PDF", "[report][browser]") {
+  if (left_out()) return;
+  namespace fs = std::filesystem;
+  const fs::path report = report_of("figures", "stability"), out = report.parent_path().parent_path() / "files";
+  fs::remove_all(out);
+  words_of(tests::places().command + " report '" + report.parent_path().string() + "' --figures '" + out.string() +
+           "'");
+  int drawings = 0, tables = 0;
+  for (const auto& entry : fs::directory_iterator(out)) {
+    INFO(entry.path());
+    const std::string text = read_text(entry.path());
+    if (entry.path().extension() == ".svg") {
+      ++drawings;
+      CHECK_THAT(text,
+                 Catch::Matchers::StartsWith("<svg ") && Contains("xmlns=") && Catch::Matchers::EndsWith("</svg>"));
+    } else if (entry.path().extension() == ".csv") {
+      ++tables;
+      CHECK(text.find(',') < text.find('\n'));
+    }
+  }
+  CHECK(drawings > 4);
+  CHECK(tables == drawings);
+  CHECK_THAT(words_of("pdfinfo '" + (out / "figures.pdf").string() + "'"),
+             Contains(std::regex_replace("Pages:           N", std::regex("N"), std::to_string(drawings))));
+  // Where there is no browser the sentence says what to install.
+  const std::string alone = "RICOCHET_BROWSER=/nowhere " + tests::places().command + " report '" +
+                            report.parent_path().string() + "' --figures '" + out.string() + "' 2>&1; true";
+  CHECK_THAT(words_of(alone), Contains("/nowhere drew no figures"));
+}

@@ -1,0 +1,128 @@
+#include "runners/command/figure_files.hpp"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "runners/store/atomic_file.hpp"
+
+namespace ricochet {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A word of a shell's command line.
+std::string quoted(const std::string& word) {
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+/// What a command writes; its own errors are left out.
+std::string output_of(const std::string& command) {
+  std::string out;
+  std::FILE* pipe = ::popen((command + " 2>/dev/null </dev/null").c_str(), "r");
+  if (!pipe) return out;
+  char buffer[65536];
+  while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, pipe)) out.append(buffer, count);
+  ::pclose(pipe);
+  return out;
+}
+
+std::string browser() {
+  const char* said = std::getenv("RICOCHET_BROWSER");
+  if (said && *said) return said;
+  for (const char* name : {"chromium", "chromium-browser", "google-chrome", "microsoft-edge"})
+    if (!output_of(fmt::format("command -v {}", name)).empty()) return name;
+  throw StoreError(
+      "figures are drawn by a browser, and none was found: install chromium, or name one of its kind in "
+      "RICOCHET_BROWSER");
+}
+
+/// A folder of the browser's own, gone with its owner.
+class Profile {
+ public:
+  Profile() : folder_((fs::temp_directory_path() / "ricochet-figures-XXXXXX").string()) {
+    if (!::mkdtemp(folder_.data())) throw StoreError("no folder can be made in " + fs::temp_directory_path().string());
+  }
+  ~Profile() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  Profile(const Profile&) = delete;
+  Profile& operator=(const Profile&) = delete;
+  const std::string& folder() const { return folder_; }
+
+ private:
+  std::string folder_;
+};
+
+/// A file's address: what is no plain letter is %xx.
+std::string address_of(const fs::path& file) {
+  std::string out = "file://";
+  for (const char c : fs::canonical(file).string())
+    out += std::isalnum(static_cast<unsigned char>(c)) || std::string_view("-._~/").find(c) != std::string_view::npos
+               ? std::string(1, c)
+               : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  return out;
+}
+
+/// A figure's name as that of a file.
+std::string file_name(const std::string& name, std::set<std::string>& taken) {
+  std::string out;
+  for (const char c : name) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) || c == '.';
+    if (plain)
+      out += c;
+    else if (!out.empty() && out.back() != '-')
+      out += '-';
+  }
+  while (!out.empty() && out.back() == '-') out.pop_back();
+  std::string own = out;
+  for (int k = 2; !taken.insert(own).second; ++k) own = fmt::format("{}-{}", out, k);
+  return own;
+}
+
+}  // namespace
+
+std::size_t write_figures(const fs::path& report, const fs::path& folder) {
+  const Profile profile;
+  // The superuser's browser has no sandbox; the page is ours, and forbids the network.
+  const std::string start = fmt::format(
+                        "{} --headless --disable-gpu --no-first-run --window-size=1400,1000 {} --user-data-dir={}",
+                        quoted(browser()), ::geteuid() == 0 ? "--no-sandbox" : "", profile.folder()),
+                    page = address_of(report);
+  const std::string read = output_of(fmt::format("{} --dump-dom {}", start, quoted(page + "#export"))),
+                    opening = "id=\"exported\">";
+  const std::size_t from = read.find(opening);
+  const auto figures = from == std::string::npos
+                           ? nlohmann::json()
+                           : nlohmann::json::parse(read.substr(from + opening.size(),
+                                                               read.find("</script>", from) - from - opening.size()),
+                                                   nullptr, false);
+  if (!figures.is_array()) throw StoreError(fmt::format("{} drew no figures of {}", browser(), report.string()));
+  make_folder(folder);
+  std::set<std::string> taken;
+  for (const auto& figure : figures) {
+    const fs::path file = folder / file_name(figure.at("name"), taken);
+    write_file(file.string() + ".svg", figure.at("svg").get_ref<const std::string&>());
+    write_file(file.string() + ".csv", figure.at("csv").get_ref<const std::string&>());
+  }
+  if (figures.empty()) return 0;
+  const fs::path sheets = folder / "figures.pdf";
+  std::error_code ignored;
+  fs::remove(sheets, ignored);
+  output_of(fmt::format("{} --no-pdf-header-footer --print-to-pdf={} {}", start, quoted(fs::absolute(sheets).string()),
+                        quoted(page + "#export-pages")));
+  if (!fs::exists(sheets)) throw StoreError(fmt::format("{} made no {}", browser(), sheets.string()));
+  return figures.size();
+}
+
+}  // namespace ricochet
