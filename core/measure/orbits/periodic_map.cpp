@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/engine/march_loads.hpp>
+#include <ricochet/kernels/instruction_set.hpp>
 #include <ricochet/measure/orbits/multipliers.hpp>
 #include <ricochet/measure/orbits/periodic_map.hpp>
 
@@ -172,24 +173,41 @@ namespace {
 
 // y = E x for one or two columns, E rows × D by columns.
 template <int Columns>
-void multiply(const MatrixXd& E, const double* const* x, double* const* y) {
+inline __attribute__((always_inline)) void multiply_body(const MatrixXd& E, const double* const* x, double* const* y) {
   const Index rows = E.rows(), D = E.cols();
   for (int c = 0; c < Columns; ++c) std::fill_n(y[c], rows, 0.0);
   Index j = 0;
   for (; j + 4 <= D; j += 4) {
-    const double *e0 = E.col(j).data(), *e1 = e0 + rows, *e2 = e1 + rows, *e3 = e2 + rows;
+    const double *e0 = E.data() + j * rows, *e1 = e0 + rows, *e2 = e1 + rows, *e3 = e2 + rows;
     for (int c = 0; c < Columns; ++c) {
       const double a = x[c][j], b = x[c][j + 1], d = x[c][j + 2], f = x[c][j + 3];
-      double* out = y[c];
+      double* __restrict out = y[c];
       for (Index i = 0; i < rows; ++i) out[i] += (a * e0[i] + b * e1[i]) + (d * e2[i] + f * e3[i]);
     }
   }
   for (; j < D; ++j)
     for (int c = 0; c < Columns; ++c) {
-      const double* e = E.col(j).data();
+      const double* e = E.data() + j * rows;
       const double a = x[c][j];
-      for (Index i = 0; i < rows; ++i) y[c][i] += a * e[i];
+      double* __restrict out = y[c];
+      for (Index i = 0; i < rows; ++i) out[i] += a * e[i];
     }
+}
+
+template <int Columns>
+void multiply_anywhere(const MatrixXd& E, const double* const* x, double* const* y) {
+  multiply_body<Columns>(E, x, y);
+}
+
+// Nothing is fused: the numbers are those of any other processor.
+template <int Columns>
+RICOCHET_AVX2_ALONE void multiply_by_fours(const MatrixXd& E, const double* const* x, double* const* y) {
+  multiply_body<Columns>(E, x, y);
+}
+
+template <int Columns>
+void multiply(const MatrixXd& E, const double* const* x, double* const* y) {
+  has_avx2() ? multiply_by_fours<Columns>(E, x, y) : multiply_anywhere<Columns>(E, x, y);
 }
 
 }  // namespace
