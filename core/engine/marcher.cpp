@@ -46,7 +46,7 @@ Marcher::Marcher(Program program)
   pushed_.reserve(static_cast<std::size_t>(points));
   pushing_.reserve(static_cast<std::size_t>(points));
   pushes_.resize(static_cast<std::size_t>(points));
-  scratch_.resize(static_cast<std::size_t>(std::max(rows, points)));
+  scratch_.resize(static_cast<std::size_t>(rows + points));
   if (program_.contact) {
     lower_ = Block(points, T);
     upper_ = Block(points, T);

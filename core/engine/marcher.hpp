@@ -245,7 +245,8 @@ class Marcher {
 
   // tangent_contact.cpp: the same derivative for tangent columns.
   void remove_load(StageProgram& program, const double* load);
-  void tangent_contact(StageProgram& program, StageState& state);
+  void tangent_contact(StageProgram& program, StageState& state, const double* z);
+  void measure_tangents(StageState& state, const double* z);
   void add_round_slopes(DelassusColumns& columns, double base, StageState& state, int lane);
   void tangent_targets(const StageProgram& program, StageState& state, int lane, int tangent);
 

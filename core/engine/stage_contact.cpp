@@ -13,18 +13,25 @@
 namespace ricochet {
 
 // Rows times Σ_k w_k x_k, and an offset per lane. Where flights leave out steps, the rows of one lane are dense: what
-// they have in common is summed once.
+// they have in common is summed once. Tangent columns are measured where something pushes alone (measure_tangents).
 void Marcher::measure_rows(const RowMatrix& rows, int terms, const double* const* x, const double* weights,
                            const double* offset, double* out) {
-  if (!program_.flight || program_.width > 1) {
+  if (!program_.flight) {
     kernels_.measure(rows.view(), terms, x, weights, offset, out);
     return;
   }
-  const int n = program_.model->rows();
+  const int n = program_.model->rows(), T = program_.width;
   // Modes keep no combination for the step to come: its block is free.
-  kernels_.combine(n, terms, x, weights, combination_.data());
-  flight_kernels().dots(n, rows.rows(), rows.value.data(), combination_.data(), out);
-  for (int i = 0; offset && i < rows.rows(); ++i) out[i] += offset[0];
+  kernels_.combine(static_cast<long>(n) * T, terms, x, weights, combination_.data());
+  if (T == 1) {
+    flight_kernels().dots(n, rows.rows(), rows.value.data(), combination_.data(), out);
+    for (int i = 0; offset && i < rows.rows(); ++i) out[i] += offset[0];
+    return;
+  }
+  double *lane = scratch_.data(), *places = scratch_.data() + n;
+  for (int i = 0; i < n; ++i) lane[i] = combination_.at(i, 0);
+  flight_kernels().dots(n, rows.rows(), rows.value.data(), lane, places);
+  for (std::ptrdiff_t i = 0; i < rows.rows(); ++i) out[i * T] = places[i] + (offset ? offset[0] : 0.0);
 }
 
 // What motions of supports by histories lift each point by, Σ_k w_k Σ_j A_ij φ_j(t + c_k h), or its rate.
@@ -183,7 +190,7 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
   else
     solve_law(program, state);
   keep_contact(state);
-  if (program_.tangents > 0) tangent_contact(program, state);
+  if (program_.tangents > 0) tangent_contact(program, state, z);
   if (state.impulse) {
     if (state.contact_lanes != 0) jump(state, z);
   } else if (program.effort[0] == 1.0) {

@@ -104,13 +104,34 @@ void Marcher::add_round_slopes(DelassusColumns& columns, double base, StageState
   }
 }
 
+// What columns read at the points of the system, where it has been measured of the lane alone.
+void Marcher::measure_tangents(StageState& state, const double* z) {
+  std::array<const double*, most_slots + 1> slots{};
+  std::copy(slot_pointers_.begin(), slot_pointers_.end(), slots.begin());
+  slots[static_cast<std::size_t>(slot_count())] = z;
+  const RowMatrix& rows = program_.model->measured();
+  const auto measure = [&](const std::vector<double>& weights, Block& out) {
+    if (out.rows() == 0) return;
+    for (const int i : state.tangents.points) {
+      const double known = out.at(i, 0);
+      kernels_.measure({1, rows.start.data() + i, rows.index.data(), rows.value.data()}, slot_count() + 1, slots.data(),
+                       weights.data(), nullptr, out.row(i));
+      out.at(i, 0) = known;
+    }
+  };
+  measure(state.measure_weights, state.free);
+  measure(state.rate_weights, state.rate);
+  measure(state.before_weights, state.before);
+  measure(state.approach_weights, state.approach);
+}
+
 // Derivatives of the efforts of every lane that was looked at: with the active set A of the lane,
 //     rigid:      base·W_AA δp = target − δy°
 //     compliant:  (base·W_AA + I/κ) δp = −(D δg° + D_u δu° + D₋ δg⁻)/κ,    κ = (D η + D_u η_u)/base
 //
 // where base is η, or η_u where the effort moves the rate alone; where it moves neither, δp = −(…), and κ is 1. Of a
 // circle D is the matrix D nnᵀ + (N/ρ) ttᵀ between both of its points.
-void Marcher::tangent_contact(StageProgram& program, StageState& state) {
+void Marcher::tangent_contact(StageProgram& program, StageState& state, const double* z) {
   ActiveSystem& system = state.tangents;
   const double reach = program.reach, rate_reach = state.rate.rows() > 0 ? program.rate_reach : 0.0;
   DelassusColumns* columns = state.delassus.get();
@@ -133,6 +154,7 @@ void Marcher::tangent_contact(StageProgram& program, StageState& state) {
       if (closed && !waits) system.points.push_back(i);
     }
     if (system.points.empty()) continue;
+    if (program_.flight) measure_tangents(state, z);
     const double base = reach != 0 || !program.compliance ? reach : rate_reach;
     for (std::size_t a = 0; a < system.points.size(); ++a) {
       double compliance = 0;
