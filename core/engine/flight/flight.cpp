@@ -62,6 +62,7 @@ void Flight::place(const LaneSpec& lane, double layer) {
 }
 
 void Flight::forget() {
+  comes_back_ = true;
   schedule_ = {};
   latest_ = nullptr;
   for (auto& one : sets_) {
@@ -116,7 +117,9 @@ bool Flight::due(const Program& program, std::span<const ClosedPoint> closed) {
     latest_for_ = &one == before ? latest_for_ + 1 : 1;
     // Its modes cost about as much as so many steps with all the dofs. Points that come back to one stop come back to
     // the other one. What a short contact has before it rests cannot be left out, and does not count.
-    const long long rows = program.model->rows(), enough = std::max(brief, rows * rows / modes_of_step);
+    // Of a march that comes back to its clock every period, sets do too: they pay over all periods.
+    const long long rows = program.model->rows(),
+                    enough = comes_back_ ? brief : std::max(brief, rows * rows / modes_of_step);
     const FlightSet* const twin = twin_of(one, enough);
     if (latest_for_ > least) ++one.seen;
     if (one.seen < (twin ? brief : enough)) return false;

@@ -124,6 +124,7 @@ class Flight {
   std::size_t most_sets_;
   std::unique_ptr<FlightSet> free_;
   Schedule schedule_;
+  bool comes_back_ = false;  // whether the march was set back once
   std::string closed_cause_, steps_cause_;
   bool tells_slots_ = false;
   std::vector<std::unique_ptr<ContactSet>> sets_;
