@@ -42,8 +42,7 @@ struct Followed {
 struct Told {
   const StudyPoint* point = nullptr;
   double value = 0;
-  std::optional<double> half = {};
-  bool refined = false;
+  std::optional<double> half = {};     ///< nothing where no second case refines it
   std::string below = {}, above = {};  ///< stable orbits on each side
 };
 
@@ -154,15 +153,7 @@ class PointsAsk {
       if (!is_point_kind(point.kind) || std::isnan(point.parameter) || !(all_ || kinds_.contains(point.kind))) continue;
       if (point.kind == "fold" && point.name < 0 && point.prominence < least) continue;
       Told told{&point, point.parameter};
-      if (point.half > 0) told.half = point.half;
-      if (point.name >= 0)
-        for (const PointLimitRow& row : of_.limits)
-          if (row.name == of_.points.names()[static_cast<std::size_t>(point.name)].text && row.id == out.record->id &&
-              row.limit && row.low && row.high) {
-            told.value = *row.limit;
-            told.half = 0.5 * (*row.high - *row.low);
-            told.refined = true;
-          }
+      if (point.name >= 0) refine(told, owner, point);
       out.points.push_back(std::move(told));
     }
     std::stable_sort(out.points.begin(), out.points.end(), [](const Told& a, const Told& b) {
@@ -173,6 +164,18 @@ class PointsAsk {
       const double away = std::max(beside * of_.points.range(), 2 * told.point->half);
       told.below = stable_at(out, told.point->parameter - away);
       told.above = stable_at(out, told.point->parameter + away);
+    }
+  }
+
+  /// What step and mesh leave of a point; a stiffness of a law is a level of its own. One case alone leaves what it
+  /// leaves open unknown.
+  void refine(Told& told, std::size_t owner, const StudyPoint& point) const {
+    double open = point.half;
+    for (const PointConvergence::Along& along : of_.points.convergence(owner, point.name).along) {
+      if (!answers::is_refinement(of_.points.axes()[along.axis].column) || !along.limit.open) continue;
+      told.value += along.limit.correction;
+      open += *along.limit.open;
+      told.half = open;
     }
   }
 
@@ -207,7 +210,7 @@ class PointsAsk {
     std::vector<std::string> parts;
     const auto side = [](const std::string& stable) { return stable.empty() ? "not followed" : stable; };
     parts.push_back(fmt::format("stable below: {}, above: {}", side(told.below), side(told.above)));
-    if (!told.refined) parts.emplace_back("no second case confirms it");
+    if (!told.half) parts.emplace_back("no second case confirms it");
     if (told.point->name >= 0)
       for (const PointOrderRow& order : of_.orders)
         if (order.name == of_.points.names()[static_cast<std::size_t>(told.point->name)].text &&
@@ -228,8 +231,6 @@ class PointsAsk {
     row.measure = "end of the branch";
     row.level = (level(one).empty() ? "" : level(one) + ", ") + branch.name;
     row.unit = parameter_.unit;
-    row.low = branch.from;
-    row.high = branch.to;
     row.cases = 1;
     row.left_out = 0;
     if (branch.end) {
@@ -240,6 +241,11 @@ class PointsAsk {
     } else {
       row.verdict = "has no end that is told";
     }
+    // How far it went is no interval of its end.
+    if (std::isfinite(branch.from))
+      row.reason +=
+          (row.reason.empty() ? "" : "; ") +
+          fmt::format("goes from {} to {}", answers::short_number(branch.from, 6), answers::short_number(branch.to, 6));
     out.rows.push_back(std::move(row));
   }
 
