@@ -25,15 +25,25 @@ std::vector<std::string> proposals(const Evidence& evidence, const std::vector<s
   const std::string& first = measures.front();
   const auto [base, stop] = split_measure(first);
   const Cases cases = evidence.cases(ask_of({{"value", first}}, 1));
-  const std::vector<std::string> choices = evidence.choices(cases);
+  const std::vector<std::string> choices = evidence.choices(cases, first);
   if (!choices.empty()) out.push_back(Json({{"effect", choices.front()}, {"on", first}, {"from", "5 %"}}).dump());
   if (!stop.empty() && evidence.measures(ask_of({{"rank", base}, {"over", "stops"}}, 1), base).size() > 1)
     out.push_back(Json({{"rank", base}, {"over", "stops"}}).dump());
-  double largest = 0;
-  for (const CaseRecord* record : cases) largest = std::max(largest, std::abs(measure(*record, first).value_or(0)));
-  constexpr double above = 1.1;
-  if (largest > 0) out.push_back(Json({{"limit", first}, {"below", to_digits(above * largest, 2)}}).dump());
-  out.push_back(Json({{"enough", first}, {"within", "5 %"}}).dump());
+  const MeasureInfo* info = measure_info(first);
+  std::vector<double> values;
+  for (const CaseRecord* record : cases)
+    if (const auto value = measure(*record, first); value && std::isfinite(*value)) values.push_back(*value);
+  // A limit a tenth beyond all values, on the side that counts.
+  if (!values.empty()) {
+    const bool from_below = info && info->reading.direction > 0;
+    const double end =
+        from_below ? *std::min_element(values.begin(), values.end()) : *std::max_element(values.begin(), values.end());
+    constexpr double beyond = 0.1;
+    const double limit = end + (from_below ? -beyond : beyond) * std::abs(end);
+    if (limit != 0)
+      out.push_back(Json({{"limit", first}, {from_below ? "above" : "below", to_digits(limit, 2)}}).dump());
+  }
+  if (!info || !info->of_each_size) out.push_back(Json({{"enough", first}, {"within", "5 %"}}).dump());
   constexpr std::size_t three = 3;
   out.resize(std::min(out.size(), three));
   return out;

@@ -80,7 +80,7 @@ class EffectSpeaker {
       : ask_(ask), evidence_(evidence), own_(evidence.columns_of(ask.subject())), cases_(evidence.cases(ask)) {
     from_ = ask.share_asked();
     agrees_ = ask.has("within");
-    std::vector<std::string> columns = evidence.choices(cases_);
+    std::vector<std::string> columns = evidence.choices(cases_, ask.text("on"));
     std::erase_if(columns,
                   [&](const std::string& one) { return std::find(own_.begin(), own_.end(), one) != own_.end(); });
     others_ = columns;

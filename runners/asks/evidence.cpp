@@ -104,10 +104,13 @@ std::vector<std::string> Evidence::varying(const Cases& cases) const {
   return out;
 }
 
-std::vector<std::string> Evidence::choices(const Cases& cases, const std::vector<std::string>& own) const {
+std::vector<std::string> Evidence::choices(const Cases& cases, const std::string& name,
+                                           const std::vector<std::string>& own) const {
+  const MeasureInfo* info = measure_info(name);
+  const bool refines = !info || !info->of_each_size;
   std::vector<std::string> out = varying(cases);
   std::erase_if(out, [&](const std::string& column) {
-    return column == seed_axis || contains(own, column) || answers::is_refinement(column);
+    return column == seed_axis || contains(own, column) || (refines && answers::is_refinement(column));
   });
   return out;
 }
@@ -212,7 +215,8 @@ std::vector<std::string> LeftOut::told() const {
     else
       rest += sorted[k].count;
   if (rest > 0)
-    out.push_back(fmt::format("Left out: {} more for {} other reasons, which are in reasons.csv.", rest, sorted.size() - shown));
+    out.push_back(
+        fmt::format("Left out: {} more for {} other reasons, which are in reasons.csv.", rest, sorted.size() - shown));
   return out;
 }
 

@@ -82,8 +82,9 @@ class Evidence {
   std::vector<std::string> measures(const Ask& ask, const std::string& name) const;
   /// Columns that vary among these cases, refinements and seeds among them.
   std::vector<std::string> varying(const Cases& cases) const;
-  /// The same but those of refinement, seeds, and `own`.
-  std::vector<std::string> choices(const Cases& cases, const std::vector<std::string>& own = {}) const;
+  /// The same but seeds, `own`, and what refines this measure.
+  std::vector<std::string> choices(const Cases& cases, const std::string& measure,
+                                   const std::vector<std::string>& own = {}) const;
   /// The columns of a choice: of a role all that vary, else the one.
   std::vector<std::string> columns_of(const std::string& choice) const;
 

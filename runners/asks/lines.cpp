@@ -70,7 +70,7 @@ answers::MeasureWords words_of(const std::string& measure) {
 }  // namespace
 
 Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure, bool as_stored) {
-  return lines_of(ask, evidence, measure, evidence.choices(evidence.cases(ask)), as_stored);
+  return lines_of(ask, evidence, measure, evidence.choices(evidence.cases(ask), measure), as_stored);
 }
 
 Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure,
@@ -131,7 +131,10 @@ std::string set_name(const Lines& lines, const std::vector<const Line*>& set) {
   if (shared.empty() || static_cast<std::size_t>(picked) != set.size()) return "";
   std::string levels, stop;
   for (const std::size_t k : shared)
-    (k + 1 == count ? stop : levels) += (k + 1 == count ? " at " : levels.empty() ? "with " : ", ") + set.front()->attributes[k];
+    (k + 1 == count ? stop : levels) += (k + 1 == count   ? " at "
+                                         : levels.empty() ? "with "
+                                                          : ", ") +
+                                        set.front()->attributes[k];
   if (levels.empty() && !stop.empty()) return stop.substr(1);
   return levels + stop;
 }
@@ -206,8 +209,8 @@ void check_choice(const Ask& ask, const Study& study, const std::string& key, co
   if (std::find(fixed.begin(), fixed.end(), choice) != fixed.end())
     throw InputError(ask.pointer(key), quote(choice) + " has one level in " +
                                            (ask.has("where") ? "the cases of \"where\"" : "this study") + expected);
-  throw InputError(ask.pointer(key), "no choice of this study is called " + quote(choice) + expected +
-                                         did_you_mean(choice, varying));
+  throw InputError(ask.pointer(key),
+                   "no choice of this study is called " + quote(choice) + expected + did_you_mean(choice, varying));
 }
 
 Planned planned(const Study& study) {

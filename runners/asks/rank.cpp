@@ -25,18 +25,19 @@ struct Order {
   std::vector<std::vector<std::size_t>> groups;
 };
 
-/// Whether the intervals of two touch; what has none is told from nothing.
-bool touch(const Line& larger, const Line& smaller) {
-  const Estimate &a = larger.estimate(), &b = smaller.estimate();
-  if (!a.u() || !b.u() || !a.unknown().empty() || !b.unknown().empty()) return true;
-  return a.low() <= b.high();
-}
-
+/// Lines by falling value, cut where all intervals before lie above all intervals after: a wide one may reach beyond
+/// its neighbours. What has no interval is told from nothing.
 std::vector<std::vector<std::size_t>> grouped(const std::vector<const Line*>& lines) {
+  const auto has_interval = [](const Line& line) { return line.estimate().u() && line.estimate().unknown().empty(); };
+  std::vector<double> highest_from(lines.size() + 1, -INFINITY);
+  for (std::size_t k = lines.size(); k-- > 0;)
+    highest_from[k] = std::max(highest_from[k + 1], has_interval(*lines[k]) ? lines[k]->estimate().high() : INFINITY);
   std::vector<std::vector<std::size_t>> groups;
+  double lowest = INFINITY;
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    if (k == 0 || !touch(*lines[k - 1], *lines[k])) groups.emplace_back();
+    if (k == 0 || lowest > highest_from[k]) groups.emplace_back();
     groups.back().push_back(k);
+    lowest = std::min(lowest, has_interval(*lines[k]) ? lines[k]->estimate().low() : -INFINITY);
   }
   return groups;
 }
@@ -45,7 +46,7 @@ class Ranking {
  public:
   Ranking(const Ask& ask, const Evidence& evidence) : evidence_(evidence), over_(ask.text("over")) {
     const Cases cases = evidence.cases(ask);
-    std::vector<std::string> columns = evidence.choices(cases);
+    std::vector<std::string> columns = evidence.choices(cases, ask.subject());
     if (over_ != over_stops) own_ = evidence.columns_of(over_);
     std::erase_if(columns, [&](const auto& one) { return std::find(own_.begin(), own_.end(), one) != own_.end(); });
     others_ = columns;
@@ -80,16 +81,29 @@ class Ranking {
     for (const auto& [key, order] : orders_) add_rows(out, order);
     const Order& first = orders_.front().second;
     const bool firm = first.groups.size() == first.lines.size();
+    bool all_firm = true, any_told = false;
+    std::size_t surely_first = 0;
+    for (const auto& [key, order] : orders_) {
+      all_firm = all_firm && order.groups.size() == order.lines.size();
+      any_told = any_told || order.groups.size() > 1;
+      surely_first +=
+          order.names.front() == first.names.front() && order.groups.front().size() == 1 && order.groups.size() > 1 ? 1
+                                                                                                                    : 0;
+    }
     const auto [turned, turned_to] = turns();
-    out.verdict = !turned.empty() ? "turned round" : firm ? "told apart" : first.groups.size() > 1 ? "in part" : "not told apart";
+    out.verdict = !turned.empty() ? "turned round" : all_firm ? "told apart" : any_told ? "in part" : "not told apart";
     if (!firm && !first.lines.empty()) out.reason = first.lines.front()->estimate().unknown();
     std::vector<std::vector<std::string>> rest;
     if (!out.reason.empty()) rest.push_back({"; " + out.reason, "; " + short_reason(out.reason)});
     if (orders_.size() > 1)
-      rest.push_back({turned.empty() ? fmt::format("; the same first in all {} combinations", orders_.size())
-                                     : fmt::format("; {} is first with {}", turned_to, some_of(turned, 1)),
-                      turned.empty() ? fmt::format("; with all {} the same", orders_.size())
-                                     : fmt::format("; {} is first with others", turned_to)});
+      rest.push_back({!turned.empty() ? fmt::format("; {} is first with {}", turned_to, some_of(turned, 1))
+                      : surely_first == orders_.size()
+                          ? fmt::format("; the same first in all {} combinations", surely_first)
+                      : surely_first > 0 ? fmt::format("; {} is surely first in {} of {} combinations",
+                                                       first.names.front(), surely_first, orders_.size())
+                                         : "; in no combination one is surely first",
+                      !turned.empty() ? fmt::format("; {} is first with others", turned_to)
+                                      : fmt::format("; surely first in {} of {}", surely_first, orders_.size())});
     out.sentence = in_thirty_words(capitalised_order(first), rest);
     return out;
   }
@@ -141,9 +155,8 @@ class Ranking {
       if (order.names.front() == first.names.front()) continue;
       const auto place = std::find(order.names.begin(), order.names.end(), first.names.front());
       const bool together = place != order.names.end() &&
-                            std::any_of(order.groups.front().begin(), order.groups.front().end(), [&](std::size_t k) {
-                              return order.names[k] == first.names.front();
-                            });
+                            std::any_of(order.groups.front().begin(), order.groups.front().end(),
+                                        [&](std::size_t k) { return order.names[k] == first.names.front(); });
       if (together) continue;
       if (out.first.empty()) out.second = order.names.front();
       out.first.push_back(order.level);
@@ -156,7 +169,8 @@ class Ranking {
     for (const std::vector<std::size_t>& group : order.groups) {
       for (const std::size_t k : group) {
         VerdictRow row = lines_.row(*order.lines[k]);
-        row.verdict = group.size() == 1 ? std::to_string(place) : fmt::format("{} to {}", place, place + group.size() - 1);
+        row.verdict =
+            group.size() == 1 ? std::to_string(place) : fmt::format("{} to {}", place, place + group.size() - 1);
         if (group.size() > 1 && row.reason.empty()) row.reason = "its interval touches that of a neighbour";
         out.rows.push_back(std::move(row));
       }
@@ -207,12 +221,14 @@ std::string doubt_rank(const Ask&, const Study& study) {
 }  // namespace
 
 const Verb& rank_verb() {
-  static const Verb verb{
-      "rank", "Which stop or level has the largest value, and how surely.",
-      {keys::of_form(Field::Form::text, "rank", std::nullopt, "The measure."),
-       keys::of_form(Field::Form::text, "over", std::nullopt, "\"stops\", a choice or an axis.")},
-      "", check_rank, doubt_rank,
-      [](const Ask& ask, const Evidence& evidence) { return Ranking(ask, evidence).answer(); }};
+  static const Verb verb{"rank",
+                         "Which stop or level has the largest value, and how surely.",
+                         {keys::of_form(Field::Form::text, "rank", std::nullopt, "The measure."),
+                          keys::of_form(Field::Form::text, "over", std::nullopt, "\"stops\", a choice or an axis.")},
+                         "",
+                         check_rank,
+                         doubt_rank,
+                         [](const Ask& ask, const Evidence& evidence) { return Ranking(ask, evidence).answer(); }};
   return verb;
 }
 

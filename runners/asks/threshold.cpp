@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "runners/asks/lines.hpp"
 #include "runners/asks/verbs.hpp"
@@ -15,11 +16,11 @@ namespace {
 /// What is asked of the measure.
 struct Condition {
   std::optional<double> is, below, above;
-  bool holds(double value) const {
-    return is ? value == *is : below ? value < *below : value > *above;
-  }
+  bool holds(double value) const { return is ? value == *is : below ? value < *below : value > *above; }
   std::string text(const Lines& lines) const {
-    return is ? "is " + lines.number(*is) : below ? "is below " + lines.number(*below) : "is above " + lines.number(*above);
+    return is      ? "is " + lines.number(*is)
+           : below ? "is below " + lines.number(*below)
+                   : "is above " + lines.number(*above);
   }
 };
 
@@ -46,9 +47,13 @@ struct Series {
   std::vector<Verdict> states;
   /// Where it changes: between which values; nothing where it does not.
   std::optional<std::pair<double, double>> between;
-  bool becomes = true;    // from no to yes as the axis grows
+  bool becomes = true;  // from no to yes as the axis grows
   bool monotone = true;
   std::string what = {};  // of one without a threshold: "always", "never", "not told"
+
+  bool known() const {
+    return std::any_of(points.begin(), points.end(), [](const auto& one) { return one.second->known(); });
+  }
 };
 
 void find_change(Series& series) {
@@ -77,7 +82,7 @@ class Threshold {
   Threshold(const Ask& ask, const Evidence& evidence) : along_(ask.text("along")) {
     condition_ = {ask.real("is"), ask.real("below"), ask.real("above")};
     const Cases cases = evidence.cases(ask);
-    std::vector<std::string> columns = evidence.choices(cases, {along_}), others = columns;
+    std::vector<std::string> columns = evidence.choices(cases, ask.subject(), {along_}), others = columns;
     columns.push_back(along_);
     lines_ = lines_of(ask, evidence, ask.subject(), columns, true);
     unit_ = evidence.study().unit_of(along_);
@@ -91,7 +96,8 @@ class Threshold {
       Series& series = all[level + '\n' + line.stop];
       series.level = level;
       series.stop = line.stop;
-      if (const auto x = number_in(evidence.study().text(line.point.first(), along_))) series.points.emplace_back(*x, &line);
+      if (const auto x = number_in(evidence.study().text(line.point.first(), along_)))
+        series.points.emplace_back(*x, &line);
     }
     for (auto& [key, series] : std::move(all).list()) {
       std::stable_sort(series.points.begin(), series.points.end(),
@@ -107,38 +113,25 @@ class Threshold {
     out.figure = figure();
     if (auto open = open_without_values(lines_, out)) return *open;
     for (const Series& series : series_) add_rows(out, series);
+    // Of a series without any value what is left out says all.
     std::vector<const Series*> with, not_monotone, without;
     for (const Series& series : series_)
-      (!series.between ? without : series.monotone ? with : not_monotone).push_back(&series);
+      if (series.known()) (!series.between ? without : series.monotone ? with : not_monotone).push_back(&series);
+    const std::size_t judged = with.size() + not_monotone.size() + without.size();
     const std::string what = condition_.text(lines_);
-    const std::string name = answers::capitalised(lines_.words.words);
     const auto place = [&](const Series& one) {
-      return (one.level.empty() || series_.size() == 1 ? "" : " with " + one.level) + (one.stop.empty() ? "" : " at " + one.stop);
+      return (one.level.empty() || judged == 1 ? "" : " with " + one.level) +
+             (one.stop.empty() ? "" : " at " + one.stop);
     };
     if (!not_monotone.empty()) {
       out.verdict = "not monotone";
-      out.sentence = fmt::format("Not monotone: {} {} in several ranges of {}{}{}.", lines_.words.words, what, axis_words(),
-                                 place(*not_monotone.front()),
-                                 not_monotone.size() < series_.size()
-                                     ? fmt::format(" ({} of {})", not_monotone.size(), series_.size()) : "");
+      out.sentence =
+          fmt::format("Not monotone: {} {} in several ranges of {}{}{}.", lines_.words.words, what, axis_words(),
+                      place(*not_monotone.front()),
+                      not_monotone.size() < judged ? fmt::format(" ({} of {})", not_monotone.size(), judged) : "");
       return out;
     }
-    if (with.empty()) {
-      const Series& first = *without.front();
-      const bool same = std::all_of(without.begin(), without.end(), [&](const Series* one) { return one->what == first.what; });
-      out.verdict = same ? first.what : word(Verdict::open);
-      if (first.what == "not told") {
-        for (const auto& [x, line] : first.points)
-          if (out.reason.empty()) out.reason = !line->known() ? line->point.none : line->estimate().unknown();
-        if (out.reason.empty()) out.reason = "steps and meshes disagree";
-      }
-      out.sentence = !same ? fmt::format("No change of state is seen along {}: with some always, with others never.", axis_words())
-                     : first.what == "not told"
-                         ? fmt::format("Open: where along {} {} {} is not told: {}.", axis_words(), lines_.words.words, what, out.reason)
-                         : fmt::format("{} {} {}, from {} to {}.", name, first.what, what, x_text(first.points.front().first),
-                                       x_text(first.points.back().first));
-      return out;
-    }
+    if (with.empty()) return say_unchanged(out, without, what, place);
     double low = with.front()->between->first, high = with.front()->between->second;
     bool one_bracket = true;
     for (const Series* one : with) {
@@ -149,7 +142,7 @@ class Threshold {
     out.verdict = without.empty() ? "told" : "in part";
     const Series& first = *with.front();
     std::vector<std::vector<std::string>> rest;
-    if (!without.empty()) rest.push_back({fmt::format("; {} of {} have no threshold", without.size(), series_.size())});
+    if (!without.empty()) rest.push_back({fmt::format("; {} of {} have no threshold", without.size(), judged)});
     if (one_bracket && with.size() > 1) rest.push_back({fmt::format(", with all {} methods", with.size())});
     if (!one_bracket)
       rest.push_back({fmt::format("; methods differ: {} and {}{}", x_text(first.between->first),
@@ -162,6 +155,46 @@ class Threshold {
   }
 
  private:
+  /// Of series that see no change.
+  Answered say_unchanged(Answered out, const std::vector<const Series*>& without, const std::string& what,
+                         const std::function<std::string(const Series&)>& place) const {
+    std::vector<const Series*> always, never, open;
+    for (const Series* one : without)
+      (one->what == "always" ? always : one->what == "never" ? never : open).push_back(one);
+    if (always.empty() && never.empty()) {
+      out.verdict = word(Verdict::open);
+      for (const auto& [x, line] : open.front()->points)
+        if (out.reason.empty()) out.reason = !line->known() ? line->point.none : line->estimate().unknown();
+      if (out.reason.empty()) out.reason = "steps and meshes disagree";
+      out.sentence = fmt::format("Open: where along {} {} {} is not told: {}.", axis_words(), lines_.words.words, what,
+                                 out.reason);
+      return out;
+    }
+    const auto some = [&](const char* word, const std::vector<const Series*>& list) {
+      return list.size() == 1 ? fmt::format("{}{}", word, place(*list.front()))
+                              : fmt::format("{} with {} of {}", word, list.size(), without.size());
+    };
+    if (!always.empty() && !never.empty()) {
+      out.verdict = word(Verdict::open);
+      out.reason = "methods differ, none changes along the axis";
+      out.sentence = in_thirty_words(fmt::format("No change along {}: {} {} {}, {}", axis_words(), lines_.words.words,
+                                                 what, some("always", always), some("never", never)),
+                                     {{open.empty() ? "" : fmt::format("; open with {}", open.size())}});
+      return out;
+    }
+    const std::string& which = (always.empty() ? never : always).front()->what;
+    const Series& first = *without.front();
+    out.verdict = open.empty() ? which : "in part";
+    const std::size_t all = without.size() - open.size();
+    out.sentence =
+        in_thirty_words(fmt::format("{} {} {}, from {} to {}", answers::capitalised(lines_.words.words), which, what,
+                                    x_text(first.points.front().first), x_text(first.points.back().first)),
+                        {{open.empty() && all > 1 ? fmt::format(", with all {} methods", all)
+                          : open.empty()          ? ""
+                                         : fmt::format(", with {} of {}; open with the others", all, without.size())}});
+    return out;
+  }
+
   std::string x_text(double x) const { return answers::short_number(x) + unit_; }
   std::string axis_words() const { return answers::spoken(along_); }
 
@@ -197,8 +230,14 @@ class Threshold {
     Json between = Json::array();
     for (const Series& series : series_)
       if (series.between) between.push_back({series.between->first, series.between->second});
-    return {{"form", "along"}, {"measure", lines_.words.words}, {"unit", lines_.words.unit}, {"along", axis_words()},
-            {"along_unit", unit_.empty() ? "" : unit_.substr(1)}, {"rows", rows}, {"at", at}, {"between", between}};
+    return {{"form", "along"},
+            {"measure", lines_.words.words},
+            {"unit", lines_.words.unit},
+            {"along", axis_words()},
+            {"along_unit", unit_.empty() ? "" : unit_.substr(1)},
+            {"rows", rows},
+            {"at", at},
+            {"between", between}};
   }
 
   std::string along_, unit_;
@@ -223,13 +262,16 @@ void check_threshold(const Ask& ask, const Study& study) {
 
 const Verb& threshold_verb() {
   static const Verb verb{
-      "threshold", "From which value of an axis on a measure is, is below or is above a value.",
+      "threshold",
+      "From which value of an axis on a measure is, is below or is above a value.",
       {keys::of_form(Field::Form::text, "threshold", std::nullopt, "The measure."),
        keys::of_form(Field::Form::text, "along", std::nullopt, "The axis, whose levels are numbers."),
        keys::quiet(keys::optional(keys::real("is", "", keys::any, std::nullopt, "It is this value."))),
        keys::quiet(keys::optional(keys::real("below", "", keys::any, std::nullopt, "It is below this value."))),
        keys::quiet(keys::optional(keys::real("above", "", keys::any, std::nullopt, "It is above this value.")))},
-      "", check_threshold, doubt_of_one_step,
+      "",
+      check_threshold,
+      doubt_of_one_step,
       [](const Ask& ask, const Evidence& evidence) { return Threshold(ask, evidence).answer(); }};
   return verb;
 }

@@ -115,6 +115,8 @@ struct MeasureInfo {
     bool decades = false;              ///< differences are factors, not shares
   };
   Reading reading = {};
+  /// Whether each step and mesh has its own, as a step limit has: refinement leads it to no limit.
+  bool of_each_size = false;
 };
 
 /// The measures of all kinds, in order. Given by the registry of kinds.

@@ -246,7 +246,8 @@ bool is_of_each(const Field& field, const Json& value, const std::string& pointe
   const bool named = text.ends_with("]") && text.size() > word.size() + 2;
   if (named && in(field.of_each)) return true;
   if (word != text && !in(field.of_each))
-    throw InputError(pointer, "no measure \"" + shortened(word) + "\" of a stop" + did_you_mean(word, field.of_each));
+    throw InputError(pointer, "no measure \"" + shortened(word) + "\" of a stop; expected one of " +
+                                  quoted_list(field.of_each) + did_you_mean(word, field.of_each));
   if (in(field.of_each) && (word != text || !in(field.spec.words)))
     throw InputError(pointer, quote(value) + " says no name; expected " + word + "[NAME]");
   return false;
