@@ -55,16 +55,17 @@ class Enough {
     const auto& [line, need] = *worst;
     const std::string found = fmt::format("{} is known to ± {}", lines_.words.words, answers::percent(width(*line)));
     if (*out.passes == Verdict::yes)
-      out.sentence = in_thirty_words(fmt::format("Yes: {}, within the {} asked", found, answers::percent(within_)), {});
+      out.sentence = in_thirty_words(fmt::format("Yes: {}, within the {} asked", found, answers::percent(within_)),
+                                     {{less_would_do(*line, need)}});
     else if (*out.passes == Verdict::open) {
       const auto open = std::find_if(needs.begin(), needs.end(), [](const auto& one) { return !one.second.known; });
       out.reason = open->second.why;
-      out.sentence = in_thirty_words(
-          fmt::format("Open: what {} within {} takes is not told: {}", lines_.words.words, answers::percent(within_), out.reason),
-          {{open->first->place()}});
+      out.sentence = in_thirty_words(fmt::format("Open: what {} within {} takes is not told: {}", lines_.words.words,
+                                                 answers::percent(within_), out.reason),
+                                     {{open->first->place()}});
     } else
-      out.sentence = in_thirty_words(fmt::format("No: {}; {} would do for {}", found, remedy(need), answers::percent(within_)),
-                                     {{line->place()}});
+      out.sentence = in_thirty_words(
+          fmt::format("No: {}; {} would do for {}", found, remedy(need), answers::percent(within_)), {{line->place()}});
     return out;
   }
 
@@ -79,7 +80,10 @@ class Enough {
     Need out;
     if (one.grows || one.value == 0 || !one.u()) {
       out.known = false;
-      out.why = one.grows ? one.motion : one.value == 0 ? "it is zero" : one.unknown().empty() ? "nothing was refined or drawn" : one.unknown();
+      out.why = one.grows               ? one.motion
+                : one.value == 0        ? "it is zero"
+                : one.unknown().empty() ? "nothing was refined or drawn"
+                                        : one.unknown();
       return out;
     }
     const double asked = within_ * std::abs(one.value);
@@ -89,32 +93,45 @@ class Enough {
       out.why = one.unknown();
       return out;
     }
-    if (out.enough) return out;
-    // Each part gets an equal share of what may be open.
-    const int parts = (one.step.value_or(0) > 0 ? 1 : 0) + (one.mesh.value_or(0) > 0 ? 1 : 0) + (one.sampling.value_or(0) > 0 ? 1 : 0);
-    const double each = asked / std::max(parts, 1);
-    if (one.sampling.value_or(0) > each) {
-      // A mean of n draws is known to 1/√n of their scatter.
-      const double more = std::pow(*one.sampling / each, 2);
-      if (one.seeds > 1)
-        out.seeds = std::ceil(more * static_cast<double>(one.seeds));
-      else
-        out.duration = more * window();
+    const double mesh = one.mesh.value_or(0), step = one.step.value_or(0), sampling = one.sampling.value_or(0);
+    if (out.enough) {
+      if (sampling > 0) draws_for(out, one, asked - mesh - step);
+      return out;
     }
-    if (one.step.value_or(0) > each) {
+    if (mesh >= asked) {
+      out.known = false;
+      out.why = "the mesh alone leaves " + answers::percent(mesh / std::abs(one.value));
+      return out;
+    }
+    // Steps and draws share what the mesh leaves of it; what one does not need is the other's.
+    const double rest = asked - mesh, half = rest / 2;
+    const double of_draws = step <= half ? rest - step : half, of_step = sampling <= half ? rest - sampling : half;
+    if (sampling > of_draws) draws_for(out, one, of_draws);
+    if (step > of_step) {
       constexpr double halves = 1;
       const double order = std::max(0.5, one.order.value_or(halves));
       if (!one.motion.empty()) {
         out.known = false;
         out.why = "it " + one.motion;
       } else
-        out.step = two_digits_below(line.point.finest->first * std::pow(each / *one.step, 1 / order));
-    }
-    if (one.mesh.value_or(0) > each && !out.seeds && !out.duration && !out.step) {
-      out.known = false;
-      out.why = "the mesh leaves more";
+        out.step = two_digits_below(line.point.finest->first * std::pow(of_step / step, 1 / order));
     }
     return out;
+  }
+
+  /// The seeds of these windows, or the windows of these seeds, that a half-width of the mean takes. Of n seeds it is
+  /// t₀.₉₇₅(n−1)/√n of their scatter, of a window T it falls as 1/√T.
+  void draws_for(Need& out, const Estimate& one, double half) const {
+    const double longer = std::pow(*one.sampling / half, 2);
+    if (one.seeds > 1) {
+      const double scatter = *one.sampling / half_interval_over_scatter(one.seeds);
+      constexpr std::size_t fewest = 2, large = 200;  // beyond it t changes no more
+      std::size_t n = fewest;
+      while (n < large && scatter * half_interval_over_scatter(n) > half) ++n;
+      const double beyond = scatter * half_interval_over_scatter(n) / half;
+      out.seeds = n < large ? static_cast<double>(n) : std::ceil(static_cast<double>(n) * beyond * beyond);
+    }
+    if (window() > 0) out.duration = longer * window();
   }
 
   /// s over which a mean is taken.
@@ -125,12 +142,27 @@ class Enough {
     return study.value("duration", 0.0);
   }
 
+  /// "28 seeds, or windows of 4.8 s".
+  static std::string draws_words(const Need& need) {
+    const std::string windows =
+        !need.duration ? "" : fmt::format("windows of {} s", answers::short_number(*need.duration, 2));
+    if (!need.seeds) return windows;
+    return fmt::format("{:.0f} seeds", *need.seeds) + (windows.empty() ? "" : ", or " + windows);
+  }
   std::string remedy(const Need& need) const {
     std::vector<std::string> parts;
-    if (need.seeds) parts.push_back(fmt::format("{:.0f} seeds", *need.seeds));
-    if (need.duration) parts.push_back(fmt::format("{} s of window", answers::short_number(*need.duration, 2)));
+    if (need.seeds || need.duration) parts.push_back(draws_words(need));
     if (need.step) parts.push_back(evidence_.study().step_words(*need.step));
     return some_of(parts);
+  }
+  /// "; of 6 seeds with 7 s each 5 seeds, or windows of 4.9 s, would do"; "" where nothing was drawn.
+  std::string less_would_do(const Line& line, const Need& need) const {
+    if (!need.seeds && !need.duration) return "";
+    const std::size_t seeds = line.estimate().seeds;
+    const std::string had =
+        (seeds > 1 ? fmt::format("of {} seeds ", seeds) : "of ") +
+        (window() > 0 ? fmt::format("{}{} s ", seeds > 1 ? "with " : "", answers::short_number(window(), 3)) : "");
+    return fmt::format("; {}{} would do", had, draws_words(need));
   }
 
   void add_rows(Answered& out, const Line& line, const Need& need, Verdict verdict) const {
@@ -165,10 +197,18 @@ class Enough {
     for (const auto& [line, need] : needs) {
       const Estimate& one = line->estimate();
       if (one.value == 0) continue;
-      for (const auto& [part, value] : {std::pair("step", one.step), std::pair("mesh", one.mesh), std::pair("sampling", one.sampling)})
-        if (value) rows.push_back({{"name", line->level + (line->stop.empty() ? "" : " " + line->stop)}, {"part", part}, {"value", per_cent * *value / std::abs(one.value)}});
+      for (const auto& [part, value] :
+           {std::pair("step", one.step), std::pair("mesh", one.mesh), std::pair("sampling", one.sampling)})
+        if (value)
+          rows.push_back({{"name", line->level + (line->stop.empty() ? "" : " " + line->stop)},
+                          {"part", part},
+                          {"value", per_cent * *value / std::abs(one.value)}});
     }
-    return {{"form", "parts"}, {"measure", lines_.words.words}, {"unit", "%"}, {"rows", rows}, {"at", {per_cent * within_}}};
+    return {{"form", "parts"},
+            {"measure", lines_.words.words},
+            {"unit", "%"},
+            {"rows", rows},
+            {"at", {per_cent * within_}}};
   }
 
   const Evidence& evidence_;
@@ -184,11 +224,15 @@ std::string doubt_enough(const Ask&, const Study& study) {
 }  // namespace
 
 const Verb& enough_verb() {
-  static const Verb verb{"enough", "Whether steps, seeds and window are enough for a share, and what would be.",
-                         {keys::of_form(Field::Form::text, "enough", std::nullopt, "The measure."),
-                          keys::of_form(Field::Form::share, "within", std::nullopt, "The half-width of its interval as a share of it.")},
-                         "", check_subject, doubt_enough,
-                         [](const Ask& ask, const Evidence& evidence) { return Enough(ask, evidence).answer(); }};
+  static const Verb verb{
+      "enough",
+      "Whether steps, seeds and window are enough for a share, and what would be.",
+      {keys::of_form(Field::Form::text, "enough", std::nullopt, "The measure."),
+       keys::of_form(Field::Form::share, "within", std::nullopt, "The half-width of its interval as a share of it.")},
+      "",
+      check_subject,
+      doubt_enough,
+      [](const Ask& ask, const Evidence& evidence) { return Enough(ask, evidence).answer(); }};
   return verb;
 }
 

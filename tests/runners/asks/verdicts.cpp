@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
+#include <map>
 #include <ricochet/contract/said_format.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <set>
 
 #include "tests/runners/asks/made_tables.hpp"
 
@@ -125,6 +127,109 @@ TEST_CASE("asks: what is ranked apart is apart in truth") {
     }
   }
   CHECK(apart > tries);
+}
+
+TEST_CASE("asks: a wide interval is told apart from nothing that it reaches") {
+  std::mt19937 random(11);
+  std::size_t apart = 0;
+  for (int k = 0; k < tries / 2; ++k) {
+    const Made made = random_methods(random, 4);
+    StudyResults results = made.results();
+    // Each method errs in its own way.
+    std::map<std::string, double> errors;
+    for (CaseRecord& record : results.cases) {
+      const std::string name = record.axes[0].second.get<std::string>();
+      if (!errors.contains(name)) errors[name] = uniform(random, -0.5, 0.5);
+      const double part = std::pow(record.axes[1].second.get<double>() / made.steps.front(), made.order);
+      record.measures[0].second = made.truth({static_cast<std::size_t>(name.back() - '0')}) * (1 + errors[name] * part);
+    }
+    const Answered answered = answer_of(results, {{"rank", "impulse"}, {"over", "mass"}});
+    for (std::size_t a = 0; a < answered.rows.size(); ++a)
+      for (std::size_t b = a + 1; b < answered.rows.size(); ++b) {
+        const VerdictRow &one = answered.rows[a], &other = answered.rows[b];
+        if (one.verdict == other.verdict) continue;
+        INFO(answered.sentence << "\n" << one.level << " " << *one.low << ", " << other.level << " " << *other.high);
+        CHECK(*one.low > *other.high);
+        ++apart;
+      }
+  }
+  CHECK(apart > tries / 2);
+}
+
+TEST_CASE("asks: first in all combinations is first in each") {
+  std::mt19937 random(12);
+  std::size_t all_told = 0, some_told = 0;
+  for (int k = 0; k < tries / 4; ++k) {
+    Made made = random_methods(random, 3);
+    made.choices.push_back({"contact", {"a", "b", "c"}});
+    const auto truth = made.truth;
+    std::vector<double> factors;
+    for (int c = 0; c < 9; ++c) factors.push_back(uniform(random, 0.9, 1.1));
+    made.truth = [=](const std::vector<std::size_t>& at) { return truth({at[0]}) * factors[3 * at[0] + at[1]]; };
+    const Answered answered = answer_of(made.results(), {{"rank", "impulse"}, {"over", "mass"}});
+    std::set<std::size_t> firsts;
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::size_t best = 0;
+      for (std::size_t m = 1; m < 3; ++m)
+        if (made.truth({m, c}) > made.truth({best, c})) best = m;
+      firsts.insert(best);
+    }
+    INFO(answered.sentence);
+    if (answered.sentence.find("the same first in all 3") != std::string::npos) {
+      CHECK(firsts.size() == 1);
+      ++all_told;
+    } else if (firsts.size() == 1) {
+      ++some_told;
+    }
+    if (answered.verdict == "turned round") CHECK(firsts.size() > 1);
+  }
+  CHECK(all_told > tries / 100);
+  CHECK(some_told > 0);
+}
+
+TEST_CASE("asks: a method without any value is neither always nor never") {
+  std::mt19937 random(13);
+  Made made = random_methods(random, 2);
+  synthetic::Choice axis{"stops.upper", {"0.1", "0.2", "0.3"}};
+  made.choices.push_back(axis);
+  made.truth = [](const std::vector<std::size_t>&) { return 0.5; };
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) {
+    for (auto& [column, value] : record.axes)
+      if (column == "stops.upper") value = std::stod(value.get<std::string>());
+    if (record.axes[0].second != "m1") continue;
+    record.status = "refused";
+    record.reasons = {"no"};
+    record.measures.clear();
+  }
+  const Answered answered = answer_of(results, {{"threshold", "impulse"}, {"below", 1}, {"along", "stops.upper"}});
+  INFO(answered.sentence);
+  CHECK(answered.verdict == "always");
+  CHECK(answered.sentence.find("never") == std::string::npos);
+  REQUIRE(answered.aside.size() == 1);
+}
+
+TEST_CASE("asks: the seeds that would do give the half-width asked, and one fewer does not") {
+  std::mt19937 random(14);
+  for (int k = 0; k < tries / 10; ++k) {
+    Made made = random_methods(random, 1);
+    made.choices.push_back({seed_axis, {"1", "2", "3", "4", "5", "6"}});
+    made.scatter = uniform(random, 0.01, 0.3);
+    made.first_seed = random();
+    made.error = made.second = 0;
+    const double within = uniform(random, 0.02, 0.5);
+    const Answered answered = answer_of(made.results(), {{"enough", "impulse"}, {"within", within}});
+    const VerdictRow& row = answered.rows.front();
+    const auto would = std::find_if(answered.rows.begin(), answered.rows.end(),
+                                    [](const VerdictRow& one) { return one.verdict == "seeds that would do"; });
+    REQUIRE(would != answered.rows.end());
+    const double scatter = 0.5 * (*row.high - *row.low) / half_interval_over_scatter(6);
+    const auto half = [&](double n) { return scatter * half_interval_over_scatter(static_cast<std::size_t>(n)); };
+    INFO(answered.sentence);
+    // The law of t beyond 200 draws is that of many, within a hundredth.
+    CHECK(half(*would->value) <= 1.01 * within * *row.value);
+    if (*would->value > 2) CHECK(half(*would->value - 1) > 0.99 * within * *row.value);
+  }
 }
 
 TEST_CASE("asks: a threshold lies between the levels that are told") {
@@ -305,7 +410,8 @@ TEST_CASE("asks: cases that end alike but for their numbers are one line, and ma
     record.status = "diverged";
     record.reasons = {said("step {}, t = {} s: {}", static_cast<int>(end.value), end.value, told(end))};
   }
-  CHECK(asides() == std::vector<std::string>{"Left out: 20 diverged: step 7, t = 7 s: the energy 7 J passed the bound 2 J."});
+  CHECK(asides() ==
+        std::vector<std::string>{"Left out: 20 diverged: step 7, t = 7 s: the energy 7 J passed the bound 2 J."});
   for (CaseRecord& record : results.cases) {
     const std::string mass = record.axes[0].second.get<std::string>();
     if (mass == "a" || mass == "b") continue;
@@ -313,8 +419,8 @@ TEST_CASE("asks: cases that end alike but for their numbers are one line, and ma
     record.reasons = {Said(mass + " does not apply")};
   }
   // Four each; the first two are told, in the order of the study.
-  CHECK(asides() == std::vector<std::string>{
-                        "Left out: 4 diverged: step 7, t = 7 s: the energy 7 J passed the bound 2 J.",
-                        "Left out: 4 refused: c does not apply.",
-                        "Left out: 12 more for 3 other reasons, which are in reasons.csv."});
+  CHECK(asides() ==
+        std::vector<std::string>{"Left out: 4 diverged: step 7, t = 7 s: the energy 7 J passed the bound 2 J.",
+                                 "Left out: 4 refused: c does not apply.",
+                                 "Left out: 12 more for 3 other reasons, which are in reasons.csv."});
 }
