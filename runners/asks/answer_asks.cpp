@@ -24,7 +24,8 @@ const TableType<VerdictRow>& verdicts_type() {
     rows.add({"ask", "1", "The ask, by its place in the study's list, from 1."}, &VerdictRow::ask)
         .add({"verb", "", "Its verb."}, &VerdictRow::verb)
         .add({"measure", "", "What the row speaks of: a measure, an axis."}, &VerdictRow::measure)
-        .add({"level", "", "The levels of all choices in words; empty in the row of the whole answer."}, &VerdictRow::level)
+        .add({"level", "", "The levels of all choices in words; empty in the row of the whole answer."},
+             &VerdictRow::level)
         .add({"stop", "", "The stop; empty where there is one, or none."}, &VerdictRow::stop)
         .add({"value", "", "The value, in `unit`."}, &VerdictRow::value)
         .add({"low", "", "Where it may be: from; empty where no interval is known."}, &VerdictRow::low)
@@ -35,7 +36,8 @@ const TableType<VerdictRow>& verdicts_type() {
         .add({"cases", "1", "Cases behind it."}, &VerdictRow::cases)
         .add({"left_out", "1", "Cases that are not, with no value."}, &VerdictRow::left_out)
         .add({"sentence", "", "Of the whole answer: the sentence."}, &VerdictRow::sentence);
-    return TableType<VerdictRow>{"verdicts", "What the study asks: one row for each answer, then one for each of its levels.", rows};
+    return TableType<VerdictRow>{
+        "verdicts", "What the study asks: one row for each answer, then one for each of its levels.", rows};
   }();
   return all;
 }

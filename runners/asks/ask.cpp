@@ -28,9 +28,9 @@ std::string Ask::pointer(const std::string& key) const {
 }
 
 const std::vector<const Verb*>& verbs() {
-  static const std::vector<const Verb*> all = {&value_verb(),  &rank_verb(),  &limit_verb(),   &effect_verb(),
+  static const std::vector<const Verb*> all = {&value_verb(),     &rank_verb(),     &limit_verb(), &effect_verb(),
                                                &threshold_verb(), &cheapest_verb(), &order_verb(), &enough_verb(),
-                                               &motions_verb(), &points_verb(), &steps_verb(), &runs_verb()};
+                                               &motions_verb(),   &points_verb(),   &steps_verb(), &runs_verb()};
   return all;
 }
 
@@ -83,10 +83,10 @@ void check_stops(const Ask& ask, const Study& study) {
   for (std::size_t i = 0; i < asked.size(); ++i) {
     const auto name = asked[i].get<std::string>();
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw InputError(pointer_to(ask.pointer("stops"), i),
-                       known.empty() ? std::string("the scene has no stops with names")
-                                     : "no stop " + quote(name) + "; there is: " + quoted_list(known) +
-                                           did_you_mean(name, known));
+      throw InputError(
+          pointer_to(ask.pointer("stops"), i),
+          known.empty() ? std::string("the scene has no stops with names")
+                        : "no stop " + quote(name) + "; there is: " + quoted_list(known) + did_you_mean(name, known));
   }
 }
 
@@ -104,14 +104,16 @@ void check_where(const Ask& ask, const Study& study) {
     const Json& level = item.value();
     const std::string pointer = pointer_to(ask.pointer("where"), column);
     if (std::find(study.columns.begin(), study.columns.end(), column) == study.columns.end())
-      throw InputError(pointer, "no axis of this study is called " + quote(column) + "; there is: " +
-                                    quoted_list(study.columns) + did_you_mean(column, study.columns));
-    if (std::any_of(study.cases.begin(), study.cases.end(), [&](const auto& one) { return matches(one, column, level); }))
+      throw InputError(pointer, "no axis of this study is called " + quote(column) +
+                                    "; there is: " + quoted_list(study.columns) + did_you_mean(column, study.columns));
+    if (std::any_of(study.cases.begin(), study.cases.end(),
+                    [&](const auto& one) { return matches(one, column, level); }))
       continue;
     std::vector<std::string> levels;
     for (const StudyCase& one : study.cases)
       for (const auto& [axis, value] : one.axes)
-        if (const std::string text = value.dump(); axis == column && std::find(levels.begin(), levels.end(), text) == levels.end())
+        if (const std::string text = value.dump();
+            axis == column && std::find(levels.begin(), levels.end(), text) == levels.end())
           levels.push_back(text);
     std::string listed;
     for (const std::string& one : levels) listed += (listed.empty() ? "" : ", ") + one;
@@ -135,7 +137,8 @@ void check(const Ask& ask, const Study& study) {
   const std::string name = verb_of_kind(ask);
   const bool own = std::find(kind.verbs.begin(), kind.verbs.end(), name) != kind.verbs.end();
   if (!own && name == "effect on motions")
-    throw InputError(ask.pointer("on"), "a study of kind " + study.kind + " finds no motions; " + find_verb("motions")->remedy);
+    throw InputError(ask.pointer("on"),
+                     "a study of kind " + study.kind + " finds no motions; " + find_verb("motions")->remedy);
   if (!own && !ask.verb->answer)
     throw InputError(ask.pointer(), "a study of kind " + study.kind + " cannot tell this; " + ask.verb->remedy);
   check_stops(ask, study);

@@ -108,7 +108,9 @@ Estimate estimate_of(const std::map<Size, BySeed>& values, const std::map<Size, 
     out.grows = out.grows || (one && one->status == LimitStatus::blows_up);
   for (const auto& [limit, what] : {std::pair(limits.step, "step"), std::pair(limits.mesh, "mesh")})
     if (limit && limit->restless() && out.motion.empty())
-      out.motion = std::string(limit->trend > 0 ? "still rises" : limit->trend < 0 ? "still falls" : "wanders") +
+      out.motion = std::string(limit->trend > 0   ? "still rises"
+                               : limit->trend < 0 ? "still falls"
+                                                  : "wanders") +
                    " with the " + what;
   if (out.grows) out.motion = "grows without bound";
   out.order = limits.step ? limits.step->order : std::nullopt;

@@ -90,7 +90,9 @@ void leave_out(Answered& out, const Cases& left) {
     LeftOut::Reason& group = groups[ending_key(*one)];
     if (group.count++ > 0) continue;
     const bool done = one->status == "done";
-    group.text = (one->partial ? "still running" : done ? "without a result" : one->status) +
+    group.text = (one->partial ? "still running"
+                  : done       ? "without a result"
+                               : one->status) +
                  (done || one->reason().empty() ? "" : ": " + one->reason());
   }
   LeftOut all;

@@ -53,7 +53,8 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
   std::string range;
   if (bounds.below) at.push_back(*bounds.below * lines.words.factor), range = "below " + lines.number(*bounds.below);
   if (bounds.above)
-    at.push_back(*bounds.above * lines.words.factor), range += (range.empty() ? "" : " and ") + ("above " + lines.number(*bounds.above));
+    at.push_back(*bounds.above * lines.words.factor),
+        range += (range.empty() ? "" : " and ") + ("above " + lines.number(*bounds.above));
   out.figure = bars(lines, at);
   VerdictRow limit;
   limit.level = "the limit";
@@ -68,13 +69,15 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
     return bounds.below ? *bounds.below - v : v - *bounds.above;
   };
   const auto nearest = [&](const std::vector<const Line*>& list) {
-    return **std::min_element(list.begin(), list.end(), [&](const Line* a, const Line* b) { return margin(a) < margin(b); });
+    return **std::min_element(list.begin(), list.end(),
+                              [&](const Line* a, const Line* b) { return margin(a) < margin(b); });
   };
   if (*out.passes == Verdict::yes) {
     const Line worst = nearest(yes);
     const char* at_most = lines.all.size() == 1 ? "" : bounds.below ? "at most " : "at least ";
-    out.sentence = in_thirty_words(
-        fmt::format("Yes: {} stays {}; it is {}{}", name, range, at_most, lines.text(worst.estimate())), {{worst.place()}});
+    out.sentence =
+        in_thirty_words(fmt::format("Yes: {} stays {}; it is {}{}", name, range, at_most, lines.text(worst.estimate())),
+                        {{worst.place()}});
   } else if (*out.passes == Verdict::no) {
     const Line worst = nearest(no);
     const std::string where = set_name(lines, no);
@@ -92,12 +95,15 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
     for (const Line* line : open)
       if (line->known()) known.push_back(line);
     const Line* first = known.empty() ? open.front() : known.front();
-    out.reason = first->known() ? (first->estimate().unknown().empty() ? "the limit lies within its interval" : first->estimate().unknown())
+    out.reason = first->known() ? (first->estimate().unknown().empty() ? "the limit lies within its interval"
+                                                                       : first->estimate().unknown())
                                 : first->point.none;
-    const std::string which = open.size() < lines.all.size() ? fmt::format(" in {} of {}", open.size(), lines.all.size()) : "";
+    const std::string which =
+        open.size() < lines.all.size() ? fmt::format(" in {} of {}", open.size(), lines.all.size()) : "";
     const std::string found = first->known() ? "it is " + lines.text(first->estimate()) : "no value";
-    out.sentence = in_thirty_words(fmt::format("Open{}: whether {} stays {} is not told", which, name, range),
-                                   {{"; " + found + first->place(), "; " + found}, {": " + out.reason, ": " + short_reason(out.reason)}});
+    out.sentence = in_thirty_words(
+        fmt::format("Open{}: whether {} stays {} is not told", which, name, range),
+        {{"; " + found + first->place(), "; " + found}, {": " + out.reason, ": " + short_reason(out.reason)}});
   }
   return out;
 }
@@ -114,11 +120,15 @@ void check_limit(const Ask& ask, const Study& study) {
 
 const Verb& limit_verb() {
   static const Verb verb{
-      "limit", "Whether a measure stays below a value, or above one.",
+      "limit",
+      "Whether a measure stays below a value, or above one.",
       {keys::of_form(Field::Form::text, "limit", std::nullopt, "The measure."),
        keys::quiet(keys::optional(keys::real("below", "", keys::any, std::nullopt, "In the measure's unit."))),
        keys::quiet(keys::optional(keys::real("above", "", keys::any, std::nullopt, "In the measure's unit.")))},
-      "", check_limit, doubt_of_one_step, answer_limit};
+      "",
+      check_limit,
+      doubt_of_one_step,
+      answer_limit};
   return verb;
 }
 

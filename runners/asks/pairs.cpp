@@ -50,7 +50,8 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
   std::map<Size, std::map<std::string, double>> shares, share_halves;
   for (const auto& [size, by_seed] : differences) {
     double base = 0;
-    for (const auto& [seed, difference] : by_seed) base += first.values.at(size).at(seed) / static_cast<double>(by_seed.size());
+    for (const auto& [seed, difference] : by_seed)
+      base += first.values.at(size).at(seed) / static_cast<double>(by_seed.size());
     if (std::abs(base) <= floor) continue;
     for (const auto& [seed, difference] : by_seed) shares[size][seed] = difference / std::abs(base);
     if (const auto own = halves.find(size); own != halves.end())

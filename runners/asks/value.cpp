@@ -55,7 +55,8 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
     rest = {{fmt::format(" (least{}, most{})", least.place(), most.place()), fmt::format(" (most{})", most.place())}};
   }
   if (unsettled > 0) {
-    const Line* first = *std::find_if(known.begin(), known.end(), [](const Line* l) { return !l->estimate().motion.empty(); });
+    const Line* first =
+        *std::find_if(known.begin(), known.end(), [](const Line* l) { return !l->estimate().motion.empty(); });
     out.reason = first->estimate().motion;
     said += unsettled == known.size() ? "; not settled: it " + out.reason
                                       : fmt::format("; {} of {} not settled", unsettled, known.size());
@@ -75,9 +76,13 @@ std::string doubt_value(const Ask&, const Study& study) {
 }  // namespace
 
 const Verb& value_verb() {
-  static const Verb verb{"value", "What a measure is, for each stop and level.",
+  static const Verb verb{"value",
+                         "What a measure is, for each stop and level.",
                          {keys::of_form(Field::Form::text, "value", std::nullopt, "The measure.")},
-                         "", check_subject, doubt_value, answer_value};
+                         "",
+                         check_subject,
+                         doubt_value,
+                         answer_value};
   return verb;
 }
 
