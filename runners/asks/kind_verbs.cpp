@@ -4,6 +4,7 @@
 
 #include "runners/asks/verbs.hpp"
 #include "runners/json/json_text.hpp"
+#include "runners/store/record.hpp"
 #include "runners/table/in_order_met.hpp"
 
 // Verbs that kinds of study answer: what they are, here; what answers them, in the kinds.
@@ -73,7 +74,8 @@ std::function<void(const Json&, const std::string&, const std::string&)> measure
   for (const MeasureInfo& one : measures) names.emplace_back(one.name);
   return [names](const Json&, const std::string& measure, const std::string& pointer) {
     if (std::find(names.begin(), names.end(), measure) == names.end())
-      throw InputError(pointer, "cases of this kind have no measure " + quote(measure) + "; expected one of " +
+      throw InputError(pointer, "cases of this kind have no measure " + quote(measure) +
+                                    (measure_info(measure) ? ", which other kinds have" : "") + "; expected one of " +
                                     quoted_list(names) + did_you_mean(measure, names));
   };
 }

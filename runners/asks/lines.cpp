@@ -124,11 +124,20 @@ std::string set_name(const Lines& lines, const std::vector<const Line*>& set) {
     const bool in_all = std::all_of(lines.all.begin(), lines.all.end(), [&](const Line& line) { return same(&line); });
     if (!own.empty() && !in_all && std::all_of(set.begin(), set.end(), same)) shared.push_back(k);
   }
-  const auto picked = std::count_if(lines.all.begin(), lines.all.end(), [&](const Line& line) {
-    return std::all_of(shared.begin(), shared.end(),
-                       [&](std::size_t k) { return line.attributes[k] == set.front()->attributes[k]; });
-  });
-  if (shared.empty() || static_cast<std::size_t>(picked) != set.size()) return "";
+  const auto picked = [&](const std::vector<std::size_t>& by) {
+    const auto alike = [&](const Line& line) {
+      return std::all_of(by.begin(), by.end(),
+                         [&](std::size_t k) { return line.attributes[k] == set.front()->attributes[k]; });
+    };
+    return static_cast<std::size_t>(std::count_if(lines.all.begin(), lines.all.end(), alike));
+  };
+  if (shared.empty() || picked(shared) != set.size()) return "";
+  // A parameter that its method alone has says nothing more.
+  for (std::size_t k = shared.size(); k-- > 0 && shared.size() > 1;) {
+    std::vector<std::size_t> fewer = shared;
+    fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(k));
+    if (picked(fewer) == set.size()) shared = std::move(fewer);
+  }
   std::string levels, stop;
   for (const std::size_t k : shared)
     (k + 1 == count ? stop : levels) += (k + 1 == count   ? " at "

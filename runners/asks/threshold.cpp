@@ -17,10 +17,12 @@ namespace {
 struct Condition {
   std::optional<double> is, below, above;
   bool holds(double value) const { return is ? value == *is : below ? value < *below : value > *above; }
-  std::string text(const Lines& lines) const {
-    return is      ? "is " + lines.number(*is)
-           : below ? "is below " + lines.number(*below)
-                   : "is above " + lines.number(*above);
+  /// "is always below 3 N".
+  std::string text(const Lines& lines, const std::string& adverb = "") const {
+    return "is " + adverb +
+           (is      ? lines.number(*is)
+            : below ? "below " + lines.number(*below)
+                    : "above " + lines.number(*above));
   }
 };
 
@@ -187,15 +189,19 @@ class Threshold {
     out.verdict = open.empty() ? which : "in part";
     const std::size_t all = without.size() - open.size();
     out.sentence =
-        in_thirty_words(fmt::format("{} {} {}, from {} to {}", answers::capitalised(lines_.words.words), which, what,
-                                    x_text(first.points.front().first), x_text(first.points.back().first)),
+        in_thirty_words(fmt::format("{} {}, from {} to {}", answers::capitalised(lines_.words.words),
+                                    condition_.text(lines_, which + " "), x_text(first.points.front().first),
+                                    x_text(first.points.back().first)),
                         {{open.empty() && all > 1 ? fmt::format(", with all {} methods", all)
                           : open.empty()          ? ""
                                          : fmt::format(", with {} of {}; open with the others", all, without.size())}});
     return out;
   }
 
-  std::string x_text(double x) const { return answers::short_number(x) + unit_; }
+  std::string x_text(double x) const {
+    const std::string number = answers::short_number(x);
+    return unit_.empty() && answers::is_refinement(along_) ? number + " " + along_ : number + unit_;
+  }
   std::string axis_words() const { return answers::spoken(along_); }
 
   void add_rows(Answered& out, const Series& series) const {

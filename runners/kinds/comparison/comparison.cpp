@@ -7,6 +7,7 @@
 #include <ricochet/measure/motion/motion_sampler.hpp>
 #include <set>
 
+#include "runners/asks/kind_verbs.hpp"
 #include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/kinds/comparison/references.hpp"
@@ -150,7 +151,7 @@ std::string errors_text(const CaseRecord& record) {
 
 std::vector<MeasureInfo> comparison_measures() {
   using Of = MeasureInfo::Of;
-  return {
+  std::vector<MeasureInfo> all = {
       {"horizon", "s", "Time up to which the motion is compared with its reference.", Of::computation},
       {"reference_of_mesh", "1",
        "1 where the reference has the case's own mesh, so that the error is the time scheme's; 0 where it has none.",
@@ -204,12 +205,19 @@ std::vector<MeasureInfo> comparison_measures() {
       {"size.impulse", "N s", "What this error would be of a motion at rest: errors over it are relative ones.",
        Of::computation, true},
   };
+  for (MeasureInfo& one : all) one.of_each_size = true;
+  return all;
 }
 
 namespace {
 
+/// What a comparing case knows of its motion: nothing is observed that its march would pay for.
+constexpr const char* motion_measures[] = {
+    "impacts",    "peak_contact_force", "contact_time",          "tip_displacement_end", "energy_start",
+    "energy_end", "active_set_changes", "microseconds_per_step", "steps_visited"};
+
 StudyKind comparison_format(const char* name, const char* text, std::vector<Field> keys, std::vector<std::string> verbs,
-                            Json (*default_asks)(const Json&)) {
+                            const std::vector<MeasureInfo>& of_cases, Json (*default_asks)(const Json&)) {
   StudyKind format;
   format.name = name;
   format.text = text;
@@ -217,6 +225,13 @@ StudyKind comparison_format(const char* name, const char* text, std::vector<Fiel
   format.settings = comparison_settings;
   format.check = check_comparison;
   format.verbs = std::move(verbs);
+  std::vector<MeasureInfo> known = comparison_measures();
+  known.insert(known.end(), of_cases.begin(), of_cases.end());
+  for (const char* one : motion_measures) known.push_back({one, "", ""});
+  format.check_measure = [alone = asks::measures_alone(known)](const Json& resolved, const std::string& measure,
+                                                               const std::string& pointer) {
+    if (measure.find('[') == std::string::npos) alone(resolved, measure, pointer);
+  };
   format.check_ask = check_error_ask;
   format.default_asks = default_asks;
   return format;
@@ -225,9 +240,9 @@ StudyKind comparison_format(const char* name, const char* text, std::vector<Fiel
 }  // namespace
 
 ComparisonKind::ComparisonKind(const char* name, const char* text, std::vector<Field> keys,
-                               std::vector<MeasureInfo> of_cases, std::vector<std::string> verbs,
+                               const std::vector<MeasureInfo>& of_cases, std::vector<std::string> verbs,
                                Json (*default_asks)(const Json&))
-    : Kind(comparison_format(name, text, std::move(keys), std::move(verbs), default_asks), std::move(of_cases)) {}
+    : Kind(comparison_format(name, text, std::move(keys), std::move(verbs), of_cases, default_asks), of_cases) {}
 
 CasePlan ComparisonKind::plan(const StudyCase& study_case, const Registry& registry) const {
   return plan_case(study_case, registry);

@@ -48,7 +48,7 @@ class ComparisonKind : public Kind {
 
  protected:
   /// `verbs`: of `ask`, that it answers itself; `default_asks`: what a study that asks nothing is asked.
-  ComparisonKind(const char* name, const char* text, std::vector<Field> keys, std::vector<MeasureInfo> of_cases,
+  ComparisonKind(const char* name, const char* text, std::vector<Field> keys, const std::vector<MeasureInfo>& of_cases,
                  std::vector<std::string> verbs, Json (*default_asks)(const Json& resolved));
   /// Appends errors and orders, then what `costs` says of them (may be null), then what the cases carry.
   static void put_tables(StudyResults& results, const answers::Compared& study,

@@ -78,32 +78,29 @@ std::string limits_text(const CaseRecord& record) {
 
 std::vector<MeasureInfo> stability_measures() {
   using Of = MeasureInfo::Of;
-  return {
+  std::vector<MeasureInfo> all = {
       {"limit_predicted",
        "s",
        "Largest stable step of the range, from the plan alone.",
        Of::motion,
        false,
        "",
-       {"the stable step of the plan", 1},
-       true},
+       {"the stable step of the plan", 1}},
       {"limit_observed",
        "s",
        "Largest stable step of the range, found by marching and bisection.",
        Of::motion,
        false,
        "",
-       {"the stable step of the march", 1},
-       true},
+       {"the stable step of the march", 1}},
       {"largest_radius",
        "1",
        "Largest spectral radius of the step over the range.",
        Of::motion,
        false,
        "",
-       {"the largest spectral radius", -1},
-       true},
-      {"agreement", "1", "Observed over predicted step limit.", Of::motion, false, "", {}, true},
+       {"the largest spectral radius", -1}},
+      {"agreement", "1", "Observed over predicted step limit."},
       {"contradictions", "1",
        "Steps of the range at which spectrum and march disagree without contact: an error of the method.",
        Of::computation},
@@ -111,6 +108,8 @@ std::vector<MeasureInfo> stability_measures() {
        "h·ω up to which steps were stable, where the scheme declares another limit, or none: an error of its facts.",
        Of::computation},
   };
+  for (MeasureInfo& one : all) one.of_each_size = true;
+  return all;
 }
 
 }  // namespace

@@ -107,6 +107,34 @@ TEST_CASE("convergence: impacts with restitution converge to the exact motion, a
   }
 }
 
+TEST_CASE("a comparison is asked what its cases measure, and nothing that only a trajectory observes") {
+  Run run;
+  Json text = oscillator("work-precision");
+  REQUIRE(run.go(text) == 0);
+  const StudyResults results = run.results();
+  std::set<std::string> recorded;
+  for (const CaseRecord& record : results.cases)
+    for (const auto& [name, value] : record.measures) recorded.insert(name);
+  const auto refused = [&](const std::string& name) {
+    Json asking = text;
+    asking["ask"] = Json::array({{{"value", name}}});
+    Registry registry;
+    try {
+      parse_study(asking.dump(), run.catalogue, registry);
+    } catch (const InputError& error) {
+      return error.pointer() == "/ask/0/value";
+    }
+    return false;
+  };
+  for (const MeasureInfo& info : all_measures()) {
+    INFO(info.name);
+    // What a scene without loads, with one reference, or without an impact may lack is no contradiction.
+    if (recorded.contains(info.name)) CHECK_FALSE(refused(info.name));
+  }
+  for (const char* name : {"energy_left", "work_of_damping", "impulse", "window_power", "largest_exponent"})
+    CHECK(refused(name));
+}
+
 TEST_CASE("a reference is computed once, kept in the store, and found again") {
   Run run;
   Json study = oscillator("convergence");
