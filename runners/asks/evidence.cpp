@@ -157,6 +157,9 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
       point.values[size][seed] = *value;
       if (const auto half = measure(*record, "confidence." + measure_of_all)) point.halves[size][seed] = *half;
       largest = std::max(largest, std::abs(*value));
+      // Round-off is that of the scene, not of a value that it is all of.
+      if (!share && !words.scale.empty())
+        if (const auto scale = measure(*record, words.scale)) largest = std::max(largest, std::abs(*scale));
       point.floor = std::max(point.floor, 0x1p-52 * static_cast<double>(record->steps));
     }
     point.floor *= share ? 1 : largest;
@@ -174,6 +177,8 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
     if (limits[k])
       out[k].estimate =
           estimate_of(out[k].values, out[k].halves, *out[k].finest, *limits[k], has_step && !steps_chosen);
+  for (Point& point : out)
+    if (point.estimate && std::abs(point.estimate->value) <= point.floor) point.estimate->value = 0;
   return out;
 }
 

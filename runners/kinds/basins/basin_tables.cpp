@@ -9,6 +9,7 @@
 #include "runners/kinds/basins/basin_analysis.hpp"
 #include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/sweep/diagram_tables.hpp"
+#include "runners/kinds/sweep/motion_asks.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/store/record_values.hpp"
@@ -309,7 +310,12 @@ class BasinCases {
       for (std::size_t b = a + 1; b < grids_.size(); ++b) {
         const auto [both, differ] = compare(grids_[a], grids_[b]);
         BasinDifferenceRow& row = rows.emplace_back();
-        row = {images_[a].record->id, images_[b].record->id, both, differ, {}};
+        row = {images_[a].record->id,
+               images_[b].record->id,
+               both,
+               differ,
+               static_cast<int>(compare_motions(grids_[a].cells, grids_[b].cells).changed),
+               {}};
         if (both > 0) row.share = static_cast<double>(differ) / both;
       }
     return rows;

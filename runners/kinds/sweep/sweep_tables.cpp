@@ -344,7 +344,11 @@ TableType<BasinDifferenceRow> basin_differences_type() {
   rows.add({"case", "", "One case."}, &BasinDifferenceRow::id)
       .add({"other_case", "", "The case it is compared with."}, &BasinDifferenceRow::other)
       .add({"cells", "1", "Cells that both decide."}, &BasinDifferenceRow::cells)
-      .add({"differ", "1", "Those that lead to different attractors."}, &BasinDifferenceRow::differ)
+      .add({"differ", "1",
+            "Those that lead to different attractors: an orbit of one class and period may lie elsewhere."},
+           &BasinDifferenceRow::differ)
+      .add({"other_motion", "1", "Those that lead to a motion of another class or period."},
+           &BasinDifferenceRow::motions)
       .add({"share", "1", "differ over cells."}, &BasinDifferenceRow::share);
   return {"basin_differences", "One pair of cases: how many cells lead elsewhere.", rows};
 }

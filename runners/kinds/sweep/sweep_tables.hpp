@@ -134,7 +134,7 @@ struct FractionRow {
 /// One row of `basin_differences`: a pair of cases.
 struct BasinDifferenceRow {
   std::string id, other;
-  int cells = 0, differ = 0;
+  int cells = 0, differ = 0, motions = 0;
   std::optional<double> share;
 };
 

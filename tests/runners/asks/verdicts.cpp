@@ -343,6 +343,26 @@ TEST_CASE("asks: a case that is missing is counted and its reason said") {
   }
 }
 
+TEST_CASE("asks: a value within the round-off of its scene is zero") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  made.steps = {1e-3};
+  made.measure = "tip_displacement_end";
+  made.truth = [](const std::vector<std::size_t>&) { return 8.5e-18; };
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) {
+    record.steps = 1000;
+    record.measures.emplace_back("largest_tip_displacement", 1e-3);
+  }
+  const Answered answered = answer_of(results, {{"value", "tip_displacement_end"}});
+  INFO(answered.sentence);
+  REQUIRE(answered.rows.front().value);
+  CHECK(*answered.rows.front().value == 0);
+  // Of a scene of that size it is a value.
+  for (CaseRecord& record : results.cases) record.measures.back().second = 1e-16;
+  CHECK(*answer_of(results, {{"value", "tip_displacement_end"}}).rows.front().value != 0);
+}
+
 TEST_CASE("asks: one step tells neither yes nor no, whatever its value") {
   std::mt19937 random(8);
   Made made = random_methods(random, 2);

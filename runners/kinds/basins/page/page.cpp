@@ -140,13 +140,19 @@ std::string uncertainty_html(const CaseView& view, const std::vector<Uncertainty
 }
 
 std::string differences_html(const CaseView& view, const std::vector<BasinDifferenceRow>& rows) {
-  HtmlTable table("Cells that end elsewhere with another method.",
-                  {{"case"}, {"and"}, {"decided in both", true}, {"differ", true}, {"share", true}});
+  HtmlTable table(
+      "Cells that end elsewhere with another method: in another motion, or on another orbit of that motion.",
+      {{"case"},
+       {"and"},
+       {"decided in both", true},
+       {"another motion", true},
+       {"another orbit", true},
+       {"share", true}});
   std::set<std::pair<std::string, std::string>> said;
-  for (const auto& [one, other, cells, differ, share] : rows) {
+  for (const auto& [one, other, cells, differ, motions, share] : rows) {
     if (one == other || !said.emplace(std::min(one, other), std::max(one, other)).second) continue;  // each pair once
     table.row(view.name_of(one)).text(view.name_of(other)).number(number_text(cells));
-    table.number(number_text(differ)).number(share ? share_text(*share) : "–");
+    table.number(number_text(motions)).number(number_text(differ)).number(share ? share_text(*share) : "–");
   }
   return table.html();
 }
