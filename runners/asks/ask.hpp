@@ -40,10 +40,10 @@ bool speaks_of(const Ask& ask, const StudyCase& one);
 
 /// A verb: what may be asked, how it is checked, and what answers it.
 struct Verb {
-  const char* name;           ///< its key in an entry of `ask`
-  const char* text;           ///< what it asks, one sentence
-  std::vector<Field> keys;    ///< the first has its name
-  const char* remedy = "";    ///< of a verb of some kinds: what a study of another kind is told to do
+  const char* name;         ///< its key in an entry of `ask`
+  const char* text;         ///< what it asks, one sentence
+  std::vector<Field> keys;  ///< the first has its name
+  const char* remedy = "";  ///< of a verb of some kinds: what a study of another kind is told to do
   /// Refuses, by pointer, what this study cannot be asked. Empty: nothing.
   std::function<void(const Ask&, const Study&)> check = {};
   /// What may go unanswered, said before anything runs; "" for nothing.

@@ -280,12 +280,17 @@ class EffectSpeaker {
       const bool everywhere = yes.size() == all;
       out.passes = agrees_ ? Verdict::no : everywhere ? Verdict::yes : open.empty() ? Verdict::no : Verdict::open;
       out.verdict = agrees_ ? "no" : everywhere ? "yes" : "in part";
-      out.sentence = in_thirty_words(fmt::format("{}: {} changes {} by {} and more{}",
-                                                 agrees_      ? "No"
-                                                 : everywhere ? "Yes"
-                                                              : "In part",
-                                                 choice, measure, least, in_these(yes, all)),
-                                     {{": " + sizes(yes), ": " + short_sizes(yes)}, {rest}});
+      out.sentence = in_thirty_words(
+          fmt::format("{}: {} changes {} by {} and more{}",
+                      agrees_      ? "No"
+                      : everywhere ? "Yes"
+                                   : "In part",
+                      choice, measure, least, in_these(yes, all)),
+          // What is open elsewhere is told before how large these are.
+          open.empty()
+              ? std::vector<std::vector<std::string>>{{": " + sizes(yes), ": " + short_sizes(yes)}, {rest}}
+              : std::vector<std::vector<std::string>>{
+                    {": " + sizes(yes) + rest, ": " + short_sizes(yes) + rest, rest, ": " + short_sizes(yes)}});
       return;
     }
     if (open.empty()) {
@@ -301,8 +306,11 @@ class EffectSpeaker {
     out.passes = Verdict::open;
     out.verdict = word(Verdict::open);
     out.reason = first.reason;
-    const std::vector<std::string> sizes_told = {first.pair ? "; it does " + sizes({&first}) : "",
-                                                 first.pair ? "; it does " + short_sizes({&first}) : ""},
+    const bool has_size =
+        first.pair && (first.pair->share || std::abs(first.pair->base + first.pair->difference) >
+                                                std::max(first.pair->first->floor, first.pair->second->floor));
+    const std::vector<std::string> sizes_told = {has_size ? "; it does " + sizes({&first}) : "",
+                                                 has_size ? "; it does " + short_sizes({&first}) : ""},
                                    why = {": " + first.reason, ": " + short_reason(first.reason)},
                                    rest_told = {no.empty() ? "" : fmt::format("; less in the other {}", no.size())};
     const std::string begins =

@@ -131,15 +131,7 @@ class Enough {
       const double beyond = scatter * half_interval_over_scatter(n) / half;
       out.seeds = n < large ? static_cast<double>(n) : std::ceil(static_cast<double>(n) * beyond * beyond);
     }
-    if (window() > 0) out.duration = longer * window();
-  }
-
-  /// s over which a mean is taken.
-  double window() const {
-    const Json& study = evidence_.results().study;
-    if (study.contains("window") && study["window"].is_object())
-      return study["window"]["to"].get<double>() - study["window"]["from"].get<double>();
-    return study.value("duration", 0.0);
+    if (evidence_.window() > 0) out.duration = longer * evidence_.window();
   }
 
   /// "28 seeds, or windows of 4.8 s".
@@ -159,9 +151,10 @@ class Enough {
   std::string less_would_do(const Line& line, const Need& need) const {
     if (!need.seeds && !need.duration) return "";
     const std::size_t seeds = line.estimate().seeds;
-    const std::string had =
-        (seeds > 1 ? fmt::format("of {} seeds ", seeds) : "of ") +
-        (window() > 0 ? fmt::format("{}{} s ", seeds > 1 ? "with " : "", answers::short_number(window(), 3)) : "");
+    const std::string had = (seeds > 1 ? fmt::format("of {} seeds ", seeds) : "of ") +
+                            (evidence_.window() > 0 ? fmt::format("{}{} s ", seeds > 1 ? "with " : "",
+                                                                  answers::short_number(evidence_.window(), 3))
+                                                    : "");
     return fmt::format("; {}{} would do", had, draws_words(need));
   }
 

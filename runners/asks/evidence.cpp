@@ -130,6 +130,25 @@ bool Evidence::has_shares(const std::string& name, const Cases& cases) const {
          });
 }
 
+double Evidence::window() const {
+  const Json& study = results().study;
+  if (study.contains("window") && study["window"].is_object())
+    return study["window"]["to"].get<double>() - study["window"]["from"].get<double>();
+  return study.value("duration", 0.0);
+}
+
+double Evidence::whole_steps(const std::string& name, const Point& point) const {
+  const MeasureInfo* info = measure_info(name);
+  if (!info || *info->whole_steps == '\0' || !point.finest || !contains(results().columns, "step")) return 0;
+  const std::string stop = split_measure(name).second, count = info->whole_steps;
+  double steps = 1;
+  for (const CaseRecord* record : point.behind)
+    if (count != "1")
+      steps = std::max(steps, measure(*record, count + (stop.empty() ? "" : "[" + stop + "]")).value_or(1));
+  const double over = info->unit == std::string("1") ? window() : 1;
+  return steps * point.finest->first / over;
+}
+
 std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cases& cases,
                                     const std::vector<std::string>& columns, bool shares) const {
   InOrderMet<std::string, Point> groups;
@@ -140,6 +159,7 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
              mesh_chosen = contains(columns, "elements") || contains(columns, "modes");
   std::vector<Point> out;
   std::vector<std::optional<Limits>> limits;
+  std::vector<double> round_off;
   const auto words = answers::measure_words(measure_of_all);
   const bool share = shares || words.scale == "1";
   for (auto& [key, point] : std::move(groups).list()) {
@@ -163,8 +183,10 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
       point.floor = std::max(point.floor, 0x1p-52 * static_cast<double>(record->steps));
     }
     point.floor *= share ? 1 : largest;
+    round_off.push_back(point.floor);
     for (const auto& [size, value] : point.values)
       if (!point.finest || finer(size, *point.finest)) point.finest = size;
+    if (!steps_chosen) point.floor = std::max(point.floor, whole_steps(measure_of_all, point));
     limits.push_back(point.finest ? std::optional(limits_at(point.values, *point.finest, point.floor)) : std::nullopt);
     if (!point.finest) point.none = left_out(measure_of_all, point.cases).reasons.front().said();
     out.push_back(std::move(point));
@@ -177,8 +199,8 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
     if (limits[k])
       out[k].estimate =
           estimate_of(out[k].values, out[k].halves, *out[k].finest, *limits[k], has_step && !steps_chosen);
-  for (Point& point : out)
-    if (point.estimate && std::abs(point.estimate->value) <= point.floor) point.estimate->value = 0;
+  for (std::size_t k = 0; k < out.size(); ++k)
+    if (out[k].estimate && std::abs(out[k].estimate->value) <= round_off[k]) out[k].estimate->value = 0;
   return out;
 }
 

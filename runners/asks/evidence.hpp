@@ -103,7 +103,13 @@ class Evidence {
   /// references do not apply; who makes energy.
   std::vector<std::string> warnings() const;
 
+  /// s over which means are taken: the window, else the run.
+  double window() const;
+
  private:
+  /// What a time is off by that is counted in whole steps, in the unit of its measure; 0 of others.
+  double whole_steps(const std::string& measure, const Point& point) const;
+
   const answers::Compared& study_;
 };
 

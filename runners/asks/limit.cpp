@@ -64,6 +64,7 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
   out.passes = !no.empty() ? Verdict::no : open.empty() && !yes.empty() ? Verdict::yes : Verdict::open;
   out.verdict = word(*out.passes);
   const std::string name = lines.words.words;
+  const bool plural = is_plural(name);
   const auto margin = [&](const Line* line) {
     const double v = line->estimate().value;
     return bounds.below ? *bounds.below - v : v - *bounds.above;
@@ -75,9 +76,9 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
   if (*out.passes == Verdict::yes) {
     const Line worst = nearest(yes);
     const char* at_most = lines.all.size() == 1 ? "" : bounds.below ? "at most " : "at least ";
-    out.sentence =
-        in_thirty_words(fmt::format("Yes: {} stays {}; it is {}{}", name, range, at_most, lines.text(worst.estimate())),
-                        {{worst.place()}});
+    out.sentence = in_thirty_words(fmt::format("Yes: {} {} {}; {} {}{}", name, plural ? "stay" : "stays", range,
+                                               plural ? "they are" : "it is", at_most, lines.text(worst.estimate())),
+                                   {{worst.place()}});
   } else if (*out.passes == Verdict::no) {
     const Line worst = nearest(no);
     const std::string where = set_name(lines, no);
@@ -85,9 +86,9 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
     const std::string in_these = !some           ? ""
                                  : where.empty() ? fmt::format(" in {} of {}", no.size(), lines.all.size())
                                                  : " " + where;
-    out.sentence = in_thirty_words(
-        fmt::format("No: {} is not {}{}; it is {}", name, range, in_these, lines.text(worst.estimate())),
-        {{no.size() == 1 ? "" : worst.place()}});
+    out.sentence = in_thirty_words(fmt::format("No: {} {} not {}{}; {} {}", name, plural ? "are" : "is", range,
+                                               in_these, plural ? "they are" : "it is", lines.text(worst.estimate())),
+                                   {{no.size() == 1 ? "" : worst.place()}});
   } else if (auto without = open_without_values(lines, out)) {
     return *without;
   } else {
@@ -100,9 +101,10 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
                                 : first->point.none;
     const std::string which =
         open.size() < lines.all.size() ? fmt::format(" in {} of {}", open.size(), lines.all.size()) : "";
-    const std::string found = first->known() ? "it is " + lines.text(first->estimate()) : "no value";
+    const std::string found =
+        first->known() ? (plural ? "they are " : "it is ") + lines.text(first->estimate()) : "no value";
     out.sentence = in_thirty_words(
-        fmt::format("Open{}: whether {} stays {} is not told", which, name, range),
+        fmt::format("Open{}: whether {} {} {} is not told", which, name, plural ? "stay" : "stays", range),
         {{"; " + found + first->place(), "; " + found}, {": " + out.reason, ": " + short_reason(out.reason)}});
   }
   return out;

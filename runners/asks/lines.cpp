@@ -112,6 +112,11 @@ Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& meas
   return out;
 }
 
+bool is_plural(const std::string& words) {
+  const std::string first = words.substr(0, words.find(' '));
+  return first.ends_with("s") && !first.ends_with("ss") && !first.ends_with("us") && !first.ends_with("rms");
+}
+
 std::string set_name(const Lines& lines, const std::vector<const Line*>& set) {
   if (set.empty() || set.size() == lines.all.size()) return "";
   if (set.size() == 1) return set.front()->place().empty() ? "" : set.front()->place().substr(1);

@@ -13,7 +13,7 @@ struct Line {
   std::string measure, stop, level;
   Point point;
   std::vector<std::string> attributes = {};  ///< its levels one by one and its stop, in words; all lines alike
-  bool one_stop = false;  ///< whether all lines are of this stop, which the measure's words name
+  bool one_stop = false;                     ///< whether all lines are of this stop, which the measure's words name
 
   bool known() const { return point.estimate.has_value(); }
   const Estimate& estimate() const { return *point.estimate; }
@@ -37,7 +37,8 @@ struct Lines {
 };
 
 /// `columns`: that tell levels apart; those that vary where not given.
-/// `as_stored`: in the unit of cases.csv, as limits are given; else what is a share of the energy brought in is told so.
+/// `as_stored`: in the unit of cases.csv, as limits are given; else what is a share of the energy brought in is told
+/// so.
 Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure, bool as_stored = false);
 Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& measure,
                const std::vector<std::string>& columns, bool as_stored = false);
@@ -54,6 +55,9 @@ std::optional<Answered> open_without_values(const Lines& lines, Answered begun);
 
 /// Why nothing is known, of lines without a value; "" where some has one.
 std::string nothing_known(const Lines& lines);
+
+/// Whether the words of a measure are of several: "impacts at end".
+bool is_plural(const std::string& words);
 
 /// A reason without what its first colon explains: "2 refused".
 std::string short_reason(const std::string& reason);

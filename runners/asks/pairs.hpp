@@ -12,8 +12,8 @@ namespace ricochet::asks {
 /// Two levels of a choice, all else the same.
 struct Pair {
   const Point *first = nullptr, *second = nullptr;
-  double difference = 0;  ///< second less first, at the finest step and mesh that both have
-  double base = 0;        ///< of the first there: what the difference is a share of
+  double difference = 0;         ///< second less first, at the finest step and mesh that both have
+  double base = 0;               ///< of the first there: what the difference is a share of
   std::optional<double> u = {};  ///< of the difference, as of an Estimate; nothing where it is not known
   std::string unknown = {};      ///< why it is not: "one step: …"
   /// The difference as a share of the first at the same step and mesh, and what is open of that; nothing where the

@@ -19,7 +19,7 @@ struct Condition {
   bool holds(double value) const { return is ? value == *is : below ? value < *below : value > *above; }
   /// "is always below 3 N".
   std::string text(const Lines& lines, const std::string& adverb = "") const {
-    return "is " + adverb +
+    return (is_plural(lines.words.words) ? "are " : "is ") + adverb +
            (is      ? lines.number(*is)
             : below ? "below " + lines.number(*below)
                     : "above " + lines.number(*above));

@@ -27,11 +27,11 @@ const TableType<VerdictRow>& verdicts_type();
 
 /// What answers one ask. The rows hold every number that the sentence says.
 struct Answered {
-  std::string sentence;               ///< at most thirty words, yes or no first where it has one
-  std::string verdict;                ///< of the whole
-  std::optional<Verdict> passes;      ///< of an ask that has a yes or a no
-  std::string reason = {};            ///< why it is open, or has no value
-  std::vector<VerdictRow> rows = {};  ///< one for each level
+  std::string sentence;                 ///< at most thirty words, yes or no first where it has one
+  std::string verdict;                  ///< of the whole
+  std::optional<Verdict> passes;        ///< of an ask that has a yes or a no
+  std::string reason = {};              ///< why it is open, or has no value
+  std::vector<VerdictRow> rows = {};    ///< one for each level
   std::vector<std::string> aside = {};  ///< what was left out and what warns, a sentence each
   std::size_t cases = 0, left_out = 0;
   /// What is drawn beside the sentence: {"form", …}; null: nothing.

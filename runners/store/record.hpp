@@ -117,6 +117,8 @@ struct MeasureInfo {
   Reading reading = {};
   /// Whether each step and mesh has its own, as a step limit has: refinement leads it to no limit.
   bool of_each_size = false;
+  /// Of a time that is counted in whole steps: how many it may be off by, "1" or the measure that counts them.
+  const char* whole_steps = "";
 };
 
 /// The measures of all kinds, in order. Given by the registry of kinds.

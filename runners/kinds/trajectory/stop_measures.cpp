@@ -30,6 +30,7 @@ struct StopMeasure {
   /// Whether it is the size of a force while it acts. A rigid law throws a point with mass back within a step: then the
   /// force is the impulse over the step, and has no limit.
   bool size_of_force = false;
+  const char* whole_steps = "";  ///< as of MeasureInfo
 };
 
 template <double (*of)(const RunningMoments&)>
@@ -65,7 +66,7 @@ const StopMeasure stop_measures[] = {
     {"rms_force", "N", "Root mean square of the force at the stop {} over the time in contact; blank as peak_force.",
      "rms force at {}", [](const StopReading& of) -> Known { return of.run.rms_force(); }, Needs::nothing, false, true},
     {"contact_time", "s", "Time in contact with the stop {}.", "time in contact at {}",
-     [](const StopReading& of) -> Known { return of.run.contact_time; }},
+     [](const StopReading& of) -> Known { return of.run.contact_time; }, Needs::nothing, false, false, "impacts"},
     {"mean_force", "N", "Mean of the force at the stop {} over the time in contact.", "mean force at {}",
      [](const StopReading& of) { return of.run.contact_time > 0 ? Known(of.run.mean_force()) : std::nullopt; },
      Needs::nothing, false, true},
@@ -92,7 +93,7 @@ const StopMeasure stop_measures[] = {
      "rms force in contact at {}", while_pushed<[](Push p, double) { return p.rms_pushed(); }>, Needs::window, true,
      true},
     {"window_contact_share", "1", "Share of the window in contact with the stop {}.", "share in contact at {}",
-     pushed<[](Push p, double time) { return p.contact_time / time; }>, Needs::window, true},
+     pushed<[](Push p, double time) { return p.contact_time / time; }>, Needs::window, true, false, "impacts"},
     {"window_impact_rate", "1/s", "How often the stop {} closes in a second of the window.", "impacts per second at {}",
      pushed<[](Push p, double time) { return static_cast<double>(p.impacts) / time; }>, Needs::window, true},
     {"shock_rate", "1/s", "Shocks per second at the stop {}.", "shocks per second at {}",
@@ -101,10 +102,10 @@ const StopMeasure stop_measures[] = {
      },
      Needs::shocks, true},
     {"shock_time", "s", "Mean duration of a shock at the stop {}, rebounds included.", "duration of a shock at {}",
-     shocked<[](Shocks s) { return s.lasted / static_cast<double>(s.shocks); }>, Needs::shocks, true},
+     shocked<[](Shocks s) { return s.lasted / static_cast<double>(s.shocks); }>, Needs::shocks, true, false, "1"},
     {"rebound_time", "s", "Mean time for which a rebound of a shock at the stop {} is pushed.",
      "duration of a rebound at {}", shocked<[](Shocks s) { return s.pushed / static_cast<double>(s.rebounds); }>,
-     Needs::shocks, true},
+     Needs::shocks, true, false, "1"},
     {"shock_force_mean", "N", "Mean of the peak forces of the shocks at the stop {}.", "mean peak at {}",
      shocked<[](Shocks s) { return s.peaks.mean; }>, Needs::shocks, true, true},
     {"shock_force_deviation", "N", "Standard deviation of the peak forces of the shocks at the stop {}.",
@@ -267,6 +268,7 @@ const MeasureInfo* stop_measure_info(const std::string& name) {
   made->info = {made->name.c_str(), one->unit, made->text.c_str()};
   made->info.reading.words = made->words.c_str();
   made->info.aside = one->column;
+  made->info.whole_steps = one->whole_steps;
   if (half) made->info.of = MeasureInfo::Of::computation;
   return &(known[name] = std::move(made))->info;
 }
@@ -331,10 +333,11 @@ void check_stop_measure(const nlohmann::ordered_json& study, const std::string& 
   if (const auto& list = study.at("scene").at("stops"); list.is_array())
     for (const auto& stop : list) stops.push_back(stop.at("name").get<std::string>());
   if (std::find(stops.begin(), stops.end(), parts->second) == stops.end())
-    throw InputError(pointer, stops.empty() ? "the scene has no stops with names; expected a list of stops, or a measure "
-                                              "without a name"
-                                            : fmt::format("no stop \"{}\"; there is: {}{}", parts->second,
-                                                          quoted_list(stops), did_you_mean(parts->second, stops)));
+    throw InputError(pointer, stops.empty()
+                                  ? "the scene has no stops with names; expected a list of stops, or a measure "
+                                    "without a name"
+                                  : fmt::format("no stop \"{}\"; there is: {}{}", parts->second, quoted_list(stops),
+                                                did_you_mean(parts->second, stops)));
   const StopMeasure* one = find_measure(parts->first);
   if (const std::string missing = one ? missing_for(*one, study, parts->second) : ""; !missing.empty())
     throw InputError(pointer, one->name + (" " + missing));

@@ -102,7 +102,15 @@ std::vector<MeasureInfo> contact_measures() {
       {"peak_contact_force", "N",
        "Largest force at one contact point over the run, from every step. Blank where a rigid law has thrown back a "
        "point with mass: that force is the impulse over a step or two, and has no limit."},
-      {"contact_time", "s", "Time in contact, summed over the contact points.", Of::motion, true},
+      {"contact_time",
+       "s",
+       "Time in contact, summed over the contact points.",
+       Of::motion,
+       true,
+       "",
+       {},
+       false,
+       "impacts"},
       {"contact_force_mean", "N",
        "Mean of the contact force over the study's window, summed over the points, of a clearance along its first "
        "component. Times the window it is the impulse. The instants of a step count by the momentum that an effort of "
@@ -138,8 +146,8 @@ std::vector<MeasureInfo> run_measures() {
        "Energy that the scheme itself took out over the run, apart from damping and stops: numerical damping, where "
        "the scheme declares its losses.",
        Of::motion, false, "energy_brought_in"},
-      {"first_impact", "s", "Time of the first impact.", Of::motion, true},
-      {"first_release", "s", "Time at which a contact point first opened again.", Of::motion, true},
+      {"first_impact", "s", "Time of the first impact.", Of::motion, true, "", {}, false, "1"},
+      {"first_release", "s", "Time at which a contact point first opened again.", Of::motion, true, "", {}, false, "1"},
       {"tip_displacement_end", "m",
        "Displacement of the tip at the end of the run: absolute, unless scene.frame is supports.", Of::motion, false,
        "largest_tip_displacement"},

@@ -102,7 +102,7 @@ TEST_CASE("cases without a motion of their own have no measures of motions", "[a
     const Json study = oscillator(kind);
     for (const Json& ask : {Json({{"value", "impulse"}}), Json({{"limit", "impulse"}, {"below", 1}}),
                             Json({{"enough", "impulse"}, {"within", 0.1}}), Json({{"effect", "time"}, {"on", "impulse"}})})
-      CHECK_THAT(refused(study, ask), Contains("cases of this kind have no measure \"impulse\"; expected one of \""));
+      CHECK_THAT(refused(study, ask), Contains("cases of this kind have no measure \"impulse\", which other kinds have; expected one of \""));
   }
   CHECK(refused(oscillator("bifurcation"), {{"value", "share_periodic"}}) == "");
   CHECK_THAT(refused(oscillator("stability"), {{"value", "limit_observd"}}), Contains("did you mean \"limit_observed\"?"));
