@@ -17,7 +17,6 @@
                                                            "open";
   };
 
-  ricochet.answeredBy("choice-effects");
   ricochet.figure("choice-effects", (data) => {
     const {percent} = ricochet.format, all = data.rows("differences");
     if (!all.length) return [];
@@ -74,6 +73,7 @@
     if (ordered.length > rows.length) out.notes.push(ordered.length - rows.length + " more are in differences.csv.");
     return [{
       id: "choice-effects",
+      answers: true,
       title: "What each choice changes",
       views: ["difference"],
       legend,

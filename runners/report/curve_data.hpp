@@ -49,6 +49,10 @@ class CurveData {
   nlohmann::ordered_json blocks_ = nlohmann::ordered_json::object();
 };
 
+/// Blocks as the page carries them. One that shrinks by a fifth is packed, its key ends in z: first bytes of all
+/// numbers, then their second ones, and so on, as gzip (RFC 1952), as base64.
+nlohmann::ordered_json packed_blocks(const nlohmann::ordered_json& blocks);
+
 /// Limit for CurveData such that curves take about 8 MB of the page: 6·10⁵ numbers shared by the series, at least 1000
 /// samples each.
 size_t sample_limit(size_t series);

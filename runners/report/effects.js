@@ -34,11 +34,8 @@
     return out;
   }
 
-  ricochet.observedMeasures = (data) =>
-      ricochet.distinct(data.rows("answers").map((row) => row.measure).filter(Boolean));
-
   ricochet.figure("effects", (data) => {
-    const charts = [], observed = ricochet.observedMeasures(data);
+    const charts = [];
     for (const measure of data.rows("effects_said")) {
       const shares =
           data.rows("effects").filter((row) => row.measure === measure.measure).sort((a, b) => b.share - a.share);
@@ -47,18 +44,9 @@
       if (measure.rest > 0)
         view.notes.push(
             "Not drawn: " + measure.rest + " smaller, together " + ricochet.format.percent(measure.rest_share) + ".");
-      charts.push({
-        title: ricochet.format.spaced(measure.measure),
-        views: [view],
-        notes: [measure.sentence],
-        main: observed.includes(measure.measure)
-      });
+      charts.push({title: ricochet.format.spaced(measure.measure), views: [view], notes: [measure.sentence]});
     }
     if (!charts.length) return [];
-    // What the study observes first; the other measures on request.
-    const both = charts.some((chart) => chart.main) && charts.some((chart) => !chart.main);
-    if (both)
-      for (const chart of charts) chart.only = chart.main ? 0 : 1;
     const caption =
               "Shares of the variance of a measure over all combinations of the choices: of one choice alone, and of " +
         "interactions, where what one does depends on the others. " +
@@ -70,7 +58,7 @@
       id: "effects",
       title: "Shares of the choices, measure by measure",
       caption,
-      views: both ? ["what is observed", "other measures"] : ["share of the variance"],
+      views: ["share of the variance"],
       charts,
       legend
     }];

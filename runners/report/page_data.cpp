@@ -119,35 +119,12 @@ std::string answered_measure(const StudyResults& results) {
   return said.empty() ? "" : said.front().measure;
 }
 
-/// Rows of the table that are of this measure, without the axes: the case has them.
-Table of_measure(const Table& table, const std::string& measure, const std::vector<std::string>& axes) {
-  std::vector<std::size_t> kept;
-  Table out{table.name, table.text, {}, {}};
-  for (std::size_t k = 0; k < table.columns.size(); ++k)
-    if (std::find(axes.begin(), axes.end(), table.columns[k].name) == axes.end()) {
-      kept.push_back(k);
-      out.columns.push_back(table.columns[k]);
-    }
-  const auto named = find_column(table.columns, measure_name);
-  for (std::size_t row = 0; named && row < table.rows.size(); ++row) {
-    if (table.rows[row][*named].text() != measure) continue;
-    Row& one = out.rows.emplace_back();
-    for (const std::size_t k : kept) one.push_back(table.rows[row][k]);
-  }
-  return out;
-}
-
 PageJson tables_json(const CaseView& view, const KindPage& kind) {
   PageJson out = PageJson::object();
   std::vector<std::string_view> names = kind.tables;
-  names.insert(names.end(), {"answers", "differences", "effects", "effects_said"});
+  names.insert(names.end(), {"differences", "effects", "effects_said"});
   for (const std::string_view name : names)
     if (const Table* table = find_table(view.results().derived, name)) out[table->name] = table_json(*table);
-  // Of what the answer rests on, the measure that it speaks of first.
-  const std::string measure = answered_measure(view.results());
-  for (const std::string_view name : {"limits", "refinements"})
-    if (const Table* table = find_table(view.results().derived, name))
-      out[table->name] = table_json(of_measure(*table, measure, view.results().columns));
   return out;
 }
 

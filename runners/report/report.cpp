@@ -8,6 +8,7 @@
 
 #include "runners/report/assets.hpp"
 #include "runners/report/case_view.hpp"
+#include "runners/report/curve_data.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/kind_page.hpp"
 #include "runners/report/page_data.hpp"
@@ -52,18 +53,26 @@ Fill html_section(const std::string& html) {
 
 /// What every page has, around the figures of its kind.
 constexpr const char* shared_scripts[] = {
-    "format",   "later",   "data",  "cases",         "short_names", "axes",           "theme",      "pens",
-    "plot",     "chart",   "marks", "method_curves", "strips",      "figure_section", "chart_data", "figure",
-    "case_map", "picture", "paper", "side_panel",    "case_panel",  "address",        "copied",     "exported"};
+    "format",  "later", "unpacked",   "data",          "cases",   "short_names",    "axes",       "theme",  "pens",
+    "plot",    "chart", "marks",      "method_curves", "strips",  "figure_section", "chart_data", "figure", "case_map",
+    "picture", "paper", "side_panel", "case_panel",    "address", "copied",         "exported"};
 constexpr const char* page_scripts[] = {"snapshots",     "film_stage", "space_time",    "film", "sorting",
                                         "column_filter", "case_table", "verdict_words", "page"};
 
 std::string page_program(const KindPage& kind) {
   std::string out = "\"use strict\";\n";
-  const auto add = [&](const std::string& name) { out += asset(name); };
+  // Without its comments and indents, which are for who writes them.
+  const auto lines = [&](std::string_view text) {
+    while (!text.empty()) {
+      const std::size_t end = std::min(text.find('\n'), text.size() - 1), first = text.find_first_not_of(' ');
+      if (first < end && text.substr(first, 2) != "//") out += text.substr(first, end + 1 - first);
+      text.remove_prefix(end + 1);
+    }
+  };
+  const auto add = [&](const std::string& name) { lines(asset(name)); };
   for (const char* name : shared_scripts) add(fmt::format("script/{}.js", name));
-  for (const std::string_view script : kind.scripts) out += script;
-  for (const char* name : {"effects", "shares", "choice_effects", "refined"}) add(fmt::format("{}.js", name));
+  for (const std::string_view script : kind.scripts) lines(script);
+  for (const char* name : {"effects", "choice_effects"}) add(fmt::format("{}.js", name));
   for (const char* name : page_scripts) add(fmt::format("script/{}.js", name));
   return out;
 }
@@ -119,7 +128,7 @@ std::string render_report(const StudyResults& results, const report::KindPage& k
   // Scripts follow what they work on; the data are too long to pass through a template.
   std::string out = filled("page", page) + script("", script_text(page_program(kind)));
   out += script(" type=\"application/json\" id=\"page-data\"", script_json(data.results));
-  out += script(" type=\"application/json\" id=\"curve-data\"", script_json(data.blocks));
+  out += script(" type=\"application/json\" id=\"curve-data\"", script_json(packed_blocks(data.blocks)));
   return out + "</body>\n</html>\n";
 }
 

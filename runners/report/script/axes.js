@@ -1,6 +1,6 @@
 // Intervals, and axes as data: {name, type, min, max}, `type` one of value, log and category. An axis may say more:
-// `data` (names of a category), `inverse`, `frame` (which of the chart's), `ticks` (values), `format`, `hidden`,
-// `plain` (no lines across), `width` (of names, pixels), `bare` (no words).
+// `data` (names of a category, the first on top), `frame` (which of the chart's), `hidden`, `plain` (no lines across),
+// `bare` (no words).
 {
   // An interval of an axis; empty until something is included.
   class Interval {
@@ -33,6 +33,7 @@
   };
   // Rounded outwards to a round step of about five ticks, at least `least` wide.
   function roundOutwards({low, high}, least) {
+    least = Math.max(least, 1e-13 * Math.max(Math.abs(low), Math.abs(high)));
     if (high - low < least) {
       const middle = 0.5 * (low + high);
       low = middle - 0.5 * least;
@@ -89,7 +90,6 @@
     constructor(axis, from, to) {
       const {type, data = []} = axis;
       Object.assign(this, {axis, from, to});
-      if (axis.inverse) [this.from, this.to] = [to, from];
       this.places = type === "category" ? new Map(data.map((name, k) => [name, k])) : null;
       this.bend = type === "log" ? Math.log : (value) => value;
       this.low = type === "category" ? -0.5 : this.bend(axis.min);
@@ -109,22 +109,20 @@
       const {axis} = this, length = Math.abs(this.to - this.from), vertical = this.vertical,
             most = Math.min(10, Math.max(2, Math.floor(length / (vertical ? 42 : 74))));
       if (axis.type === "category") return axis.data.map((words, value) => ({value, words}));
-      const words = axis.format || ricochet.format.shown;
-      if (axis.ticks) return axis.ticks.map((value) => ({value, words: words(value)}));
-      return (axis.type === "log" && decadeTicks(axis, most)) || evenTicks(axis, most, words);
+      return (axis.type === "log" && decadeTicks(axis, most)) || evenTicks(axis, most);
     }
   }
-  function evenTicks({min, max}, most, words) {
+  function evenTicks({min, max}, most) {
     const step = roundStep((max - min) / most), out = [];
-    for (let k = Math.ceil(min / step - 1e-9); k * step <= max + 1e-9 * step; ++k) {
+    for (let k = Math.ceil(min / step - 1e-9); k * step <= max + 1e-9 * step && out.length < 2 * most; ++k) {
       const value = Number((k * step).toPrecision(12));
-      out.push({value, words: words(value)});
+      out.push({value, words: ricochet.format.shown(value)});
     }
     return out;
   }
   // Whole powers at even distances, from the lowest on, and what lies between while there is room; null where the axis
   // has less than two of them, and no ticks of 1, 2, 5 either.
-  function decadeTicks({min, max, format}, most) {
+  function decadeTicks({min, max}, most) {
     const low = Math.ceil(Math.log10(min) - 1e-9), high = Math.floor(Math.log10(max) + 1e-9), out = [],
           between = high - low < 2, every = Math.ceil((high - low) / Math.min(most, 6)) || 1;
     if (max < 4 * min) return null;
@@ -133,7 +131,6 @@
         const value = Number(factor + "e" + k), named = factor === 1 || (between && (factor === 2 || factor === 5));
         if (value < min * (1 - 1e-9) || value > max * (1 + 1e-9) || (factor > 1 && high - low > 6)) continue;
         const words = !named || (k - low) % every !== 0 ? "" :
-            format                                      ? format(value) :
             factor === 1 && !between                    ? ricochet.format.power(value) :
                                                           ricochet.format.shown(value, 2);
         out.push({value, words});

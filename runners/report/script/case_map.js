@@ -309,5 +309,5 @@
     }
     return out;
   };
-  Object.assign(ricochet, {CaseMap, mapLayout: layout, mostCharts});
+  Object.assign(ricochet, {CaseMap, mapLayout: layout});
 }

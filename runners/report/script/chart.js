@@ -14,7 +14,9 @@
     tip.style.left = fits(x, width, window.innerWidth) + "px";
     tip.style.top = fits(y, height, window.innerHeight) + "px";
   }
-  const finite = ([a, b]) => Number.isFinite(a) && Number.isFinite(b) && a < b;
+  // Not so near that numbers are not told apart.
+  const finite = ([a, b]) =>
+      Number.isFinite(a) && Number.isFinite(b) && b - a > 1e-10 * Math.max(Math.abs(a), Math.abs(b));
 
   class Chart {
     // `told` {zoomed(chart), reset()}: the figure that the chart belongs to hears of both.

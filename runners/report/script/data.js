@@ -1,5 +1,5 @@
 // What the page holds of the results: cases, tables, curves, and large columns of numbers as little-endian bytes in
-// base64.
+// base64, packed where that is worth it.
 {
   const types =
       {f32: Float32Array, f64: Float64Array, u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i16: Int16Array};
@@ -68,10 +68,12 @@
     // A block of numbers; null where the page has none of the name.
     block(name) {
       if (!this.decoded.has(name)) {
-        const type = Object.keys(types).find((one) => this.blocks[name + ":" + one] !== undefined);
+        const held = (type) => this.blocks[name + ":" + type],
+              type = Object.keys(types).find((one) => held(one) !== undefined || held(one + "z") !== undefined);
         if (!type) return null;
-        const binary = atob(this.blocks[name + ":" + type]), bytes = new Uint8Array(binary.length);
-        for (let i = 0; i < binary.length; ++i) bytes[i] = binary.charCodeAt(i);
+        const bytes = held(type) === undefined ?
+            ricochet.unpacked(bytesOf(held(type + "z")), types[type].BYTES_PER_ELEMENT) :
+            bytesOf(held(type));
         this.decoded.set(name, new types[type](bytes.buffer));  // as every browser's machine has them
       }
       return this.decoded.get(name);
@@ -83,6 +85,11 @@
     }
   }
 
+  function bytesOf(text) {
+    const binary = atob(text), bytes = new Uint8Array(binary.length);
+    for (let i = 0; i < binary.length; ++i) bytes[i] = binary.charCodeAt(i);
+    return bytes;
+  }
   function rowsOf(table) {
     if (!table) return [];
     const names = table.columns.map((column) => column.name), rows = [];

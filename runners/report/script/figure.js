@@ -2,7 +2,7 @@
 //
 // A figure is {id, title, caption, views, charts, legend, overTime, linked}. `views` are names. Each chart has as many
 // views (plot.js), or the one that `only` names; a view with `nothing` is not drawn. `legend` has {name, colour, dash,
-// symbol, heading}. `atFirst`, where given, is the view that stands beside the answer.
+// symbol, heading}. The first of a page with `answers` may stand beside its answer, in the view `atFirst`.
 {
   const all = (selector, from) => Array.from(from.querySelectorAll(selector));
 
@@ -118,16 +118,6 @@
   // Registers a figure: `make` takes the page's data and returns its figures, none where the results have nothing of
   // the kind.
   ricochet.figure = (name, make) => makers.push([name, make]);
-  // Names figures that show a kind's answer, the best first: the first that a study has stands beside its answer.
-  const answers = [];
-  ricochet.answeredBy = (...ids) => {
-    answers.push(...ids.filter((id) => !answers.includes(id)));
-  };
-  // Before all others: for the figure of what the answer says.
-  ricochet.answeredFirst = (id) => {
-    answers.unshift(id);
-  };
-  ricochet.answerAmong = (figures) => answers.map((id) => figures.find((figure) => figure.id === id)).find(Boolean);
   ricochet.makeFigures = (data) => makers.flatMap(([, make]) => make(data));
   ricochet.Figure = Figure;
 }

@@ -83,7 +83,7 @@
     const data = new ricochet.PageData(page, read("curve-data"));
     data.view = new ricochet.Cases(data);
     ricochet.data = data;
-    const all = ricochet.bounded(ricochet.makeFigures(data)), answer = ricochet.answerAmong(all),
+    const all = ricochet.bounded(ricochet.makeFigures(data)), answer = all.find(({answers}) => answers),
           beside = document.getElementById("answer-figure");
     let after = place, link = document.getElementById("figure-links");
     for (const description of all) {

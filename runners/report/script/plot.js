@@ -9,7 +9,7 @@
 // many.
 //   line     width, dash, cap, symbol, size, area (its opacity), end (words behind its end), thin (least and largest of
 //            a pixel alone)
-//   dots     symbol, size, hollow, edge, opacity, shift (pixels), side (words right of it, by `said`)
+//   dots     symbol, size, hollow, edge, opacity, shift (pixels)
 //   words    `said` of a row in bold
 //   whiskers values are triples (x, low, high)
 //   bars     along x; thick (pixels or a share), stack, said
@@ -89,7 +89,7 @@
 
   // An axis of which a part is shown.
   const shown = (axis, window) =>
-      (window && axis.type !== "category" ? {...axis, min: window[0], max: window[1], ticks: undefined} : axis);
+      (window && axis.type !== "category" ? {...axis, min: window[0], max: window[1]} : axis);
 
   class Plot {
     // `windows` {x, y}: what is shown of the axes, [from, to] or null; `top`: room above, pixels.
@@ -149,7 +149,8 @@
       for (const mark of this.marks) {
         const own = this.placed(mark);
         // A symbol at an edge is whole, unless a part of the axes is shown.
-        const slack = this.windows.x || this.windows.y ? 1 : 7, {frame} = own;
+        const whole = !this.windows.x && !this.windows.y && (mark.mark === "line" || mark.mark === "dots"),
+              slack = whole ? 7 : 1, {frame} = own;
         pen.within(
             {x: frame.x - slack, y: frame.y - slack, width: frame.width + 2 * slack, height: frame.height + 2 * slack},
             () => this[mark.mark](mark, own));
@@ -201,7 +202,7 @@
           lines.forEach(
               (line, k) => pen.text(
                   line, frame.x - 7, y.at(value) + letter * (k - 0.5 * (lines.length - 1)),
-                  {align: "right", size: axis.size || letter}));
+                  {align: "right", size: letter}));
         }
         return;
       }
@@ -286,14 +287,6 @@
       this.counts.set(mark, kept.length);
       if (mark.symbol === "dot") this.pen.squares(places, mark.size, mark.colour);
       else this.stamp(mark, kept, places);
-      if (mark.side)
-        kept.forEach((i, k) => this.ends.push({
-          words: ofRow(mark.side, rowAt(mark, i)),
-          x: places[2 * k] + 9,
-          y: places[2 * k + 1],
-          colour: mark.colour,
-          frame: this.placed(mark).frame
-        }));
     }
     // Symbols; those that look alike together.
     stamp(mark, kept, places) {

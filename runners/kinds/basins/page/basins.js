@@ -33,6 +33,7 @@
                                }));
       return {
         id: "basins",
+        answers: true,
         title: "Basins of attraction",
         caption,
         views: ["basins"].concat(compares ? ["difference"] : []),
@@ -130,8 +131,9 @@
       return {id, column: part(x, this.across, this.xs.length), row: part(y, this.up, this.ys.length)};
     }
     placeWords({column, row}) {
-      const {unit} = ricochet.format;
-      return [this.x[0] + " = " + this.xs[column] + unit(this.x), this.y[0] + " = " + this.ys[row] + unit(this.y)];
+      const {unit, shown} = ricochet.format;
+      return [[this.x, this.xs[column]], [this.y, this.ys[row]]].map(
+          ([quantity, value]) => quantity[0] + " = " + shown(value, 9) + unit(quantity));
     }
     words(id, other, place) {
       const {escape} = ricochet.format;
@@ -156,7 +158,6 @@
     }
   }
 
-  ricochet.answeredBy("basins");
   ricochet.figure(
       "basins", (data) => (data.page.basins && data.page.basins.grids.length ? [new Basins(data).figure()] : []));
 }

@@ -53,6 +53,7 @@
       const {cases, kinds} = this, several = cases.length > 1, frames = this.frames();
       const out = {
         id: "diagram",
+        answers: true,
         title: "Bifurcation diagram",
         caption: this.caption(),
         views: [several ? "side by side" : "diagram"],
@@ -257,7 +258,6 @@
     }
   }
 
-  ricochet.answeredBy("diagram");
   ricochet.figure("diagram", (data) => {
     if (!data.page.orbits) return [];
     const diagram = new Diagram(data);

@@ -3,8 +3,7 @@
 // floor are grey. Cases without an error are marks along the upper edge.
 {
   const {numberOf, Interval, errors} = ricochet;
-  const follows = 2;     // factor within which a point follows the fitted line
-  const mostBeside = 3;  // charts beside an answer
+  const follows = 2;  // factor within which a point follows the fitted line
 
   // All cases; for elements, those at the smallest step of their method.
   function casesFor(view, refined) {
@@ -58,14 +57,7 @@
           follows +
           " of it; the number at its end is the order. Grey points are at or below the error floor, which is how far " +
           "apart two references are." + (byStep ? "" : " Each method at its smallest step.");
-      // The answer on orders is shown by the error that it speaks of.
-      const [first] = this.data.rows("answers"),
-            said =
-                first && first.form === "order" ? kinds.findIndex(({error}) => "error." + error === first.measure) : -1;
-      if (said >= 0 && charts.length <= mostBeside && (byStep || !this.data.view.varies("step")))
-        ricochet.answeredFirst("error-" + this.refined);
       return {
-        atFirst: Math.max(0, said),
         id: "error-" + this.refined,
         title: byStep ? "Errors against the step" : "Errors against the number of elements",
         caption,

@@ -52,6 +52,7 @@
     }
     return [{
       id: "order-dots",
+      answers: true,
       title: "Orders found, and orders declared",
       views: ["order"],
       legend,
@@ -60,5 +61,4 @@
           "scheme declares.",
     }];
   });
-  ricochet.answeredBy("work-front", "order-dots");
 }

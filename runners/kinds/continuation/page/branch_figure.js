@@ -55,6 +55,7 @@
       }
       return {
         id: "branches",
+        answers: true,
         title: "Branches of periodic orbits",
         views,
         charts,
@@ -149,7 +150,6 @@
     }
   }
 
-  ricochet.answeredBy("branches");
   ricochet.figure("branches", (data) => {
     if (!data.page.branches) return [];
     const branches = new ricochet.Branches(data);

@@ -58,6 +58,7 @@
       out.notes.push("No limit within the steps of the study: " + view.describe(without, counted) + ".");
     return [{
       id: "limit-dots",
+      answers: true,
       title: "Largest step of each method",
       views: ["step"],
       legend,
@@ -67,5 +68,4 @@
           "both agree. Open: the structure alone; closed: with contact.",
     }];
   });
-  ricochet.answeredBy("limit-dots");
 }

@@ -1,6 +1,6 @@
 // Run time against one error, all methods in one chart: those that nothing beats by name, the others in grey.
 {
-  const grey = "#C4C4C4", beaten = "beaten by another", answered = "in the answer", mostNames = 12;
+  const grey = "#C4C4C4", beaten = "beaten by another", mostNames = 12;
 
   // The kind of error that tells the methods apart most: its values, above their floors, span the most.
   function telling(rows) {
@@ -15,9 +15,7 @@
     const {view} = data,
           known = data.rows("work_points")
                       .filter((row) => row.none === "" && row.value > 0 && row.seconds > 0 && data.byId.has(row.case)),
-          said = data.rows("answers").filter((row) => row.form === "cheapest"),
-          named = said.length ? said[0].measure.replace(/^error\./, "") : "",
-          error = known.some((row) => row.error === named) ? named : telling(known);
+          error = telling(known);
     if (!error) return [];
     const scene = view.varyingWithout(["mass", "contact", "time", "march", "elements", "step"]),
           scenes = view.group(known.map((row) => data.byId.get(row.case)), scene), [first] = scenes;
@@ -52,27 +50,17 @@
           {shown: name});
       legend.push(ricochet.swatch(name, ricochet.methodColours[k % ricochet.methodColours.length], ricochet.symbol(k)));
     });
-    // Those that the sentences name.
-    const chosen = new Set(said.flatMap((row) => row.methods.split(" "))),
-          ringed = error === named ? rows.filter((row) => chosen.has(row.case)) : [];
-    if (ringed.length) {
-      ricochet.draw(
-          out, ringed, {x: "value", y: "seconds"},
-          {...ricochet.dot(answered, "#222222", "circle", 17, 5), hollow: true, clear: true, edge: 1.4});
-      legend.push(ricochet.swatch(answered, "#222222", "circle"));
-    }
     if (rows.some((row) => row.shown === beaten)) legend.push(ricochet.swatch(beaten, grey, "circle"));
     if (scenes.length > 1) out.notes.push("Of " + scenes.length + " scenes the first: " + first.label + ".");
     return [{
       id: "work-front",
+      answers: true,
       title: "Which methods nothing beats",
       views: [error],
       legend,
       charts: [{title: "all methods", height: 360, views: [out], notes: []}],
       caption: "Left and low is better; a point per method and step. The band joins the cases that no other is both " +
-          "faster and more precise than, in " + error +
-          (error === named ? ", the error that the answer speaks of. Rings: what it names." :
-                             ", the error that tells most."),
+          "faster and more precise than, in " + error + ", the error that tells most.",
     }];
   });
 }

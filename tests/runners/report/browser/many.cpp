@@ -27,7 +27,7 @@ TEST_CASE("a study of a thousand cases has a page of a few screens", "[report][b
   const StudyResults results = thousand();
   REQUIRE(results.cases.size() == 972);
   const Page page = page_of("many", results);
-  CHECK(page.html.size() < 3'100'000);  // of which the chart library is 1.1 MB
+  CHECK(page.html.size() < 2'000'000);
   const browser::Json said = read_back("many", {page}).at("many");
   CHECK(said.at("height") < 12 * 900);
   // Nearly all of it is laid out when it is come near, and takes the room that it was given.
