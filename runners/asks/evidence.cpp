@@ -187,6 +187,9 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
     for (const auto& [size, value] : point.values)
       if (!point.finest || finer(size, *point.finest)) point.finest = size;
     if (!steps_chosen) point.floor = std::max(point.floor, whole_steps(measure_of_all, point));
+    const MeasureInfo* info = measure_info(measure_of_all);
+    for (const CaseRecord* record : point.behind)
+      if (info && *info->floor != '\0') point.floor = std::max(point.floor, measure(*record, info->floor).value_or(0));
     limits.push_back(point.finest ? std::optional(limits_at(point.values, *point.finest, point.floor)) : std::nullopt);
     if (!point.finest) point.none = left_out(measure_of_all, point.cases).reasons.front().said();
     out.push_back(std::move(point));
@@ -199,8 +202,13 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
     if (limits[k])
       out[k].estimate =
           estimate_of(out[k].values, out[k].halves, *out[k].finest, *limits[k], has_step && !steps_chosen);
-  for (std::size_t k = 0; k < out.size(); ++k)
-    if (out[k].estimate && std::abs(out[k].estimate->value) <= round_off[k]) out[k].estimate->value = 0;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    if (!out[k].estimate) continue;
+    Estimate& one = *out[k].estimate;
+    if (std::abs(one.value) <= round_off[k]) one.value = 0;
+    // What nothing refines and nothing draws is known as it is.
+    if (!one.has_step && !one.grows && !one.u()) one.step = out[k].floor;
+  }
   return out;
 }
 

@@ -119,6 +119,7 @@ struct MeasureInfo {
   bool of_each_size = false;
   /// Of a time that is counted in whole steps: how many it may be off by, "1" or the measure that counts them.
   const char* whole_steps = "";
+  const char* floor = "";  ///< the measure of the same case that says what it is uncertain by; "": none
 };
 
 /// The measures of all kinds, in order. Given by the registry of kinds.

@@ -6,6 +6,7 @@
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 #include <set>
+#include <string_view>
 
 #include "runners/asks/kind_verbs.hpp"
 #include "runners/kinds/comparison/comparison_answers.hpp"
@@ -205,7 +206,15 @@ std::vector<MeasureInfo> comparison_measures() {
       {"size.impulse", "N s", "What this error would be of a motion at rest: errors over it are relative ones.",
        Of::computation, true},
   };
-  for (MeasureInfo& one : all) one.of_each_size = true;
+  for (MeasureInfo& one : all) {
+    one.of_each_size = true;
+    const std::string_view name = one.name, error = "error.";
+    if (!name.starts_with(error)) continue;
+    const std::string floor = "floor." + std::string(name.substr(error.size()));
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const MeasureInfo& other) { return floor == other.name; });
+    if (found != all.end()) one.floor = found->name;
+  }
   return all;
 }
 

@@ -343,6 +343,29 @@ TEST_CASE("asks: a case that is missing is counted and its reason said") {
   }
 }
 
+TEST_CASE("asks: errors are known to what their reference is known to") {
+  std::mt19937 random(15);
+  std::size_t told = 0;
+  for (int k = 0; k < tries / 10; ++k) {
+    Made made;
+    made.choices = {{"time", {"a", "b"}}};
+    made.measure = "error.impulse";
+    const double first = uniform(random, 0.01, 0.03), second = uniform(random, 0.01, 0.03),
+                 floor = uniform(random, 0, 0.02);
+    made.truth = [=](const std::vector<std::size_t>& at) { return at[0] == 0 ? first : second; };
+    StudyResults results = made.results();
+    for (CaseRecord& record : results.cases) record.measures.emplace_back("floor.impulse", floor);
+    const Answered effect = answer_of(results, {{"effect", "time"}, {"on", "error.impulse"}, {"from", "10 %"}});
+    const Answered limit = answer_of(results, {{"limit", "error.impulse"}, {"below", 0.02}});
+    INFO(first << " " << second << " floor " << floor << "\n" << effect.sentence << "\n" << limit.sentence);
+    if (std::abs(second - first) <= floor) CHECK(*effect.passes != Verdict::yes);
+    if (std::max(first, second) + floor >= 0.02) CHECK(*limit.passes != Verdict::yes);
+    if (std::max(first, second) + floor < 0.02) CHECK(*limit.passes == Verdict::yes);
+    told += *limit.passes != Verdict::open ? 1 : 0;
+  }
+  CHECK(told > 0);
+}
+
 TEST_CASE("asks: a value within the round-off of its scene is zero") {
   Made made;
   made.choices = {{"mass", {"m0"}}};
