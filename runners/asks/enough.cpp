@@ -63,9 +63,13 @@ class Enough {
       out.sentence = in_thirty_words(fmt::format("Open: what {} within {} takes is not told: {}", lines_.words.words,
                                                  answers::percent(within_), out.reason),
                                      {{open->first->place()}});
-    } else
-      out.sentence = in_thirty_words(
-          fmt::format("No: {}; {} would do for {}", found, remedy(need), answers::percent(within_)), {{line->place()}});
+    } else {
+      const auto open = std::count_if(needs.begin(), needs.end(), [](const auto& one) { return !one.second.known; });
+      const std::string rest = open > 0 ? fmt::format("; open in {} of {}", open, needs.size()) : "";
+      out.sentence =
+          in_thirty_words(fmt::format("No: {}; {} would do for {}", found, remedy(need), answers::percent(within_)),
+                          {{line->place() + rest, rest, line->place()}});
+    }
     return out;
   }
 
