@@ -142,7 +142,10 @@ class Ranking {
                                         : fmt::format("{}, not told apart (to {})", some_of(names), lines_.text(top)));
     }
     const std::size_t more = order.groups.size() > most ? order.groups.size() - most : 0;
-    return fmt::format("Largest {}{}: {}{}", lines_.words.words, order.level.empty() ? "" : " with " + order.level,
+    std::string what = lines_.words.words;
+    for (const std::string said : {"the ", "largest "})
+      if (what.starts_with(said)) what.erase(0, said.size());
+    return fmt::format("Largest {}{}: {}{}", what, order.level.empty() ? "" : " with " + order.level,
                        fmt::join(parts, ", then "), more > 0 ? fmt::format(", then {} more", more) : "");
   }
 
