@@ -137,15 +137,19 @@ double Evidence::window() const {
   return study.value("duration", 0.0);
 }
 
-double Evidence::whole_steps(const std::string& name, const Point& point) const {
+double Evidence::resolution(const std::string& name, const Point& point, bool by_steps) const {
   const MeasureInfo* info = measure_info(name);
-  if (!info || *info->whole_steps == '\0' || !point.finest || !contains(results().columns, "step")) return 0;
-  const std::string stop = split_measure(name).second, count = info->whole_steps;
-  double steps = 1;
-  for (const CaseRecord* record : point.behind)
-    if (count != "1")
-      steps = std::max(steps, measure(*record, count + (stop.empty() ? "" : "[" + stop + "]")).value_or(1));
-  const double over = info->unit == std::string("1") ? window() : 1;
+  if (!info || !point.finest) return 0;
+  const auto most = [&](const std::string& of, double least) {
+    for (const CaseRecord* record : point.behind) least = std::max(least, measure(*record, of).value_or(least));
+    return least;
+  };
+  const std::string floor = info->floor, count = info->whole_steps;
+  if (!floor.empty()) return most(floor, 0);
+  if (count.empty() || !by_steps || !contains(results().columns, "step")) return 0;
+  const std::string stop = split_measure(name).second;
+  const double steps = count == "1" ? 1 : most(count + (stop.empty() ? "" : "[" + stop + "]"), 1),
+               over = info->unit == std::string("1") ? window() : 1;
   return steps * point.finest->first / over;
 }
 
@@ -186,10 +190,7 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
     round_off.push_back(point.floor);
     for (const auto& [size, value] : point.values)
       if (!point.finest || finer(size, *point.finest)) point.finest = size;
-    if (!steps_chosen) point.floor = std::max(point.floor, whole_steps(measure_of_all, point));
-    const MeasureInfo* info = measure_info(measure_of_all);
-    for (const CaseRecord* record : point.behind)
-      if (info && *info->floor != '\0') point.floor = std::max(point.floor, measure(*record, info->floor).value_or(0));
+    point.floor = std::max(point.floor, resolution(measure_of_all, point, !steps_chosen));
     limits.push_back(point.finest ? std::optional(limits_at(point.values, *point.finest, point.floor)) : std::nullopt);
     if (!point.finest) point.none = left_out(measure_of_all, point.cases).reasons.front().said();
     out.push_back(std::move(point));

@@ -29,6 +29,8 @@ struct Estimate {
   std::string unknown() const;
   /// The sum of what is known; nothing where it grows, or where nothing is known.
   std::optional<double> u() const;
+  /// Whether value ± u holds all that leaves it open.
+  bool has_interval() const { return u() && unknown().empty(); }
   double low() const { return value - u().value_or(0); }
   double high() const { return value + u().value_or(0); }
 };
@@ -107,8 +109,9 @@ class Evidence {
   double window() const;
 
  private:
-  /// What a time is off by that is counted in whole steps, in the unit of its measure; 0 of others.
-  double whole_steps(const std::string& measure, const Point& point) const;
+  /// What a value is off by beside round-off, in the unit of its measure: what its floor says, and of a time that is
+  /// counted in whole steps (`by_steps`: of which the points know the size) these steps. 0 of others.
+  double resolution(const std::string& measure, const Point& point, bool by_steps) const;
 
   const answers::Compared& study_;
 };

@@ -28,16 +28,16 @@ struct Order {
 /// Lines by falling value, cut where all intervals before lie above all intervals after: a wide one may reach beyond
 /// its neighbours. What has no interval is told from nothing.
 std::vector<std::vector<std::size_t>> grouped(const std::vector<const Line*>& lines) {
-  const auto has_interval = [](const Line& line) { return line.estimate().u() && line.estimate().unknown().empty(); };
   std::vector<double> highest_from(lines.size() + 1, -INFINITY);
   for (std::size_t k = lines.size(); k-- > 0;)
-    highest_from[k] = std::max(highest_from[k + 1], has_interval(*lines[k]) ? lines[k]->estimate().high() : INFINITY);
+    highest_from[k] =
+        std::max(highest_from[k + 1], lines[k]->estimate().has_interval() ? lines[k]->estimate().high() : INFINITY);
   std::vector<std::vector<std::size_t>> groups;
   double lowest = INFINITY;
   for (std::size_t k = 0; k < lines.size(); ++k) {
     if (k == 0 || lowest > highest_from[k]) groups.emplace_back();
     groups.back().push_back(k);
-    lowest = std::min(lowest, has_interval(*lines[k]) ? lines[k]->estimate().low() : -INFINITY);
+    lowest = std::min(lowest, lines[k]->estimate().has_interval() ? lines[k]->estimate().low() : -INFINITY);
   }
   return groups;
 }

@@ -4,6 +4,7 @@
 
 #include "runners/command/manual.hpp"
 #include "runners/command/subcommand.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {
@@ -61,65 +62,40 @@ std::string command_names() {
   return names;
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
+std::string replaced(std::string text, std::string_view what, std::string_view with) {
+  replace_all(text, what, with);
   return text;
-}
-
-/// A text between single quotes of a shell.
-std::string shell_quoted(const std::string& text) {
-  return "'" + replaced(text, "'", "'\\''") + "'";
 }
 
 constexpr const char* generated = "# Made by `ricochet manual {}`.\n";
 
-std::string bash_offer(const Operand& operand) {
-  switch (operand.offer) {
-    case Offer::nothing:
-      return "COMPREPLY=()";
-    case Offer::files:
-      return "compopt -o filenames; COMPREPLY=($(compgen -f -- \"$word\"))";
-    case Offer::folders:
-      return "compopt -o filenames; COMPREPLY=($(compgen -d -- \"$word\"))";
-    case Offer::studies:
-      return "compopt -o filenames; COMPREPLY=($(compgen -f -X '!*.json' -- \"$word\") $(compgen -d -- \"$word\"))";
-    case Offer::words:
-      break;
-  }
-  return fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$word\"))", fmt::join(operand.words, " "));
-}
+/// How a shell writes offers: `words` with {} for the words.
+struct Shell {
+  const char *nothing, *files, *folders, *studies, *words;
+};
+constexpr Shell bash{
+    "COMPREPLY=()", "compopt -o filenames; COMPREPLY=($(compgen -f -- \"$word\"))",
+    "compopt -o filenames; COMPREPLY=($(compgen -d -- \"$word\"))",
+    "compopt -o filenames; COMPREPLY=($(compgen -f -X '!*.json' -- \"$word\") $(compgen -d -- \"$word\"))",
+    "COMPREPLY=($(compgen -W '{}' -- \"$word\"))"};
+constexpr Shell zsh{" ", "_files", "_files -/", "_files -g \"*.json\"", "({})"};
+constexpr Shell fish{"-f", "-F", "-f -a '(__fish_complete_directories)'", "-f -a '(__fish_complete_suffix .json)'",
+                     "-f -a '{}'"};
 
-std::string zsh_offer(const Operand& operand) {
+std::string offer(const Shell& shell, const Operand& operand) {
   switch (operand.offer) {
     case Offer::nothing:
-      return " ";
+      return shell.nothing;
     case Offer::files:
-      return "_files";
+      return shell.files;
     case Offer::folders:
-      return "_files -/";
+      return shell.folders;
     case Offer::studies:
-      return "_files -g \"*.json\"";
+      return shell.studies;
     case Offer::words:
       break;
   }
-  return fmt::format("({})", fmt::join(operand.words, " "));
-}
-
-std::string fish_offer(const Operand& operand) {
-  switch (operand.offer) {
-    case Offer::nothing:
-      return "-f";
-    case Offer::files:
-      return "-F";
-    case Offer::folders:
-      return "-f -a '(__fish_complete_directories)'";
-    case Offer::studies:
-      return "-f -a '(__fish_complete_suffix .json)'";
-    case Offer::words:
-      break;
-  }
-  return fmt::format("-f -a '{}'", fmt::join(operand.words, " "));
+  return fmt::format(fmt::runtime(shell.words), fmt::join(operand.words, " "));
 }
 
 /// A text within an entry of _arguments.
@@ -144,13 +120,13 @@ std::string bash_completion() {
     for (const Option& option : options_of(command)) {
       names += (names.empty() ? "--" : " --") + option.name;
       if (!option.value.empty())
-        text += fmt::format("        --{}) {}; return ;;\n", option.name, bash_offer({offer_of(option.value), {}}));
+        text += fmt::format("        --{}) {}; return ;;\n", option.name, offer(bash, {offer_of(option.value), {}}));
     }
     text += fmt::format(
         "      esac\n      case $word in\n        -*) COMPREPLY=($(compgen -W '{}' -- \"$word\")) ;;\n        *) {} "
         ";;\n"
         "      esac ;;\n",
-        names, bash_offer(operand_of(command)));
+        names, offer(bash, operand_of(command)));
   }
   return text + fmt::format("    help) COMPREPLY=($(compgen -W '{}' -- \"$word\")) ;;\n", command_names()) +
          "  esac\n}\ncomplete -F _ricochet ricochet\n";
@@ -169,12 +145,12 @@ std::string zsh_completion() {
     for (const Option& option : options_of(command)) {
       const bool repeats = std::holds_alternative<std::vector<std::filesystem::path> Arguments::*>(option.target);
       std::string entry = fmt::format("{}--{}[{}]", repeats ? "*" : "", option.name, zsh_text(option.text));
-      if (!option.value.empty()) entry += ":" + zsh_text(option.value) + ":" + zsh_offer({offer_of(option.value), {}});
+      if (!option.value.empty()) entry += ":" + zsh_text(option.value) + ":" + offer(zsh, {offer_of(option.value), {}});
       text += " \\\n        " + shell_quoted(entry);
     }
     if (command.most > 0)
       text += " \\\n        " +
-              shell_quoted((command.most > 1 ? "*:operand:" : "1:operand:") + zsh_offer(operand_of(command)));
+              shell_quoted((command.most > 1 ? "*:operand:" : "1:operand:") + offer(zsh, operand_of(command)));
     text += " ;;\n";
   }
   return text + fmt::format("    help) _arguments '1:command:({})' ;;\n", command_names()) +
@@ -195,11 +171,11 @@ std::string fish_completion() {
     const std::string here = fmt::format("complete -c ricochet -n '__fish_seen_subcommand_from {}'", command.name);
     for (const Option& option : options_of(command)) {
       text += fmt::format("{} -l {} -d {}", here, option.name, shell_quoted(option.text));
-      if (!option.value.empty()) text += " -r " + fish_offer({offer_of(option.value), {}});
+      if (!option.value.empty()) text += " -r " + offer(fish, {offer_of(option.value), {}});
       text += "\n";
     }
     if (const Operand operand = operand_of(command); operand.offer != Offer::nothing)
-      text += here + " " + fish_offer(operand) + "\n";
+      text += here + " " + offer(fish, operand) + "\n";
   }
   return text + fmt::format("complete -c ricochet -n '__fish_seen_subcommand_from help' -f -a '{}'\n", command_names());
 }

@@ -1,7 +1,6 @@
 #include "runners/command/figure_files.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include <cctype>
@@ -12,18 +11,13 @@
 #include <string>
 
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/temporary_folder.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A word of a shell's command line.
-std::string quoted(const std::string& word) {
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
 
 /// What a command writes; its own errors are left out.
 std::string output_of(const std::string& command) {
@@ -45,24 +39,6 @@ std::string browser() {
       "figures are drawn by a browser, and none was found: install chromium, or name one of its kind in "
       "RICOCHET_BROWSER");
 }
-
-/// A folder of the browser's own, gone with its owner.
-class Profile {
- public:
-  Profile() : folder_((fs::temp_directory_path() / "ricochet-figures-XXXXXX").string()) {
-    if (!::mkdtemp(folder_.data())) throw StoreError("no folder can be made in " + fs::temp_directory_path().string());
-  }
-  ~Profile() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  Profile(const Profile&) = delete;
-  Profile& operator=(const Profile&) = delete;
-  const std::string& folder() const { return folder_; }
-
- private:
-  std::string folder_;
-};
 
 /// A file's address: what is no plain letter is %xx.
 std::string address_of(const fs::path& file) {
@@ -93,13 +69,13 @@ std::string file_name(const std::string& name, std::set<std::string>& taken) {
 }  // namespace
 
 std::size_t write_figures(const fs::path& report, const fs::path& folder) {
-  const Profile profile;
+  const TemporaryFolder profile("figures");
   // The superuser's browser has no sandbox; the page is ours, and forbids the network.
   const std::string start = fmt::format(
                         "{} --headless --disable-gpu --no-first-run --window-size=1400,1000 {} --user-data-dir={}",
-                        quoted(browser()), ::geteuid() == 0 ? "--no-sandbox" : "", profile.folder()),
+                        shell_quoted(browser()), ::geteuid() == 0 ? "--no-sandbox" : "", profile.path().string()),
                     page = address_of(report);
-  const std::string read = output_of(fmt::format("{} --dump-dom {}", start, quoted(page + "#export"))),
+  const std::string read = output_of(fmt::format("{} --dump-dom {}", start, shell_quoted(page + "#export"))),
                     opening = "id=\"exported\">";
   const std::size_t from = read.find(opening);
   const auto figures = from == std::string::npos
@@ -119,8 +95,8 @@ std::size_t write_figures(const fs::path& report, const fs::path& folder) {
   const fs::path sheets = folder / "figures.pdf";
   std::error_code ignored;
   fs::remove(sheets, ignored);
-  output_of(fmt::format("{} --no-pdf-header-footer --print-to-pdf={} {}", start, quoted(fs::absolute(sheets).string()),
-                        quoted(page + "#export-pages")));
+  output_of(fmt::format("{} --no-pdf-header-footer --print-to-pdf={} {}", start,
+                        shell_quoted(fs::absolute(sheets).string()), shell_quoted(page + "#export-pages")));
   if (!fs::exists(sheets)) throw StoreError(fmt::format("{} made no {}", browser(), sheets.string()));
   return figures.size();
 }

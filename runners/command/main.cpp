@@ -28,7 +28,7 @@ void keep_standard_streams() {
     if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
   } catch (const std::bad_alloc&) {
     constexpr std::string_view text = "ricochet: not enough memory\n";
-    if (::write(STDERR_FILENO, text.data(), text.size()) < 0) ::_exit(ricochet::exit_store);
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
     ::_exit(ricochet::exit_store);
   } catch (...) {  // what else it is the system says
   }

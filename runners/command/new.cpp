@@ -14,6 +14,7 @@
 #include "runners/command/examples.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/plan_files/plan_file.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {
@@ -34,11 +35,6 @@ struct Wish {
 std::string underscored(std::string name) {
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
-}
-
-void replace_all(std::string& text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
 }
 
 void check_name(const Wish& wish, const Arguments& arguments) {
@@ -147,11 +143,9 @@ std::string called(const fs::path& program) {
     if (fs::equivalent(found, program, ignored)) return program.filename().string();
     break;
   }
-  std::string path = program.string();
+  const std::string path = program.string();
   const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("/._+-", c); };
-  if (std::all_of(path.begin(), path.end(), plain)) return path;
-  replace_all(path, "'", "'\\''");
-  return "'" + path + "'";
+  return std::all_of(path.begin(), path.end(), plain) ? path : shell_quoted(path);
 }
 
 }  // namespace

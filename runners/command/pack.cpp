@@ -1,11 +1,9 @@
 #include "runners/pack/pack.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <numeric>
 #include <ostream>
@@ -25,6 +23,7 @@
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/folder_lock.hpp"
 #include "runners/store/store.hpp"
+#include "runners/store/temporary_folder.hpp"
 #include "runners/table/table_reader.hpp"
 #include "runners/table/text.hpp"
 
@@ -33,26 +32,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int drawn_by_default = 3;
-
-/// A folder of this process alone that goes with it.
-class WorkFolder {
- public:
-  WorkFolder() {
-    std::string name = (fs::temp_directory_path() / "ricochet-verify-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw std::system_error(errno, std::generic_category(), name);
-    path_ = name;
-  }
-  ~WorkFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 std::string counted(std::size_t number, const char* what) {
   return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
@@ -221,7 +200,7 @@ int command_verify(const Arguments& arguments, std::ostream& out) {
   cases_asked(arguments.drawn, 0);  // a slip there is told first
   return march_apart(arguments, out, [&](std::ostream& to) {
     const fs::path file = arguments.operands.front();
-    const WorkFolder work;
+    const TemporaryFolder work("verify");
     const std::size_t parts = unpack_results(file, work.path()).size();
     to << fmt::format("{}: {}, each as it was packed\nSHA-256 {}\n", file.string(), counted(parts, "part"),
                       file_sha256(file));

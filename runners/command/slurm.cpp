@@ -17,10 +17,7 @@ namespace fs = std::filesystem;
 /// A word of a shell, whatever stands in it.
 std::string shell_word(const std::string& text) {
   static const std::regex plain("[-A-Za-z0-9_./:=@%+,]+");
-  if (std::regex_match(text, plain)) return text;
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
+  return std::regex_match(text, plain) ? text : shell_quoted(text);
 }
 
 /// Seconds of a time as Slurm writes it: M, M:S, H:M:S, D-H, D-H:M, D-H:M:S. Throws UsageError.

@@ -35,11 +35,6 @@ std::string short_exponent(std::string text) {
   return text;
 }
 
-void replace_all(std::string& text, std::string_view what, std::string_view with) {
-  for (size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += with.size())
-    text.replace(at, what.size(), with);
-}
-
 }  // namespace
 
 std::string escape(std::string_view text) {

@@ -135,6 +135,16 @@ std::optional<double> number_in(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
+void replace_all(std::string& text, std::string_view what, std::string_view with) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
+    text.replace(at, what.size(), with);
+}
+
+std::string shell_quoted(std::string text) {
+  replace_all(text, "'", "'\\''");
+  return "'" + text + "'";
+}
+
 double to_digits(double value, int digits) {
   // Rounding the largest one would give none.
   return number_in(fmt::format("{:.{}e}", value, digits - 1)).value_or(value);

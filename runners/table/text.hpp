@@ -41,6 +41,12 @@ std::string table_csv(const Table& table);
 /// The number that a text is, a + before it allowed; nothing where it is no number, or one that no double holds.
 std::optional<double> number_in(std::string_view text);
 
+/// Puts `with` in the place of each `what` of a text, from its beginning on.
+void replace_all(std::string& text, std::string_view what, std::string_view with);
+
+/// A text between single quotes, as one word of a shell whatever stands in it.
+std::string shell_quoted(std::string text);
+
 /// A number rounded to so many significant digits.
 double to_digits(double value, int digits);
 

@@ -71,3 +71,12 @@ TEST_CASE("Any double is read back from its text, and rounded within what double
   CHECK_FALSE(number_in("1x"));
   CHECK_FALSE(number_in(""));
 }
+
+TEST_CASE("a text is one word of a shell whatever stands in it") {
+  CHECK(shell_quoted("") == "''");
+  CHECK(shell_quoted("a b$c") == "'a b$c'");
+  CHECK(shell_quoted("it's") == "'it'\\''s'");
+  std::string text = "aaa-a";
+  replace_all(text, "a", "aa");
+  CHECK(text == "aaaaaa-aa");
+}
