@@ -49,11 +49,8 @@ class DentedStop final : public PointwiseContact {
     }
   }
   void set_lanes(std::span<const Parameters>) override {}
-  // Efforts push back: what the solve begins beyond is the side that it is on.
   PointForce at(const ContactState& state) const override {
-    const LaneProblem lane = problem_->lane(state.lane);
-    const int which = lane.free[state.point] < lane.lower[state.point] ? 0 : 1;
-    return pushed(state.depth, problem_->memory_of(state.lane, which)[state.point]);
+    return pushed(state.depth, problem_->memory_of(state.lane, state.side > 0 ? 0 : 1)[state.point]);
   }
   PointForce gradient(const ContactState& state) const override { return at(state); }
   double stored(double, int) const override { return 0; }

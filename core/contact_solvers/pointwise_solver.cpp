@@ -51,10 +51,11 @@ PointwiseSolver::Answer PointwiseSolver::Lane::answer(int i, double x) const {
   const double y = problem.free[k] + problem.reach * x;
   const double u = problem.rate_free ? problem.rate_free[k] + problem.rate_reach * x : 0.0;
   Answer sum;
-  const auto add = [&](double side, double bound) {
+  const auto add = [&](int side, double bound) {
     const double depth = side * (bound - y), before = problem.before ? side * (bound - problem.before[k]) : 0.0;
     if (!(depth > 0 || before > 0)) return;
-    const PointForce force = law.force({depth, -side * u, before, i, lane, per_point ? static_cast<int>(k) : lane});
+    const PointForce force =
+        law.force({depth, -side * u, before, i, lane, per_point ? static_cast<int>(k) : lane, side});
     sum.force += side * force.value;
     sum.stiffness += std::max(force.stiffness, 0.0);
     sum.viscosity += std::max(force.viscosity, 0.0);

@@ -11,7 +11,8 @@ struct ContactState {
   double rate = 0;    ///< δ̇, the speed of closing, m/s; 0 where the problem has no rate
   double before = 0;  ///< δ⁻, the depth one step before, m; 0 where the problem has none
   int point = 0, lane = 0;
-  int set = 0;  ///< number of the parameter set: the lane, or that of the point in its lane
+  int set = 0;   ///< number of the parameter set: the lane, or that of the point in its lane
+  int side = 1;  ///< the sign of its efforts: 1 of the lower stop, −1 of the upper one
 };
 
 /// The force of one side, and how it answers. Slopes ≥ 0 for a law that does not soften.
