@@ -67,9 +67,9 @@ struct ParameterSet {
   std::string text;  ///< "beta 0.25, gamma 0.5"
 };
 
-/// The values a method is tried with. First its defaults; of a parameter without one the middle of its range, else 1e5.
-/// Then one parameter at a time. Of a bounded range the ends (just inside an open one) and the middle. Of an unbounded
-/// default a hundredth and a hundredfold. Each word, both truths.
+/// The values a method is tried with. First its defaults; of a parameter without one the middle of its range, else 1e5
+/// (100 N). Then one parameter at a time. Of a bounded range the ends (just inside an open one) and the middle. Of an
+/// unbounded default a hundredth and a hundredfold. Each word, both truths.
 std::vector<ParameterSet> parameter_sets(const std::vector<ParameterSpec>& specs);
 
 ParameterSet parameter_set(const std::vector<ParameterSpec>& specs, Parameters values);

@@ -152,9 +152,10 @@ ParameterValue first_value(const ParameterSpec& spec) {
     case Type::integer:
       break;
   }
-  constexpr double stiffness_like = 1e5;
+  // N/m, and the force of that stiffness at a depth of 1 mm, N: benches go from 1e-5 to 0.01 m.
+  const double usual = spec.unit == "N" ? 100 : 1e5;
   if (bounded(spec.range)) return number(spec, 0.5 * (spec.range.low + spec.range.high));
-  return number(spec, spec.range.contains(stiffness_like) ? stiffness_like : spec.range.low + 1);
+  return number(spec, spec.range.contains(usual) ? usual : spec.range.low + 1);
 }
 
 std::vector<ParameterValue> further_values(const ParameterSpec& spec) {
