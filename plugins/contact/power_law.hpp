@@ -88,6 +88,12 @@ inline ParameterSpec stiffness_parameter(const char* unit, const char* text) {
   return stiffness;
 }
 
+inline ParameterSpec viscosity_parameter(Range range, const char* text) {
+  ParameterSpec viscosity = real_parameter("viscosity", "N s/m", std::nullopt, range, text);
+  viscosity.per_lane = true;
+  return with_role(viscosity, ParameterRole::damping);
+}
+
 inline ParameterSpec exponent_parameter() {
   ParameterSpec exponent = real_parameter("exponent", "1", 1.5, {.low = 1, .high = 5},
                                           "n, exponent of the depth: 1.5 for a sphere on a plane, 1 for a spring");
@@ -143,6 +149,44 @@ inline PointForce damped(const PointForce& elastic, double chi, double rate) {
     force.dissipation = -elastic.value * rate;
   }
   return force;
+}
+
+/// A dashpot that is felt beyond the stop: c δ̇, or nothing on the way out where it is `one_way`.
+struct Dashpot {
+  double viscosity = 0;  ///< c, N s/m
+  bool one_way = false;
+
+  /// At δ > 0.
+  PointForce at(double rate) const { return of(rate, {.value = 1}); }
+  /// Over a step: on the share of its way that lies beyond the stop, [δ₊ − δ⁻₊]/(δ − δ⁻): no jump at entry.
+  PointForce over(const ContactState& step) const { return of(step.rate, beyond(step)); }
+
+ private:
+  PointForce of(double rate, const PointForce& share) const {
+    if (one_way && !(rate > 0)) return {};
+    const double acting = viscosity * share.value, viscous = acting * rate;
+    return {.value = viscous,
+            .stiffness = viscosity * share.stiffness * rate,
+            .viscosity = acting,
+            .before = viscosity * share.before * rate,
+            .dissipation = viscous * rate};
+  }
+  static PointForce beyond(const ContactState& state) {
+    if (state.depth > 0 && state.before > 0) return {.value = 1};
+    const double way = state.depth - state.before, square = way * way;
+    if (state.depth > 0) return {state.depth / way, -state.before / square, 0, state.depth / square};
+    return {-state.before / way, state.before / square, 0, -state.depth / square};
+  }
+};
+
+/// A spring beside a dashpot, which never pull. What the spring gives back beyond that is lost too.
+inline PointForce beside(const PointForce& elastic, const PointForce& viscous, double rate) {
+  if (!(elastic.value + viscous.value > 0)) return {.dissipation = -elastic.value * rate};
+  return {.value = elastic.value + viscous.value,
+          .stiffness = elastic.stiffness + viscous.stiffness,
+          .viscosity = viscous.viscosity,
+          .before = elastic.before + viscous.before,
+          .dissipation = viscous.dissipation};
 }
 
 /// What `evaluation` means for a law that damps.
