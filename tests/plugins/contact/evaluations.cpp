@@ -28,7 +28,8 @@ Choice law_of(const std::string& name, const std::string& evaluation) {
       {"exponential", {{"force", 30.0}, {"length", 0.01}, {"reach", 5.0}}},
       {"hunt-crossley", {{"stiffness", 1e5}, {"damping", 0.05}}},
       {"kelvin-voigt", {{"stiffness", 1e4}, {"viscosity", 3.0}}},
-      {"lankarani-nikravesh", {{"stiffness", 1e5}, {"restitution", 0.95}}}};
+      {"lankarani-nikravesh", {{"stiffness", 1e5}, {"restitution", 0.95}}},
+      {"elasto-plastic", {{"stiffness", 1e4}, {"yield_force", 50.0}, {"hardening", 0.3}}}};
   Choice choice{name, values.at(name)};
   choice.values["evaluation"] = evaluation;
   return choice;
@@ -69,7 +70,7 @@ TEST_CASE("conserving laws keep the energy of the scheme and of the stops, whate
 }
 
 TEST_CASE("conserving laws that damp lose what they report, to round-off") {
-  const std::string name = GENERATE("hunt-crossley", "kelvin-voigt", "lankarani-nikravesh");
+  const std::string name = GENERATE("hunt-crossley", "kelvin-voigt", "lankarani-nikravesh", "elasto-plastic");
   const Run run = bounced(law_of(name, "conserving"), midpoint, true);
   const Run alone = bounced(law_of(name, "conserving"), midpoint);
   INFO(name << ": drift " << run.drift << ", without the losses " << alone.change);

@@ -23,7 +23,8 @@ std::vector<Choice> compliant_laws() {
       {"exponential", {{"force", 5.0}, {"length", 1e-4}, {"reach", 5.0}}},
       {"hunt-crossley", {{"stiffness", 1e7}, {"damping", 0.05}}},
       {"kelvin-voigt", {{"stiffness", 1e5}, {"viscosity", 3.0}}},
-      {"lankarani-nikravesh", {{"stiffness", 1e7}, {"restitution", 0.95}}}};
+      {"lankarani-nikravesh", {{"stiffness", 1e7}, {"restitution", 0.95}}},
+      {"elasto-plastic", {{"stiffness", 1e5}, {"yield_force", 5.0}, {"hardening", 0.2}}}};
   std::vector<Choice> laws;
   for (const auto& [name, parameters] : values)
     for (const std::string& evaluation : evaluations_of_laws) {
