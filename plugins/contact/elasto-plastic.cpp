@@ -118,7 +118,8 @@ void register_elasto_plastic(Registry& registry) {
        .text =
            R"(A point that passes a stop by δ is pushed back with k (δ − s), never pulled. The permanent set s is the
           largest value that (1−η)(δ − F/k) has had: from the force F on, the stop gives way with the slope η k, and
-          lets go with the slope k. The gap is larger by s from then on, at each point and side of its own. Penetration
+          lets go with the slope k. The gap is larger by s from then on, at each point and side of its own. A
+          round clearance keeps one set for all directions. Penetration
           is measured at the stop as it was. A set s takes F s + ½ η k s²/(1−η). A free mass m that arrives at speed v
           above F/√(k m) leaves a set of (m v² − F²/k)/(2 F) where η = 0, and keeps F/(v √(k m)) of its speed.
           A larger F than any force makes it the penalty. )" +
