@@ -1,0 +1,49 @@
+#pragma once
+#include <optional>
+#include <ricochet/contract/contact_law.hpp>
+#include <ricochet/contract/parameters.hpp>
+#include <span>
+
+namespace ricochet {
+
+/// What a friction law sees of one lane of one stage. Bounds are given, efforts p (N) are asked. A point has one row,
+/// or two that span its tangent plane; its rows stand together. Rates are against the surface, at the end of the stage:
+///
+///     u = u° + A p   (m/s),     |p_i|₂ ≤ s_i at point i                                                          (1)
+///
+/// A (rows × rows, m/s per N) is symmetric positive semidefinite. Two points at one place make it singular.
+struct FrictionProblem {
+  int points = 0;
+  const int* first_row = nullptr;  ///< of each point, and behind the last one: points + 1 numbers
+  const int* number = nullptr;     ///< of each point among all that rub: what is kept of it stands there
+  int lane = 0;
+  const double* matrix = nullptr;  ///< A, row by row, `stride` apart
+  int stride = 0;
+  const double* free = nullptr;   ///< u°, by row
+  const double* bound = nullptr;  ///< s ≥ 0 while it slides, N, by point
+  const double* bound_static =
+      nullptr;                      ///< s while it sticks, N: beyond `bound` only where it stuck in the stage before
+  double h = 0;                     ///< what an effort of 1 N gives of momentum in the stage, s
+  double* effort = nullptr;         ///< in: a first guess; out: p, by row
+  unsigned char* sticks = nullptr;  ///< out: of each point
+  double* slid = nullptr;           ///< out: how fast it slides, m/s ≥ 0, of each point
+
+  int rows() const { return first_row[points]; }
+  double at(int row, int column) const { return matrix[static_cast<std::ptrdiff_t>(row) * stride + column]; }
+};
+
+/// How the surfaces of stops rub: it knows neither the contact law nor the scheme. The loop calls prepare() once, and
+/// again when parameters of a lane change. It calls solve() for each lane with a bound, as often as the normal efforts
+/// of the stage have changed by what it found.
+class FrictionLaw {
+ public:
+  virtual ~FrictionLaw() = default;
+  /// Sizes workspaces: at most so many points and rows at once; `lanes` holds one checked parameter set per lane.
+  virtual void prepare(int points, int rows, std::span<const Parameters> lanes) = 0;
+  /// Finds p. No allocation here.
+  virtual LaneOutcome solve(FrictionProblem& problem) = 0;
+  /// How fast a point drifts that is held by this share of its bound, m/s; 0: it does not.
+  virtual double creeps(double /*load_over_bound*/) const { return 0; }
+};
+
+}  // namespace ricochet

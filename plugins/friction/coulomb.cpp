@@ -1,0 +1,34 @@
+#include <ricochet/contact_solvers/friction_solver.hpp>
+#include <ricochet/contract/plugin.hpp>
+
+namespace {
+
+using namespace ricochet;
+
+/// −u in the normal cone of |p| ≤ s: what holds does not move, what moves is pushed back by s.
+class Coulomb final : public FrictionLaw {
+ public:
+  void prepare(int points, int rows, std::span<const Parameters>) override { solver_.prepare(points, rows); }
+  LaneOutcome solve(FrictionProblem& problem) override { return solver_.solve(problem); }
+
+ private:
+  FrictionSolver solver_;
+};
+
+void register_coulomb(Registry& registry) {
+  registry.add_friction(
+      {.name = "coulomb",
+       .summary = "Coulomb friction as it is: a point holds exactly, or slides against its bound",
+       .text = R"(A point whose effort stays within μ times the normal force does not move at all, and drifts by
+          nothing however long it is held. One that slides is pushed back by that bound, against its motion. Two
+          tangents share one disc, so that no direction is special. No stiffness and no speed regularises it: the
+          efforts of a stage are found together.)",
+       .source = "Coulomb (1785); Moreau (1988), Unilateral contact and dry friction in finite freedom dynamics",
+       .parameters = {},
+       .words = "exact friction"},
+      [](const Parameters&) { return std::make_unique<Coulomb>(); });
+}
+
+}  // namespace
+
+RICOCHET_PLUGIN(friction, coulomb, register_coulomb)
