@@ -4,6 +4,7 @@
 #include <new>
 #include <ricochet/contract/check_inertia.hpp>
 #include <ricochet/contract/contact_law.hpp>
+#include <ricochet/contract/friction_law.hpp>
 #include <ricochet/contract/registry.hpp>
 
 namespace ricochet {
@@ -155,6 +156,20 @@ class GuardedLaw final : public Guard<ContactLaw> {
   std::shared_ptr<const std::vector<ParameterSpec>> declared_;
 };
 
+class GuardedFriction final : public Guard<FrictionLaw> {
+ public:
+  using Guard::Guard;
+  void prepare(int points, int rows, std::span<const Parameters> lanes) override {
+    RICOCHET_FORWARD(prepare, points, rows, lanes);
+  }
+  LaneOutcome solve(FrictionProblem& problem) override { RICOCHET_FORWARD(solve, problem); }
+  double creeps(double load_over_bound) const override {
+    const double answer = ask("creeps", [&](auto& inner) { return inner.creeps(load_over_bound); });
+    if (!(answer >= 0) || !std::isfinite(answer)) fault("creeps", fmt::format("drifts by {:g} m/s", answer));
+    return answer;
+  }
+};
+
 class GuardedScheme final : public Guard<TimeScheme> {
  public:
   using Guard::Guard;
@@ -261,6 +276,9 @@ Maker<MassStrategy> guarded(PluginIdentity plugin, Maker<MassStrategy> make) {
 Maker<ContactLaw> guarded(PluginIdentity plugin, Maker<ContactLaw> make, std::vector<ParameterSpec> declared) {
   return guard<GuardedLaw>(std::move(plugin), std::move(make),
                            std::make_shared<const std::vector<ParameterSpec>>(std::move(declared)));
+}
+Maker<FrictionLaw> guarded(PluginIdentity plugin, Maker<FrictionLaw> make) {
+  return guard<GuardedFriction>(std::move(plugin), std::move(make));
 }
 Maker<TimeScheme> guarded(PluginIdentity plugin, Maker<TimeScheme> make) {
   return guard<GuardedScheme>(std::move(plugin), std::move(make));

@@ -72,6 +72,8 @@ const char* role_name(Role role) {
       return "mass";
     case Role::contact:
       return "contact";
+    case Role::friction:
+      return "friction";
     case Role::time:
       return "time";
     case Role::reference:
@@ -114,6 +116,9 @@ void Registry::add_mass(PluginManual manual, Maker<MassStrategy> make) {
 void Registry::add_contact(PluginManual manual, Maker<ContactLaw> make) {
   add(contact_, Role::contact, std::move(manual), std::move(make));
 }
+void Registry::add_friction(PluginManual manual, Maker<FrictionLaw> make) {
+  add(friction_, Role::friction, std::move(manual), std::move(make));
+}
 void Registry::add_time(PluginManual manual, Maker<TimeScheme> make) {
   add(time_, Role::time, std::move(manual), std::move(make));
 }
@@ -134,6 +139,9 @@ void Registry::adopt(Role role, const std::string& name, const Registry& from) {
     case Role::contact:
       contact_.emplace(name, from.contact_.at(name));
       break;
+    case Role::friction:
+      friction_.emplace(name, from.friction_.at(name));
+      break;
     case Role::time:
       time_.emplace(name, from.time_.at(name));
       break;
@@ -149,6 +157,9 @@ const Entry<MassStrategy>* Registry::mass(const std::string& name) const {
 const Entry<ContactLaw>* Registry::contact(const std::string& name) const {
   return find(contact_, name);
 }
+const Entry<FrictionLaw>* Registry::friction(const std::string& name) const {
+  return find(friction_, name);
+}
 const Entry<TimeScheme>* Registry::time(const std::string& name) const {
   return find(time_, name);
 }
@@ -163,6 +174,9 @@ const PluginManual* Registry::manual(Role role, const std::string& name) const {
       break;
     case Role::contact:
       if (const auto* entry = contact(name)) return &entry->manual;
+      break;
+    case Role::friction:
+      if (const auto* entry = friction(name)) return &entry->manual;
       break;
     case Role::time:
       if (const auto* entry = time(name)) return &entry->manual;
@@ -181,6 +195,8 @@ std::string Registry::file(Role role, const std::string& name) const {
       return of(mass(name));
     case Role::contact:
       return of(contact(name));
+    case Role::friction:
+      return of(friction(name));
     case Role::time:
       return of(time(name));
     case Role::reference:
@@ -200,6 +216,9 @@ std::vector<std::string> Registry::names(Role role) const {
       break;
     case Role::contact:
       collect(contact_);
+      break;
+    case Role::friction:
+      collect(friction_);
       break;
     case Role::time:
       collect(time_);

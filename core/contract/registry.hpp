@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <ricochet/contract/contact_law.hpp>
+#include <ricochet/contract/friction_law.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/contract/parameters.hpp>
 #include <ricochet/contract/plugin_call.hpp>
@@ -26,14 +27,15 @@ using Maker = std::function<std::unique_ptr<Interface>(const Parameters&)>;
 /// its grid. The registry puts every factory through this, so that nobody holds an unguarded object.
 Maker<MassStrategy> guarded(PluginIdentity plugin, Maker<MassStrategy> make);
 Maker<ContactLaw> guarded(PluginIdentity plugin, Maker<ContactLaw> make, std::vector<ParameterSpec> declared = {});
+Maker<FrictionLaw> guarded(PluginIdentity plugin, Maker<FrictionLaw> make);
 Maker<TimeScheme> guarded(PluginIdentity plugin, Maker<TimeScheme> make);
 Maker<ReferenceSolver> guarded(PluginIdentity plugin, Maker<ReferenceSolver> make);
 
 /// A time scheme as one function: its plan, or a refusal, for these parameters, the step h (s) and the problem.
 using PlanFunction = std::function<PlanOrRefusal(const Parameters&, double h, const ProblemFacts&)>;
 
-enum class Role { mass, contact, time, reference };
-inline constexpr std::array all_roles = {Role::mass, Role::contact, Role::time, Role::reference};
+enum class Role { mass, contact, friction, time, reference };
+inline constexpr std::array all_roles = {Role::mass, Role::contact, Role::friction, Role::time, Role::reference};
 const char* role_name(Role role);
 
 /// The manual of a plugin, registered together with its factory so that it cannot drift. In its texts and those of its
@@ -61,6 +63,7 @@ class Registry {
  public:
   void add_mass(PluginManual manual, Maker<MassStrategy> make);
   void add_contact(PluginManual manual, Maker<ContactLaw> make);
+  void add_friction(PluginManual manual, Maker<FrictionLaw> make);
   void add_time(PluginManual manual, Maker<TimeScheme> make);
   void add_time(PluginManual manual, PlanFunction plan);
   void add_reference(PluginManual manual, Maker<ReferenceSolver> make);
@@ -70,6 +73,7 @@ class Registry {
 
   const Entry<MassStrategy>* mass(const std::string& name) const;
   const Entry<ContactLaw>* contact(const std::string& name) const;
+  const Entry<FrictionLaw>* friction(const std::string& name) const;
   const Entry<TimeScheme>* time(const std::string& name) const;
   const Entry<ReferenceSolver>* reference(const std::string& name) const;
   const PluginManual* manual(Role role, const std::string& name) const;
@@ -85,6 +89,7 @@ class Registry {
   void add(std::map<std::string, Entry<Interface>>& entries, Role role, PluginManual manual, Maker<Interface> make);
   std::map<std::string, Entry<MassStrategy>> mass_;
   std::map<std::string, Entry<ContactLaw>> contact_;
+  std::map<std::string, Entry<FrictionLaw>> friction_;
   std::map<std::string, Entry<TimeScheme>> time_;
   std::map<std::string, Entry<ReferenceSolver>> reference_;
   std::string current_file_;

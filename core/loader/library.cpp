@@ -91,6 +91,8 @@ const Entry<Interface>* entry_of(const Registry& registry, const std::string& na
     return registry.mass(name);
   else if constexpr (std::is_same_v<Interface, ContactLaw>)
     return registry.contact(name);
+  else if constexpr (std::is_same_v<Interface, FrictionLaw>)
+    return registry.friction(name);
   else if constexpr (std::is_same_v<Interface, TimeScheme>)
     return registry.time(name);
   else
@@ -266,6 +268,9 @@ Registry methods_of_manuals(const std::string& bytes, const fs::path& file) {
           break;
         case Role::contact:
           registry.add_contact(std::move(manual), loading<ContactLaw>(role, name, file));
+          break;
+        case Role::friction:
+          registry.add_friction(std::move(manual), loading<FrictionLaw>(role, name, file));
           break;
         case Role::time:
           registry.add_time(std::move(manual), loading<TimeScheme>(role, name, file));

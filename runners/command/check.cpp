@@ -103,6 +103,8 @@ std::vector<CheckResult> checked(const Registry& registry, Role role, const std:
       return checking::check_mass(*registry.mass(name), isolation);
     case Role::contact:
       return checking::check_law(*registry.contact(name), isolation);
+    case Role::friction:
+      return {};
     case Role::time:
       return checking::check_scheme(*registry.time(name), isolation);
     case Role::reference:

@@ -158,6 +158,11 @@ std::string facts_of(Role role, const PluginManual& manual, const Registry& regi
       return facts_of(manual, *registry.mass(manual.name)->make(parameters));
     case Role::contact:
       return facts_of(manual, *registry.contact(manual.name)->make(parameters), parameters);
+    case Role::friction: {
+      const double creep = registry.friction(manual.name)->make(parameters)->creeps(1);
+      return fmt::format("facts of {} with its default parameters:\n  a held point {}\n", manual.name,
+                         creep == 0 ? std::string("does not drift") : fmt::format("creeps by {:g} m/s at its bound", creep));
+    }
     case Role::time:
       return facts_of(manual, *registry.time(manual.name)->make(parameters));
     case Role::reference:

@@ -160,6 +160,8 @@ const char* role_phrase(Role role) {
       return "mass strategy";
     case Role::contact:
       return "contact law";
+    case Role::friction:
+      return "friction law";
     case Role::time:
       return "time scheme";
     case Role::reference:
