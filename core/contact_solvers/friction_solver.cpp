@@ -6,10 +6,10 @@
 namespace ricochet {
 namespace {
 
-constexpr double close_enough = 1e-15, accepted = 1e-12;
+constexpr double exact = 1e-15, accepted = 1e-12;
 // A pivot this small against its diagonal belongs to a row that depends on those before it.
 constexpr double dependent = 1e-13;
-constexpr int most_newton = 60, most_halvings = 12;
+constexpr int most_disc_steps = 60, most_cuts = 12;
 
 std::size_t place(int i) {
   return static_cast<std::size_t>(i);
@@ -47,13 +47,13 @@ DiscEffort disc_effort(const std::array<double, 3>& matrix, const std::array<dou
   };
   std::array<double, 2> p{part(0), part(1)};
   if (lambda == 0 && std::hypot(p[0], p[1]) <= bound) return {turned(p[0], p[1]), true};
-  for (int step = 0; step < most_newton; ++step) {
+  for (int step = 0; step < most_disc_steps; ++step) {
     const double size = std::hypot(p[0], p[1]);
     double slope = 0;
     for (const std::size_t i : {0, 1})
       if (values[i] + lambda > 0) slope += p[i] * p[i] / (values[i] + lambda);
     const double change = slope > 0 ? (size - bound) / bound * (size * size / slope) : 0.0;
-    if (!(change > close_enough * lambda)) break;
+    if (!(change > exact * lambda)) break;
     lambda += change;
     p = {part(0), part(1)};
   }
@@ -188,7 +188,7 @@ void FrictionSolver::move_together(const FrictionProblem& problem) {
   const double before = residual(problem);
   std::copy(effort_.begin(), effort_.end(), kept_.begin());
   double share = 1;
-  for (int halving = 0; halving < most_halvings; ++halving, share *= 0.5) {
+  for (int halving = 0; halving < most_cuts; ++halving, share *= 0.5) {
     for (int i = 0; i < size; ++i) {
       const Way& way = ways_[place(i)];
       for (int k = 0; k < way.count; ++k) effort_[place(way.row + k)] += share * way.along[place(k)] * right_[place(i)];
@@ -219,9 +219,9 @@ bool FrictionSolver::settle(const FrictionProblem& problem, int& sweeps) {
   for (int point = 0; point < problem.points; ++point) largest = std::max(largest, bound_[place(point)]);
   for (; sweeps < most_sweeps; ++sweeps) {
     const double change = sweep(problem);
-    if (problem.points == 1 || change <= close_enough * largest) return true;
+    if (problem.points == 1 || change <= exact * largest) return true;
     move_together(problem);
-    if (residual(problem) <= close_enough * largest) return true;
+    if (residual(problem) <= exact * largest) return true;
   }
   return residual(problem) <= accepted * largest;
 }
