@@ -81,7 +81,10 @@ inline ProgramOrRefusal compiled(const std::shared_ptr<const SemiDiscrete>& prob
   auto plan = plan_of(methods.time, h, problem_facts(*problem, *law));
   if (auto* refusal = std::get_if<Refusal>(&plan)) return *refusal;
   const LaneSpec lane = scene_lane(*problem, complete(entry->manual.parameters, methods.contact.values));
-  return compile(problem, std::get<StepPlan>(plan), h, std::move(law), lanes(lane), options);
+  CompileOptions chosen = options;
+  if (!problem->rubbing.empty() && !chosen.make_friction)
+    chosen.make_friction = [] { return make(registry().friction("coulomb"), {"coulomb"}); };
+  return compile(problem, std::get<StepPlan>(plan), h, std::move(law), lanes(lane), chosen);
 }
 
 inline Marcher marcher(const SceneSpec& scene, int elements, const Methods& methods, double h,

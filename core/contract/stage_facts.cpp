@@ -218,6 +218,54 @@ int find_increment(const DerivedPlan& derived) {
 
 }  // namespace
 
+namespace {
+
+// What c is after the stage, over what is before it.
+Combination after_stage(const Combination& c, const Stage& stage) {
+  Combination out;
+  out.slots.assign(stage.update.size(), 0.0);
+  for (std::size_t j = 0; j < c.slots.size(); ++j) {
+    const Combination& row = stage.update[j];
+    for (std::size_t i = 0; i < row.slots.size(); ++i) out.slots[i] += c.slots[j] * row.slots[i];
+    out.z += c.slots[j] * row.z;
+    out.w += c.slots[j] * row.w;
+  }
+  return out;
+}
+
+EndRate end_rate_of(const DerivedPlan& derived, const Stage& stage, const StageFacts& facts, const Uniform& motion) {
+  const auto is_rate = [&](const Combination& c) {
+    return (c.z != 0 || c.w != 0) && is_zero(motion.weight(c) * derived.h) && is_zero(motion.rate(c) - 1);
+  };
+  if (stage.impact && stage.impact->gate && is_rate(stage.impact->value))
+    return {stage.impact->value, stage.impact->bound, {}};
+  const double length = (facts.to - facts.from) * derived.h;
+  const Levels mean = {{facts.to, 1 / length}, {facts.from, -1 / length}};
+  if (const Combination velocity = after_stage(derived.plan.velocity, stage); is_rate(velocity)) {
+    if (derived.velocity_offset != 0 && length != 0) return {velocity, {}, mean};
+    return {velocity, {{facts.to, 1}}, {}};
+  }
+  if (const auto& implicit = stage.at(Evaluation::implicit_end); implicit && is_rate(implicit->rate))
+    return {implicit->rate, implicit->rate_bound, {}};
+  Combination way = facts.increment;
+  for (double& weight : way.slots) weight /= length;
+  way.z /= length;
+  way.w /= length;
+  if (length != 0 && is_rate(way)) return {way, {}, mean};
+  return {};
+}
+
+void add_end_rates(const DerivedPlan& derived, const std::vector<Stage>& stages, Uniform motion,
+                   std::vector<StageFacts>& facts) {
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    motion.measure(stages[k]);
+    facts[k].end_rate = end_rate_of(derived, stages[k], facts[k], motion);
+    motion.pass(stages[k]);
+  }
+}
+
+}  // namespace
+
 double step_of(const StepPlan& plan) {
   return has_inertia(plan) ? Uniform(plan).h() : 0.0;
 }
@@ -247,6 +295,8 @@ DerivedPlan derive(StepPlan plan) {
   derived.velocity_offset = momentum_place(plan, derived.h, last_step);
   derived.plan = std::move(filled);
   derived.increment_slot = find_increment(derived);
+  add_end_rates(derived, derived.plan.start, Uniform(bare, derived.h), derived.start);
+  add_end_rates(derived, derived.plan.stages, Uniform(plan), derived.stages);
   return derived;
 }
 

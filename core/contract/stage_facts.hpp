@@ -8,12 +8,26 @@
 /// stage: when it stands, what it moves the position by, its levels of stops. Momenta: momentum_weights.hpp.
 namespace ricochet {
 
+/// The rate at the end of a stage over the slots before it and its unknowns, m/s. What a surface does, X(t), stands in it
+/// as Σ w X'(t + c h) + Σ v X(t + c h).
+struct EndRate {
+  Combination rate;  ///< 1 on a mass at 1 m/s, 0 at rest
+  Levels speeds;     ///< (c, w)
+  Levels places;     ///< (c, v), v in 1/s: of rates that are means over the stage
+
+  /// Whether there is one, which the stage's own effort moves.
+  bool known() const { return rate.z != 0 || rate.w != 0; }
+};
+
 /// One stage. Times are in steps, from the time when the step begins.
 struct StageFacts {
   double from = 0, to = 1;  ///< where the position stands before and after the stage
   /// When contact is asked: `to` where the stage moves the position, else the latest level of its stop.
   double instant = 1;
   Combination increment;  ///< position after − position before, without cancellation
+  /// The first of these that is one and that z or w moves: what a gate closes, the plan's velocity after the stage, the
+  /// rate of the implicit evaluation, the mean over what the position moves by. Friction opposes it.
+  EndRate end_rate;
 };
 
 /// A plan with what was left to be derived filled in, and the facts of its stages.

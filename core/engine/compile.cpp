@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ricochet/contract/friction_facts.hpp>
 #include <ricochet/contract/momentum_weights.hpp>
 #include <ricochet/contract/said_format.hpp>
 #include <ricochet/engine/compile.hpp>
@@ -13,6 +14,9 @@
 
 namespace ricochet {
 namespace {
+
+constexpr const char* friction_remedy =
+    "Use moreau-jean, newmark-dumont-paoli, generalised-alpha, or newmark with γ above 0.5";
 
 // Lanes share the problem, and a law that changed it with its parameters.
 std::optional<Refusal> meet_law(ContactLaw& law, const SemiDiscrete& problem, const std::vector<LaneSpec>& lanes) {
@@ -96,6 +100,23 @@ std::optional<Refusal> read_impulse(StageProgram& program, const Stage& stage, c
   return std::nullopt;
 }
 
+// Efforts of friction as those of the law: where w brings them, by the same columns.
+std::optional<Refusal> read_friction(StageProgram& program, const StageEffort& normal) {
+  const Combination& end = program.facts.end_rate.rate;
+  program.friction_weight = friction_weight(normal);
+  if (!program.impulse.op) {
+    program.friction_reach = end.z;
+    return std::nullopt;
+  }
+  const double y = program.impulse.measure_z, w = program.impulse.measure_w;
+  if (std::abs(end.z * w - end.w * y) > 1e-12 * (std::abs(end.z * w) + std::abs(end.w * y)))
+    return Refusal{
+        "the time scheme's impulse moves the rate at the end of the step otherwise than what contact measures, and "
+        "friction reads that rate: use another scheme"};
+  program.friction_reach = y != 0 ? end.z / y : end.w / w;
+  return std::nullopt;
+}
+
 std::optional<Refusal> fill(StageProgram& program, const Stage& stage, const Program& whole) {
   const std::size_t slots = whole.plan.slots.size();
   program.folded = fold(stage, whole.problem->damping, static_cast<int>(slots));
@@ -103,6 +124,8 @@ std::optional<Refusal> fill(StageProgram& program, const Stage& stage, const Pro
     if (auto refusal = read_contact(program, stage, *whole.law, slots)) return refusal;
   if (stage.impulse && program.reads_contact)
     if (auto refusal = read_impulse(program, stage, whole)) return refusal;
+  if (whole.friction && program.reads_contact)
+    if (auto refusal = read_friction(program, {program.effort, program.impulse.weight})) return refusal;
   const auto phase = [&](const Levels& levels) {
     return PhaseWeights(levels, whole.problem->support.pulsation, whole.h);
   };
@@ -187,6 +210,14 @@ void say_what_is_left_out(Program& program) {
   if (program.tangents == 0) say("tangent columns", "no exponent is asked for");
 }
 
+// Efforts of friction as those of a law that weights none of before.
+StageEfforts friction_read(const std::vector<StageProgram>& stages) {
+  StageEfforts efforts(stages.size());
+  for (std::size_t k = 0; k < stages.size(); ++k)
+    if (stages[k].reads_contact) efforts[k] = {{stages[k].friction_weight}, stages[k].impulse.weight};
+  return efforts;
+}
+
 StageEfforts efforts_read(const std::vector<StageProgram>& stages) {
   StageEfforts efforts(stages.size());
   for (std::size_t k = 0; k < stages.size(); ++k)
@@ -205,6 +236,25 @@ std::vector<double> work_efforts(const WorkForm& work, std::size_t stage, const 
   }
   if (efforts[stage].impulse != 0) weights[0] += work.impulse * efforts[stage].impulse;
   return weights;
+}
+
+// What an effort of friction of each stage is worth.
+void add_friction_facts(Program& program) {
+  const StageEfforts efforts = friction_read(program.stages), start = friction_read(program.start);
+  const EffortMomenta momenta = effort_momenta(program.plan, start, efforts);
+  const auto add = [&](std::vector<StageProgram>& stages, const std::vector<Stage>& plan, const StageEfforts& read,
+                       const std::vector<double>& worth, bool cyclic) {
+    for (std::size_t k = 0; k < stages.size(); ++k) {
+      if (!stages[k].reads_contact) continue;
+      stages[k].friction_momentum = worth[k];
+      if (const auto& work = plan[k].work)
+        stages[k].friction_work = work_efforts(*work, k, read, cyclic);
+      else if (!cyclic)
+        stages[k].friction_work = {momentum_at_once(program.plan, plan[k]) * stages[k].friction_weight};
+    }
+  };
+  add(program.stages, program.plan.stages, efforts, momenta.stages, true);
+  add(program.start, program.plan.start, start, momenta.start, false);
 }
 
 // What an effort of each stage is worth, and which stages share a contact instant.
@@ -259,12 +309,36 @@ LaneSpec scene_lane(const SemiDiscrete& problem, const Parameters& law) {
   return lane;
 }
 
+namespace {
+
+// A damper acts without stops.
+bool meets_contact(const SemiDiscrete& problem, const ContactLaw& law) {
+  const auto damper = [](const RubbingPoint& one) { return one.normal_force.has_value(); };
+  return problem.points() > 0 &&
+         (!law.absent() || std::any_of(problem.rubbing.begin(), problem.rubbing.end(), damper));
+}
+
+// The friction law, or why the plan has none.
+std::optional<Refusal> meet_friction(Program& program, const DerivedPlan& derived, const CompileOptions& options) {
+  if (program.problem->rubbing.empty() || !program.contact) return std::nullopt;
+  if (program.tangents > 0)
+    return Refusal{"friction has no tangents here: exponents of what rubs are those of twins"};
+  if (!options.make_friction) return Refusal{"friction is not marched here: leave the friction of the stops out"};
+  const FrictionFacts facts = friction_facts(derived, program.law->reads());
+  if (!facts.why_none.empty())
+    return Refusal{"friction does not run under this time scheme: " + facts.why_none + ". " + friction_remedy};
+  program.friction = options.make_friction();
+  return std::nullopt;
+}
+
+}  // namespace
+
 ProblemFacts problem_facts(const SemiDiscrete& problem, const ContactLaw& law) {
   ProblemFacts facts;
   facts.dofs = problem.dofs();
   facts.mass_kernel_dimension = problem.inertia.kernel_dimension;
   facts.damped = problem.damped();
-  facts.contact = problem.points() > 0 && !law.absent();
+  facts.contact = meets_contact(problem, law);
   return facts;
 }
 
@@ -272,10 +346,10 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
                          std::unique_ptr<ContactLaw> law, std::vector<LaneSpec> lanes, const CompileOptions& options) {
   if (const auto wrong = check_plan(plan, h)) throw std::logic_error("ill-formed plan: " + *wrong);
   if (lanes.empty()) throw std::logic_error("a program needs at least one lane");
-  DerivedPlan derived = derive(std::move(plan));
+  const DerivedPlan derived = derive(std::move(plan));
   Program program;
   program.problem = problem;
-  program.plan = std::move(derived.plan);
+  program.plan = derived.plan;
   program.h = h;
   program.velocity_offset = derived.velocity_offset;
   program.increment_slot = derived.increment_slot;
@@ -302,7 +376,8 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   program.width = lane_width(static_cast<int>(lanes.size()) * (1 + program.tangents));
   program.support = options.moving_support;
   program.lanes = std::move(lanes);
-  program.contact = problem->points() > 0 && !program.law->absent();
+  program.contact = meets_contact(*problem, *program.law);
+  if (auto refusal = meet_friction(program, derived, options)) return *refusal;
   for (const LaneSpec& lane : program.lanes) program.support = program.support || lane.amplitude != 0;
   program.load = problem->load && !problem->load->absent();
   program.load_constant = program.load && problem->load->constant_in_time();
@@ -365,6 +440,7 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   }
   connect_works(program);
   if (auto refusal = add_contact_facts(program)) return *refusal;
+  if (program.friction) add_friction_facts(program);
   if (program.kind == OperatorKind::band && mass_only && problem->inertia.assembled()) {
     bool diagonal = true;
     const SparseMatrix& mass = problem->inertia.mass;

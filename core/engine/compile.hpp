@@ -1,6 +1,8 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <ricochet/contract/contact_law.hpp>
+#include <ricochet/contract/friction_law.hpp>
 #include <ricochet/contract/stage_facts.hpp>
 #include <ricochet/contract/step_plan.hpp>
 #include <ricochet/engine/march_model.hpp>
@@ -46,6 +48,8 @@ struct CompileOptions {
   MarchWay march = MarchWay::every_step;
   bool bounded = true;                ///< a lane beyond its energy bound is stopped
   std::optional<double> memory = {};  ///< bytes that may be taken for leaving out steps; none: what there is
+  /// The friction law, where points rub; null: such a problem is refused.
+  std::function<std::unique_ptr<FrictionLaw>()> make_friction = {};
 };
 
 /// What the facts of a scheme need to know about a problem.
@@ -79,6 +83,10 @@ struct StageProgram {
   /// p̄ of the work form over p, p₋₁, …: its weights and those of the equations. Of a start rule without work form, the
   /// momentum that p gives within it.
   std::vector<double> work_effort;
+  /// Of friction where points rub: what one of its efforts weighs in the equation, what an effort moves the end rate by
+  /// over what the columns say, p̄ of the work form, and the momentum of 1 N, s.
+  double friction_weight = 0, friction_reach = 0, friction_momentum = 0;
+  std::vector<double> friction_work;
   std::optional<VelocityGate> gate;
   std::optional<ComplianceMeasure> compliance;  ///< the one the law reads, with its rate
   PhaseWeights load_phase, measure_phase, rate_phase, before_phase, predictor_phase, approach_phase, motion_phase;
@@ -98,6 +106,7 @@ struct Program {
   double velocity_offset = 0;  ///< where plan.velocity stands after a step, in steps
   int increment_slot = -1;     ///< the slot that holds what the position moved by in the last stage; −1: none
   std::unique_ptr<ContactLaw> law;
+  std::unique_ptr<FrictionLaw> friction;  ///< null: nothing rubs
   std::vector<LaneSpec> lanes;
   int width = 1;     ///< T
   int tangents = 0;  ///< tangent columns per lane, behind the lanes

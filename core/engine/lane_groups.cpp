@@ -43,13 +43,17 @@ bool same_motions(const SupportMotions& a, const SupportMotions& b) {
   return true;
 }
 
+bool same_rows(const SparseRows& a, const SparseRows& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() && (a.rows() == 0 || (a - b).squaredNorm() == 0);
+}
+
 bool same_problem(const SemiDiscrete& a, const SemiDiscrete& b) {
   return a.dofs() == b.dofs() && a.points() == b.points() && same_matrix(a.stiffness, b.stiffness) &&
          same_matrix(a.inertia.mass, b.inertia.mass) && same_matrix(a.inertia.coupling, b.inertia.coupling) &&
          same_matrix(a.inertia.velocity_mass, b.inertia.velocity_mass) &&
          same_matrix(a.inertia.inverse, b.inertia.inverse) && a.damping == b.damping &&
          a.support.pulsation == b.support.pulsation && a.contact_x == b.contact_x && a.stops == b.stops &&
-         a.own == b.own && same_load(a, b) && same_motions(a.motions, b.motions);
+         a.own == b.own && a.rubbing == b.rubbing && same_rows(a.rubbed.rows, b.rubbed.rows) && same_load(a, b) && same_motions(a.motions, b.motions);
 }
 
 // A load is a formula, which keeps what it works with inside: every program that may run beside others has its own.
@@ -84,6 +88,7 @@ LaneGroups::~LaneGroups() = default;
 // A program of one lane that leaves out steps, where one is wanted and expected to cost less than a lane among eight.
 bool LaneGroups::try_flights(const LaneCandidate& candidate, Group& group) const {
   CompileOptions options;
+  options.make_friction = candidate.make_friction;
   options.march = MarchWay::flights;
   options.moving_support = true;
   options.expected_steps = long_march;
@@ -115,7 +120,7 @@ bool LaneGroups::flies() const {
 int LaneGroups::add(LaneCandidate candidate) {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const LaneCandidate& known = groups_[g]->scene;
-    if (known.h == candidate.h && known.law == candidate.law && known.scheme == candidate.scheme &&
+    if (known.h == candidate.h && known.law == candidate.law && known.friction == candidate.friction && known.scheme == candidate.scheme &&
         same_problem(*known.problem, *candidate.problem))
       return static_cast<int>(g);
   }
@@ -125,6 +130,7 @@ int LaneGroups::add(LaneCandidate candidate) {
   const bool flights = way_ != MarchWay::every_step && (first || flies());
   if (!flights || !try_flights(candidate, *group)) {
     CompileOptions options;
+    options.make_friction = candidate.make_friction;
     options.kind = first ? OperatorKind::automatic : groups_.front()->kind;
     options.moving_support = true;
     options.expected_steps = long_march;
@@ -167,6 +173,7 @@ double LaneGroups::predicted_step_seconds(int group, int lanes) const {
 Program LaneGroups::program(int group, std::vector<LaneSpec> lanes, int tangents) const {
   const Group& one = *groups_[static_cast<std::size_t>(group)];
   CompileOptions options;
+  options.make_friction = one.scene.make_friction;
   options.kind = one.kind;
   options.moving_support = one.scene.problem->support.pulsation != 0;
   options.tangents = tangents;

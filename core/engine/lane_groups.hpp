@@ -18,6 +18,8 @@ struct LaneCandidate {
   std::map<std::string, ParameterValue> scheme;  ///< its parameters
   std::map<std::string, ParameterValue> law;     ///< those that all lanes share
   std::function<std::unique_ptr<ContactLaw>()> make_law;
+  std::function<std::unique_ptr<FrictionLaw>()> make_friction = {};  ///< null: nothing rubs
+  std::map<std::string, ParameterValue> friction = {};               ///< its parameters
 };
 
 /// Scenes sorted into groups that march as lanes of one factorisation: same matrices, same step, same scheme and law.

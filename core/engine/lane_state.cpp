@@ -7,6 +7,7 @@
 #include <ricochet/engine/energy_bounds.hpp>
 #include <ricochet/engine/flight/lane_flight.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/engine/stage_friction.hpp>
 #include <ricochet/engine/stage_state.hpp>
 #include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/scene/stop_parameters.hpp>
@@ -66,6 +67,7 @@ void Marcher::prepare_law() {
     parameters.push_back(program_.lanes[static_cast<std::size_t>(std::min(lane, lanes() - 1))].law);
   const int points = program_.problem->points();
   ricochet::prepare_law(*program_.law, points, parameters, program_.problem->own);
+  if (program_.friction) program_.friction->prepare(static_cast<int>(program_.problem->rubbing.size()), program_.problem->rubbed.count(), {});
   const int kept = program_.law->memory_per_point();
   if (kept > 0 && memory_.rows() == 0) memory_ = Block(points * kept, program_.width);
   circles_.prepare(points, program_.width, program_.problem->circles(), kept);
@@ -88,6 +90,7 @@ LaneState Marcher::state_at(int column) const {
     if (stage->fastest.rows() > 0) state.fastest.push_back(stage->fastest.at(0, column));
   }
   for (int i = 0; i < memory_.rows(); ++i) state.memory.push_back(memory_.at(i, column));
+  for (int i = 0; rubbing_ && i < rubbing_->sticks.rows(); ++i) state.memory.push_back(rubbing_->sticks.at(i, column));
   return state;
 }
 
@@ -112,6 +115,7 @@ void Marcher::set_state_at(int column, const LaneState& state) {
   }
   const double* memory = state.memory.data();
   for (int i = 0; i < memory_.rows(); ++i) memory_.at(i, column) = *memory++;
+  for (int i = 0; rubbing_ && i < rubbing_->sticks.rows(); ++i) rubbing_->sticks.at(i, column) = *memory++;
   combined_for_ = nullptr;
   if (lane_flight_) lane_flight_->forget_contact();
 }
@@ -236,6 +240,7 @@ void Marcher::freeze(int lane, const LaneEnd& end) {
   }
   clamp_.stop(lane);
   for (int i = 0; i < memory_.rows(); ++i) memory_.at(i, lane) = 0;
+  for (int i = 0; rubbing_ && i < rubbing_->sticks.rows(); ++i) rubbing_->sticks.at(i, lane) = 0;
   for (int i = 0; i < lower_.rows(); ++i) {
     lower_.at(i, lane) = -infinity;
     upper_.at(i, lane) = infinity;
@@ -270,6 +275,9 @@ Said told(const LaneEnd& end) {
       if (end.count == 0) return said("the contact law found no solution (residual {:.3g})", end.value);
       return said("the contact law did not converge (residual {:.3g} after {} iterations)", end.value,
                          end.count);
+    case EndCause::friction_not_found:
+      return said("friction and normal force were not found together (residual {:.3g} after {} turns)", end.value,
+                  end.count);
     case EndCause::state_not_finite:
       return said("the state is not finite (lanes are checked every {} steps)", end.count);
     case EndCause::elastic_energy_beyond:

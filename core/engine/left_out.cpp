@@ -28,6 +28,7 @@ Refusal refuse_flight(const std::string& cause) {
 
 std::string why_grounded(const Program& program, const CompileOptions& options) {
   if (program.lanes.size() > 1) return "several lanes march as one block";
+  if (program.friction) return "a stop that rubs is marched";
   if (program.load && !program.load_constant) return "the load depends on time";
   if (!program.problem->motions.empty()) return "supports or stops move by histories";
   if (program.problem->damping.own()) return "the damping is not made of K and M";

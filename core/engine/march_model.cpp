@@ -44,6 +44,14 @@ Eigen::MatrixXd RowMatrix::dense(int columns) const {
   return matrix;
 }
 
+RowMatrix RowMatrix::behind(const RowMatrix& other) const {
+  RowMatrix all = other;
+  for (std::size_t i = 1; i < start.size(); ++i) all.start.push_back(other.start.back() + start[i]);
+  all.index.insert(all.index.end(), index.begin(), index.end());
+  all.value.insert(all.value.end(), value.begin(), value.end());
+  return all;
+}
+
 RowMatrix RowMatrix::from(const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix) {
   RowMatrix rows;
   for (int i = 0; i < matrix.rows(); ++i) {
@@ -66,6 +74,9 @@ MarchModel::MarchModel(std::shared_ptr<const SemiDiscrete> problem, bool modal)
   contact_ = in_model(p.contact);
   if (p.changed_by_law()) measured_ = in_model(p.law_rows);
   tip_ = in_model(p.tip);
+  if (p.rubbing.empty()) return;
+  rubbed_ = in_model(p.rubbed.rows);
+  pushed_ = rubbed_.behind(measured());
 }
 
 void MarchModel::find_modes() {

@@ -27,6 +27,8 @@ struct RowMatrix {
     if (!matrix.isCompressed()) throw std::logic_error("a matrix that is not compressed has no rows to read");
     return {static_cast<int>(matrix.rows()), matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr()};
   }
+  /// The rows of another, and these behind them.
+  RowMatrix behind(const RowMatrix& other) const;
   /// With so many columns.
   Eigen::MatrixXd dense(int columns) const;
   static RowMatrix from(const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix);
@@ -50,6 +52,9 @@ class MarchModel {
   /// H, where the contact points are; and what the law measures and pushes along, H too unless it changed the problem.
   const RowMatrix& contact() const { return contact_; }
   const RowMatrix& measured() const { return problem_->changed_by_law() ? measured_ : contact_; }
+  /// T, along which points rub; and all rows along which efforts push, measured() first.
+  const RowMatrix& rubbed() const { return rubbed_; }
+  const RowMatrix& pushed() const { return rubbed_.rows() > 0 ? pushed_ : measured(); }
   const RowMatrix& tip() const { return tip_; }
   /// Rows on q as rows on these coordinates.
   RowMatrix in_model(const SparseRows& rows) const;
@@ -77,7 +82,7 @@ class MarchModel {
   int rows_ = 0;
   SparseMatrix stiffness_;  // of modes
   Inertia inertia_;
-  RowMatrix contact_, measured_, tip_;
+  RowMatrix contact_, measured_, tip_, rubbed_, pushed_;
   Eigen::VectorXd shape_;
 };
 

@@ -5,6 +5,7 @@
 #include <ricochet/engine/march_loads.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/mode_run.hpp>
+#include <ricochet/engine/stage_friction.hpp>
 #include <ricochet/engine/stage_state.hpp>
 #include <ricochet/kernels/band_ldlt.hpp>
 #include <ricochet/kernels/floating_point.hpp>
@@ -43,9 +44,11 @@ Marcher::Marcher(Program program)
   outcome_.resize(static_cast<std::size_t>(T));
   status_.resize(program_.lanes.size());
   touched_.reserve(static_cast<std::size_t>(T));
+  if (program_.friction) rubbing_ = std::make_unique<StageFriction>(program_);
+  const int pushed = points + (program_.friction ? model.rubbed().rows() : 0);
   pushed_.reserve(static_cast<std::size_t>(points));
-  pushing_.reserve(static_cast<std::size_t>(points));
-  pushes_.resize(static_cast<std::size_t>(points));
+  pushing_.reserve(static_cast<std::size_t>(pushed));
+  pushes_.resize(static_cast<std::size_t>(pushed));
   scratch_.resize(static_cast<std::size_t>(rows + points));
   if (program_.contact) {
     lower_ = Block(points, T);
@@ -129,9 +132,15 @@ std::unique_ptr<StageState> Marcher::make_state(StageProgram& stage, const Stage
     state->impulse = std::make_unique<StageImpulse>(stage.impulse, *stage.op, model);
     state->w = Block(model.rows(), T);
   }
-  state->effort.emplace_back(points, T);
+  const int pushed = points + (program_.friction ? model.rubbed().rows() : 0);
+  state->effort.emplace_back(pushed, T);
   state->free = Block(points, T);
-  if (stage.effort.size() > 1 || stage.effort[0] != 1.0) state->weighted = Block(points, T);
+  if (stage.effort.size() > 1 || stage.effort[0] != 1.0 || (program_.friction && stage.friction_weight != 1.0))
+    state->weighted = Block(pushed, T);
+  if (program_.friction) {
+    state->end_rate = Block(model.rubbed().rows(), T);
+    state->end_rate_weights = with_z(stage.facts.end_rate.rate);
+  }
   state->measure_weights = with_z(stage.measure);
   if (program_.tangents > 0) state->tangents.reserve(points);
   if (stage.compliance && program_.law->reads_rate()) {
@@ -345,16 +354,16 @@ bool Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
 }
 
 // The points with an effort, in any lane.
-void Marcher::find_pushed(const Block& effort, std::vector<int>& points) {
+void Marcher::find_pushed(const Block& effort, int rows, std::vector<int>& points) {
   points.clear();
   const int T = effort.lanes();
   if (T == 1) {
     const double* p = effort.data();
-    for (int i = 0; i < effort.rows(); ++i)
+    for (int i = 0; i < rows; ++i)
       if (p[i] != 0) points.push_back(i);
     return;
   }
-  for (int i = 0; i < effort.rows(); ++i) {
+  for (int i = 0; i < rows; ++i) {
     const double* p = effort.row(i);
     if (std::any_of(p, p + T, [](double x) { return x != 0; })) points.push_back(i);
   }
@@ -370,6 +379,7 @@ StageView Marcher::view_of(bool starting, std::size_t index, const StageState& s
   view.slots = slot_pointers_.data();
   if (!state.delassus) return view;
   view.outcome = outcome_.data();
+  if (rubbing_) view.friction = rubbing_.get();
   view.free = state.free.data();
   return view;
 }
@@ -391,7 +401,7 @@ void Marcher::show(StageState& state, const double* z) {
     view.touched_lanes = state.touched_lanes;
     view.contact_lanes = state.contact_lanes;
     pushed_.clear();
-    if (state.contact_lanes != 0) find_pushed(state.effort[0], pushed_);
+    if (state.contact_lanes != 0) find_pushed(state.effort[0], lower_.rows(), pushed_);
     view.pushed = pushed_;
   }
   for (StepObserver* one : observers_) one->stage_solved(*this, view);

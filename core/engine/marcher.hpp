@@ -19,7 +19,7 @@ struct LaneState {
   std::vector<double> slots;    ///< slot by slot
   std::vector<double> efforts;  ///< per stage its p, and those of steps before where the plan weights them
   std::vector<double> fastest;  ///< per stage with a gate: the largest speed seen at its stops, m/s
-  std::vector<double> memory;   ///< of the law, per point
+  std::vector<double> memory;   ///< of the law, per point; then of each point that rubs whether it sticks
 };
 
 /// Why the integration of a lane ended.
@@ -28,6 +28,7 @@ enum class EndCause {
   position_not_finite,    ///< the displacement at a contact point
   effort_not_finite,      ///< that a contact law found
   law_not_converged,      ///< value: residual, in units of the measure, ∞: no finite force; count: iterations made
+  friction_not_found,     ///< value: residual over the largest effort; count: turns of law and friction
   state_not_finite,       ///< count: steps between two checks of the state
   elastic_energy_beyond,  ///< value: ½wᵀKw, J; bound, J: factor times the scene's own scale
   energy_not_finite,      ///< of an audit
@@ -47,7 +48,10 @@ struct LaneEnd {
   explicit operator bool() const { return cause != EndCause::none; }
   /// Whether the step itself could not be made: then the integration has failed. Otherwise it went where no motion of
   /// the scene goes: it has diverged.
-  bool failed() const { return cause == EndCause::law_not_converged || cause == EndCause::process_ended; }
+  bool failed() const {
+    return cause == EndCause::law_not_converged || cause == EndCause::friction_not_found ||
+           cause == EndCause::process_ended;
+  }
   bool operator==(const LaneEnd&) const = default;
 };
 
@@ -69,6 +73,7 @@ class LaneFlight;
 class LoadWindow;
 struct ModeRunBlocks;
 struct StageState;
+struct StageFriction;
 
 /// The one time loop. Allocates in its constructor only.
 class Marcher {
@@ -209,7 +214,7 @@ class Marcher {
   void tell_free_steps();
   void free_step(StageProgram& program, const Stage& plan, StageState& state);
   void combine_for(const StageProgram& program);
-  static void find_pushed(const Block& effort, std::vector<int>& points);
+  static void find_pushed(const Block& effort, int rows, std::vector<int>& points);
   StageView view_of(bool starting, std::size_t index, const StageState& state) const;
   void show(StageState& state, const double* z);
 
@@ -227,9 +232,10 @@ class Marcher {
   void jump(StageState& state, double* z);
   void add_jump(StageState& state);
   void choose_touched(StageState& state, std::uint32_t mask);
-  void solve_law(const StageProgram& program, StageState& state);
+  void solve_law(const StageProgram& program, StageState& state, std::span<const int> touched);
   void restore_work(const StageProgram& program, StageState& state);
   void measure_way(const StageProgram& program, StageState& state, const double* z);
+  void find_efforts(const StageProgram& program, StageState& state, const double* z);
   void keep_contact(StageState& state);
   // What the law reads before any effort.
   std::uint32_t measure_contact(StageProgram& program, StageState& state, const double* z);
@@ -237,6 +243,16 @@ class Marcher {
                     const double* offset, double* out);
   void add_motions(const Levels& levels, bool rate, Block& out) const;
   void open_gates(StageProgram& program, StageState& state, std::span<const double* const> terms);
+
+  // stage_friction.cpp: efforts along surfaces that rub.
+  void rub(const StageProgram& program, StageState& state, const double* z);
+  void rub_lane(const StageProgram& program, StageState& state, int lane);
+  void measure_end_rates(const StageProgram& program, StageState& state, const double* z);
+  double normal_force(const StageProgram& program, const StageState& state, int point, int lane) const;
+  LaneOutcome find_friction(const StageProgram& program, StageState& state, int lane, bool first);
+  double moved_by_friction(StageState& state, const std::vector<double>& efforts, int point);
+  bool friction_moves_normals(StageState& state, double reach, int lane);
+  static DelassusColumns& columns_of(StageState& state);
 
   // effort_history.cpp: efforts of stages and steps before.
   void connect_efforts();
@@ -279,6 +295,7 @@ class Marcher {
   Block memory_;                                 // of the law, points × T for each number that it keeps
   std::vector<int> touched_, pushed_, pushing_;  // lanes looked at; points with an effort, as shown and as corrected
   std::vector<unsigned char> pushes_;            // of each point, whether some lane has one
+  std::unique_ptr<StageFriction> rubbing_;       // null: nothing rubs
   std::vector<LaneOutcome> outcome_;
   std::vector<LaneStatus> status_;
   std::uint32_t frozen_now_ = 0;  // lanes that froze since the last update of the slots

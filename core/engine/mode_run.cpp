@@ -11,7 +11,7 @@
 namespace ricochet {
 
 bool Marcher::may_run() const {
-  if (program_.flight || program_.load || stage_states_.size() != 1) return false;
+  if (program_.flight || program_.load || program_.friction || stage_states_.size() != 1) return false;
   const StageState& state = *stage_states_.front();
   const StageProgram& program = program_.stages.front();
   return state.test && state.increments && !state.impulse && program.op->modes() && program.effort[0] == 1.0 &&
@@ -47,7 +47,7 @@ void Marcher::drive_run(int steps) {
 bool Marcher::push_in_run() {
   StageState& state = *stage_states_.front();
   choose_touched(state, run_->kernel.outside | state.contact_lanes);
-  solve_law(program_.stages.front(), state);
+  solve_law(program_.stages.front(), state, touched_);
   keep_contact(state);
   run_->kernel.effort = state.contact_lanes != 0 ? state.effort[0].data() : nullptr;
   if (run_->kernel.effort && !run_->kernel.column) {

@@ -58,7 +58,7 @@ std::array<bool, 2> Marcher::pushed_by(int lane) const {
   for (std::size_t k = stage_states_.size(); k-- > 0;) {
     const StageState& stage = *stage_states_[k];
     if (!stage.delassus) continue;
-    for (int i = 0; i < stage.effort[0].rows(); ++i) {
+    for (int i = 0; i < lower_.rows(); ++i) {
       sides[0] = sides[0] || stage.effort[0].at(i, lane) > 0;
       sides[1] = sides[1] || stage.effort[0].at(i, lane) < 0;
     }

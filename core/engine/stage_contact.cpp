@@ -6,6 +6,7 @@
 #include <ricochet/contact_solvers/box_problem.hpp>
 #include <ricochet/engine/flight/lane_flight.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/engine/stage_friction.hpp>
 #include <ricochet/engine/stage_state.hpp>
 #include <ricochet/kernels/flight_kernels.hpp>
 #include <ricochet/kernels/floating_point.hpp>
@@ -109,7 +110,7 @@ std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state,
   const bool gated = program.gate.has_value();
   if (gated) {
     open_gates(program, state, slots);
-    if (state.closed_lanes == 0 && state.contact_lanes == 0) return 0;
+    if (state.closed_lanes == 0 && state.contact_lanes == 0 && !(rubbing_ && rubbing_->always != 0)) return 0;
     if (state.closed_lanes == 0) {
       state.gate_lower.fill(-infinity);
       state.gate_upper.fill(infinity);
@@ -182,25 +183,41 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
   state.jumped = false;
   remember_efforts(program, state, z);
   state.touched_lanes = 0;
-  const std::uint32_t mask = measure_contact(program, state, z) | state.contact_lanes;
+  std::uint32_t mask = measure_contact(program, state, z) | state.contact_lanes;
+  if (rubbing_) mask |= rubbing_->always;
   if (mask == 0) return;
   choose_touched(state, mask);
   if (state.restored)
     restore_work(program, state);
   else
-    solve_law(program, state);
+    find_efforts(program, state, z);
   keep_contact(state);
   if (program_.tangents > 0) tangent_contact(program, state, z);
   if (state.impulse) {
     if (state.contact_lanes != 0) jump(state, z);
-  } else if (program.effort[0] == 1.0) {
+  } else if (program.effort[0] == 1.0 && !(rubbing_ && program.friction_weight != 1.0)) {
     if (state.contact_lanes != 0) correct(state, state.effort[0].data(), pushing_, z);
-  } else if (program.effort[0] != 0 && state.contact_lanes != 0) {
-    const auto size = state.effort[0].size();
-    for (std::size_t e = 0; e < size; ++e) state.weighted.data()[e] = program.effort[0] * state.effort[0].data()[e];
+  } else if ((program.effort[0] != 0 || rubbing_) && state.contact_lanes != 0) {
+    const std::size_t size = state.effort[0].size(),
+                      own = static_cast<std::size_t>(lower_.rows()) * static_cast<std::size_t>(program_.width);
+    for (std::size_t e = 0; e < own; ++e) state.weighted.data()[e] = program.effort[0] * state.effort[0].data()[e];
+    for (std::size_t e = own; e < size; ++e)
+      state.weighted.data()[e] = program.friction_weight * state.effort[0].data()[e];
     correct(state, state.weighted.data(), pushing_, z);
   }
   if (state.way.rows() > 0 && state.contact_lanes != 0) measure_way(program, state, z);
+}
+
+// Those of the law, and of friction.
+void Marcher::find_efforts(const StageProgram& program, StageState& state, const double* z) {
+  if (rubbing_ && memory_.rows() > 0) rubbing_->memory.assign(memory_.data(), memory_.data() + memory_.size());
+  solve_law(program, state, touched_);
+  if (rubbing_) rub(program, state, z);
+}
+
+DelassusColumns& Marcher::columns_of(StageState& state) {
+  if (state.impulse) return *state.impulse;
+  return *state.delassus;
 }
 
 // z += S⁻¹Hᵀ p, column by column of the points where some lane has an effort; a lane that has many, in one solve.
@@ -223,7 +240,7 @@ void Marcher::correct(StageState& state, const double* effort, std::span<const i
 // z and w of the effort that was found.
 void Marcher::jump(StageState& state, double* z) {
   const int rows = program_.model->rows(), T = program_.width;
-  for (int j = 0; j < lower_.rows(); ++j) {
+  for (int j = 0; j < state.effort[0].rows(); ++j) {
     const double* p = state.effort[0].row(j);
     if (std::none_of(p, p + T, [](double x) { return x != 0; })) continue;
     kernels_.add_column(rows, state.impulse->unknown(j), p, z);
@@ -244,13 +261,13 @@ void Marcher::add_jump(StageState& state) {
 
 // What was p is p₋₁ now, and acts.
 void Marcher::remember_efforts(const StageProgram& program, StageState& state, double* z) {
-  const auto size = state.effort[0].size();
   for (std::size_t k = state.effort.size(); k-- > 1;)
-    std::copy_n(state.effort[k - 1].data(), size, state.effort[k].data());
+    std::copy_n(state.effort[k - 1].data(), state.effort[0].size(), state.effort[k].data());
+  const std::size_t size = static_cast<std::size_t>(lower_.rows()) * static_cast<std::size_t>(program_.width);
   for (std::size_t k = 1; k < program.effort.size() && k < state.effort_pointers.size(); ++k) {
     if (program.effort[k] == 0 || !state.effort_pointers[k]) continue;
     for (std::size_t e = 0; e < size; ++e) state.weighted.data()[e] = program.effort[k] * state.effort_pointers[k][e];
-    find_pushed(state.weighted, pushing_);
+    find_pushed(state.weighted, lower_.rows(), pushing_);
     correct(state, state.weighted.data(), pushing_, z);
   }
 }
@@ -269,13 +286,12 @@ void Marcher::choose_touched(StageState& state, std::uint32_t mask) {
   }
 }
 
-void Marcher::solve_law(const StageProgram& program, StageState& state) {
-  for (const int lane : touched_) outcome_[static_cast<std::size_t>(lane)] = {};
+void Marcher::solve_law(const StageProgram& program, StageState& state, std::span<const int> touched) {
+  for (const int lane : touched) outcome_[static_cast<std::size_t>(lane)] = {};
   ReducedProblem problem;
   problem.points = lower_.rows();
   problem.lanes = program_.width;
-  problem.delassus = state.delassus.get();
-  if (state.impulse) problem.delassus = state.impulse.get();
+  problem.delassus = &columns_of(state);
   problem.reach = program.reach;
   problem.free = state.free.data();
   problem.lower = program.gate ? state.gate_lower.data() : law_lower().data();
@@ -285,17 +301,18 @@ void Marcher::solve_law(const StageProgram& program, StageState& state) {
   problem.before = state.before.rows() > 0 ? state.before.data() : nullptr;
   problem.memory = memory_.rows() > 0 ? memory_.data() : nullptr;
   problem.effort = state.effort[0].data();
-  problem.touched = touched_;
+  problem.touched = touched;
   problem.outcome = outcome_.data();
   circles_.solve(*program_.law, problem);
 }
 
 // Which lanes push now, and at which points; those that the law failed stop.
 void Marcher::keep_contact(StageState& state) {
-  const int points = lower_.rows();
+  const int points = state.effort[0].rows();
   state.contact_lanes = 0;
   std::fill(pushes_.begin(), pushes_.end(), false);
   for (const int lane : touched_) {
+    if (!status_[static_cast<std::size_t>(lane)].running) continue;
     bool active = false, finite = true;
     for (int i = 0; i < points; ++i) {
       const double p = state.effort[0].at(i, lane);

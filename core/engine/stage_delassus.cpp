@@ -40,7 +40,7 @@ void ActiveSystem::solve() {
 }
 
 StageDelassus::StageDelassus(StageOperator& op, const MarchModel& model, const FoldedStage* band)
-    : op_(op), model_(model), band_(band), contact_(model.measured()), rows_(model.rows()), points_(contact_.rows()) {
+    : op_(op), model_(model), band_(model.rubbed().rows() > 0 ? nullptr : band), contact_(model.pushed()), rows_(model.rows()), points_(contact_.rows()) {
   const auto points = static_cast<std::size_t>(points_);
   known_.assign(points, false);
   columns_ = std::make_unique_for_overwrite<double[]>(points * points);
@@ -89,7 +89,7 @@ void StageDelassus::compute(int j) {
 }
 
 StageImpulse::StageImpulse(const ImpulseProgram& program, StageOperator& op, const MarchModel& model)
-    : program_(program), op_(op), model_(model), rows_(model.rows()), points_(model.measured().rows()) {
+    : program_(program), op_(op), model_(model), rows_(model.rows()), points_(model.pushed().rows()) {
   const auto points = static_cast<std::size_t>(points_), rows = static_cast<std::size_t>(rows_);
   known_.assign(points, false);
   columns_ = std::make_unique_for_overwrite<double[]>(points * points);
@@ -105,7 +105,7 @@ int StageImpulse::computed() const {
 
 void StageImpulse::compute(int j) {
   known_[static_cast<std::size_t>(j)] = true;
-  const RowMatrix& H = model_.measured();
+  const RowMatrix& H = model_.pushed();
   std::fill(push_.begin(), push_.end(), 0.0);
   for (auto e = static_cast<std::size_t>(H.start[static_cast<std::size_t>(j)]);
        e < static_cast<std::size_t>(H.start[static_cast<std::size_t>(j) + 1]); ++e)

@@ -27,7 +27,7 @@ struct ActiveSystem {
 };
 
 /// Columns of W = H S⁻¹ Hᵀ and the responses S⁻¹Hᵀ e_j of one stage, kept once computed. Where S is a band, W is there
-/// as a whole.
+/// as a whole. Where points rub, H has the rows along which they do behind those of the points, and W goes by columns.
 class StageDelassus final : public BandDelassus {
  public:
   /// `band`: the stage, where its S is factorised as a band; else null.

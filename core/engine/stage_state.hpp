@@ -37,6 +37,8 @@ struct StageState {
   std::optional<PointTest> test;    ///< where the operator measures what the law reads
   SquareSum* sum = nullptr;         ///< what the operator adds up for an observer
   StageView view;                   ///< what an observer is shown
+  Block end_rate;                        ///< u° of rows that rub, rows × T
+  std::vector<double> end_rate_weights;  ///< over the slots and z
   std::vector<double> measure_weights, rate_weights, before_weights, gap_weights, approach_weights;
   std::vector<int> contact_age;  ///< steps of contact so far, points × T; only where tangents wait
   ActiveSystem tangents;         ///< of the lane whose tangents are being corrected

@@ -11,6 +11,7 @@
 namespace ricochet {
 
 class Marcher;
+struct StageFriction;
 struct StepInterval;
 
 /// What an observer sees while a step is made. Blocks are rows × T or points × T.
@@ -28,6 +29,7 @@ struct StageView {
   int efforts = 0;                        ///< how many; each may be null: a stage that reads no contact
   const LaneOutcome* outcome = nullptr;   ///< per lane, of the law; of lanes that were looked at
   std::uint32_t touched_lanes = 0;        ///< lanes that the law looked at
+  const StageFriction* friction = nullptr;  ///< of these lanes; its efforts stand behind those of the points
   const double* free = nullptr;           ///< what the law measured before any effort, absolute; null where nothing did
   std::uint32_t contact_lanes = 0;        ///< lanes with a non-zero effort now
   std::span<const int> pushed;            ///< points with a non-zero effort now, in any of them, ascending

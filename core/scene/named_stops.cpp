@@ -26,6 +26,16 @@ std::string stop_pointer(std::size_t number, const char* key) {
 }
 
 void check_bounds(const NamedStop& stop, std::size_t number, const ForceBeyond& beyond) {
+  if (stop.normal_force) {
+    if (stop.lower || stop.upper || stop.side)
+      throw InputError(stop_pointer(number, "/normal_force"),
+                       fmt::format("stop {} has a normal force and bounds; expected one of them", stop.name));
+    if (!stop.friction)
+      throw InputError(stop_pointer(number, "/normal_force"),
+                       fmt::format("stop {} has a normal force and no friction: nothing acts there; expected friction",
+                                   stop.name));
+    return;
+  }
   if (!stop.lower && !stop.upper)
     throw InputError(stop_pointer(number, ""),
                      fmt::format("stop {} has no bound; expected lower, upper or both, in m", stop.name));
@@ -34,6 +44,37 @@ void check_bounds(const NamedStop& stop, std::size_t number, const ForceBeyond& 
                      fmt::format("stop {}: lower {:.6g} m > upper {:.6g} m. Expected lower ≤ upper, or a compliant law "
                                  "that lets points pass both",
                                  stop.name, *stop.lower, *stop.upper));
+}
+
+void check_friction(const NamedStop& stop, std::size_t number) {
+  if (stop.tangent && !stop.tangent->given() && !stop.normal_force && !stop.side)
+    throw InputError(stop_pointer(number, "/tangent"),
+                     fmt::format("the tangent of stop {} says nothing; expected slope_radius, direction or component",
+                                 stop.name));
+  if (stop.tangent && stop.tangent->speed != 0 && !stop.friction)
+    throw InputError(stop_pointer(number, "/tangent/speed"),
+                     fmt::format("stop {} has no friction: a surface that runs does nothing; expected friction",
+                                 stop.name));
+  if (!stop.friction) return;
+  const FrictionSpec& mu = *stop.friction;
+  if (mu.held < mu.sliding)
+    throw InputError(stop_pointer(number, "/friction/static"),
+                     fmt::format("static {:g} is below dynamic {:g}; expected static ≥ dynamic", mu.held, mu.sliding));
+  if (stop.side)
+    throw InputError(stop_pointer(number, "/friction"),
+                     fmt::format("stop {} is a clearance, where friction is not marched; expected a stop with bounds",
+                                 stop.name));
+  if (stop.normal_force) {
+    if (stop.tangent && stop.tangent->given())
+      throw InputError(stop_pointer(number, "/tangent"),
+                       fmt::format("stop {} has a normal force: what slides is its own displacement; expected speed "
+                                   "alone, or no tangent",
+                                   stop.name));
+    return;
+  }
+  if (!stop.tangent || !stop.tangent->given())
+    throw InputError(stop_pointer(number, "/friction"),
+                     fmt::format("stop {} has no tangent: nothing slides there; expected a tangent", stop.name));
 }
 
 }  // namespace
@@ -227,6 +268,7 @@ void check_named_stops(const SceneSpec& scene, const FiniteElementSpace& space, 
         !fresh && !(stop.side && scene.stops.named[first->second].entry == stop.entry))
       throw InputError(stop_pointer(i, "/name"), fmt::format("two stops are called \"{}\"", stop.name));
     check_bounds(stop, i, beyond);
+    check_friction(stop, i);
     if (stop.side && stop.side->number == 0) check_clearance(scene, space, stop, i);
     if (stop.to && scene.support.amplitude != 0 && !space.given)
       throw InputError(stop_pointer(i, "/to"),

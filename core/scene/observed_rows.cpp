@@ -145,6 +145,54 @@ PlaceRow tangent_row(const SceneSpec& scene, const FiniteElementSpace& space, co
   return stop.to ? difference(row(stop.at), row(*stop.to)) : row(stop.at);
 }
 
+// Whether something slides along a stop with bounds, or through a damper.
+bool slides(const NamedStop& stop) {
+  return !stop.side && (stop.normal_force || (stop.tangent && stop.tangent->given()));
+}
+
+PlaceRow slide_row(const SceneSpec& scene, const FiniteElementSpace& space, const NamedStop& stop, std::size_t number) {
+  return stop.normal_force ? stop_row(scene, space, stop, number) : tangent_row(scene, space, stop, number);
+}
+
+// What moves the supports moves what a damper holds.
+double slide_on_support(const SceneSpec& scene, const NamedStop& stop) {
+  if (!stop.normal_force) return 0;
+  return share_along_y(scene, stop.at) - (stop.to ? share_along_y(scene, *stop.to) : 0.0);
+}
+
+void find_rubbing(const SceneSpec& scene, SemiDiscrete& problem) {
+  const std::vector<NamedStop>& stops = scene.stops.named;
+  const ObservedRows& all = problem.tangents;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    if (!stops[i].friction || problem.tangent_of[i] < 0) continue;
+    if (stops[i].friction->none()) {
+      problem.notes.push_back(fmt::format("friction of stop {}: its coefficient is 0", stops[i].name));
+      continue;
+    }
+    RubbingPoint& one = problem.rubbing.emplace_back();
+    one.point = static_cast<int>(i);
+    one.row = static_cast<int>(problem.rubbed.names.size());
+    one.held = stops[i].friction->held;
+    one.sliding = stops[i].friction->sliding;
+    one.normal_force = stops[i].normal_force;
+    if (stops[i].tangent) one.speed[0] = stops[i].tangent->speed;
+    for (SparseRows::InnerIterator it(all.rows, problem.tangent_of[i]); it; ++it)
+      entries.emplace_back(one.row, static_cast<int>(it.col()), it.value());
+    problem.rubbed.names.push_back(stops[i].name);
+  }
+  const auto count = static_cast<Eigen::Index>(problem.rubbing.size());
+  problem.rubbed.rows.resize(count, all.rows.cols());
+  problem.rubbed.rows.setFromTriplets(entries.begin(), entries.end());
+  problem.rubbed.on_support.resize(count);
+  problem.rubbed.on_motions.resize(count, all.on_motions.cols());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const int from = problem.tangent_of[static_cast<std::size_t>(problem.rubbing[static_cast<std::size_t>(k)].point)];
+    problem.rubbed.on_support[k] = all.on_support[from];
+    problem.rubbed.on_motions.row(k) = all.on_motions.row(from);
+  }
+}
+
 }  // namespace
 
 void check_points(const SceneSpec& scene, const FiniteElementSpace& space) {
@@ -173,8 +221,8 @@ void check_tangents(const SceneSpec& scene, const FiniteElementSpace& space) {
   for (std::size_t i = 0; i < scene.stops.named.size(); ++i)
     if (const NamedStop& stop = scene.stops.named[i]; stop.side && stop.side->number == 0)
       round_tangents(scene, space, stop, i);
-    else if (stop.tangent && !stop.side)
-      tangent_row(scene, space, stop, i);
+    else if (slides(stop))
+      slide_row(scene, space, stop, i);
 }
 
 void observe_rows(const SceneSpec& scene, SemiDiscrete& problem) {
@@ -209,11 +257,12 @@ void observe_rows(const SceneSpec& scene, SemiDiscrete& problem) {
         ++count;
       }
     }
-    if (!stops[i].tangent || stops[i].side) continue;
+    if (!slides(stops[i])) continue;
     problem.tangent_of[i] = count++;
-    tangents.add(stops[i].name, tangent_row(scene, problem.space, stops[i], i), 0, true);
+    tangents.add(stops[i].name, slide_row(scene, problem.space, stops[i], i), slide_on_support(scene, stops[i]), true);
   }
   problem.tangents = tangents.make();
+  find_rubbing(scene, problem);
   // What slides along a clearance does so against what it moves with.
   if (problem.motions.carry_stops)
     for (const Clearance& clearance : problem.clearances) {

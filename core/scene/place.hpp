@@ -27,11 +27,15 @@ struct PointSpec {
   bool moment = false, shear = false;  ///< of a beam: whether M = EI θ' (N m) and M' (N) are shown there too
 };
 
-/// What moves along the surface of a stop while it is pushed. Exactly one is given.
+/// What moves along the surface of a stop while it is pushed. At most one is given beside the speed; of a stop with a
+/// normal force none, as what slides there is the displacement of the stop itself.
 struct TangentSpec {
   double slope_radius = 0;        ///< m: r of r θ, the surface of a tube that bends
   std::vector<double> direction;  ///< three numbers, at the nodes of the stop
   std::string component;          ///< of the nodes of the stop
+  double speed = 0;               ///< of the surface along it, m/s
+
+  bool given() const { return slope_radius > 0 || !direction.empty() || !component.empty(); }
 };
 
 /// The displacement at a place (or the difference of two) as Σ value·q_dof + Σ weight·(displacement of a support).

@@ -161,6 +161,13 @@ struct StopParameters {
 
 struct MotionSpec;
 
+/// Coulomb's coefficients: μ of a point that stuck in the stage before, and of one that slides.
+struct FrictionSpec {
+  double held = 0, sliding = 0;
+
+  bool none() const { return held == 0 && sliding == 0; }
+};
+
 /// A row of a clearance: a side of the polygon round its circle, or of the circle itself u₁ (α = 0) or u₂ (α = π/2). It
 /// bounds cos α u₁ + sin α u₂, with u₁ at its own places and u₂ at those here. Opposite sides are one row with two
 /// bounds.
@@ -187,6 +194,8 @@ struct NamedStop {
   std::shared_ptr<const MotionSpec> motion = {};  ///< of its own; null: none
   std::optional<ClearanceSide> side = {};         ///< of a clearance, whose sides follow each other
   std::size_t entry = 0;                          ///< its number in the list of the study
+  std::optional<FrictionSpec> friction = {};
+  std::optional<double> normal_force = {};  ///< N, of a friction damper, which has no bounds
 };
 
 /// Two rigid stops g1(x) ≤ u ≤ g2(x); a missing formula is an absent stop. Or a list of stops that have names: then

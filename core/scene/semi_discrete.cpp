@@ -205,6 +205,13 @@ std::vector<int> touched_dofs(const SparseRows& contact) {
   return dofs;
 }
 
+// Rows of points that have a bound; the others are empty.
+SparseRows bounded_rows(const SparseRows& contact, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
+  SparseRows rows = contact;
+  rows.prune([&](Eigen::Index i, Eigen::Index, double) { return std::isfinite(lower[i]) || std::isfinite(upper[i]); });
+  return rows;
+}
+
 void check_start(const SemiDiscrete& problem, const std::string& pointer, const std::string& what,
                  const ForceBeyond& beyond) {
   const Eigen::VectorXd absolute = problem.contact * problem.position + lift_at_start(problem);
@@ -273,7 +280,8 @@ void march_in_basis(const SceneSpec& scene, const SparseMatrix& mass, SemiDiscre
         std::make_shared<const SparseMatrix>(((damping + damping.transpose()) / 2).eval().sparseView());
   }
   problem.contact = basis.at_points.sparseView();
-  for (SparseRows* rows : {&problem.tip, &problem.observed.rows, &problem.fields.rows, &problem.tangents.rows})
+  for (SparseRows* rows : {&problem.tip, &problem.observed.rows, &problem.fields.rows, &problem.tangents.rows,
+                           &problem.rubbed.rows})
     *rows = problem.on_unknowns(std::move(*rows));
   problem.support_shape = basis.shapes.transpose() * problem.support_shape;
   load.project({problem.basis, &basis.shapes});
@@ -303,7 +311,7 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   problem.clearances = clearances_of(scene.stops);
   if (law && !law->absent() && !compliant)
     for (std::string& note : polygon_notes(problem.clearances)) problem.notes.push_back(std::move(note));
-  problem.space.contact_dofs = touched_dofs(problem.contact);
+  problem.space.contact_dofs = touched_dofs(bounded_rows(problem.contact, points.lower, points.upper));
   problem.support = scene.support;
   const JoinedBodies* bodies = bodies_of(scene.structure);
   // The modes of K with the consistent or given mass, whatever mass is marched.

@@ -128,7 +128,7 @@ std::vector<std::string> Compared::columns_of(const std::string& choice) const {
 std::vector<std::string> Compared::scene_columns() const {
   std::vector<std::string> own;
   for (const std::string& column : columns_)
-    if (axis_role(column) == column && column != "mass" && column != "contact" && column != "time" && column != "march")
+    if (axis_role(column) == column && !is_method_role(column) && column != "march")
       own.push_back(column);
   return own;
 }
@@ -168,7 +168,7 @@ const std::vector<double>& Compared::numbers_of(const std::string& column) const
 
 std::string Compared::value_words(const std::string& column, const std::string& value) const {
   const std::string role = axis_role(column);
-  if (column == role && (role == "mass" || role == "contact" || role == "time")) return method_words(role, value);
+  if (column == role && is_method_role(role)) return method_words(role, value);
   const auto number = number_in(value);
   const std::string shown = number ? short_number(*number) : formula_words(value);
   if (role != column) {
@@ -190,7 +190,7 @@ std::string Compared::value_words(const std::string& column, const std::string& 
 }
 
 std::string Compared::level(const CaseRecord& record, const std::string& choice) const {
-  if (axis_role(choice) == choice && choice != "mass" && choice != "contact" && choice != "time")
+  if (axis_role(choice) == choice && !is_method_role(choice))
     return text(record, choice).empty() ? "" : value_words(choice, text(record, choice));
   std::string out;
   const std::string& name = text(record, axis_role(choice));

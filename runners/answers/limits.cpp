@@ -146,8 +146,7 @@ bool keeps_energy(const StudyResults& results, const Cases& cases_of_study) {
   // A scheme that declares no work form leaves it open: those that do tell it for the scene that they share.
   std::vector<std::string> scene;
   for (const std::string& column : results.columns)
-    if (const std::string role = axis_role(column); role != "mass" && role != "contact" && role != "time" &&
-                                                    role != "step" && !is_refinement(role) && role != residual_axis)
+    if (const std::string role = axis_role(column); !is_method_role(role) && role != "step" && !is_refinement(role) && role != residual_axis)
       scene.push_back(column);
   for (const Cases& cases : groups_of(with_status(cases_of_study, "done"), scene)) {
     bool told = false;

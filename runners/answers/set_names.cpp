@@ -17,7 +17,7 @@ constexpr std::size_t most_searched = 500, most_ruled = 10000, few = 3;
 constexpr double short_rule = 6.6, long_rule = 9, nearly_exact = 0.9;
 
 bool is_role(const std::string& column) {
-  return column == "mass" || column == "contact" || column == "time";
+  return is_method_role(column);
 }
 
 bool contains(const std::vector<std::string>& list, const std::string& item) {

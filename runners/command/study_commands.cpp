@@ -40,9 +40,7 @@ int with_study(const Arguments& arguments, const std::function<int(const OpenStu
 std::vector<std::string> plugin_warnings(const OpenStudy& open) {
   std::set<std::pair<Role, std::string>> used;
   for (const StudyCase& study_case : open.study.cases) {
-    used.insert({{Role::mass, study_case.mass.name},
-                 {Role::contact, study_case.contact.name},
-                 {Role::time, study_case.time.name}});
+    for (const auto& [role, method] : methods_of(study_case)) used.emplace(role, method->name);
     for (const MethodChoice& reference : study_case.references) used.emplace(Role::reference, reference.name);
   }
   std::vector<std::string> warnings;

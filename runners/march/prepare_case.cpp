@@ -131,6 +131,12 @@ std::unique_ptr<TimeScheme> make_scheme(const StudyCase& study_case, const Regis
       .make(study_case.time.parameters);
 }
 
+std::function<std::unique_ptr<FrictionLaw>()> friction_maker(const StudyCase& study_case, const Registry& registry) {
+  if (study_case.friction.name.empty()) return {};
+  const auto& law = registered(registry.friction(study_case.friction.name), Role::friction, study_case.friction.name);
+  return [&law, parameters = study_case.friction.parameters] { return law.make(parameters); };
+}
+
 void name_indefinite(const IndefiniteStep& wrong, const StudyCase& study_case, const Registry& registry) {
   const auto fault = [&](Role role, const std::string& name, const char* function) {
     throw PluginFault({role_name(role), name, registry.file(role, name)}, function, wrong.what());
@@ -192,6 +198,7 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
     prepared.notes.push_back(
         "a compliant law rebounds by its own stiffness: the scheme's restitution has no part in it");
   CompileOptions options;
+  options.make_friction = friction_maker(study_case, registry);
   options.expected_steps = prepared.steps;
   options.march = march_way(study_case);
   try {

@@ -84,6 +84,7 @@ MarchWay march_way(const StudyCase& study_case);
 /// The methods of a case, made.
 std::unique_ptr<MassStrategy> make_mass(const StudyCase& study_case, const Registry& registry);
 std::unique_ptr<ContactLaw> make_law(const StudyCase& study_case, const Registry& registry);
+std::function<std::unique_ptr<FrictionLaw>()> friction_maker(const StudyCase& study_case, const Registry& registry);
 std::unique_ptr<TimeScheme> make_scheme(const StudyCase& study_case, const Registry& registry);
 
 /// Throws the fault of the plugin of a case whose numbers make a step indefinite; the error itself where it is the

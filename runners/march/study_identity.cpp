@@ -132,6 +132,7 @@ const std::string& arithmetic_digest() {
 std::vector<std::filesystem::path> libraries_of(const StudyCase& study_case, const Registry& registry) {
   std::vector<std::filesystem::path> files = {registry.file(Role::mass, study_case.mass.name),
                                               registry.file(Role::contact, study_case.contact.name)};
+  if (!study_case.friction.name.empty()) files.push_back(registry.file(Role::friction, study_case.friction.name));
   // A plan is content of the case already, wherever it was read.
   if (!study_case.time.plan) files.push_back(registry.file(Role::time, study_case.time.name));
   if (study_case.of_reference) files.push_back(registry.file(Role::reference, study_case.references.front().name));

@@ -12,7 +12,6 @@ namespace ricochet::report {
 namespace {
 
 constexpr const char* mass_colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#444444"};
-constexpr std::string_view roles[] = {"mass", "contact", "time"};
 
 bool contains(const std::vector<std::string>& list, std::string_view item) {
   return std::find(list.begin(), list.end(), item) != list.end();
@@ -20,8 +19,7 @@ bool contains(const std::vector<std::string>& list, std::string_view item) {
 
 /// The word that a label puts before a value: the last part of the column, nothing for a method's own name.
 std::string word(std::string_view column) {
-  for (std::string_view role : roles)
-    if (column == role) return "";
+  if (is_method_role(std::string(column))) return "";
   const size_t dot = column.rfind('.');
   const bool method = role_of(column) != column;
   return std::string(method && dot != std::string_view::npos ? column.substr(dot + 1) : column) + " ";

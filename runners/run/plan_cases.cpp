@@ -27,10 +27,10 @@ using Method = std::pair<std::string, std::string>;  // role, name
 // A large mesh may take its time; a plugin that is not done by then never is.
 constexpr double longest_plan = 60;
 
-std::array<Method, 3> methods_of(const StudyCase& study_case) {
-  return {Method{role_name(Role::mass), study_case.mass.name},
-          Method{role_name(Role::contact), study_case.contact.name},
-          Method{role_name(Role::time), study_case.time.name}};
+std::vector<Method> named_methods(const StudyCase& study_case) {
+  std::vector<Method> all;
+  for (const auto& [role, method] : methods_of(study_case)) all.emplace_back(role_name(role), method->name);
+  return all;
 }
 
 std::string to_text(const CasePlan& plan) {
@@ -66,8 +66,8 @@ CasePlan from_text(const Json& json) {
 }  // namespace
 
 bool CasePlanner::uses_foreign(const StudyCase& study_case) const {
-  std::vector<std::pair<Role, std::string>> used = {
-      {Role::mass, study_case.mass.name}, {Role::contact, study_case.contact.name}, {Role::time, study_case.time.name}};
+  std::vector<std::pair<Role, std::string>> used;
+  for (const auto& [role, method] : methods_of(study_case)) used.emplace_back(role, method->name);
   for (const MethodChoice& reference : study_case.references) used.emplace_back(Role::reference, reference.name);
   return std::any_of(used.begin(), used.end(),
                      [&](const auto& one) { return catalogue_.foreign(registry_.file(one.first, one.second)); });
@@ -106,7 +106,7 @@ std::string CasePlanner::ask(const StudyCase& study_case, const std::function<st
 }
 
 PlanOutcome CasePlanner::plan_in_child(const StudyCase& study_case) {
-  for (const Method& method : methods_of(study_case))
+  for (const Method& method : named_methods(study_case))
     if (const auto found = endless_.find(method); found != endless_.end())
       return {.plan = {}, .failure = found->second};
   const ChildOutcome outcome = run_in_child(

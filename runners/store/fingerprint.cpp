@@ -76,6 +76,7 @@ std::string Fingerprints::of(const StudyCase& study_case, const std::vector<std:
                   {"duration", study_case.duration},
                   {"samples", study_case.samples},
                   {"march", study_case.march}};
+  if (!study_case.friction.name.empty()) content["friction"] = content_of(study_case.friction);
   for (const auto& [name, value] : study_case.axes) content["axes"].push_back({name, value});
   if (!study_case.settings.is_null()) content["settings"] = study_case.settings;
   if (study_case.excluded) content["excluded"] = *study_case.excluded;

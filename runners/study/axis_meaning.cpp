@@ -8,8 +8,6 @@
 namespace ricochet {
 namespace {
 
-const std::vector<std::string> method_roles = {"mass", "contact", "time"};
-
 std::vector<std::string> split(const std::string& column) {
   std::vector<std::string> parts = {""};
   for (const char c : column)
@@ -25,7 +23,7 @@ std::string pointer_of(const std::string& column) {
   std::string pointer = "/" + (column == residual_axis ? std::string("residual") : column);
   std::replace(pointer.begin(), pointer.end(), '.', '/');
   if (column == residual_axis || column == "elements" || column == "modes") return "/mesh" + pointer;
-  if (std::find(method_roles.begin(), method_roles.end(), column) != method_roles.end()) return "/methods" + pointer;
+  if (is_method_role(column)) return "/methods" + pointer;
   return column == "step" || column == "steps_per_period" || column == "march" ? pointer : "/scene" + pointer;
 }
 
@@ -45,15 +43,14 @@ Column parameter_meaning(const std::string& column, const std::string& role, con
                          const Registry& registry) {
   std::vector<std::pair<std::string, const ParameterSpec*>> said;
   for (const StudyCase& one : study.cases) {
-    const MethodChoice& method = role == "mass" ? one.mass : role == "contact" ? one.contact : one.time;
-    const bool known =
-        std::any_of(said.begin(), said.end(), [&](const auto& other) { return other.first == method.name; });
-    if (known) continue;
-    const Role of = role == "mass" ? Role::mass : role == "contact" ? Role::contact : Role::time;
-    const PluginManual* manual = registry.manual(of, method.name);
-    if (!manual) continue;
-    for (const ParameterSpec& spec : manual->parameters)
-      if (spec.key == key) said.emplace_back(method.name, &spec);
+    for (const auto& [of, method] : methods_of(one)) {
+      const bool known = std::any_of(said.begin(), said.end(),
+                                     [&, name = method->name](const auto& other) { return other.first == name; });
+      const PluginManual* manual = role != role_name(of) || known ? nullptr : registry.manual(of, method->name);
+      if (!manual) continue;
+      for (const ParameterSpec& spec : manual->parameters)
+        if (spec.key == key) said.emplace_back(method->name, &spec);
+    }
   }
   Column out = axis_meaning(column, study.resolved);
   if (said.empty()) return out;
@@ -72,6 +69,23 @@ Column parameter_meaning(const std::string& column, const std::string& role, con
 
 }  // namespace
 
+const std::vector<std::string>& method_roles() {
+  static const std::vector<std::string> roles = {"mass", "contact", "friction", "time"};
+  return roles;
+}
+
+bool is_method_role(const std::string& column) {
+  return std::find(method_roles().begin(), method_roles().end(), column) != method_roles().end();
+}
+
+std::vector<std::pair<Role, const MethodChoice*>> methods_of(const StudyCase& study_case) {
+  std::vector<std::pair<Role, const MethodChoice*>> all = {{Role::mass, &study_case.mass},
+                                                           {Role::contact, &study_case.contact}};
+  if (!study_case.friction.name.empty()) all.emplace_back(Role::friction, &study_case.friction);
+  all.emplace_back(Role::time, &study_case.time);
+  return all;
+}
+
 std::string spoken_choice(const std::string& column) {
   static const std::string times = " × ";
   if (const std::size_t at = column.find(times); at != std::string::npos) {
@@ -85,7 +99,7 @@ std::string spoken_choice(const std::string& column) {
 
 std::string axis_role(const std::string& column) {
   const std::string first = split(column).front();
-  return std::find(method_roles.begin(), method_roles.end(), first) == method_roles.end() ? column : first;
+  return is_method_role(first) ? first : column;
 }
 
 Column axis_meaning(const std::string& column, const Json& resolved) {
@@ -104,7 +118,7 @@ std::vector<Column> axis_meanings(const Study& study, const Registry& registry) 
   for (const std::string& column : study.columns) {
     const std::vector<std::string> path = split(column);
     const bool method =
-        path.size() > 1 && std::find(method_roles.begin(), method_roles.end(), path.front()) != method_roles.end();
+        path.size() > 1 && is_method_role(path.front());
     columns.push_back(
         method ? parameter_meaning(column, path.front(), column.substr(path.front().size() + 1), study, registry)
                : axis_meaning(column, study.resolved));
@@ -114,15 +128,13 @@ std::vector<Column> axis_meanings(const Study& study, const Registry& registry) 
 
 std::map<std::string, std::string> method_words(const Study& study, const Registry& registry) {
   std::map<std::string, std::string> words;
-  const auto add = [&](const char* name, Role role, const MethodChoice& method) {
+  const auto add = [&](Role role, const MethodChoice& method) {
     const PluginManual* manual = registry.manual(role, method.name);
-    if (manual && !manual->words.empty()) words[std::string(name) + " " + method.name] = manual->words;
+    if (manual && !manual->words.empty()) words[std::string(role_name(role)) + " " + method.name] = manual->words;
   };
   for (const StudyCase& one : study.cases) {
-    add("mass", Role::mass, one.mass);
-    add("contact", Role::contact, one.contact);
-    add("time", Role::time, one.time);
-    if (one.of_reference) add("reference", Role::reference, one.references.front());
+    for (const auto& [role, method] : methods_of(one)) add(role, *method);
+    if (one.of_reference) add(Role::reference, one.references.front());
   }
   return words;
 }

@@ -15,6 +15,10 @@ struct Study;
 /// format knows only whose it is; its unit is then "".
 Column axis_meaning(const std::string& column, const nlohmann::ordered_json& resolved);
 
+/// The roles of methods that a study crosses: mass, contact, friction, time.
+const std::vector<std::string>& method_roles();
+bool is_method_role(const std::string& column);
+
 /// The role of a method's axis, "mass" of "mass.velocity" and of "mass"; the column itself where it is no method's.
 std::string axis_role(const std::string& column);
 

@@ -310,7 +310,8 @@ const ObjectForm& find_way(const ObjectForm& form, const Json& object, const std
   for (const ObjectForm& way : form.ways) {
     const std::vector<std::string> keys = keys_of(way.fields);
     all.insert(all.end(), keys.begin(), keys.end());
-    expected += (expected.empty() ? "" : ", or ") + quoted_list(keys);
+    if (keys.empty()) found = &way;
+    if (!keys.empty()) expected += (expected.empty() ? "" : ", or ") + quoted_list(keys);
   }
   for (const auto& [key, ignored] : object.items())
     if (key != written_digest && std::find(all.begin(), all.end(), key) == all.end())
@@ -321,10 +322,10 @@ const ObjectForm& find_way(const ObjectForm& form, const Json& object, const std
       // A key that several ways have tells none of them.
       const bool shared = std::count(all.begin(), all.end(), field.key()) > 1;
       if (!object.contains(field.key()) || shared) continue;
-      if (found && found != &way)
+      if (found && found != &way && !found->fields.empty())
         throw InputError(pointer_to(pointer, field.key()),
                          "does not go together with \"" + first + "\"; expected either " + expected);
-      if (!found) first = field.key();
+      if (!found || found->fields.empty()) first = field.key();
       found = &way;
     }
   if (!found) throw InputError(pointer, "expected either " + expected);

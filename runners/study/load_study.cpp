@@ -210,12 +210,30 @@ void refuse_repeated(const std::vector<MethodOption>& options, Role role) {
   }
 }
 
-// The methods of a study by role, which are then written out in it.
-std::vector<MethodOptions> read_roles(Json& given, Catalogue& catalogue, Registry& registry,
+// Whether some stop of the study has friction, in some of its cases.
+bool has_friction(const Json& scene) {
+  const Json& stops = scene.at("stops");
+  return stops.is_array() && std::any_of(stops.begin(), stops.end(), [](const Json& stop) {
+           return stop.contains("friction") && !stop.at("friction").is_null();
+         });
+}
+
+// The methods of a study by role, which are then written out in it. A friction law that is not given is no axis.
+std::vector<MethodOptions> read_roles(Json& given, bool rubs, Catalogue& catalogue, Registry& registry,
                                       const std::filesystem::path& folder) {
   std::vector<MethodOptions> methods;
-  for (const Role role : {Role::mass, Role::contact, Role::time}) {
+  for (const Role role : {Role::mass, Role::contact, Role::friction, Role::time}) {
     const std::string key = role_name(role);
+    if (role == Role::friction && (!given.contains(key) || given[key].is_null())) {
+      given.erase(key);
+      MethodOptions& unsaid = methods.emplace_back();
+      if (rubs) unsaid = read_methods(role, "coulomb", "/methods/" + key, catalogue, registry, folder);
+      if (!rubs) unsaid.options.emplace_back();
+      unsaid.options.front().axes.clear();
+      continue;
+    }
+    if (role == Role::friction && !rubs)
+      throw InputError("/methods/" + key, "no stop of the scene has friction; expected none, or a stop with friction");
     methods.push_back(read_methods(role, given[key], "/methods/" + key, catalogue, registry, folder));
     refuse_repeated(methods.back().options, role);
     given[key] = methods.back().resolved;
@@ -271,7 +289,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   resolved.erase("files");
   check_kind(kind, resolved);
   const std::vector<MeshChoice> meshes = meshes_of(resolved["mesh"], resolved["scene"]);
-  auto methods = read_roles(resolved["methods"], catalogue, registry, folder);
+  auto methods = read_roles(resolved["methods"], has_friction(resolved["scene"]), catalogue, registry, folder);
   std::vector<MethodChoice> references;
   if (resolved.contains("reference"))
     references = read_references(resolved["reference"], "/reference", catalogue, registry);
@@ -285,7 +303,8 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   std::vector<CaseAxis> axes = {
       method_axis(methods[0].options, &StudyCase::mass),
       method_axis(methods[1].options, &StudyCase::contact),
-      method_axis(methods[2].options, &StudyCase::time),
+      method_axis(methods[2].options, &StudyCase::friction),
+      method_axis(methods[3].options, &StudyCase::time),
       mesh_axis(meshes, *common.files),
       plain_axis("step", resolved.contains("step"), values_of(resolved, "step", 0.0), &StudyCase::step),
       plain_axis("steps_per_period", resolved.contains("steps_per_period"), values_of(resolved, "steps_per_period", 0),

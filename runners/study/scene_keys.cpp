@@ -180,9 +180,25 @@ std::vector<Field> observed_of_stops() {
   component.fields = {
       of_form(Field::Form::text, "component", std::nullopt, "Component along it, at the nodes of the stop.")};
   ObjectForm tangent;
-  tangent.ways = {radius, direction, component};
-  return {quiet(
-      object("tangent", Json(nullptr), "Motion along the surface, for wear; absent: none.", tangent).as("tangent"))};
+  tangent.fields = {quiet(real("speed", "m/s", any, 0.0, "Speed of the surface along it, where it rubs.")
+                              .as("speed of the surface", "the speed of the surface"))};
+  tangent.ways = {radius, direction, component, ObjectForm()};
+  ObjectForm coefficients;
+  coefficients.fields = {real("static", "1", non_negative, std::nullopt, "μ of a point that stuck before."),
+                         real("dynamic", "1", non_negative, std::nullopt, "μ of a point that slides.")};
+  Field friction = quiet(optional(real("friction", "1", non_negative, std::nullopt,
+                                       "Coefficient μ of its surface: needs a tangent, or a normal force; absent: none."))
+                             .as("μ", "the friction of a stop"));
+  friction.axis = true;
+  friction.given.push_back(coefficients);
+  Field normal = quiet(optional(real("normal_force", "N", non_negative, std::nullopt,
+                                     "Force that presses a friction damper, in the place of bounds; absent: none."))
+                           .as("normal force", "the normal force of a damper"));
+  normal.axis = true;
+  return {quiet(object("tangent", Json(nullptr), "Motion along the surface, for wear and friction; absent: none.",
+                       tangent)
+                    .as("tangent")),
+          std::move(friction), std::move(normal)};
 }
 
 Place read_place(const Json& json) {
@@ -234,7 +250,15 @@ std::optional<TangentSpec> read_tangent(const Json& stop) {
   const Json given = stop.value("tangent", Json());
   if (given.is_null()) return std::nullopt;
   return TangentSpec{given.value("slope_radius", 0.0), given.value("direction", std::vector<double>()),
-                     given.value("component", "")};
+                     given.value("component", ""), given.value("speed", 0.0)};
+}
+
+void read_friction(const Json& stop, NamedStop& out) {
+  if (const Json given = stop.value("friction", Json()); given.is_number())
+    out.friction = FrictionSpec{given.get<double>(), given.get<double>()};
+  else if (given.is_object())
+    out.friction = FrictionSpec{given.at("static").get<double>(), given.at("dynamic").get<double>()};
+  if (const Json force = stop.value("normal_force", Json()); force.is_number()) out.normal_force = force.get<double>();
 }
 
 bool is_of_each(const Field& field, const Json& value, const std::string& pointer) {

@@ -40,6 +40,8 @@ Place read_place(const Json& json);
 bool is_of_each(const Field& field, const Json& value, const std::string& pointer);
 std::vector<PointSpec> read_points(const Json& scene);
 std::optional<TangentSpec> read_tangent(const Json& stop);
+/// friction and normal_force of a stop.
+void read_friction(const Json& stop, NamedStop& out);
 StopParameters read_own(const Json& stop);
 
 // Keys of beams in two planes and of clearances.

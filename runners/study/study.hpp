@@ -35,6 +35,7 @@ struct StudyCase {
   SceneSpec scene;
   Json scene_json;  ///< the scene of this case, scalars only
   MethodChoice mass, contact, time;
+  MethodChoice friction = {};  ///< without a name where no stop rubs
   int elements = 0;
   double step = 0;           ///< s; 0 for kinds that choose their steps themselves
   int steps_per_period = 0;  ///< of kinds that step by the forcing period, else 0
@@ -51,6 +52,9 @@ struct StudyCase {
   /// Method parameters that the settings go through: JSON pointer, and how the plugin declares it.
   std::vector<std::pair<std::string, ParameterSpec>> swept;
 };
+
+/// The methods that a case marches, by role.
+std::vector<std::pair<Role, const MethodChoice*>> methods_of(const StudyCase& study_case);
 
 /// The column of mesh.residual, whose own name is that of a column of the energy ledger.
 inline constexpr const char* residual_axis = "mode_residual";

@@ -152,7 +152,10 @@ ObjectForm study() {
   ObjectForm chosen;
   chosen.fields = {methods("mass", Role::mass, "How velocities are discretised.").as("mass", "the mass matrix"),
                    methods("contact", Role::contact, "The contact law.").as("contact law", "the contact law"),
+                   quiet(methods("friction", Role::friction, "How stops rub, where they do; absent: coulomb."))
+                       .as("friction law", "the friction law"),
                    methods("time", Role::time, "The time scheme.").as("time scheme", "the time scheme")};
+  chosen.fields[2].fallback = Json(nullptr);
 
   Field outside =
       of_form(Field::Form::scalar, "outside", Json(false), "Whether files may lie outside the study's folder.");

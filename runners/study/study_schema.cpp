@@ -290,7 +290,7 @@ class SchemaWriter {
         {"step", true},
         {"steps_per_period", true},
         {"march", true}};
-    for (const Role role : {Role::mass, Role::contact, Role::time}) {
+    for (const Role role : {Role::mass, Role::contact, Role::friction, Role::time}) {
       properties[role_name(role)] = {{"description", "Name of a method, or a list of names."}};
       for (const std::string& name : registry_.names(role))
         for (const ParameterSpec& spec : registry_.manual(role, name)->parameters)

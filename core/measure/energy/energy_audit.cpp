@@ -30,6 +30,7 @@ void EnergyTotals::add(const Works& works) {
   work_of_loads += works.loads;
   work_of_damping += works.damping;
   work_of_contact += works.contact;
+  work_of_friction += works.friction;
   work_of_scheme += works.scheme;
   work_of_law += works.law;
 }
@@ -66,7 +67,9 @@ EnergyAudit::EnergyAudit(const Marcher& marcher, SamplingMode sampling)
   }
   for (Lane& state : lanes_) state.balanced = all && state.energy.own_energy;
   for (const auto* stages : {&marcher.program().start, &marcher.program().stages})
-    for (const StageProgram& stage : *stages) memory_ = std::max(memory_, static_cast<int>(stage.work_effort.size()));
+    for (const StageProgram& stage : *stages)
+      memory_ = std::max({memory_, static_cast<int>(stage.work_effort.size()),
+                          static_cast<int>(stage.friction_work.size())});
   ends_measured_ = measures_the_end(marcher.program());
   if (marcher.program().increment_slot < 0) {
     for (const StageProgram& stage : marcher.program().start) start_ways_.emplace_back(stage.facts.increment);
@@ -157,8 +160,9 @@ void EnergyAudit::start_balance(const StageView& view, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   EnergyTotals& totals = state.energy;
   state.now.scheme = energies_.scheme(view.slots, lane);
-  totals.scheme_start = state.now.scheme - totals.work_of_contact - totals.work_of_loads;
-  for (const Works* works : {&state.since, &state.step}) totals.scheme_start -= works->contact + works->loads;
+  totals.scheme_start = state.now.scheme - totals.work_of_contact - totals.work_of_friction - totals.work_of_loads;
+  for (const Works* works : {&state.since, &state.step})
+    totals.scheme_start -= works->contact + works->friction + works->loads;
   state.has_scheme = true;
 }
 

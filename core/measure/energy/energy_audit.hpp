@@ -31,6 +31,7 @@ struct EnergyTotals {
   double largest_step_gain = 0;  ///< max over steps of ΔE_scheme − W_loads (J), never below 0
   double work_of_damping = 0;    ///< Σ sᵀC r ≥ 0 where the scheme pairs them (J)
   double work_of_loads = 0;      ///< Σ sᵀF̄, and the support's work through the stops (J)
+  double work_of_friction = 0;   ///< Σ p̄_tᵀ(T s + Δφ_t − ∫V dt) (J)
   double work_of_contact = 0;    ///< Σ p̄ᵀ(H s + Δφ): what the stops, at rest in the laboratory, give (J)
   double work_of_scheme = 0;     ///< Σ of the plan's loss terms: what the scheme itself dissipates (J ≥ 0)
   double work_of_law = 0;        ///< what the contact law itself dissipates, by the power that it reports (J ≥ 0)
@@ -39,7 +40,8 @@ struct EnergyTotals {
   /// else what is left.
   double balance_residual() const {
     const double stored = own_energy ? 0.0 : last.contact - first.contact;
-    return last.scheme - stored - scheme_start - work_of_loads + work_of_damping + work_of_scheme - work_of_contact;
+    return last.scheme - stored - scheme_start - work_of_loads + work_of_damping + work_of_scheme - work_of_contact -
+           work_of_friction;
   }
   /// The work of all that depends on time until the last sample, J: of the loads' that which no potential tells.
   double work_of_driving() const { return driven ? work_of_loads - (first.load - last.load) : 0.0; }
@@ -126,6 +128,8 @@ class EnergyAudit final : public StepObserver {
   double tip_velocity(int lane) const;
   /// What one of these rows moved by over that sub-step, relative to the supports, m; and how long it is, s.
   double last_way(const Marcher& marcher, const RowMatrix& rows, int row, int lane) const;
+  /// Of the stage that was shown last (StageWorks), J and m by row that rubs.
+  const StageWorks& works() const { return works_; }
   double last_duration(int lane) const { return lanes_[static_cast<std::size_t>(lane)].duration; }
 
  private:

@@ -99,6 +99,7 @@ Works& Works::operator+=(const Works& other) {
   loads += other.loads;
   damping += other.damping;
   contact += other.contact;
+  friction += other.friction;
   scheme += other.scheme;
   law += other.law;
   return *this;
@@ -115,7 +116,9 @@ StageWorks::StageWorks(const Marcher& marcher, const QuadraticForm& mass, const 
       projected_(marcher.program().support),
       T_(marcher.width()),
       displacement_(model_.rows(), 1),
-      rate_(model_.rows(), 1) {
+      rate_(model_.rows(), 1),
+      friction_works_(marcher.program().friction ? static_cast<std::size_t>(model_.rubbed().rows()) : 0),
+      friction_ways_(friction_works_.size()) {
   if (model_.modal_damping().size() > 0)
     own_damping_ = QuadraticForm(SparseMatrix(model_.modal_damping().asDiagonal()));
   else if (damping_.matrix)
@@ -216,7 +219,7 @@ void StageWorks::add_all(const Marcher& marcher, const StageView& view, const St
       works.scheme += loss.coefficient * sum(loss.value).under(form, displacement_).form;
     }
   if (stage.impulsive && contact)
-    add_contact(marcher, view, stage, lane, sum(stage.displacement).write(displacement_), works);
+    add_efforts(marcher, view, stage, lane, sum(stage.displacement).write(displacement_), works);
   if (!view.plan->work) return;
   const bool load = marcher.program().load, across = (damped_ && stage.along == 0) || own_damping_;
   if (!projected_ && !damped_ && !own_damping_ && !load && !contact) return;
@@ -240,7 +243,42 @@ void StageWorks::add_all(const Marcher& marcher, const StageView& view, const St
     const double* F = const_cast<Marcher&>(marcher).distributed_load(view.plan->work->load, view.time);
     works.loads += flight_kernels().dot(model_.rows(), F, way);
   }
-  if (contact) add_contact(marcher, view, stage, lane, way, works);
+  if (contact) add_efforts(marcher, view, stage, lane, way, works);
+}
+
+void StageWorks::add_efforts(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane,
+                             const double* s, Works& works) {
+  add_contact(marcher, view, stage, lane, s, works);
+  if (!friction_works_.empty()) add_friction(marcher, view, stage, lane, s, works);
+}
+
+// What surfaces that move give is brought in by them.
+void StageWorks::add_friction(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane,
+                              const double* s, Works& works) {
+  const std::vector<double>& weights = view.program->friction_work;
+  const SemiDiscrete& problem = model_.problem();
+  const int points = problem.points();
+  const double support = marcher.program().support ? marcher.support(lane, stage.support) : 0.0, h = marcher.program().h;
+  for (const RubbingPoint& one : problem.rubbing)
+    for (int k = 0; k < one.rows; ++k) {
+      const int row = one.row + k;
+      double effort = 0;
+      for (int j = 0; j < std::min(static_cast<int>(weights.size()), view.efforts); ++j)
+        if (view.effort[j])
+          effort += weights[static_cast<std::size_t>(j)] * view.effort[j][(points + row) * T_ + lane];
+      double lift = problem.rubbed.on_support[row] * support;
+      for (const Level& level : stage.support_levels) {
+        lift -= level.weight * level.at * h * one.speed[static_cast<std::size_t>(k)];
+        if (!marcher.motions().empty())
+          lift += level.weight *
+                  marcher.motions().sum(problem.rubbed.on_motions.row(row), view.time + level.at * h, false);
+      }
+      const double way = model_.times(model_.rubbed(), row, s) + lift;
+      friction_works_[static_cast<std::size_t>(row)] = effort * way;
+      friction_ways_[static_cast<std::size_t>(row)] = way;
+      works.friction += effort * way;
+      works.loads -= effort * lift;
+    }
 }
 
 void StageWorks::add_contact(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane,

@@ -1,10 +1,12 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <ricochet/contract/step_plan.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/kernels/block.hpp>
 #include <ricochet/kernels/lane_kernels.hpp>
 #include <ricochet/kernels/quadratic_form.hpp>
+#include <span>
 #include <vector>
 
 namespace ricochet {
@@ -131,16 +133,17 @@ class StateEnergies {
 
 /// Works of one or more steps, J, each in the sense in which the balance of a scheme adds it:
 ///
-///     ΔE = loads − damping − scheme + contact
+///     ΔE = loads − damping − scheme + contact + friction
 struct Works {
   double loads = 0;    ///< Σ sᵀF̄, and the support's work through the stops
   double damping = 0;  ///< Σ sᵀC r
   double contact = 0;  ///< Σ p̄ᵀ(H s + Δφ)
+  double friction = 0;  ///< Σ p̄_tᵀ(T s + Δφ_t − ∫V dt)
   double scheme = 0;   ///< Σ of the plan's loss terms
   double law = 0;      ///< what the law itself dissipates, of what it gives as `contact`
 
   /// ΔE beyond what the loads brought, where the balance is exact.
-  double gain() const { return contact - damping - scheme; }
+  double gain() const { return contact + friction - damping - scheme; }
   Works& operator+=(const Works& other);
 };
 
@@ -162,6 +165,8 @@ class StageWorks {
   void add(const Marcher& marcher, const StageView& view, int lane, bool losses, bool acting, Works& works) {
     const StageTerms& stage = (view.starting ? start_ : stages_)[static_cast<std::size_t>(view.stage)];
     const bool contact = view.effort && (acting || ((view.contact_lanes >> lane) & 1u));
+    std::fill(friction_works_.begin(), friction_works_.end(), 0.0);
+    std::fill(friction_ways_.begin(), friction_ways_.end(), 0.0);
     if (contact || !view.sum || view.sum != &stage.sum)
       return add_all(marcher, view, stage, lane, losses, contact, works);
     works.damping += stage.by_sum * stage.sum.form;
@@ -173,6 +178,10 @@ class StageWorks {
     works.damping += stage.by_sum * step.form;
     if (projected_) works.loads += marcher.support(0, stage.sum_load, step) * step.projection;
   }
+  /// Of the lane and stage that was added last, by row that rubs: the work of friction, J, and the way against the
+  /// surface, m; of a stage without effort 0.
+  std::span<const double> friction_works() const { return friction_works_; }
+  std::span<const double> friction_ways() const { return friction_ways_; }
   /// Whether a step without contact asks nothing but its squares, or not even these.
   bool squares_alone() const { return squares_alone_; }
   /// What a free step may add up of a stage of the plan; null where that is not all that it asks without contact.
@@ -214,6 +223,10 @@ class StageWorks {
                bool contact, Works& works);
   void add_contact(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, const double* s,
                    Works& works) const;
+  void add_efforts(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, const double* s,
+                   Works& works);
+  void add_friction(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, const double* s,
+                    Works& works);
 
   const MarchModel& model_;
   QuadraticForm mass_, stiffness_;  // of two vectors
@@ -225,6 +238,7 @@ class StageWorks {
   int T_;
   std::vector<StageTerms> start_, stages_;
   Block displacement_, rate_;  // of one lane
+  std::vector<double> friction_works_, friction_ways_;
 };
 
 }  // namespace ricochet

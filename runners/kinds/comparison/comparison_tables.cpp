@@ -286,7 +286,7 @@ std::vector<TimedError> fastest(const std::vector<TimedError>& points, double to
 
 bool is_method(const std::string& column) {
   const std::string role = axis_role(column);
-  return role == "mass" || role == "contact" || role == "time" || role == "march";
+  return is_method_role(role) || role == "march";
 }
 
 bool is_scene(const std::string& column) {

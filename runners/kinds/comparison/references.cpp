@@ -138,6 +138,7 @@ std::string References::key(const StudyCase& study_case, const MethodChoice& cho
       if (const std::string file = registry_.file(role, name); !file.empty())
         content["libraries"].push_back(file_hash(file));
   }
+  if (marched && !study_case.friction.name.empty()) content["friction"] = content_of(study_case.friction);
   if (marched) {
     content["time"] = content_of(study_case.time);
     if (const std::string file = registry_.file(Role::time, study_case.time.name);

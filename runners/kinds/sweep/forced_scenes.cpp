@@ -38,6 +38,8 @@ int ForcedScenes::add(SceneVariant variant) {
     candidate.scheme = one.time.parameters.values();
     candidate.law = shared_parameters(one.contact.parameters, entry->manual);
     candidate.make_law = [entry, parameters = one.contact.parameters] { return entry->make(parameters); };
+    candidate.make_friction = friction_maker(one, registry_);
+    candidate.friction = one.friction.parameters.values();
     const auto law = make_law(one, registry_);
     auto made = discretise(one.scene, one.elements, *make_mass(one, registry_), law.get(), &one.contact.parameters);
     if (const auto* refusal = std::get_if<Refusal>(&made)) {

@@ -11,6 +11,7 @@
 #include "runners/asks/kind_verbs.hpp"
 #include "runners/asks/lines.hpp"
 #include "runners/json/json_text.hpp"
+#include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet {
@@ -324,7 +325,7 @@ Json default_motion_asks(const Json& resolved, const std::string& subject) {
     ask_of_choice(compare.get<std::string>());
     return out;
   }
-  for (const char* role : {"mass", "contact", "time"}) {
+  for (const std::string& role : method_roles()) {
     const Json entries = key("methods").contains(role) ? key("methods")[role] : Json::array();
     const bool lists = std::any_of(entries.begin(), entries.end(), [](const Json& entry) {
       return std::any_of(entry.begin(), entry.end(),

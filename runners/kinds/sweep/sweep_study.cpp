@@ -20,7 +20,7 @@
 namespace ricochet {
 namespace {
 
-constexpr std::array swept_roles = {Role::mass, Role::contact, Role::time};
+constexpr std::array swept_roles = {Role::mass, Role::contact, Role::friction, Role::time};
 
 // Bytes of one row: sections, what else each value and start keeps (at most 64 impacts, a portrait), a cell with its
 // own section.
@@ -225,8 +225,10 @@ void mark_sweep(const Json& settings, const Registry& registry, StudyCase& study
     const std::string role = role_of(pointer);
     if (role.empty()) continue;
     const std::string key = pointer.substr(pointer.rfind('/') + 1);
-    const MethodChoice& method =
-        role == "mass" ? study_case.mass : (role == "contact" ? study_case.contact : study_case.time);
+    const MethodChoice& method = role == "mass"       ? study_case.mass
+                                 : role == "contact"  ? study_case.contact
+                                 : role == "friction" ? study_case.friction
+                                                      : study_case.time;
     const ParameterSpec* spec = parameter_of(registry, role, method.name, pointer);
     if (!spec) {
       if (!study_case.excluded)

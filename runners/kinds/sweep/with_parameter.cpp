@@ -121,6 +121,8 @@ StudyCase with_parameters(const StudyCase& study_case, const std::vector<std::pa
       change_method(one, "mass", one.mass, pointer, value);
     } else if (pointer.starts_with("/methods/contact/")) {
       change_method(one, "contact", one.contact, pointer, value);
+    } else if (pointer.starts_with("/methods/friction/")) {
+      change_method(one, "friction", one.friction, pointer, value);
     } else if (pointer.starts_with("/methods/time/")) {
       change_method(one, "time", one.time, pointer, value);
     } else {

@@ -142,6 +142,7 @@ void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher
     if (one.pushed) known.pushed = one.pushed;
     if (one.shocks) known.shocks = one.shocks;
     if (one.wear_power) known.wear_power = one.wear_power;
+    if (one.friction) known.friction = one.friction;
   }
   const std::vector<Column> readings = stop_reading_columns(known);
   stops.columns.insert(stops.columns.end(), readings.begin(), readings.end());

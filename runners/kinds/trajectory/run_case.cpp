@@ -5,6 +5,7 @@
 #include <limits>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/contact/friction_watch.hpp>
 #include <ricochet/measure/contact/stop_contacts.hpp>
 #include <ricochet/measure/contact/stop_places.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
@@ -121,6 +122,7 @@ class Sampler final : public StepObserver {
 struct Watched {
   EnergyAudit audit;
   TangentWatch tangents;
+  FrictionWatch friction;
   ImpactRecorder recorder;
   StopContacts contacts;
   StruckTogether struck;
@@ -134,6 +136,7 @@ struct Watched {
   Watched(const StudyCase& study_case, const Marcher& marcher, long long steps)
       : audit(marcher, SamplingMode::seldom),
         tangents(marcher, asked_outputs(study_case).window),
+        friction(marcher, audit, asked_outputs(study_case).window),
         recorder(marcher),
         contacts(marcher, recorder),
         struck(marcher),
@@ -149,6 +152,7 @@ struct Watched {
       observers.add(&tangents);
       contacts.tell(&tangents);
     }
+    if (friction.any()) observers.add(&friction);
     observers.add(&recorder);
     recorder.tell(&struck);
     if (outputs.any()) observers.add(&outputs);
@@ -224,6 +228,7 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
     // What the stops give back (a spring's potential) is not dissipated.
     const double stored = energy.last.contact - energy.first.contact;
     put("dissipated_at_contact", -energy.work_of_contact - stored);
+    if (marcher.program().friction) put("dissipated_by_friction", -energy.work_of_friction);
     put("stored_at_stops", stored);
     put("balance_residual", energy.balance_residual());
   }
@@ -283,7 +288,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   const std::shared_ptr<const SemiDiscrete> problem = prepared.problem;
   Marcher marcher(std::move(*prepared.program));
   Watched watched(study_case, marcher, prepared.steps);
-  auto& [audit, tangents, recorder, contacts, struck, outputs, means, forces, orbits, snapshots, sampler, observers] =
+  auto& [audit, tangents, friction, recorder, contacts, struck, outputs, means, forces, orbits, snapshots, sampler, observers] =
       watched;
   count_steady_load(marcher, audit, record.notes);
   record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
@@ -330,7 +335,11 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   contacts.finish();
   outputs.finish(marcher);
   fill_measures(record, marcher, audit, *problem, contacts);
-  add_contact(record, contacts, marcher, {&outputs, &tangents});
+  if (friction.any()) {
+    put_measure(record, "friction_residual", friction.residual());
+    put_measure(record, "friction_turns", friction.most_turns());
+  }
+  add_contact(record, contacts, marcher, {&outputs, &tangents, &friction});
   doubts.push_back(GapWatch::crossed(marcher, recorder));
   doubts.push_back(sampler.gaps().passed());
   doubts.push_back(struck.told(marcher, largest_restitution(study_case, *problem, registry)));

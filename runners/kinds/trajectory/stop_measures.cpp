@@ -20,7 +20,7 @@ namespace {
 using Known = std::optional<double>;
 
 /// What a study has to say for a measure to be known.
-enum class Needs { nothing, window, shocks, tangent };
+enum class Needs { nothing, window, shocks, tangent, friction };
 
 struct StopMeasure {
   const char *name, *unit, *text, *words;
@@ -51,7 +51,18 @@ Known shocked(const StopReading& reading) {
   return reading.shocks && reading.shocks->shocks > 0 ? Known(of(*reading.shocks)) : std::nullopt;
 }
 
+template <double (*of)(const FrictionTotals&, double)>
+Known rubbed(const StopReading& reading) {
+  return reading.friction ? Known(of(*reading.friction, reading.rubbed_over)) : std::nullopt;
+}
+/// The same of what is over the time in which something presses.
+template <double (*of)(const FrictionTotals&, double)>
+Known while_rubbed(const StopReading& reading) {
+  return reading.friction && reading.friction->time > 0 ? rubbed<of>(reading) : std::nullopt;
+}
+
 using Moments = const RunningMoments&;
+using Rubbed = const FrictionTotals&;
 using Push = const PushTotals&;
 using Shocks = const ShockTotals&;
 
@@ -114,7 +125,32 @@ const StopMeasure stop_measures[] = {
      shocked<[](Shocks s) { return s.peaks.largest; }>, Needs::shocks, true, true},
     {"wear_power", "W",
      "Wear power of the stop {}, (1/T) Σ I ½(|V⁻| + |V⁺|): I impulse of an instant, V speeds along the surface.",
-     "wear power at {}", [](const StopReading& of) { return of.wear_power; }, Needs::tangent, true}};
+     "wear power at {}", [](const StopReading& of) { return of.wear_power; }, Needs::tangent, true},
+    {"stick_share", "1", "Share of the time in which the surface of the stop {} is pressed that it sticks.",
+     "stick share at {}", while_rubbed<[](Rubbed f, double) { return f.held / f.time; }>, Needs::friction, true},
+    {"friction_power", "W", "Power that friction at the stop {} turns to heat, mean over the window.",
+     "friction power at {}",
+     [](const StopReading& of) {
+       return of.friction_works ? rubbed<[](Rubbed f, double time) { return f.heat / time; }>(of) : std::nullopt;
+     },
+     Needs::friction, true},
+    {"slip_distance", "m", "How far the surface of the stop {} slides while it is pressed, in the window.",
+     "slip at {}", rubbed<[](Rubbed f, double) { return f.slipped; }>, Needs::friction, true},
+    {"stick_slip_changes", "1", "How often the surface of the stop {} begins or ends to stick while it is pressed.",
+     "changes between stick and slip at {}", rubbed<[](Rubbed f, double) { return f.changes; }>, Needs::friction, true},
+    {"friction_impulse", "N s", "Momentum that friction at the stop {} gives, by magnitude, in the window.",
+     "friction impulse at {}", rubbed<[](Rubbed f, double) { return f.impulse; }>, Needs::friction, true},
+    {"tangent_force_rms", "N",
+     "Root mean square of the force of friction at the stop {} while it is pressed; blank as peak_force.",
+     "rms friction at {}", while_rubbed<[](Rubbed f, double) { return std::sqrt(f.squares / f.time); }>,
+     Needs::friction, true, true},
+    {"tangent_force_peak", "N", "Largest force of friction at the stop {}; blank as peak_force.", "peak friction at {}",
+     rubbed<[](Rubbed f, double) { return f.peak; }>, Needs::friction, true, true},
+    {"drift_of_sticking", "m/s", "How fast the surface of the stop {} creeps while it sticks.", "creep at {}",
+     [](const StopReading& of) -> Known {
+       return of.friction_works && of.friction->held > 0 ? Known(of.friction->drifted / of.friction->held) : std::nullopt;
+     },
+     Needs::friction, true}};
 
 const StopMeasure* find_measure(const std::string& name) {
   const auto one = std::find_if(std::begin(stop_measures), std::end(stop_measures),
@@ -290,7 +326,8 @@ std::vector<Column> stop_reading_columns(const StopReading& known) {
   std::vector<Column> columns;
   for (const StopMeasure& one : stop_measures)
     if (one.column && ((one.needs == Needs::window && known.pushed) || (one.needs == Needs::shocks && known.shocks) ||
-                       (one.needs == Needs::tangent && known.wear_power)))
+                       (one.needs == Needs::tangent && known.wear_power) ||
+                       (one.needs == Needs::friction && known.friction)))
       columns.push_back({one.name, one.unit, fmt::format(fmt::runtime(one.text), "of the row")});
   return columns;
 }
@@ -306,6 +343,7 @@ std::vector<Column> all_stop_reading_columns() {
   all.pushed.emplace();
   all.shocks.emplace();
   all.wear_power = 0;
+  all.friction.emplace();
   return stop_reading_columns(all);
 }
 
@@ -319,8 +357,13 @@ std::string missing_for(const StopMeasure& one, const nlohmann::ordered_json& st
     return "counts shocks; give outputs.shocks";
   if (one.needs == Needs::tangent)
     for (const auto& other : study.at("scene").at("stops"))
-      if (other.at("name") == stop && !other.contains("tangent") && !other.contains("clearance"))
+      if (other.at("name") == stop && !other.contains("tangent") && !other.contains("clearance") &&
+          !other.contains("normal_force"))
         return "needs what slides there; give tangent to the stop";
+  if (one.needs == Needs::friction)
+    for (const auto& other : study.at("scene").at("stops"))
+      if (other.at("name") == stop && !other.contains("friction"))
+        return "needs friction there; give friction to the stop";
   return "";
 }
 

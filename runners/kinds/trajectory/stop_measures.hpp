@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <ricochet/measure/contact/friction_watch.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/contact/stop_statistics.hpp>
 #include <string>
@@ -25,6 +26,9 @@ struct StopReading {
   std::optional<PushTotals> pushed;
   std::optional<ShockTotals> shocks;
   std::optional<double> wear_power;  ///< W
+  double rubbed_over = 0;            ///< s: how long friction was looked at
+  std::optional<FrictionTotals> friction;
+  bool friction_works = false;  ///< whether its heat and drift are known
 };
 
 /// Measures of a stop, and their confidences, that are sizes of a force while it acts. Of a point with mass that a

@@ -97,6 +97,12 @@ StopReading part_reading(const StopWatches& watches, int point, int part) {
   }
   if (watches.tangents && watches.tangents->has(point))
     reading.wear_power = watches.tangents->work(point, part) / reading.window;
+  if (watches.friction && watches.friction->has(point)) {
+    reading.rubbed_over = reading.window;
+    reading.friction = watches.friction->part(point, part);
+    reading.friction_works = watches.friction->knows_work();
+    reading.wear_power = reading.friction->wear / reading.window;
+  }
   return reading;
 }
 
@@ -122,7 +128,7 @@ std::vector<double> ratio_series(const std::vector<double>& a, const std::vector
 
 void put_halves(CaseRecord& record, const StopWatches& watches, int point, const std::string& name) {
   const StopStatistics& statistics = *watches.outputs->statistics();
-  std::vector<double> displacement, squares, force, force_squares, rate, share, wear;
+  std::vector<double> displacement, squares, force, force_squares, rate, share, wear, rubbed, held, heat;
   std::vector<double> shocks, shock_rate, rebounds, lasted, hit, peaks;
   const double length = statistics.window().length();
   for (int part = 0; part < statistics.window().count; ++part) {
@@ -134,6 +140,11 @@ void put_halves(CaseRecord& record, const StopWatches& watches, int point, const
     rate.push_back(static_cast<double>(reading.pushed->impacts) / length);
     share.push_back(reading.pushed->contact_time / length);
     if (reading.wear_power) wear.push_back(*reading.wear_power);
+    if (reading.friction) {
+      rubbed.push_back(reading.friction->time);
+      held.push_back(reading.friction->held);
+      if (reading.friction_works) heat.push_back(reading.friction->heat / length);
+    }
     if (!reading.shocks) continue;
     shocks.push_back(static_cast<double>(reading.shocks->shocks));
     shock_rate.push_back(shocks.back() / length);
@@ -156,6 +167,8 @@ void put_halves(CaseRecord& record, const StopWatches& watches, int point, const
   put_half(record, "rebound_time" + of, ratio_series(hit, rebounds), false);
   put_half(record, "shock_force_mean" + of, ratio_series(peaks, shocks), false);
   put_half(record, "wear_power" + of, wear, false);
+  put_half(record, "friction_power" + of, heat, false);
+  put_half(record, "stick_share" + of, ratio_series(held, rubbed), false);
 }
 
 void add_parts(CaseRecord& record, const StopWatches& watches, const SemiDiscrete& problem,
@@ -169,6 +182,8 @@ void add_parts(CaseRecord& record, const StopWatches& watches, const SemiDiscret
   const int stops = static_cast<int>(names.size());
   for (int point = 0; watches.tangents && point < stops; ++point)
     if (watches.tangents->has(point)) known.wear_power = 0;
+  for (int point = 0; watches.friction && point < stops; ++point)
+    if (watches.friction->has(point)) known.friction.emplace();
   Table table = parts_head(known);
   const std::vector<Column> columns = stop_reading_columns(known);
   for (int point = 0; point < stops; ++point) {
@@ -256,6 +271,13 @@ StopReading stop_reading(const StopContacts& contacts, const StopWatches& watche
     reading.run.squares = lower.squares + upper.squares;
   }
   if (watches.tangents && watches.tangents->has(stop)) reading.wear_power = watches.tangents->power(stop);
+  if (watches.friction && watches.friction->has(stop)) {
+    const WindowParts& window = watches.friction->window();
+    reading.rubbed_over = window.to - window.from;
+    reading.friction = watches.friction->totals(stop);
+    reading.friction_works = watches.friction->knows_work();
+    reading.wear_power = reading.friction->wear / reading.rubbed_over;
+  }
   if (!watches.outputs) return reading;
   const OutputWatch& outputs = *watches.outputs;
   reading.window = outputs.asked().window.to - outputs.asked().window.from;

@@ -1,4 +1,5 @@
 #pragma once
+#include <ricochet/measure/contact/friction_watch.hpp>
 #include <ricochet/measure/contact/stop_contacts.hpp>
 #include <ricochet/measure/contact/tangent_watch.hpp>
 
@@ -24,6 +25,7 @@ const NumberType<SpectrumColumns>& spectra_type();
 struct StopWatches {
   const OutputWatch* outputs = nullptr;
   const TangentWatch* tangents = nullptr;
+  const FrictionWatch* friction = nullptr;
 };
 
 /// What is known of a stop, on one side or on both.

@@ -19,6 +19,7 @@
 #include "runners/kinds/trajectory/window_means.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/snapshots.hpp"
+#include "runners/study/axis_meaning.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/study/check_object.hpp"
 #include "runners/study/fields.hpp"
@@ -373,7 +374,6 @@ KindPointer trajectory_kind() {
 
 namespace {
 
-const std::vector<std::string> roles = {"mass", "contact", "time"};
 
 // "support.amplitude" → "/support/amplitude".
 Json::json_pointer scene_pointer(std::string column) {
@@ -385,7 +385,7 @@ Json::json_pointer scene_pointer(std::string column) {
 
 Json minimal_study(const StudyResults& results, const CaseRecord& record) {
   Json scene = results.study.at("scene"), methods = Json::object();
-  for (const std::string& role : roles) methods[role] = Json::object();
+  for (const std::string& role : method_roles()) methods[role] = Json::object();
   Json mesh = {{"elements", 1}}, step, march;
   for (const auto& [column, value] : record.axes) {
     const std::string role = column.substr(0, column.find('.'));
@@ -396,7 +396,7 @@ Json minimal_study(const StudyResults& results, const CaseRecord& record) {
       step = value;
     else if (column == "march")
       march = value;
-    else if (std::find(roles.begin(), roles.end(), role) != roles.end())
+    else if (is_method_role(role))
       methods[role][column == role ? "name" : column.substr(role.size() + 1)] = value;
     else
       scene[scene_pointer(column)] = value;

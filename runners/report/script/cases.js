@@ -1,7 +1,7 @@
 // The cases of a study as figures speak of them: which axes vary, short labels, groups, one colour per mass matrix. A
 // *role* is a method's name with its parameters: "mass" stands for the columns mass, mass.velocity, …
 {
-  const {distinct} = ricochet, roles = ["mass", "contact", "time"];
+  const {distinct} = ricochet, roles = ["mass", "contact", "friction", "time"];
   // Okabe and Ito 2008: distinct for colour-blind readers.
   const colours = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#444444"];
 

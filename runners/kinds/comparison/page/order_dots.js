@@ -14,7 +14,7 @@
           cases = ricochet.distinct(found.map((row) => data.byId.get(row.case)));
     if (!found.length) return [];
     const label =
-        ricochet.rowLabels(view, cases, view.varyingWithout(["mass", "contact", "step", "elements"]), mostRows);
+        ricochet.rowLabels(view, cases, view.varyingWithout(["mass", "contact", "friction", "step", "elements"]), mostRows);
     const rows =
         found.map((row) => ({
                     name: label(data.byId.get(row.case)),

@@ -12,7 +12,7 @@
       const {view} = data;
       Object.assign(this, {view, work, table: data.rows("work_points")});
       // What makes another scene of it: neither methods, nor mesh, nor step.
-      this.scene = view.varyingWithout(["mass", "contact", "time", "march", "elements", "step"]);
+      this.scene = view.varyingWithout(["mass", "contact", "friction", "time", "march", "elements", "step"]);
       this.curves = new ricochet.MethodCurves(view, view.all, "step", {apart: this.scene});
       this.scenes = view.group(view.all, this.scene);
       this.found = data.rowsBy("work_points", ["case", "error"]);

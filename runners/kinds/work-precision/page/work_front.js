@@ -17,7 +17,7 @@
                       .filter((row) => row.none === "" && row.value > 0 && row.seconds > 0 && data.byId.has(row.case)),
           error = telling(known);
     if (!error) return [];
-    const scene = view.varyingWithout(["mass", "contact", "time", "march", "elements", "step"]),
+    const scene = view.varyingWithout(["mass", "contact", "friction", "time", "march", "elements", "step"]),
           scenes = view.group(known.map((row) => data.byId.get(row.case)), scene), [first] = scenes;
     const methods =
               view.varying.filter((column) => column !== "elements" && column !== "step" && !scene.includes(column)),

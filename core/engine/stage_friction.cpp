@@ -1,0 +1,280 @@
+#include <algorithm>
+#include <cmath>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/engine/stage_friction.hpp>
+#include <ricochet/engine/stage_state.hpp>
+
+/// \file
+/// Friction beside the contact law. In turn the law finds p with the efforts p_t of friction as they are, and the
+/// friction law finds p_t with the bounds μ|p|,
+///
+///     measure = free + reach·W p + c W_nt p_t,     u = u° + c_n W_tn p + c_t W_tt p_t
+///
+/// until p_t stays. What a turn takes too much, a secant over two turns takes back.
+namespace ricochet {
+namespace {
+
+constexpr double settled = 1e-13;      // change of p_t over the largest effort
+constexpr double negligible = 1e-12;   // what p_t moves a measure by, over what its own effort does
+constexpr int most_turns = 400;
+constexpr int plain_every = 8;         // turns after which one is taken as it is
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+StageFriction::StageFriction(const Program& program) {
+  const SemiDiscrete& problem = *program.problem;
+  const int T = program.width, count = static_cast<int>(problem.rubbing.size()), all = problem.rubbed.count();
+  for (Block* block : {&normal, &sticks, &slid}) *block = Block(count, T);
+  residual.resize(at(T));
+  turns.resize(at(T));
+  for (const RubbingPoint& one : problem.rubbing)
+    if (one.normal_force) always = (std::uint32_t{1} << program.lanes.size()) - 1;
+  if (program.lanes.size() == 32) always = always != 0 ? ~std::uint32_t{0} : 0;
+  rows.reserve(at(all));
+  first_row.reserve(at(count) + 1);
+  number.reserve(at(count));
+  matrix.resize(at(all) * at(all));
+  for (auto* numbers : {&free, &effort, &given, &found, &found_before, &off_before}) numbers->resize(at(all));
+  for (auto* numbers : {&normals, &sliding, &held, &slides}) numbers->resize(at(count));
+  holds.resize(at(count));
+  measured.resize(at(problem.points()));
+  rate.resize(at(problem.points()));
+}
+
+// u° of all rows and lanes: that of the stage without its own efforts, against the surface.
+void Marcher::measure_end_rates(const StageProgram& program, StageState& state, const double* z) {
+  const ObservedRows& rows = program_.problem->rubbed;
+  const EndRate& end = program.facts.end_rate;
+  std::array<const double*, most_slots + 1> slots{};
+  std::copy(slot_pointers_.begin(), slot_pointers_.end(), slots.begin());
+  slots[at(slot_count())] = z;
+  measure_rows(program_.model->rubbed(), slot_count() + 1, slots.data(), state.end_rate_weights.data(), nullptr,
+               state.end_rate.data());
+  for (const RubbingPoint& one : program_.problem->rubbing)
+    for (int k = 0; k < one.rows; ++k) {
+      const int row = one.row + k;
+      double surface = 0;
+      for (const Level& level : end.speeds) {
+        const double t = time() + level.at * program_.h;
+        surface += level.weight * (motions().empty() ? 0.0 : motions().sum(rows.on_motions.row(row), t, true));
+        surface -= level.weight * one.speed[at(k)];
+      }
+      for (const Level& level : end.places) {
+        const double t = time() + level.at * program_.h;
+        surface += level.weight * (motions().empty() ? 0.0 : motions().sum(rows.on_motions.row(row), t, false));
+        surface -= level.weight * level.at * program_.h * one.speed[at(k)];
+      }
+      for (int lane = 0; lane < lanes(); ++lane) {
+        double moved = surface;
+        if (rows.on_support[row] != 0 && program_.support) {
+          for (const Level& level : end.speeds)
+            moved += rows.on_support[row] * level.weight * support_rate(lane, time() + level.at * program_.h);
+          for (const Level& level : end.places)
+            moved += rows.on_support[row] * level.weight * support(lane, time() + level.at * program_.h);
+        }
+        state.end_rate.at(row, lane) += moved;
+      }
+    }
+}
+
+// |N| of a point that rubs, in the units of the stage's efforts of friction.
+double Marcher::normal_force(const StageProgram& program, const StageState& state, int point, int lane) const {
+  const RubbingPoint& one = program_.problem->rubbing[at(point)];
+  if (one.normal_force) return *one.normal_force;
+  const std::size_t e = at(one.point) * at(program_.width) + at(lane);
+  if (state.impulse) return std::abs(state.effort[0].data()[e]);
+  double normal = 0;
+  for (std::size_t k = 0; k < program.effort.size() && k < state.effort_pointers.size(); ++k)
+    if (state.effort_pointers[k]) normal += program.effort[k] * state.effort_pointers[k][e];
+  return std::abs(normal) / program.friction_weight;
+}
+
+// p_t of a lane for the normal efforts as they are, into `found`.
+LaneOutcome Marcher::find_friction(const StageProgram& program, StageState& state, int lane, bool first) {
+  StageFriction& rub = *rubbing_;
+  const int points = lower_.rows(), T = program_.width;
+  const double of_normal = program.friction_reach * (state.impulse ? 1.0 : program.effort[0]),
+               of_own = program.friction_reach * (state.impulse ? 1.0 : program.friction_weight);
+  DelassusColumns& W = columns_of(state);
+  rub.rows.clear();
+  rub.number.clear();
+  rub.first_row.assign(1, 0);
+  std::swap(rub.found, rub.found_before);
+  std::fill(rub.found.begin(), rub.found.end(), 0.0);
+  const std::vector<RubbingPoint>& all = program_.problem->rubbing;
+  for (int i = 0; i < static_cast<int>(all.size()); ++i) {
+    const double normal = normal_force(program, state, i, lane);
+    if (!(normal > 0)) continue;
+    const std::size_t k = rub.number.size();
+    rub.normals[k] = normal;
+    rub.sliding[k] = all[at(i)].sliding * normal;
+    rub.held[k] = rub.sticks.at(i, lane) != 0 ? all[at(i)].held * normal : rub.sliding[k];
+    rub.number.push_back(i);
+    for (int k = 0; k < all[at(i)].rows; ++k) rub.rows.push_back(all[at(i)].row + k);
+    rub.first_row.push_back(static_cast<int>(rub.rows.size()));
+  }
+  LaneOutcome outcome;
+  if (rub.rows.empty()) return outcome;
+  const int count = static_cast<int>(rub.rows.size());
+  for (int b = 0; b < count; ++b) {
+    const double* column = W.column(points + rub.rows[at(b)]);
+    for (int a = 0; a < count; ++a) rub.matrix[at(a * count + b)] = of_own * column[points + rub.rows[at(a)]];
+  }
+  for (int a = 0; a < count; ++a) {
+    const int row = rub.rows[at(a)];
+    rub.free[at(a)] = state.end_rate.at(row, lane);
+    rub.effort[at(a)] = first ? state.effort[0].at(points + row, lane) : rub.found_before[at(row)];
+  }
+  for (int i = 0; i < points; ++i) {
+    const double p = of_normal * state.effort[0].data()[i * T + lane];
+    if (p == 0) continue;
+    const double* column = W.column(i);
+    for (int a = 0; a < count; ++a) rub.free[at(a)] += p * column[points + rub.rows[at(a)]];
+  }
+  FrictionProblem problem;
+  problem.points = static_cast<int>(rub.number.size());
+  problem.first_row = rub.first_row.data();
+  problem.number = rub.number.data();
+  problem.lane = lane;
+  problem.matrix = rub.matrix.data();
+  problem.stride = count;
+  problem.free = rub.free.data();
+  problem.bound = rub.sliding.data();
+  problem.bound_static = rub.held.data();
+  problem.h = program.friction_momentum;
+  problem.effort = rub.effort.data();
+  problem.sticks = rub.holds.data();
+  problem.slid = rub.slides.data();
+  outcome = program_.friction->solve(problem);
+  for (int a = 0; a < count; ++a) rub.found[at(rub.rows[at(a)])] = rub.effort[at(a)];
+  return outcome;
+}
+
+// What efforts of friction move the measure of a point by, over c.
+double Marcher::moved_by_friction(StageState& state, const std::vector<double>& efforts, int point) {
+  double sum = 0;
+  for (int row = 0; row < static_cast<int>(efforts.size()); ++row)
+    if (efforts[at(row)] != 0) sum += efforts[at(row)] * columns_of(state).column(lower_.rows() + row)[point];
+  return sum;
+}
+
+// Whether what was found moves what the law reads by more than round-off of what the normal efforts do.
+bool Marcher::friction_moves_normals(StageState& state, double reach, int lane) {
+  if (reach == 0) return false;
+  double own = 0, most = 0;
+  for (int i = 0; i < lower_.rows(); ++i) {
+    if (lower_.at(i, lane) == -infinity && upper_.at(i, lane) == infinity) continue;
+    most = std::max(most, std::abs(moved_by_friction(state, rubbing_->found, i)));
+    const double p = state.effort[0].at(i, lane);
+    if (p != 0) own = std::max(own, std::abs(p * columns_of(state).column(i)[i]));
+  }
+  return most > negligible * own;
+}
+
+void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane) {
+  StageFriction& rub = *rubbing_;
+  const int points = lower_.rows(), T = program_.width;
+  const double reach = state.impulse ? program.reach : program.measure_z * program.friction_weight;
+  const double rate_reach = !program.compliance ? 0.0
+                            : state.impulse      ? program.rate_reach
+                                                 : program.compliance->rate.z * program.friction_weight;
+  for (int i = 0; i < points; ++i) {
+    rub.measured[at(i)] = state.free.at(i, lane);
+    if (state.rate.rows() > 0) rub.rate[at(i)] = state.rate.at(i, lane);
+  }
+  std::fill(rub.given.begin(), rub.given.end(), 0.0);
+  LaneOutcome outcome;
+  int turn = 0;
+  double largest = 0, most = 0;
+  while (true) {
+    outcome = find_friction(program, state, lane, turn == 0);
+    most = largest = 0;
+    double down = 0, along = 0;
+    for (std::size_t row = 0; row < rub.found.size(); ++row) {
+      const double off = rub.found[row] - rub.given[row], change = off - rub.off_before[row];
+      most = std::max(most, std::abs(off));
+      largest = std::max(largest, std::abs(rub.found[row]));
+      down += off * change;
+      along += change * change;
+    }
+    for (std::size_t k = 0; k < rub.number.size(); ++k) largest = std::max(largest, rub.held[k]);
+    if (!outcome.converged || most <= settled * largest) break;
+    if (turn == 0 && !friction_moves_normals(state, std::max(std::abs(reach), std::abs(rate_reach)), lane)) {
+      most = 0;
+      break;
+    }
+    if (++turn > most_turns) break;
+    const double back = turn > 1 && turn % plain_every != 0 && along > 0 ? down / along : 0.0;
+    for (std::size_t row = 0; row < rub.found.size(); ++row) {
+      const double off = rub.found[row] - rub.given[row];
+      rub.given[row] = rub.found[row] - back * (rub.found[row] - rub.found_before[row]);
+      rub.off_before[row] = off;
+    }
+    for (int i = 0; i < points; ++i) {
+      const double moved = moved_by_friction(state, rub.given, i);
+      state.free.at(i, lane) = rub.measured[at(i)] + reach * moved;
+      if (state.rate.rows() > 0) state.rate.at(i, lane) = rub.rate[at(i)] + rate_reach * moved;
+    }
+    for (std::size_t k = 0; k < rub.memory.size() / at(T); ++k)
+      memory_.data()[k * at(T) + at(lane)] = rub.memory[k * at(T) + at(lane)];
+    const int one[] = {lane};
+    solve_law(program, state, one);
+    if (!outcome_[at(lane)].converged) break;
+  }
+  for (int i = 0; i < points; ++i) {
+    state.free.at(i, lane) = rub.measured[at(i)];
+    if (state.rate.rows() > 0) state.rate.at(i, lane) = rub.rate[at(i)];
+  }
+  rub.turns[at(lane)] = turn;
+  rub.residual[at(lane)] = std::max(outcome.residual, largest > 0 ? most / largest : 0.0);
+  for (int i = 0; i < rub.sticks.rows(); ++i) rub.sticks.at(i, lane) = rub.slid.at(i, lane) = rub.normal.at(i, lane) = 0;
+  for (std::size_t k = 0; k < rub.number.size(); ++k) {
+    const int i = rub.number[k];
+    rub.sticks.at(i, lane) = rub.holds[k] != 0 ? 1 : 0;
+    rub.slid.at(i, lane) = rub.slides[k];
+    rub.normal.at(i, lane) = rub.normals[k];
+  }
+  bool finite = true;
+  for (std::size_t row = 0; row < rub.found.size(); ++row) {
+    state.effort[0].at(points + static_cast<int>(row), lane) = rub.found[row];
+    finite &= std::isfinite(rub.found[row]);
+  }
+  if (!outcome_[at(lane)].converged) return;
+  if (!finite)
+    freeze(lane, {.cause = EndCause::effort_not_finite});
+  else if (!outcome.converged || turn > most_turns)
+    freeze(lane, {.cause = EndCause::friction_not_found, .value = rub.residual[at(lane)], .count = turn});
+}
+
+void Marcher::rub(const StageProgram& program, StageState& state, const double* z) {
+  StageFriction& rub = *rubbing_;
+  const int points = lower_.rows(), T = program_.width;
+  std::uint32_t pressed = 0;
+  if (program.friction_momentum != 0 && program.facts.end_rate.known())
+    for (const int lane : touched_) {
+      bool presses = ((rub.always >> lane) & 1u) != 0;
+      for (int i = 0; i < points; ++i) presses |= state.effort[0].at(i, lane) != 0;
+      for (std::size_t k = 1; k < program.effort.size() && k < state.effort_pointers.size(); ++k)
+        for (int i = 0; i < points && state.effort_pointers[k]; ++i)
+          presses |= state.effort_pointers[k][i * T + lane] != 0;
+      pressed |= static_cast<std::uint32_t>(presses) << lane;
+    }
+  if (pressed != 0) measure_end_rates(program, state, z);
+  for (const int lane : touched_) {
+    if (!outcome_[at(lane)].converged) continue;
+    if ((pressed >> lane) & 1u) {
+      rub_lane(program, state, lane);
+      continue;
+    }
+    for (int i = 0; i < rub.sticks.rows(); ++i)
+      rub.sticks.at(i, lane) = rub.slid.at(i, lane) = rub.normal.at(i, lane) = 0;
+    for (int row = points; row < state.effort[0].rows(); ++row) state.effort[0].at(row, lane) = 0;
+    rub.residual[at(lane)] = rub.turns[at(lane)] = 0;
+  }
+}
+
+}  // namespace ricochet
