@@ -68,9 +68,8 @@ FrictionFacts friction_facts(const DerivedPlan& derived, const std::optional<Eva
     facts.why_none = "it solves a stage without mass";
     return facts;
   }
-  if (!evaluation && std::any_of(plan.stages.begin(), plan.stages.end(), [](const Stage& stage) {
-        return stage.impact && stage.impact->restores > 0;
-      })) {
+  if (!evaluation && std::any_of(plan.stages.begin(), plan.stages.end(),
+                                 [](const Stage& stage) { return stage.impact && stage.impact->restores > 0; })) {
     facts.why_none = "it gives back what contact takes, and friction must not come back";
     return facts;
   }
@@ -114,14 +113,12 @@ FrictionFacts friction_facts(const DerivedPlan& derived, const std::optional<Eva
   while (last > 0 && std::abs(off[last - 1]) < right) --last;
   if (last >= 4) {
     const double first = off[last / 2], end = off[last - 1];
-    const double size =
-        std::pow(std::abs(end / first), 1.0 / static_cast<double>(last - 1 - last / 2));
+    const double size = std::pow(std::abs(end / first), 1.0 / static_cast<double>(last - 1 - last / 2));
     facts.held_root = off[last - 1] * off[last - 2] < 0 ? -size : size;
   }
   if (std::abs(facts.held_root) >= 1 - 1e-9) {
-    facts.why_none = fmt::format("it {} the effort of a point that sticks (by the factor {:.4g} a step)",
-                                 facts.held_root < 0 ? "alternates" : "does not find", facts.held_root);
-    return facts;
+    facts.rings = fmt::format("it {} the effort of a point that sticks (by the factor {:.4g} a step)",
+                              facts.held_root < 0 ? "alternates" : "does not find", facts.held_root);
   }
   RubbedMass slides(derived, 1, 0, start, stages);
   const auto push = [](double, double) { return -1.0; };

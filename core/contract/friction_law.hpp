@@ -22,15 +22,20 @@ struct FrictionProblem {
   const double* free = nullptr;   ///< u°, by row
   const double* bound = nullptr;  ///< s ≥ 0 while it slides, N, by point
   const double* bound_static =
-      nullptr;                      ///< s while it sticks, N: beyond `bound` only where it stuck in the stage before
-  double h = 0;                     ///< what an effort of 1 N gives of momentum in the stage, s
-  double* effort = nullptr;         ///< in: a first guess; out: p, by row
-  unsigned char* sticks = nullptr;  ///< out: of each point
-  double* slid = nullptr;           ///< out: how fast it slides, m/s ≥ 0, of each point
+      nullptr;                         ///< s while it sticks, N: beyond `bound` only where it stuck in the stage before
+  double h = 0;                        ///< what an effort of 1 N gives of momentum in the stage, s
+  const double* remembered = nullptr;  ///< what the law kept of each row, memory_per_row() numbers a row; 0 at first
+  double* remembers = nullptr;         ///< out: what it keeps now; forgotten where nothing presses
+  double* effort = nullptr;            ///< in: a first guess; out: p, by row
+  unsigned char* sticks = nullptr;     ///< out: of each point
+  double* slid = nullptr;              ///< out: how fast it slides, m/s ≥ 0, of each point
 
   int rows() const { return first_row[points]; }
   double at(int row, int column) const { return matrix[static_cast<std::ptrdiff_t>(row) * stride + column]; }
 };
+
+/// Of FrictionLaw::memory_per_row().
+inline constexpr int most_friction_memory = 8;
 
 /// How the surfaces of stops rub: it knows neither the contact law nor the scheme. The loop calls prepare() once, and
 /// again when parameters of a lane change. It calls solve() for each lane with a bound, as often as the normal efforts
@@ -44,6 +49,12 @@ class FrictionLaw {
   virtual LaneOutcome solve(FrictionProblem& problem) = 0;
   /// How fast a point drifts that is held by this share of its bound, m/s; 0: it does not.
   virtual double creeps(double /*load_over_bound*/) const { return 0; }
+  /// Numbers that it keeps of each row from stage to stage, at most most_friction_memory; part of a lane's state.
+  virtual int memory_per_row() const { return 0; }
+  /// Energy that a row stores, J, by what is kept of it: what its force can still give back.
+  virtual double stored(const double* /*remembered*/) const { return 0; }
+  /// Whether schemes are refused under which the efforts of a held point never settle.
+  virtual bool must_settle() const { return true; }
 };
 
 }  // namespace ricochet

@@ -168,6 +168,14 @@ class GuardedFriction final : public Guard<FrictionLaw> {
     if (!(answer >= 0) || !std::isfinite(answer)) fault("creeps", fmt::format("drifts by {:g} m/s", answer));
     return answer;
   }
+  int memory_per_row() const override {
+    const int answer = ask("memory_per_row", [](auto& inner) { return inner.memory_per_row(); });
+    if (answer < 0 || answer > most_friction_memory)
+      fault("memory_per_row", fmt::format("keeps {} numbers; expected 0 to {}", answer, most_friction_memory));
+    return answer;
+  }
+  double stored(const double* remembered) const override { RICOCHET_FORWARD(stored, remembered); }
+  bool must_settle() const override { RICOCHET_FORWARD(must_settle); }
 };
 
 class GuardedScheme final : public Guard<TimeScheme> {

@@ -8,6 +8,7 @@
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/indefinite_step.hpp>
+#include <ricochet/engine/jamming.hpp>
 #include <ricochet/engine/left_out.hpp>
 #include <ricochet/scene/stop_parameters.hpp>
 #include <stdexcept>
@@ -314,20 +315,18 @@ namespace {
 // A damper acts without stops.
 bool meets_contact(const SemiDiscrete& problem, const ContactLaw& law) {
   const auto damper = [](const RubbingPoint& one) { return one.normal_force.has_value(); };
-  return problem.points() > 0 &&
-         (!law.absent() || std::any_of(problem.rubbing.begin(), problem.rubbing.end(), damper));
+  return problem.points() > 0 && (!law.absent() || std::any_of(problem.rubbing.begin(), problem.rubbing.end(), damper));
 }
 
 // The friction law, or why the plan has none.
 std::optional<Refusal> meet_friction(Program& program, const DerivedPlan& derived, const CompileOptions& options) {
   if (program.problem->rubbing.empty() || !program.contact) return std::nullopt;
-  if (program.tangents > 0)
-    return Refusal{"friction has no tangents here: exponents of what rubs are those of twins"};
+  if (program.tangents > 0) return Refusal{"friction has no tangents here: exponents of what rubs are those of twins"};
   if (!options.make_friction) return Refusal{"friction is not marched here: leave the friction of the stops out"};
-  const FrictionFacts facts = friction_facts(derived, program.law->reads());
-  if (!facts.why_none.empty())
-    return Refusal{"friction does not run under this time scheme: " + facts.why_none + ". " + friction_remedy};
   program.friction = options.make_friction();
+  const FrictionFacts facts = friction_facts(derived, program.law->reads());
+  const std::string why = !facts.why_none.empty() ? facts.why_none : program.friction->must_settle() ? facts.rings : "";
+  if (!why.empty()) return Refusal{said("friction does not run under this time scheme: {}. {}", why, friction_remedy)};
   return std::nullopt;
 }
 
@@ -449,6 +448,8 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
     // The band operator of half-bandwidth zero: nothing else changes, but a person wants to read it.
     if (diagonal) program.kind = OperatorKind::diagonal;
   }
+  if (program.friction)
+    if (auto refusal = refuse_jamming(program)) return *refusal;
   say_what_is_left_out(program);
   program.every_step_because = grounded;
   if (!flies) return program;

@@ -39,6 +39,13 @@ struct LeftOut {
   std::string item, reason;
 };
 
+/// J = μ|W_nt|/(W_nn + 1/(ηκ)) of a point that rubs, in a stage that gives momentum at contact; κ of a compliant law
+/// that is linear, without it W_nn alone. J < 1: one effort; else a step may have several (Painlevé's paradox).
+struct JamNumber {
+  double coupling = 0;  ///< J/μ
+  double number = 0;    ///< J; 0 below 1e-9, which is round-off
+};
+
 struct CompileOptions {
   OperatorKind kind = OperatorKind::automatic;
   long long expected_steps = 100000;  ///< over which set-up is paid back
@@ -107,6 +114,7 @@ struct Program {
   int increment_slot = -1;     ///< the slot that holds what the position moved by in the last stage; −1: none
   std::unique_ptr<ContactLaw> law;
   std::unique_ptr<FrictionLaw> friction;  ///< null: nothing rubs
+  std::vector<JamNumber> jam;             ///< of each rubbing point
   std::vector<LaneSpec> lanes;
   int width = 1;     ///< T
   int tangents = 0;  ///< tangent columns per lane, behind the lanes

@@ -67,7 +67,9 @@ void Marcher::prepare_law() {
     parameters.push_back(program_.lanes[static_cast<std::size_t>(std::min(lane, lanes() - 1))].law);
   const int points = program_.problem->points();
   ricochet::prepare_law(*program_.law, points, parameters, program_.problem->own);
-  if (program_.friction) program_.friction->prepare(static_cast<int>(program_.problem->rubbing.size()), program_.problem->rubbed.count(), {});
+  if (program_.friction)
+    program_.friction->prepare(static_cast<int>(program_.problem->rubbing.size()), program_.problem->rubbed.count(),
+                               {});
   const int kept = program_.law->memory_per_point();
   if (kept > 0 && memory_.rows() == 0) memory_ = Block(points * kept, program_.width);
   circles_.prepare(points, program_.width, program_.problem->circles(), kept);
@@ -91,6 +93,7 @@ LaneState Marcher::state_at(int column) const {
   }
   for (int i = 0; i < memory_.rows(); ++i) state.memory.push_back(memory_.at(i, column));
   for (int i = 0; rubbing_ && i < rubbing_->sticks.rows(); ++i) state.memory.push_back(rubbing_->sticks.at(i, column));
+  for (int i = 0; rubbing_ && i < rubbing_->kept.rows(); ++i) state.memory.push_back(rubbing_->kept.at(i, column));
   return state;
 }
 
@@ -116,6 +119,7 @@ void Marcher::set_state_at(int column, const LaneState& state) {
   const double* memory = state.memory.data();
   for (int i = 0; i < memory_.rows(); ++i) memory_.at(i, column) = *memory++;
   for (int i = 0; rubbing_ && i < rubbing_->sticks.rows(); ++i) rubbing_->sticks.at(i, column) = *memory++;
+  for (int i = 0; rubbing_ && i < rubbing_->kept.rows(); ++i) rubbing_->kept.at(i, column) = *memory++;
   combined_for_ = nullptr;
   if (lane_flight_) lane_flight_->forget_contact();
 }
@@ -241,6 +245,7 @@ void Marcher::freeze(int lane, const LaneEnd& end) {
   clamp_.stop(lane);
   for (int i = 0; i < memory_.rows(); ++i) memory_.at(i, lane) = 0;
   for (int i = 0; rubbing_ && i < rubbing_->sticks.rows(); ++i) rubbing_->sticks.at(i, lane) = 0;
+  for (int i = 0; rubbing_ && i < rubbing_->kept.rows(); ++i) rubbing_->kept.at(i, lane) = 0;
   for (int i = 0; i < lower_.rows(); ++i) {
     lower_.at(i, lane) = -infinity;
     upper_.at(i, lane) = infinity;
@@ -270,19 +275,19 @@ Said told(const LaneEnd& end) {
       return Said("a contact effort is not finite");
     case EndCause::law_not_converged:
       if (std::isinf(end.value))
-        return Said("the contact law has no finite force at the state that the step reaches: take a smaller step. "
-                    "Otherwise use a scheme, or an evaluation, whose step knows the force while it moves");
+        return Said(
+            "the contact law has no finite force at the state that the step reaches: take a smaller step. "
+            "Otherwise use a scheme, or an evaluation, whose step knows the force while it moves");
       if (end.count == 0) return said("the contact law found no solution (residual {:.3g})", end.value);
-      return said("the contact law did not converge (residual {:.3g} after {} iterations)", end.value,
-                         end.count);
+      return said("the contact law did not converge (residual {:.3g} after {} iterations)", end.value, end.count);
     case EndCause::friction_not_found:
       return said("friction and normal force were not found together (residual {:.3g} after {} turns)", end.value,
                   end.count);
     case EndCause::state_not_finite:
       return said("the state is not finite (lanes are checked every {} steps)", end.count);
     case EndCause::elastic_energy_beyond:
-      return said("the elastic energy {:.3g} J passed {:.3g} J, {:g} times the scene's own scale", end.value,
-                         end.bound, end.factor);
+      return said("the elastic energy {:.3g} J passed {:.3g} J, {:g} times the scene's own scale", end.value, end.bound,
+                  end.factor);
     case EndCause::energy_not_finite:
       return Said("the energy is not finite");
     case EndCause::energy_beyond:

@@ -19,7 +19,7 @@ struct LaneState {
   std::vector<double> slots;    ///< slot by slot
   std::vector<double> efforts;  ///< per stage its p, and those of steps before where the plan weights them
   std::vector<double> fastest;  ///< per stage with a gate: the largest speed seen at its stops, m/s
-  std::vector<double> memory;   ///< of the law, per point; then of each point that rubs whether it sticks
+  std::vector<double> memory;   ///< of the law, per point; of friction: whether each point sticks, what rows keep
 };
 
 /// Why the integration of a lane ended.
@@ -161,6 +161,8 @@ class Marcher {
   double penetration(int lane, bool law_saw_end = false) const;
   /// Energy that a compliant law stores at all contact points, J, for their absolute displacements (m).
   double stored(int lane, const double* places) const;
+  /// Energy that the friction law stores at all its rows, J.
+  double stored_by_friction(int lane) const;
   /// The circle of a lane whose first point this is.
   StopCircle circle(int lane, int point) const {
     const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];

@@ -14,10 +14,10 @@
 namespace ricochet {
 namespace {
 
-constexpr double settled = 1e-13;      // change of p_t over the largest effort
-constexpr double negligible = 1e-12;   // what p_t moves a measure by, over what its own effort does
+constexpr double settled = 1e-13;     // change of p_t over the largest effort
+constexpr double negligible = 1e-12;  // what p_t moves a measure by, over what its own effort does
 constexpr int most_turns = 400;
-constexpr int plain_every = 8;         // turns after which one is taken as it is
+constexpr int plain_every = 8;  // turns after which one is taken as it is
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -29,6 +29,9 @@ StageFriction::StageFriction(const Program& program) {
   const SemiDiscrete& problem = *program.problem;
   const int T = program.width, count = static_cast<int>(problem.rubbing.size()), all = problem.rubbed.count();
   for (Block* block : {&normal, &sticks, &slid}) *block = Block(count, T);
+  per_row = program.friction->memory_per_row();
+  if (per_row > 0) kept = Block(all * per_row, T);
+  for (auto* numbers : {&remembered, &remembers}) numbers->resize(at(all * per_row));
   residual.resize(at(T));
   turns.resize(at(T));
   for (const RubbingPoint& one : problem.rubbing)
@@ -146,6 +149,11 @@ LaneOutcome Marcher::find_friction(const StageProgram& program, StageState& stat
   problem.bound = rub.sliding.data();
   problem.bound_static = rub.held.data();
   problem.h = program.friction_momentum;
+  for (int a = 0; a < count; ++a)
+    for (int k = 0; k < rub.per_row; ++k)
+      rub.remembered[at(a * rub.per_row + k)] = rub.kept.at(rub.rows[at(a)] * rub.per_row + k, lane);
+  problem.remembered = rub.remembered.data();
+  problem.remembers = rub.remembers.data();
   problem.effort = rub.effort.data();
   problem.sticks = rub.holds.data();
   problem.slid = rub.slides.data();
@@ -180,8 +188,8 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
   const int points = lower_.rows(), T = program_.width;
   const double reach = state.impulse ? program.reach : program.measure_z * program.friction_weight;
   const double rate_reach = !program.compliance ? 0.0
-                            : state.impulse      ? program.rate_reach
-                                                 : program.compliance->rate.z * program.friction_weight;
+                            : state.impulse     ? program.rate_reach
+                                                : program.compliance->rate.z * program.friction_weight;
   for (int i = 0; i < points; ++i) {
     rub.measured[at(i)] = state.free.at(i, lane);
     if (state.rate.rows() > 0) rub.rate[at(i)] = state.rate.at(i, lane);
@@ -231,7 +239,12 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
   }
   rub.turns[at(lane)] = turn;
   rub.residual[at(lane)] = std::max(outcome.residual, largest > 0 ? most / largest : 0.0);
-  for (int i = 0; i < rub.sticks.rows(); ++i) rub.sticks.at(i, lane) = rub.slid.at(i, lane) = rub.normal.at(i, lane) = 0;
+  for (int i = 0; i < rub.sticks.rows(); ++i)
+    rub.sticks.at(i, lane) = rub.slid.at(i, lane) = rub.normal.at(i, lane) = 0;
+  for (int i = 0; i < rub.kept.rows(); ++i) rub.kept.at(i, lane) = 0;
+  for (std::size_t a = 0; a < rub.rows.size(); ++a)
+    for (int k = 0; k < rub.per_row; ++k)
+      rub.kept.at(rub.rows[a] * rub.per_row + k, lane) = rub.remembers[a * at(rub.per_row) + at(k)];
   for (std::size_t k = 0; k < rub.number.size(); ++k) {
     const int i = rub.number[k];
     rub.sticks.at(i, lane) = rub.holds[k] != 0 ? 1 : 0;
@@ -248,6 +261,16 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
     freeze(lane, {.cause = EndCause::effort_not_finite});
   else if (!outcome.converged || turn > most_turns)
     freeze(lane, {.cause = EndCause::friction_not_found, .value = rub.residual[at(lane)], .count = turn});
+}
+
+double Marcher::stored_by_friction(int lane) const {
+  if (!rubbing_ || rubbing_->per_row == 0) return 0;
+  double numbers[most_friction_memory], sum = 0;
+  for (int row = 0; row * rubbing_->per_row < rubbing_->kept.rows(); ++row) {
+    for (int k = 0; k < rubbing_->per_row; ++k) numbers[k] = rubbing_->kept.at(row * rubbing_->per_row + k, lane);
+    sum += program_.friction->stored(numbers);
+  }
+  return sum;
 }
 
 void Marcher::rub(const StageProgram& program, StageState& state, const double* z) {
@@ -272,6 +295,7 @@ void Marcher::rub(const StageProgram& program, StageState& state, const double* 
     }
     for (int i = 0; i < rub.sticks.rows(); ++i)
       rub.sticks.at(i, lane) = rub.slid.at(i, lane) = rub.normal.at(i, lane) = 0;
+    for (int i = 0; i < rub.kept.rows(); ++i) rub.kept.at(i, lane) = 0;
     for (int row = points; row < state.effort[0].rows(); ++row) state.effort[0].at(row, lane) = 0;
     rub.residual[at(lane)] = rub.turns[at(lane)] = 0;
   }

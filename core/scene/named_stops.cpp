@@ -31,9 +31,9 @@ void check_bounds(const NamedStop& stop, std::size_t number, const ForceBeyond& 
       throw InputError(stop_pointer(number, "/normal_force"),
                        fmt::format("stop {} has a normal force and bounds; expected one of them", stop.name));
     if (!stop.friction)
-      throw InputError(stop_pointer(number, "/normal_force"),
-                       fmt::format("stop {} has a normal force and no friction: nothing acts there; expected friction",
-                                   stop.name));
+      throw InputError(
+          stop_pointer(number, "/normal_force"),
+          fmt::format("stop {} has a normal force and no friction: nothing acts there; expected friction", stop.name));
     return;
   }
   if (!stop.lower && !stop.upper)
@@ -48,22 +48,22 @@ void check_bounds(const NamedStop& stop, std::size_t number, const ForceBeyond& 
 
 void check_friction(const NamedStop& stop, std::size_t number) {
   if (stop.tangent && !stop.tangent->given() && !stop.normal_force && !stop.side)
-    throw InputError(stop_pointer(number, "/tangent"),
-                     fmt::format("the tangent of stop {} says nothing; expected slope_radius, direction or component",
-                                 stop.name));
+    throw InputError(
+        stop_pointer(number, "/tangent"),
+        fmt::format("the tangent of stop {} says nothing; expected slope_radius, direction or component", stop.name));
   if (stop.tangent && stop.tangent->speed != 0 && !stop.friction)
-    throw InputError(stop_pointer(number, "/tangent/speed"),
-                     fmt::format("stop {} has no friction: a surface that runs does nothing; expected friction",
-                                 stop.name));
+    throw InputError(
+        stop_pointer(number, "/tangent/speed"),
+        fmt::format("stop {} has no friction: a surface that runs does nothing; expected friction", stop.name));
   if (!stop.friction) return;
   const FrictionSpec& mu = *stop.friction;
   if (mu.held < mu.sliding)
     throw InputError(stop_pointer(number, "/friction/static"),
                      fmt::format("static {:g} is below dynamic {:g}; expected static ≥ dynamic", mu.held, mu.sliding));
   if (stop.side)
-    throw InputError(stop_pointer(number, "/friction"),
-                     fmt::format("stop {} is a clearance, where friction is not marched; expected a stop with bounds",
-                                 stop.name));
+    throw InputError(
+        stop_pointer(number, "/friction"),
+        fmt::format("stop {} is a clearance, where friction is not marched; expected a stop with bounds", stop.name));
   if (stop.normal_force) {
     if (stop.tangent && stop.tangent->given())
       throw InputError(stop_pointer(number, "/tangent"),

@@ -154,6 +154,22 @@ PlaceRow slide_row(const SceneSpec& scene, const FiniteElementSpace& space, cons
   return stop.normal_force ? stop_row(scene, space, stop, number) : tangent_row(scene, space, stop, number);
 }
 
+// Efforts along both would be one.
+void check_across(const NamedStop& stop, std::size_t number, const PlaceRow& tangent, const PlaceRow& normal) {
+  if (!stop.friction || stop.normal_force) return;
+  double along = 0, own = 0, other = 0;
+  for (const auto& [dof, value] : tangent.free) {
+    own += value * value;
+    for (const auto& [same, weight] : normal.free) along += dof == same ? value * weight : 0.0;
+  }
+  for (const auto& [dof, value] : normal.free) other += value * value;
+  if (own * other - along * along <= 1e-12 * own * other)
+    throw InputError(tangent_pointer(number),
+                     fmt::format("stop {}: its tangent is its normal; expected a motion across "
+                                 "that of the bounds",
+                                 stop.name));
+}
+
 // What moves the supports moves what a damper holds.
 double slide_on_support(const SceneSpec& scene, const NamedStop& stop) {
   if (!stop.normal_force) return 0;
@@ -189,7 +205,11 @@ void find_rubbing(const SceneSpec& scene, SemiDiscrete& problem) {
   for (Eigen::Index k = 0; k < count; ++k) {
     const int from = problem.tangent_of[static_cast<std::size_t>(problem.rubbing[static_cast<std::size_t>(k)].point)];
     problem.rubbed.on_support[k] = all.on_support[from];
-    problem.rubbed.on_motions.row(k) = all.on_motions.row(from);
+    // A damper's ground may move.
+    const RubbingPoint& one = problem.rubbing[static_cast<std::size_t>(k)];
+    problem.rubbed.on_motions.row(k) =
+        one.normal_force && !problem.motions.empty() ? problem.motions.at_points.row(one.point).eval()
+                                                     : all.on_motions.row(from).eval();
   }
 }
 
@@ -222,7 +242,7 @@ void check_tangents(const SceneSpec& scene, const FiniteElementSpace& space) {
     if (const NamedStop& stop = scene.stops.named[i]; stop.side && stop.side->number == 0)
       round_tangents(scene, space, stop, i);
     else if (slides(stop))
-      slide_row(scene, space, stop, i);
+      check_across(stop, i, slide_row(scene, space, stop, i), stop_row(scene, space, stop, i));
 }
 
 void observe_rows(const SceneSpec& scene, SemiDiscrete& problem) {

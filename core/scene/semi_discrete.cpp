@@ -358,6 +358,8 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   if (scene.initial.equilibrium) {
     if (problem.basis) still = problem.basis->shapes.transpose() * still;
     if (law_decides) prepare_law(*law, std::max(1, problem.points()), {parameters, 1}, problem.own);
+    if (!problem.rubbing.empty())
+      problem.notes.push_back("the state at rest is found without friction: with friction it is not unique");
     Equilibrium found = equilibrium(problem, still, lift_at_start(problem), law_decides ? law : nullptr);
     problem.position = std::move(found.position);
     if (!found.pushed.isZero(0)) pushed = std::move(found.pushed);

@@ -71,11 +71,11 @@ class DistributedLoad {
 
 /// A contact point that rubs: |p_t| ≤ μ|p_n| against u = T q' + lift − V, p_n its effort or a force that is given.
 struct RubbingPoint {
-  int point = 0;                          ///< contact point
-  int row = 0, rows = 1;                  ///< of SemiDiscrete::rubbed
-  double held = 0, sliding = 0;           ///< μ where it stuck in the stage before, and else
-  std::optional<double> normal_force;     ///< N
-  std::array<double, 2> speed = {0, 0};   ///< V of the surface along each row, m/s
+  int point = 0;                         ///< contact point
+  int row = 0, rows = 1;                 ///< of SemiDiscrete::rubbed
+  double held = 0, sliding = 0;          ///< μ where it stuck in the stage before, and else
+  std::optional<double> normal_force;    ///< N
+  std::array<double, 2> speed = {0, 0};  ///< V of the surface along each row, m/s
 
   bool operator==(const RubbingPoint&) const = default;
 };

@@ -8,10 +8,13 @@ using namespace ricochet;
 /// −u in the normal cone of |p| ≤ s: what holds does not move, what moves is pushed back by s.
 class Coulomb final : public FrictionLaw {
  public:
+  explicit Coulomb(const Parameters& parameters) : settles_(parameters.word("ringing") == "refuse") {}
   void prepare(int points, int rows, std::span<const Parameters>) override { solver_.prepare(points, rows); }
   LaneOutcome solve(FrictionProblem& problem) override { return solver_.solve(problem); }
+  bool must_settle() const override { return settles_; }
 
  private:
+  bool settles_;
   FrictionSolver solver_;
 };
 
@@ -24,9 +27,10 @@ void register_coulomb(Registry& registry) {
           tangents share one disc, so that no direction is special. No stiffness and no speed regularises it: the
           efforts of a stage are found together.)",
        .source = "Coulomb (1785); Moreau (1988), Unilateral contact and dry friction in finite freedom dynamics",
-       .parameters = {},
+       .parameters = {word_parameter("ringing", {"refuse", "allow"}, "refuse",
+                                     "whether schemes run under which efforts of a held point alternate for ever")},
        .words = "exact friction"},
-      [](const Parameters&) { return std::make_unique<Coulomb>(); });
+      [](const Parameters& parameters) { return std::make_unique<Coulomb>(parameters); });
 }
 
 }  // namespace

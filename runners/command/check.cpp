@@ -104,7 +104,7 @@ std::vector<CheckResult> checked(const Registry& registry, Role role, const std:
     case Role::contact:
       return checking::check_law(*registry.contact(name), isolation);
     case Role::friction:
-      return {};
+      return checking::check_friction(*registry.friction(name), isolation);
     case Role::time:
       return checking::check_scheme(*registry.time(name), isolation);
     case Role::reference:

@@ -82,7 +82,8 @@ void FrictionWatch::stage_solved(const Marcher& marcher, const StageView& view) 
       continue;
     }
     const bool held = found.sticks.at(number, 0) != 0;
-    const double slid = found.slid.at(number, 0), before = point.pressed ? point.slid : speed_before(marcher, view, one);
+    const double slid = found.slid.at(number, 0),
+                 before = point.pressed ? point.slid : speed_before(marcher, view, one);
     const bool changed = point.pressed && point.held != held;
     point.pressed = true;
     point.held = held;

@@ -8,16 +8,16 @@ namespace ricochet {
 /// What friction did at a stop in an interval of time. A stage gives ω s of momentum per N; V⁻ and V⁺ are how fast the
 /// surface slides before and after it, 0 while it sticks.
 struct FrictionTotals {
-  double time = 0;      ///< Σ ω while something presses, s
-  double held = 0;      ///< the same while it sticks, s
-  double changes = 0;   ///< how often it begins or ends to stick while something presses
-  double impulse = 0;   ///< Σ ω |p_t|, N s
-  double squares = 0;   ///< Σ ω p_t², N² s
-  double peak = 0;      ///< largest |p_t|, N
-  double heat = 0;      ///< −Σ p̄_tᵀ(T s + Δφ_t − ∫V dt), J
-  double slipped = 0;   ///< Σ ω ½(V⁻ + V⁺), m
-  double wear = 0;      ///< Σ ω |N| ½(V⁻ + V⁺), J
-  double drifted = 0;   ///< Σ |T s + …| while it sticks, m
+  double time = 0;     ///< Σ ω while something presses, s
+  double held = 0;     ///< the same while it sticks, s
+  double changes = 0;  ///< how often it begins or ends to stick while something presses
+  double impulse = 0;  ///< Σ ω |p_t|, N s
+  double squares = 0;  ///< Σ ω p_t², N² s
+  double peak = 0;     ///< largest |p_t|, N
+  double heat = 0;     ///< −Σ p̄_tᵀ(T s + Δφ_t − ∫V dt), J
+  double slipped = 0;  ///< Σ ω ½(V⁻ + V⁺), m
+  double wear = 0;     ///< Σ ω |N| ½(V⁻ + V⁺), J
+  double drifted = 0;  ///< Σ |T s + …| while it sticks, m
 
   void add(const FrictionTotals& other);
 };

@@ -68,8 +68,8 @@ EnergyAudit::EnergyAudit(const Marcher& marcher, SamplingMode sampling)
   for (Lane& state : lanes_) state.balanced = all && state.energy.own_energy;
   for (const auto* stages : {&marcher.program().start, &marcher.program().stages})
     for (const StageProgram& stage : *stages)
-      memory_ = std::max({memory_, static_cast<int>(stage.work_effort.size()),
-                          static_cast<int>(stage.friction_work.size())});
+      memory_ =
+          std::max({memory_, static_cast<int>(stage.work_effort.size()), static_cast<int>(stage.friction_work.size())});
   ends_measured_ = measures_the_end(marcher.program());
   if (marcher.program().increment_slot < 0) {
     for (const StageProgram& stage : marcher.program().start) start_ways_.emplace_back(stage.facts.increment);

@@ -135,12 +135,12 @@ class StateEnergies {
 ///
 ///     ΔE = loads − damping − scheme + contact + friction
 struct Works {
-  double loads = 0;    ///< Σ sᵀF̄, and the support's work through the stops
-  double damping = 0;  ///< Σ sᵀC r
-  double contact = 0;  ///< Σ p̄ᵀ(H s + Δφ)
+  double loads = 0;     ///< Σ sᵀF̄, and the support's work through the stops
+  double damping = 0;   ///< Σ sᵀC r
+  double contact = 0;   ///< Σ p̄ᵀ(H s + Δφ)
   double friction = 0;  ///< Σ p̄_tᵀ(T s + Δφ_t − ∫V dt)
-  double scheme = 0;   ///< Σ of the plan's loss terms
-  double law = 0;      ///< what the law itself dissipates, of what it gives as `contact`
+  double scheme = 0;    ///< Σ of the plan's loss terms
+  double law = 0;       ///< what the law itself dissipates, of what it gives as `contact`
 
   /// ΔE beyond what the loads brought, where the balance is exact.
   double gain() const { return contact + friction - damping - scheme; }

@@ -228,7 +228,7 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
     // What the stops give back (a spring's potential) is not dissipated.
     const double stored = energy.last.contact - energy.first.contact;
     put("dissipated_at_contact", -energy.work_of_contact - stored);
-    if (marcher.program().friction) put("dissipated_by_friction", -energy.work_of_friction);
+    if (marcher.program().friction) put("dissipated_by_friction", -energy.work_of_friction - marcher.stored_by_friction(0));
     put("stored_at_stops", stored);
     put("balance_residual", energy.balance_residual());
   }

@@ -131,7 +131,7 @@ const StopMeasure stop_measures[] = {
     {"friction_power", "W", "Power that friction at the stop {} turns to heat, mean over the window.",
      "friction power at {}",
      [](const StopReading& of) {
-       return of.friction_works ? rubbed<[](Rubbed f, double time) { return f.heat / time; }>(of) : std::nullopt;
+       return of.friction_works ? Known(of.friction->heat / of.rubbed_over) : std::nullopt;
      },
      Needs::friction, true},
     {"slip_distance", "m", "How far the surface of the stop {} slides while it is pressed, in the window.",

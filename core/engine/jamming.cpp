@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <cmath>
+#include <ricochet/contract/said_format.hpp>
+#include <ricochet/engine/jamming.hpp>
+#include <ricochet/scene/stop_parameters.hpp>
+
+namespace ricochet {
+namespace {
+
+constexpr double round_off = 1e-9;
+
+// The least 1/(ηκ) over lanes; 0 where the law is rigid or not linear.
+double given_way(const Program& program, const StageProgram& stage, int point) {
+  if (!program.law->reads()) return 0;
+  double most = 0;
+  for (int lane = 0; lane < static_cast<int>(program.lanes.size()); ++lane) {
+    const auto slopes = program.law->linear_slopes(program.law_set(point, lane));
+    if (!slopes) return 0;
+    most = std::max(most, slopes->stiffness + slopes->before);
+  }
+  return most > 0 && stage.measure_z > 0 ? 1 / (stage.measure_z * most) : 0.0;
+}
+
+void add_stage(Program& program, StageProgram& stage, std::vector<JamNumber>& numbers) {
+  if (!stage.reads_contact || !stage.op || stage.friction_momentum == 0) return;
+  StageDelassus plain(*stage.op, *program.model, nullptr);
+  std::optional<StageImpulse> impulse;
+  if (stage.impulse.op) impulse.emplace(stage.impulse, *stage.op, *program.model);
+  const SemiDiscrete& problem = *program.problem;
+  for (std::size_t i = 0; i < problem.rubbing.size(); ++i) {
+    const RubbingPoint& one = problem.rubbing[i];
+    if (one.normal_force) continue;
+    const double* column = impulse ? impulse->column(one.point) : plain.column(one.point);
+    double across = 0;
+    for (int k = 0; k < one.rows; ++k) across = std::hypot(across, column[problem.points() + one.row + k]);
+    const double own = column[one.point] + given_way(program, stage, one.point);
+    const double coupling = own > 0 ? across / own : 0.0;
+    if (coupling <= numbers[i].coupling) continue;
+    const double number = std::max(one.held, one.sliding) * coupling;
+    numbers[i] = number > round_off ? JamNumber{coupling, number} : JamNumber{};
+  }
+}
+
+}  // namespace
+
+std::vector<JamNumber> jam_numbers(Program& program) {
+  std::vector<JamNumber> numbers(program.problem->rubbing.size());
+  std::vector<Parameters> lanes;
+  for (const LaneSpec& lane : program.lanes) lanes.push_back(lane.law);
+  prepare_law(*program.law, program.problem->points(), lanes, program.problem->own);
+  for (StageProgram& stage : program.stages) add_stage(program, stage, numbers);
+  return numbers;
+}
+
+std::optional<Refusal> refuse_jamming(Program& program) {
+  program.jam = jam_numbers(program);
+  for (std::size_t i = 0; i < program.jam.size(); ++i) {
+    const RubbingPoint& one = program.problem->rubbing[i];
+    if (program.jam[i].number < 1) continue;
+    return Refusal{said(
+        "stop {} may jam: μ = {:.4g} times the coupling {:.4g} of its normal and tangent is {:.4g}, and 1 or more has "
+        "several motions. Use a smaller friction",
+        program.problem->stops[static_cast<std::size_t>(one.point)], std::max(one.held, one.sliding),
+        program.jam[i].coupling, program.jam[i].number)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace ricochet

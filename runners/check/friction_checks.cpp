@@ -1,0 +1,227 @@
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "runners/check/allocation_count.hpp"
+#include "runners/check/checks.hpp"
+
+/// \file
+/// What is looked at in a friction law, by problems of one and five points with one and two rows each.
+namespace ricochet::checking {
+namespace {
+
+using Friction = Subject<FrictionLaw>;
+
+// One lane of one stage, and what the law answers.
+struct Rubbed {
+  Eigen::MatrixXd A;
+  Eigen::VectorXd free, effort;
+  std::vector<double> bound, slid, remembered, remembers;
+  std::vector<int> first = {0}, number;
+  std::vector<unsigned char> sticks;
+  double h = 1e-3;
+  long long allocations = 0;
+  LaneOutcome outcome;
+
+  Rubbed(int points, int rows, int kept)
+      : A(Eigen::MatrixXd::Identity(points * rows, points * rows)),
+        free(Eigen::VectorXd::Zero(points * rows)),
+        effort(free),
+        bound(static_cast<std::size_t>(points), 1.0),
+        slid(bound),
+        remembered(static_cast<std::size_t>(points * rows * kept), 0.0),
+        remembers(remembered),
+        sticks(static_cast<std::size_t>(points)) {
+    for (int i = 1; i <= points; ++i) {
+      first.push_back(i * rows);
+      number.push_back(i - 1);
+    }
+  }
+  int points() const { return static_cast<int>(bound.size()); }
+  int rows() const { return static_cast<int>(free.size()); }
+  Eigen::VectorXd rate() const { return free + A * effort; }
+  Eigen::VectorXd of(const Eigen::VectorXd& x, int point) const {
+    const auto i = static_cast<std::size_t>(point);
+    return x.segment(first[i], first[i + 1] - first[i]);
+  }
+  void solve(FrictionLaw& law) {
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> by_rows = A;
+    FrictionProblem problem;
+    problem.points = points();
+    problem.first_row = first.data();
+    problem.number = number.data();
+    problem.matrix = by_rows.data();
+    problem.stride = rows();
+    problem.free = free.data();
+    problem.bound = problem.bound_static = bound.data();
+    problem.h = h;
+    problem.remembered = remembered.data();
+    problem.remembers = remembers.data();
+    problem.effort = effort.data();
+    problem.sticks = sticks.data();
+    problem.slid = slid.data();
+    const long long before = allocations_of_this_thread();
+    outcome = law.solve(problem);
+    allocations = allocations_of_this_thread() - before;
+  }
+};
+
+Rubbed drawn(std::mt19937& random, const FrictionLaw& law, int points, int rows) {
+  std::uniform_real_distribution<double> any(-1, 1);
+  Rubbed one(points, rows, law.memory_per_row());
+  const Eigen::MatrixXd B = Eigen::MatrixXd::NullaryExpr(points * rows, points * rows, [&] { return any(random); });
+  one.A = 1e-3 * (B.transpose() * B + 0.1 * Eigen::MatrixXd::Identity(points * rows, points * rows));
+  one.free = Eigen::VectorXd::NullaryExpr(points * rows, [&] { return 1e-2 * any(random); });
+  for (double& s : one.bound) s = std::pow(10, 2 * any(random));
+  return one;
+}
+
+// A verdict over problems of all sizes; `wrong` says what one of them shows, or "".
+Verdict everywhere(const Friction& subject,
+                   std::string (*wrong)(FrictionLaw& law, std::mt19937& random, int points, int rows)) {
+  std::mt19937 random(5);
+  for (const int points : {1, 5})
+    for (const int rows : {1, 2}) {
+      const auto law = subject.make();
+      law->prepare(points, points * rows, {});
+      for (int k = 0; k < 60; ++k)
+        if (std::string why = wrong(*law, random, points, rows); !why.empty())
+          return fails(fmt::format("with {} point{} of {} row{}: {}", points, points == 1 ? "" : "s", rows,
+                                   rows == 1 ? "" : "s", why));
+    }
+  return fine();
+}
+
+Verdict manual(const Friction& subject) {
+  return manual_complete(subject.entry->manual);
+}
+
+Verdict within_disc(const Friction& subject) {
+  return everywhere(subject, [](FrictionLaw& law, std::mt19937& random, int points, int rows) -> std::string {
+    Rubbed one = drawn(random, law, points, rows);
+    if (random() % 4 == 0) one.bound[0] = 0;
+    one.solve(law);
+    if (!one.outcome.converged) return "it does not converge";
+    for (int i = 0; i < points; ++i) {
+      const double s = one.bound[static_cast<std::size_t>(i)], p = one.of(one.effort, i).norm();
+      if (!(p <= s * (1 + 1e-12))) return fmt::format("|p| = {:.6g} N beyond the bound {:.6g} N", p, s);
+    }
+    return "";
+  });
+}
+
+Verdict takes_energy(const Friction& subject) {
+  return everywhere(subject, [](FrictionLaw& law, std::mt19937& random, int points, int rows) -> std::string {
+    Rubbed one = drawn(random, law, points, rows);
+    const int kept = law.memory_per_row();
+    const auto stored = [&](const std::vector<double>& memory) {
+      double sum = 0;
+      for (int i = 0; kept > 0 && i < one.rows(); ++i)
+        sum += law.stored(memory.data() + static_cast<std::ptrdiff_t>(i) * kept);
+      return sum;
+    };
+    for (int step = 0; step < 3; ++step) {
+      one.solve(law);
+      const Eigen::VectorXd u = one.rate();
+      const double size =
+                       one.effort.norm() * u.norm() + *std::max_element(one.bound.begin(), one.bound.end()) * u.norm(),
+                   heat = -one.h * one.effort.dot(u) - (stored(one.remembers) - stored(one.remembered));
+      if (heat < -1e-10 * one.h * size) return fmt::format("it gives {:.3g} J in a stage", -heat);
+      one.remembered = one.remembers;
+      one.free = -0.7 * one.free;
+    }
+    return "";
+  });
+}
+
+Verdict knows_no_direction(const Friction& subject) {
+  return everywhere(subject, [](FrictionLaw& law, std::mt19937& random, int points, int rows) -> std::string {
+    Rubbed one = drawn(random, law, points, rows), turned = one;
+    const double angle = 0.7;
+    Eigen::MatrixXd R = Eigen::MatrixXd::Zero(points * rows, points * rows);
+    for (int i = 0; i < points; ++i)
+      if (rows == 1)
+        R(i, i) = -1;
+      else
+        R.block(2 * i, 2 * i, 2, 2) << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+    turned.A = R * one.A * R.transpose();
+    turned.free = R * one.free;
+    one.solve(law);
+    turned.solve(law);
+    const double off = (turned.effort - R * one.effort).norm(),
+                 size = *std::max_element(one.bound.begin(), one.bound.end());
+    return off <= 1e-9 * size ? ""
+                              : fmt::format("the turned problem has another effort, by {:.3g} N of {:.3g}", off, size);
+  });
+}
+
+Verdict finds_one_effort(const Friction& subject) {
+  return everywhere(subject, [](FrictionLaw& law, std::mt19937& random, int points, int rows) -> std::string {
+    Rubbed one = drawn(random, law, points, rows), other = one;
+    other.effort.setConstant(0.3);
+    one.solve(law);
+    other.solve(law);
+    if (one.allocations + other.allocations > 0) return "solve() allocates";
+    const double off = (one.effort - other.effort).norm(), size = *std::max_element(one.bound.begin(), one.bound.end());
+    if (off > 1e-9 * size)
+      return fmt::format("another first guess gives another effort, by {:.3g} N of {:.3g}", off, size);
+    Rubbed again = one;
+    again.effort.setZero();
+    Rubbed twice = again;
+    again.solve(law);
+    twice.solve(law);
+    if (again.effort != twice.effort) return "the same problem gives other bits";
+    for (int i = 0; i < points; ++i)
+      if (again.sticks[static_cast<std::size_t>(i)] != 0 && again.slid[static_cast<std::size_t>(i)] != 0)
+        return "a point that sticks slides";
+    return "";
+  });
+}
+
+// A unit mass under `load` times its bound; its velocity and place after so many steps of 1 ms.
+std::pair<double, double> pulled(FrictionLaw& law, double load, int steps) {
+  Rubbed one(1, 1, law.memory_per_row());
+  one.A(0, 0) = one.h;
+  double v = 0, x = 0;
+  for (int n = 0; n < steps; ++n) {
+    one.free[0] = v + one.h * load;
+    one.solve(law);
+    v = one.rate()[0];
+    x += one.h * v;
+    one.remembered = one.remembers;
+  }
+  return {v, x};
+}
+
+Verdict holds_and_slides(const Friction& subject) {
+  const auto law = subject.make();
+  law->prepare(1, 1, {});
+  constexpr int steps = 20000;
+  const double held = pulled(*law, 0.97, steps).first, declared = law->creeps(0.97);
+  if (std::abs(held) > declared * (1 + 1e-6) + 1e-9)
+    return fails(
+        fmt::format("a mass held by 0.97 of its bound drifts at {:.3g} m/s, and creeps() says {:.3g}", held, declared));
+  const double early = pulled(*law, 1.1, steps / 2).first, late = pulled(*law, 1.1, steps).first;
+  const double acceleration = (late - early) / (0.5 * steps * 1e-3);
+  if (std::abs(acceleration - 0.1) > 1e-3)
+    return fails(
+        fmt::format("a mass pulled by 1.1 of its bound accelerates by {:.4g} of it; expected 0.1", acceleration));
+  return fine();
+}
+
+}  // namespace
+
+std::vector<CheckResult> check_friction(const Entry<FrictionLaw>& entry, const Isolation& isolation) {
+  static const std::vector<Check<FrictionLaw>> checks = {{"manual", manual},
+                                                         {"effort within its bound", within_disc},
+                                                         {"takes energy, never gives", takes_energy},
+                                                         {"no direction is special", knows_no_direction},
+                                                         {"one effort, found without memory", finds_one_effort},
+                                                         {"holds and slides", holds_and_slides}};
+  return run_checks(checks, entry, isolation);
+}
+
+}  // namespace ricochet::checking

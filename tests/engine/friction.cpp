@@ -1,0 +1,234 @@
+// Friction at stops: closed forms of blocks that slide, stick, are pressed and hit.
+#include <cmath>
+#include <fmt/format.h>
+#include <ricochet/measure/contact/friction_watch.hpp>
+
+#include "tests/marching.hpp"
+#include "tests/scene/structure/beam_files.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+
+namespace {
+
+const Choice moreau{"moreau-jean", {{"theta", 0.5}}}, dumont{"newmark-dumont-paoli", {{"beta", 0.5}}},
+    alpha{"generalised-alpha", {{"rho_inf", 0.8}}};
+
+CompileOptions with_friction(const Choice& law) {
+  CompileOptions options;
+  options.make_friction = [law] { return make(registry().friction(law.name), law); };
+  return options;
+}
+
+// A block on a spring whose own motion is damped by a friction damper.
+SceneSpec damped_block(double mass, double stiffness, double normal_force, const FrictionSpec& mu) {
+  SceneSpec scene;
+  scene.structure = OscillatorSpec{.mass = mass, .stiffness = stiffness, .damping = 0, .force = {}};
+  NamedStop damper{.name = "damper", .at = {}, .to = {}, .lower = {}, .upper = {}};
+  damper.at.x = 0;
+  damper.normal_force = normal_force;
+  damper.friction = mu;
+  scene.stops.named = {damper};
+  return scene;
+}
+
+// Dofs uy (n) and ux (t) of one node: M, K and a stop uy ≥ 0 that rubs along ux; started at ux = 0 with `speed`.
+SceneSpec pressed_block(const Eigen::Matrix2d& M, double mu, const std::string& load, double speed,
+                        const std::string& pull = "0", double height = 0, double fall = 0) {
+  BeamFiles files{matrix_market(SparseMatrix(Eigen::Matrix2d::Zero().eval().sparseView())),
+                  matrix_market(SparseMatrix(M.sparseView())),
+                  "dof,node,component,x,y,z,held\n1,P,uy,0,0,0,\n2,P,ux,0,0,0,\n"};
+  SceneSpec scene = assembled_scene(assembled(files));
+  NamedStop floor{.name = "floor", .at = at_node("P"), .to = {}, .lower = 0.0, .upper = {}};
+  floor.tangent = TangentSpec{.slope_radius = 0, .direction = {}, .component = "ux", .speed = 0};
+  floor.friction = FrictionSpec{mu, mu};
+  scene.stops.named = {floor};
+  scene.load.terms = {{true, {}, {}, Formula(load, "", "t"), at_node("P")},
+                      {true, {}, {}, Formula(pull, "", "t"), at_node("P", "ux")}};
+  scene.initial.dofs = {{1, height, fall}, {2, 0, speed}};
+  return scene;
+}
+
+double along(const Marcher& made) {
+  return made.position(0)[1];
+}
+
+struct Watched {
+  EnergyAudit audit;
+  FrictionWatch watch;
+  Watched(const Marcher& made, double duration) : audit(made), watch(made, audit, {0, duration, 1}) {}
+};
+
+// Marches to the end under both observers.
+std::unique_ptr<Watched> watched(Marcher& made, double duration) {
+  auto all = std::make_unique<Watched>(made, duration);
+  const Observers observers{&all->audit, &all->watch};
+  made.start(observers);
+  made.march(std::llround(duration / made.program().h) - made.step(), observers);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("friction: a block that slides to rest stays there, and its energy is heat", "[friction]") {
+  // v²/(2 μ g) with μ g = 0.2 · 9.81; the last step is cut at order h².
+  for (const Choice& time : {moreau, dumont}) {
+    INFO(time.name);
+    Marcher made = marcher(pressed_block(2 * Eigen::Matrix2d::Identity(), 0.2, "-19.62", 1), 1,
+                           {{"consistent"}, {"signorini"}, time}, 1e-3);
+    const auto all = watched(made, 3);
+    REQUIRE(made.status(0).running);
+    CHECK(along(made) == Approx(0.2548419980).margin(1e-6));
+    const double rest = along(made);
+    made.march(10000);
+    CHECK(std::abs(along(made) - rest) <= 1e-14);
+    CHECK(-all->audit.totals(0).work_of_friction == Approx(1).epsilon(1e-6));
+    CHECK(std::abs(all->audit.totals(0).balance_residual()) <= 1e-12);
+    CHECK(all->watch.totals(0).heat == Approx(1).epsilon(1e-6));
+    CHECK(all->watch.residual() <= 1e-12);
+  }
+}
+
+TEST_CASE("friction: a block on a spring stops turn by turn where Coulomb's law puts it", "[friction]") {
+  // Each half swing loses 2 s/k = 0.0075 m; at 0.0031 m the spring pulls by 2.48 N of 3.
+  for (const Choice& time : {moreau, dumont, alpha}) {
+    INFO(time.name);
+    SceneSpec scene = damped_block(2, 800, 30, {0.1, 0.1});
+    scene.initial.displacement = Formula(0.0331);
+    Marcher made = marcher(scene, 1, {{"consistent"}, {"none"}, time}, 1e-4);
+    const auto all = watched(made, 1);
+    CHECK(made.tip(0) == Approx(0.0031).margin(1e-7));
+    CHECK(-all->audit.totals(0).work_of_friction == Approx(0.4344).epsilon(1e-5));
+    CHECK(all->watch.totals(0).slipped == Approx(0.1448).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("friction: one impact is Newton with Coulomb, whatever the step", "[friction]") {
+  // A disc with the dofs height and rolling speed at the contact: masses m and (1/m + r²/J)⁻¹.
+  constexpr double m = 2, J = 0.3, r = 0.4;
+  const double rolling = 1 / (1 / m + r * r / J);
+  Eigen::Matrix2d M = Eigen::Matrix2d::Zero();
+  M(0, 0) = m;
+  M(1, 1) = rolling;
+  for (const double e : {0.0, 0.7})
+    for (const Choice& scheme : {moreau, dumont, Choice{"cd-lagrange"}})
+      for (const double h : {1e-3, 1e-4}) {
+        Choice time = scheme;
+        time.values["restitution"] = e;
+        INFO(time.name << ", e = " << e << ", h = " << h);
+        // Slip at 1.2 + 0.4·3 m/s under μ = 0.12: it goes on sliding. At 0.3 − 0.08 under 0.5: it sticks.
+        for (const auto& [slip, mu] : {std::pair(1.2 + r * 3, 0.12), {0.3 - r * 0.2, 0.5}}) {
+          Marcher made = marcher(pressed_block(M, mu, "0", slip, "0", 0.1, -2), 1,
+                                 {{"consistent"}, {"signorini"}, time}, h);
+          const auto all = watched(made, 0.08);
+          const double impulse = (1 + e) * m * 2, before = slip, left = before - mu * impulse / rolling;
+          const double after = std::max(0.0, left);
+          const double at = made.time(), place = along(made);
+          made.march(100);
+          CHECK((along(made) - place) / (made.time() - at) == Approx(after).margin(1e-11));
+          CHECK(-all->audit.totals(0).work_of_friction ==
+                Approx(0.5 * rolling * (before * before - after * after)).epsilon(1e-10));
+        }
+      }
+}
+
+TEST_CASE("friction: coupled inertia slides and presses as its equations say, and jams are refused", "[friction]") {
+  Eigen::Matrix2d M;
+  M << 2, 0.6, 0.6, 0.5;
+  for (const Choice& time : {moreau, dumont})
+    for (const auto& [speed, rest] : {std::pair(0.9, 0.1033448276), {-0.9, -0.0300857143}}) {
+      INFO(time.name << ", v = " << speed);
+      Marcher made = marcher(pressed_block(M, 0.4, "-8", speed, "0.3"), 1, {{"consistent"}, {"signorini"}, time}, 1e-4);
+      run(made, 1);
+      CHECK(along(made) == Approx(rest).margin(1e-6));
+    }
+  const auto at = [&](double mu) {
+    return compiled(problem_of(pressed_block(M, mu, "-8", 0.9), 1, {"consistent"}, Choice{"signorini"}),
+                    {{"consistent"}, {"signorini"}, moreau}, 1e-4);
+  };
+  // W_nt/W_nn = 1.2 of this mass.
+  CHECK(std::holds_alternative<Program>(at(0.83)));
+  const auto jams = at(0.84);
+  REQUIRE(std::holds_alternative<Refusal>(jams));
+  CHECK(std::get<Refusal>(jams).sentence.text ==
+        "stop floor may jam: μ = 0.84 times the coupling 1.2 of its normal and tangent is 1.008, and 1 or more has "
+        "several motions. Use a smaller friction");
+}
+
+TEST_CASE("friction: exact friction holds, a spring gives way, a limited speed creeps", "[friction]") {
+  const SceneSpec scene = pressed_block(Eigen::Matrix2d::Identity(), 0.3, "-10", 0, "2.9");
+  const auto place_after = [&](const Choice& law, double duration) {
+    Marcher made = marcher(scene, 1, {{"consistent"}, {"signorini"}, moreau}, 1e-3, with_friction(law));
+    run(made, duration);
+    return along(made);
+  };
+  CHECK(std::abs(place_after({"coulomb"}, 10)) <= 1e-12);
+  // 2.9 N on 2e5 N/m, once damped.
+  CHECK(place_after({"spring", {{"stiffness", 2e5}, {"damping", 900.0}}}, 1) == Approx(1.45e-5).margin(1e-9));
+  // 2.9/3 of the speed, from the first steps on.
+  CHECK(place_after({"limited", {{"speed", 1e-4}}}, 2) - place_after({"limited", {{"speed", 1e-4}}}, 1) ==
+        Approx(9.666667e-5).epsilon(1e-6));
+}
+
+TEST_CASE("friction: a belt makes a block stick and slip between static and dynamic friction", "[friction]") {
+  SceneSpec scene = damped_block(1.5, 600, 20, {0.3, 0.2});
+  std::get<OscillatorSpec>(scene.structure).damping = 0.4;
+  scene.stops.named[0].tangent = TangentSpec{.slope_radius = 0, .direction = {}, .component = "", .speed = 0.08};
+  const double h = 2 * M_PI / (18 * 3571);
+  for (const Choice& time : {moreau, dumont}) {
+    INFO(time.name);
+    Marcher made = marcher(scene, 1, {{"consistent"}, {"none"}, time}, h);
+    run(made, 5);
+    double most = -1, least = 1;
+    for (int n = 0; n < 20000; ++n) {
+      made.march(1);
+      most = std::max(most, made.tip(0));
+      least = std::min(least, made.tip(0));
+    }
+    // Extremes of the steady motion, found between its events; 1e-3 of the amplitude.
+    CHECK(most == Approx(0.011826).margin(1.1e-5));
+    CHECK(least == Approx(0.001614).margin(1.1e-5));
+  }
+}
+
+TEST_CASE("friction without restitution never gives energy, and a scheme that rings is refused", "[friction]") {
+  SceneSpec scene = damped_block(2, 800, 30, {0.1, 0.1});
+  const auto refused =
+      compiled(problem_of(scene, 1, {"consistent"}, Choice{"none"}), {{"consistent"}, {"none"}, {"newmark"}}, 1e-4);
+  REQUIRE(std::holds_alternative<Refusal>(refused));
+  CHECK(std::get<Refusal>(refused).sentence.text ==
+        "friction does not run under this time scheme: it alternates the effort of a point that sticks (by the factor "
+        "-1 a step). Use moreau-jean, newmark-dumont-paoli, generalised-alpha, or newmark with γ above 0.5");
+  CHECK(std::holds_alternative<Program>(
+      compiled(problem_of(scene, 1, {"consistent"}, Choice{"none"}), {{"consistent"}, {"none"}, {"newmark"}}, 1e-4,
+               with_friction({"coulomb", {{"ringing", std::string("allow")}}}))));
+}
+
+TEST_CASE("friction: lanes and states that are taken over march on with equal bits", "[friction]") {
+  SceneSpec scene = damped_block(2, 800, 30, {0.15, 0.1});
+  scene.initial.displacement = Formula(0.0331);
+  const Methods methods{{"consistent"}, {"none"}, dumont};
+  Marcher whole = marcher(scene, 1, methods, 1e-3), cut = marcher(scene, 1, methods, 1e-3),
+          later = marcher(scene, 1, methods, 1e-3);
+  run(whole, 0.6);
+  run(cut, 0.25);
+  later.start();
+  later.set_clock(cut.step());
+  later.set_lane(0, later.program().lanes[0], cut.lane_state(0));
+  later.march(350);
+  CHECK(later.tip(0) == whole.tip(0));
+  const auto four = [](const LaneSpec& lane) {
+    std::vector<LaneSpec> lanes(4, lane);
+    for (std::size_t k = 0; k < lanes.size(); ++k) lanes[k].position *= 1 - 0.2 * static_cast<double>(k);
+    return lanes;
+  };
+  Marcher block = marcher(scene, 1, methods, 1e-3, {}, four);
+  run(block, 0.6);
+  for (int lane = 0; lane < 4; ++lane) {
+    Marcher alone = marcher(scene, 1, methods, 1e-3, {}, [&](const LaneSpec& spec) {
+      return std::vector<LaneSpec>{four(spec)[static_cast<std::size_t>(lane)]};
+    });
+    run(alone, 0.6);
+    CHECK(block.tip(lane) == alone.tip(0));
+  }
+}
