@@ -17,7 +17,8 @@ namespace ricochet {
 namespace {
 
 constexpr const char* friction_remedy =
-    "Use moreau-jean, newmark-dumont-paoli, generalised-alpha, or newmark with γ above 0.5";
+    "Use a scheme that closes velocities at its stops, or more numerical damping: `ricochet describe` says by what "
+    "factor a scheme forgets a disturbance of a held effort";
 
 // Lanes share the problem, and a law that changed it with its parameters.
 std::optional<Refusal> meet_law(ContactLaw& law, const SemiDiscrete& problem, const std::vector<LaneSpec>& lanes) {

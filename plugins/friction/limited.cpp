@@ -53,7 +53,7 @@ void register_limited(Registry& registry) {
           share of its bound creeps by that share of v₀, for ever. The smaller v₀, the nearer to exact friction.)",
        .source = "Oden and Martins (1985), Models and computational methods for dynamic friction phenomena",
        .parameters = {real_parameter("speed", "m/s", 1e-3, {.low = 0, .low_open = true}, "v₀")},
-       .words = "friction of limited speed"},
+       .words = "limited friction"},
       [](const Parameters& parameters) { return std::make_unique<Limited>(parameters); });
 }
 

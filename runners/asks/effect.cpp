@@ -9,7 +9,6 @@
 #include "runners/asks/pairs.hpp"
 #include "runners/asks/verbs.hpp"
 #include "runners/json/json_text.hpp"
-#include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet::asks {
@@ -152,7 +151,7 @@ class EffectSpeaker {
   /// Whether the choice has a part in contact alone: the law, restitution.
   bool acts_at_stops() const {
     return std::all_of(own_.begin(), own_.end(), [](const std::string& column) {
-      return axis_role(column) == "contact" || axis_role(column) == "friction" || column.ends_with(".restitution");
+      return column == "contact" || column.starts_with("contact.") || column.ends_with(".restitution");
     });
   }
 

@@ -132,6 +132,7 @@ std::string poor_refusal(const std::string& sentence, const PluginManual& manual
 /// Measures what a method declares, over its parameter values; one result per check.
 std::vector<CheckResult> check_scheme(const Entry<TimeScheme>& entry, const Isolation& isolation);
 std::vector<CheckResult> check_law(const Entry<ContactLaw>& entry, const Isolation& isolation);
+const std::vector<Check<FrictionLaw>>& friction_checks();
 std::vector<CheckResult> check_friction(const Entry<FrictionLaw>& entry, const Isolation& isolation);
 std::vector<CheckResult> check_mass(const Entry<MassStrategy>& entry, const Isolation& isolation);
 std::vector<CheckResult> check_reference(const Entry<ReferenceSolver>& entry, const Isolation& isolation);

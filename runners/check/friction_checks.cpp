@@ -126,10 +126,10 @@ Verdict takes_energy(const Friction& subject) {
     for (int step = 0; step < 3; ++step) {
       one.solve(law);
       const Eigen::VectorXd u = one.rate();
-      const double size =
-                       one.effort.norm() * u.norm() + *std::max_element(one.bound.begin(), one.bound.end()) * u.norm(),
-                   heat = -one.h * one.effort.dot(u) - (stored(one.remembers) - stored(one.remembered));
-      if (heat < -1e-10 * one.h * size) return fmt::format("it gives {:.3g} J in a stage", -heat);
+      // Rates are differences: round-off of what they are made of.
+      const double size = one.effort.norm() * (one.free.norm() + (one.A * one.effort).norm());
+      const double heat = -one.h * one.effort.dot(u) - (stored(one.remembers) - stored(one.remembered));
+      if (heat < -1e-12 * one.h * size) return fmt::format("it gives {:.3g} J in a stage", -heat);
       one.remembered = one.remembers;
       one.free = -0.7 * one.free;
     }
@@ -214,14 +214,18 @@ Verdict holds_and_slides(const Friction& subject) {
 
 }  // namespace
 
-std::vector<CheckResult> check_friction(const Entry<FrictionLaw>& entry, const Isolation& isolation) {
+const std::vector<Check<FrictionLaw>>& friction_checks() {
   static const std::vector<Check<FrictionLaw>> checks = {{"manual", manual},
                                                          {"effort within its bound", within_disc},
                                                          {"takes energy, never gives", takes_energy},
                                                          {"no direction is special", knows_no_direction},
                                                          {"one effort, found without memory", finds_one_effort},
                                                          {"holds and slides", holds_and_slides}};
-  return run_checks(checks, entry, isolation);
+  return checks;
+}
+
+std::vector<CheckResult> check_friction(const Entry<FrictionLaw>& entry, const Isolation& isolation) {
+  return run_checks(friction_checks(), entry, isolation);
 }
 
 }  // namespace ricochet::checking

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <ostream>
+#include <ricochet/contract/friction_facts.hpp>
 #include <ricochet/loader/child.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
@@ -74,6 +75,18 @@ void print_facts(const SchemeFacts& facts, std::ostream& out) {
       << "\n";
 }
 
+// What the plan makes of friction at rigid stops; of a scheme without them, by the implicit evaluation.
+std::string friction_line(const StepPlan& plan) {
+  const bool rigid =
+      std::any_of(plan.stages.begin(), plan.stages.end(), [](const Stage& stage) { return stage.impact; });
+  const FrictionFacts facts =
+      friction_facts(derive(plan), rigid ? std::nullopt : std::optional(Evaluation::implicit_end));
+  if (!facts.why_none.empty()) return "none: " + facts.why_none;
+  if (!facts.rings.empty()) return facts.rings;
+  return fmt::format("a disturbance of the effort of a held point is {:.3g} times as large after a step",
+                     facts.held_root);
+}
+
 std::string facts_of(const PluginManual& manual, const TimeScheme& scheme) {
   constexpr double step = 1e-5;
   ProblemFacts facts;
@@ -99,6 +112,7 @@ std::string facts_of(const PluginManual& manual, const TimeScheme& scheme) {
   out << "  highest frequencies: "
       << (root ? fmt::format("a step leaves {:.4g} of them (ρ∞)", *root) : std::string("beyond an explicit step"))
       << "\n";
+  out << "  friction: " << friction_line(plan) << "\n";
   out << "  the step, S z = b + Hᵀp:\n" << indented(print_plan(plan));
   return out.str();
 }
@@ -160,8 +174,9 @@ std::string facts_of(Role role, const PluginManual& manual, const Registry& regi
       return facts_of(manual, *registry.contact(manual.name)->make(parameters), parameters);
     case Role::friction: {
       const double creep = registry.friction(manual.name)->make(parameters)->creeps(1);
-      return fmt::format("facts of {} with its default parameters:\n  a held point {}\n", manual.name,
-                         creep == 0 ? std::string("does not drift") : fmt::format("creeps by {:g} m/s at its bound", creep));
+      return fmt::format(
+          "facts of {} with its default parameters:\n  a held point {}\n", manual.name,
+          creep == 0 ? std::string("does not drift") : fmt::format("creeps by {:g} m/s at its bound", creep));
     }
     case Role::time:
       return facts_of(manual, *registry.time(manual.name)->make(parameters));

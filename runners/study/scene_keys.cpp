@@ -184,21 +184,24 @@ std::vector<Field> observed_of_stops() {
                               .as("speed of the surface", "the speed of the surface"))};
   tangent.ways = {radius, direction, component, ObjectForm()};
   ObjectForm coefficients;
-  coefficients.fields = {real("static", "1", non_negative, std::nullopt, "μ of a point that stuck before."),
-                         real("dynamic", "1", non_negative, std::nullopt, "μ of a point that slides.")};
-  Field friction = quiet(optional(real("friction", "1", non_negative, std::nullopt,
-                                       "Coefficient μ of its surface: needs a tangent, or a normal force; absent: none."))
-                             .as("μ", "the friction of a stop"));
+  coefficients.fields = {real("static", "1", non_negative, std::nullopt, "μ of a point that stuck before.")
+                             .as("static μ", "the static friction of a stop"),
+                         real("dynamic", "1", non_negative, std::nullopt, "μ of a point that slides.")
+                             .as("dynamic μ", "the dynamic friction of a stop")};
+  Field friction =
+      quiet(optional(real("friction", "1", non_negative, std::nullopt,
+                          "Coefficient μ of its surface: needs a tangent, or a normal force; absent: none."))
+                .as("μ", "the friction of a stop"));
   friction.axis = true;
   friction.given.push_back(coefficients);
   Field normal = quiet(optional(real("normal_force", "N", non_negative, std::nullopt,
                                      "Force that presses a friction damper, in the place of bounds; absent: none."))
                            .as("normal force", "the normal force of a damper"));
   normal.axis = true;
-  return {quiet(object("tangent", Json(nullptr), "Motion along the surface, for wear and friction; absent: none.",
-                       tangent)
-                    .as("tangent")),
-          std::move(friction), std::move(normal)};
+  return {
+      quiet(object("tangent", Json(nullptr), "Motion along the surface, for wear and friction; absent: none.", tangent)
+                .as("tangent")),
+      std::move(friction), std::move(normal)};
 }
 
 Place read_place(const Json& json) {

@@ -131,6 +131,8 @@ class SchemaWriter {
       case Field::Form::scalar:
         if (field.per_body)
           return either("object", {{"additionalProperties", scalar(field.spec)}}, or_null(field, scalar(field.spec)));
+        if (!field.given.empty())
+          return or_null(field, either("object", object(field.given.front()), scalar(field.spec)));
         if (field.or_flag) return either("boolean", Json::object(), scalar(field.spec));
         return or_null(field, scalar(field.spec));
       case Field::Form::text:

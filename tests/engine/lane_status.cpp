@@ -14,7 +14,8 @@ TEST_CASE("each cause of an end has a sentence of its own, only a step that cann
     CHECK(static_cast<bool>(end) == (k != 0));
     CHECK(text(end).empty() == (k == 0));
     CHECK(sentences.insert(text(end)).second);
-    CHECK(end.failed() == (end.cause == EndCause::law_not_converged || end.cause == EndCause::process_ended));
+    CHECK(end.failed() == (end.cause == EndCause::law_not_converged || end.cause == EndCause::friction_not_found ||
+                           end.cause == EndCause::process_ended));
   }
   CHECK_FALSE(LaneEnd{});
 }

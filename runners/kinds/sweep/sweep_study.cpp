@@ -99,7 +99,7 @@ const ParameterSpec* parameter_of(const Registry& registry, const std::string& r
 std::vector<std::string> method_scalars(const Json& methods, const Registry& registry) {
   std::vector<std::string> pointers;
   for (const Role role : swept_roles)
-    for (const Json& entry : methods.at(role_name(role)))
+    for (const Json& entry : methods.value(role_name(role), Json::array()))
       for (const ParameterSpec& spec : registry.manual(role, entry.at("name").get<std::string>())->parameters) {
         const std::string pointer = std::string("/methods/") + role_name(role) + "/" + spec.key;
         if (spec.type == ParameterSpec::Type::real &&

@@ -228,7 +228,8 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
     // What the stops give back (a spring's potential) is not dissipated.
     const double stored = energy.last.contact - energy.first.contact;
     put("dissipated_at_contact", -energy.work_of_contact - stored);
-    if (marcher.program().friction) put("dissipated_by_friction", -energy.work_of_friction - marcher.stored_by_friction(0));
+    if (marcher.program().friction)
+      put("dissipated_by_friction", -energy.work_of_friction - marcher.stored_by_friction(0));
     put("stored_at_stops", stored);
     put("balance_residual", energy.balance_residual());
   }
@@ -265,6 +266,13 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   if (!prepared.program) return plan;
   for (Said& doubt : run_doubts(study_case, prepared))
     if (!doubt.text.empty()) plan.notes.push_back(std::move(doubt.text));
+  for (std::size_t i = 0; i < prepared.program->jam.size(); ++i) {
+    const RubbingPoint& one = prepared.problem->rubbing[i];
+    plan.notes.push_back(
+        fmt::format("stop {} rubs, μ {:g}: normal and tangent are coupled by {:.2g} (jam number {:.2g})",
+                    prepared.problem->stops[static_cast<std::size_t>(one.point)], std::max(one.held, one.sliding),
+                    prepared.program->jam[i].coupling, prepared.program->jam[i].number));
+  }
   plan.coarsest_step = plan.finest_step = study_case.step;
   plan.operator_name = operator_name(prepared.program->kind);
   plan.left_out = left_out_pairs(prepared.program->left_out);
@@ -288,8 +296,8 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   const std::shared_ptr<const SemiDiscrete> problem = prepared.problem;
   Marcher marcher(std::move(*prepared.program));
   Watched watched(study_case, marcher, prepared.steps);
-  auto& [audit, tangents, friction, recorder, contacts, struck, outputs, means, forces, orbits, snapshots, sampler, observers] =
-      watched;
+  auto& [audit, tangents, friction, recorder, contacts, struck, outputs, means, forces, orbits, snapshots, sampler,
+         observers] = watched;
   count_steady_load(marcher, audit, record.notes);
   record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 

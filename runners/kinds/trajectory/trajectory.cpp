@@ -385,7 +385,8 @@ Json::json_pointer scene_pointer(std::string column) {
 
 Json minimal_study(const StudyResults& results, const CaseRecord& record) {
   Json scene = results.study.at("scene"), methods = Json::object();
-  for (const std::string& role : method_roles()) methods[role] = Json::object();
+  for (const std::string& role : method_roles())
+    if (results.study.at("methods").contains(role)) methods[role] = Json::object();
   Json mesh = {{"elements", 1}}, step, march;
   for (const auto& [column, value] : record.axes) {
     const std::string role = column.substr(0, column.find('.'));

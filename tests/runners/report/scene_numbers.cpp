@@ -95,6 +95,7 @@ class SceneMaker {
     using Form = Field::Form;
     switch (field.form) {
       case Form::scalar:
+        if (!field.given.empty() && toss()) return object(field.given.front());
         return scalar(field, of);
       case Form::formula:
         if (!field.nested.empty() && toss()) return Json::array({object(field.nested.front())});

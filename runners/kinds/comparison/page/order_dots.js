@@ -13,8 +13,8 @@
               (row) => row.refined === "step" && row.order !== null && data.byId.has(row.case)),
           cases = ricochet.distinct(found.map((row) => data.byId.get(row.case)));
     if (!found.length) return [];
-    const label =
-        ricochet.rowLabels(view, cases, view.varyingWithout(["mass", "contact", "friction", "step", "elements"]), mostRows);
+    const outside = view.varyingWithout(["mass", "contact", "friction", "step", "elements"]),
+          label = ricochet.rowLabels(view, cases, outside, mostRows);
     const rows =
         found.map((row) => ({
                     name: label(data.byId.get(row.case)),

@@ -1,0 +1,70 @@
+// Friction laws with one thing wrong, each caught by the check that looks at it; exact friction passes all.
+#include <catch2/catch.hpp>
+#include <functional>
+#include <ricochet/contact_solvers/friction_solver.hpp>
+
+#include "tests/check/sound_schemes.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+using Catch::Matchers::Contains;
+using checking::CheckResult;
+using checking::Finding;
+
+namespace {
+
+using Change = std::function<void(FrictionProblem& problem)>;
+
+// Exact friction, and what is changed before and after it is found.
+class Changed final : public FrictionLaw {
+ public:
+  Changed(Change before, Change after) : before_(std::move(before)), after_(std::move(after)) {}
+  void prepare(int points, int rows, std::span<const Parameters>) override { solver_.prepare(points, rows); }
+  LaneOutcome solve(FrictionProblem& problem) override {
+    if (before_) before_(problem);
+    const LaneOutcome outcome = solver_.solve(problem);
+    if (after_) after_(problem);
+    return outcome;
+  }
+
+ private:
+  Change before_, after_;
+  FrictionSolver solver_;
+};
+
+Entry<FrictionLaw> entry(const Change& before, const Change& after) {
+  Entry<FrictionLaw> made{full_manual("made-here"), {}, ""};
+  made.make = [=](const Parameters&) { return std::make_unique<Changed>(before, after); };
+  return made;
+}
+
+void caught(const std::string& check, const std::string& words, const Change& before, const Change& after) {
+  const CheckResult result = one_check(checking::friction_checks(), entry(before, after), check);
+  INFO(text_of({result}));
+  CHECK(result.finding == Finding::fails);
+  REQUIRE(!result.sentences.empty());
+  CHECK_THAT(result.sentences.front(), Contains(words));
+}
+
+}  // namespace
+
+TEST_CASE("exact friction passes every check of a friction law") {
+  for (const auto& check : checking::friction_checks()) {
+    const CheckResult result = one_check(checking::friction_checks(), entry({}, {}), check.name);
+    INFO(text_of({result}));
+    CHECK(result.finding == Finding::ok);
+  }
+}
+
+TEST_CASE("friction laws with one thing wrong are caught") {
+  caught("effort within its bound", "beyond the bound", {},
+         [](FrictionProblem& problem) { problem.effort[0] *= 1 + 1e-9; });
+  caught("takes energy, never gives", "it gives", {}, [](FrictionProblem& problem) { problem.effort[0] *= -1; });
+  caught("no direction is special", "another effort", {}, [](FrictionProblem& problem) {
+    for (int i = 0; i < problem.rows(); ++i) problem.effort[i] = std::max(problem.effort[i], -0.5 * problem.bound[0]);
+  });
+  caught("one effort, found without memory", "a point that sticks slides", {}, [](FrictionProblem& problem) {
+    for (int i = 0; i < problem.points; ++i) problem.slid[i] += 1e-3;
+  });
+  caught("holds and slides", "drifts", {}, [](FrictionProblem& problem) { problem.effort[0] *= 0.99; });
+}
