@@ -191,7 +191,7 @@ std::vector<StageFacts> at_the_end(std::vector<Stage>& stages) {
       end(compliance->rate_bound);
       if (compliance->before) end(compliance->before_bound);
     }
-    all.push_back({0, 1, 1, position_increment(stage)});
+    all.push_back({0, 1, 1, position_increment(stage), {}});
   }
   return all;
 }

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_friction.hpp>
 #include <ricochet/engine/stage_state.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 
 /// \file
 /// Friction beside the contact law. In turn the law finds p with the efforts p_t of friction as they are, and the
@@ -112,10 +114,10 @@ LaneOutcome Marcher::find_friction(const StageProgram& program, StageState& stat
   for (int i = 0; i < static_cast<int>(all.size()); ++i) {
     const double normal = normal_force(program, state, i, lane);
     if (!(normal > 0)) continue;
-    const std::size_t k = rub.number.size();
-    rub.normals[k] = normal;
-    rub.sliding[k] = all[at(i)].sliding * normal;
-    rub.held[k] = rub.sticks.at(i, lane) != 0 ? all[at(i)].held * normal : rub.sliding[k];
+    const std::size_t next = rub.number.size();
+    rub.normals[next] = normal;
+    rub.sliding[next] = all[at(i)].sliding * normal;
+    rub.held[next] = rub.sticks.at(i, lane) != 0 ? all[at(i)].held * normal : rub.sliding[next];
     rub.number.push_back(i);
     for (int k = 0; k < all[at(i)].rows; ++k) rub.rows.push_back(all[at(i)].row + k);
     rub.first_row.push_back(static_cast<int>(rub.rows.size()));
