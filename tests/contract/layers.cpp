@@ -273,8 +273,8 @@ TEST_CASE("a kind of study is known by name in the folders of the kinds alone") 
 
 TEST_CASE("core and runners know no method by name") {
   // These are words of every day as well; they may stand in a sentence.
-  const std::set<std::string> ordinary = {"consistent", "exact",   "layer",    "limited", "lumped",
-                                          "none",       "penalty", "singular", "spring"};
+  const std::set<std::string> ordinary = {"consistent", "damper", "exact",   "layer",    "limited",
+                                          "lumped",     "none",   "penalty", "singular", "spring"};
   // The study format has one method by default: how stops rub.
   const auto of_the_format = [](const Source& source, const std::string& name) {
     return name == "coulomb" && source.name.starts_with("runners/study/");
