@@ -134,7 +134,14 @@ Commands result_commands() {
                      "the page that lists several folders (default: index.html in the folder that holds them all); "
                      "NAME.md: questions and answers in Markdown",
                      &Args::out};
-  const Option json{"json", "", "print what the study asks with its verdicts as JSON (of one folder)", &Args::json};
+  const Option json{"json", "",
+                    "print what the study asks with its verdicts as JSON (of one folder), or the comparison",
+                    &Args::json};
+  const Option beside{
+      "compare", "",
+      "put two results of one kind beside each other, folders or packed: values, intervals and what "
+      "changed beyond them, as a page and as CSV (default: comparison.html in the folder that holds both)",
+      &Args::compare};
   const Option figures{"figures", "DIR",
                        "also write each figure as SVG and its numbers as CSV into that folder, and all as pages of "
                        "figures.pdf (of one folder). A browser draws them: chromium, or RICOCHET_BROWSER",
@@ -152,11 +159,12 @@ Commands result_commands() {
                       &Args::curves};
   return {
       {"report",
-       "DIR… [--out FILE] [--json] [--figures DIR]",
-       "Rebuild the report and the tables of a results folder; of several, also a page that lists them.",
+       "DIR… [--out FILE] [--json] [--figures DIR] | --compare A B [--out FILE] [--json]",
+       "Rebuild the report and the tables of a results folder; of several, also a page that lists them; or compare "
+       "two.",
        1,
        1000,
-       {index, json, figures},
+       {index, beside, json, figures},
        command_report},
       {"merge",
        "DIR DIR… --out DIR",

@@ -12,19 +12,23 @@
 #include "runners/command/subcommand.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/march/study_identity.hpp"
+#include "runners/pack/pack.hpp"
 #include "runners/plan_files/plan_file.hpp"
 #include "runners/report/summary_page.hpp"
 #include "runners/run/compare_studies.hpp"
 #include "runners/run/finish_run.hpp"
+#include "runners/run/pair_results.hpp"
 #include "runners/run/run_study.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/read_store.hpp"
 #include "runners/store/store.hpp"
+#include "runners/store/temporary_folder.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/text.hpp"
 #include "runners/workers/allowed_processors.hpp"
 
 namespace ricochet {
+namespace fs = std::filesystem;
 
 int with_study(const Arguments& arguments, const std::function<int(const OpenStudy&)>& use) {
   const std::filesystem::path file = arguments.operands.front();
@@ -111,9 +115,50 @@ std::string as_link(const std::filesystem::path& path) {
   return out;
 }
 
+/// A results folder, or a packed one in a folder of its own that goes with it.
+struct OpenedResult {
+  std::optional<TemporaryFolder> unpacked;
+  fs::path folder;
+
+  explicit OpenedResult(const fs::path& place) : folder(place) {
+    if (!fs::exists(place)) throw UsageError(place.string() + ": there is no such folder or packed result");
+    if (fs::is_regular_file(place)) {
+      unpack_results(place, unpacked.emplace("compare").path());
+      folder = unpacked->path() / packed::results;
+    }
+    if (!fs::exists(folder / "results.sqlite"))
+      throw UsageError(place.string() + ": holds no results.sqlite; expected a folder of results");
+  }
+};
+
+int report_pair(const Arguments& arguments, std::ostream& out) {
+  if (arguments.operands.size() != 2)
+    throw UsageError(fmt::format("--compare is for two results; {} given",
+                                 arguments.operands.size() == 1 ? "one was" : "more were"));
+  if (arguments.figures) throw UsageError("--figures is for one folder; --compare has two");
+  const OpenedResult folder_a(arguments.operands[0]), folder_b(arguments.operands[1]);
+  const fs::path path_a = fs::canonical(arguments.operands[0]), path_b = fs::canonical(arguments.operands[1]);
+  if (path_a == path_b) throw UsageError(arguments.operands[1] + ": is the same result; expected another one");
+  const AnalysedResults a = with_tables(read_store(folder_a.folder)), b = with_tables(read_store(folder_b.folder));
+  if (a.kind != b.kind)
+    throw UsageError(fmt::format("{} is of kind {} and {} of kind {}; expected two results of one kind",
+                                 arguments.operands[0], a.kind, arguments.operands[1], b.kind));
+  const PairedResults pairs = pair_results(a, b);
+  fs::path page = arguments.out ? fs::absolute(*arguments.out) : common_folder({path_a, path_b}) / "comparison.html";
+  write_file(page, paired_page(pairs, a, b));
+  fs::path table = page;
+  write_file(table.replace_extension(".csv"), table_csv(paired_table(pairs)));
+  if (arguments.json)
+    out << paired_json(pairs, a, b).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+  else
+    out << paired_text(pairs, a, b) << "page: " << page.string() << "\n";
+  return exit_done;
+}
+
 }  // namespace
 
 int command_report(const Arguments& arguments, std::ostream& out) {
+  if (arguments.compare) return report_pair(arguments, out);
   if (arguments.operands.size() == 1) {
     if (arguments.out) throw UsageError("--out is for the page that lists several folders; only one was given");
     const int code = rebuild_report(arguments.operands.front(), arguments.json);

@@ -44,6 +44,7 @@ struct Arguments {
   bool isolate = false;                          ///< --isolate
   bool here = false;                             ///< --inline
   bool curves = false;                           ///< --curves
+  bool compare = false;                          ///< --compare
   std::optional<std::filesystem::path> figures;  ///< --figures
   bool study = false;                            ///< --study
   std::optional<double> parameter;               ///< --parameter

@@ -22,7 +22,8 @@ std::string unit_of(const VerdictRow& row) {
   return row.unit == "1" ? "" : row.unit;
 }
 
-/// "1.44 ± 0.13", in the digits of the sentences; "8e-4 to 0.001" of what is known by its bounds alone.
+}  // namespace
+
 std::string value_cell(const VerdictRow& row) {
   if (!row.value && row.low && row.high && *row.low == *row.high) return answers::short_number(*row.low);
   if (!row.value)
@@ -43,8 +44,6 @@ std::string value_cell(const VerdictRow& row) {
     text.resize(text.size() - unit.size());
   return text;
 }
-
-}  // namespace
 
 report::AskedTable asked_rows(const asks::Answered& answered) {
   std::set<std::string> units, measures, stops;
@@ -124,15 +123,20 @@ std::string asked_text(const AnalysedResults& results) {
   return out;
 }
 
-nlohmann::ordered_json asked_json(const AnalysedResults& results) {
-  const Table table = asks::verdicts_table(results.asked);
+nlohmann::ordered_json rows_as_json(const Table& table) {
   Json rows = Json::array();
   for (const Row& row : table.rows) {
     Json one = Json::object();
     for (std::size_t k = 0; k < table.columns.size(); ++k) one[table.columns[k].name] = json_of(row[k]);
     rows.push_back(std::move(one));
   }
-  return {{"question", results.question}, {"first", results.asked.first}, {"verdicts", std::move(rows)}};
+  return rows;
+}
+
+nlohmann::ordered_json asked_json(const AnalysedResults& results) {
+  return {{"question", results.question},
+          {"first", results.asked.first},
+          {"verdicts", rows_as_json(asks::verdicts_table(results.asked))}};
 }
 
 }  // namespace ricochet

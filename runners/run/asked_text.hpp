@@ -6,8 +6,8 @@
 
 namespace ricochet {
 
-/// The rows of one answer: values with as many digits as their uncertainty allows, the unit in the head where all have one;
-/// columns that are empty throughout are left out.
+/// The rows of one answer: values with as many digits as their uncertainty allows, the unit in the head where all have
+/// one; columns that are empty throughout are left out.
 report::AskedTable asked_rows(const asks::Answered& answered);
 
 /// What a study asks, answered, as its page and a terminal show it.
@@ -18,6 +18,9 @@ report::KindPage page_of_study(const AnalysedResults& results);
 
 /// The question, what warns, then the sentence of each ask, each above its rows, twelve at most.
 std::string asked_text(const AnalysedResults& results);
+
+/// The rows of a table for programs, each with the columns by name; what a row has not is null.
+nlohmann::ordered_json rows_as_json(const Table& table);
 
 /// The same for programs: {"question", "first", "verdicts"}, each of these with the columns of verdicts.csv by name;
 /// what a row has not is null.

@@ -58,6 +58,8 @@ struct StudyComparison {
 /// scene. Measures of the computation (its time) are no result and are left out. Both outlive what is returned.
 StudyComparison compare_studies(const StudyResults& a, const StudyResults& b);
 
+/// The two, and how their inputs and environments differ: how a person begins to read.
+std::string facts_text(const StudyComparison& found, const StudyResults& a, const StudyResults& b);
 /// What a person reads, at most a screen of it.
 std::string comparison_text(const StudyComparison& found, const StudyResults& a, const StudyResults& b);
 /// All of it: a row per input, case, measure, table and line.

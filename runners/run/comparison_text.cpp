@@ -177,7 +177,7 @@ std::string folder_line(const char* which, const StudyResults& results) {
 
 }  // namespace
 
-std::string comparison_text(const StudyComparison& found, const StudyResults& a, const StudyResults& b) {
+std::string facts_text(const StudyComparison& found, const StudyResults& a, const StudyResults& b) {
   std::string out = folder_line("A", a) + folder_line("B", b);
   out += fmt::format("inputs: {}\n", found.inputs.empty()
                                          ? "the same"
@@ -186,9 +186,12 @@ std::string comparison_text(const StudyComparison& found, const StudyResults& a,
   out += fmt::format(
       "environment: {}\n",
       found.environment.empty() ? "the same" : count_text(found.environment.size(), "entry differs", "entries differ"));
-  out += changed_text(found.environment, most_environment);
-  return out + cases_text(found, a, b) + measures_text(found) + tables_text(found) + answers_text(found) +
-         comparison_verdict(found);
+  return out + changed_text(found.environment, most_environment);
+}
+
+std::string comparison_text(const StudyComparison& found, const StudyResults& a, const StudyResults& b) {
+  return facts_text(found, a, b) + cases_text(found, a, b) + measures_text(found) + tables_text(found) +
+         answers_text(found) + comparison_verdict(found);
 }
 
 Table comparison_table(const StudyComparison& found) {

@@ -1,0 +1,162 @@
+#include "runners/run/pair_results.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "runners/answers/compared.hpp"
+#include "runners/asks/evidence.hpp"
+#include "runners/store/record_values.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet {
+namespace {
+
+using asks::VerdictRow;
+
+/// A value with what tells it from the others of its result.
+struct KeyedValue {
+  std::string table, of;
+  Row key;
+  VerdictRow row;
+};
+
+std::string json_text(const asks::Ask& ask) {
+  return ask.keys.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+void add_verdicts(const AnalysedResults& results, std::vector<KeyedValue>& out) {
+  for (const auto& [ask, answered] : results.asked.all)
+    for (const VerdictRow& row : answered.rows)
+      out.push_back({"verdicts", json_text(ask), {row.measure, row.level, row.stop, row.unit}, row});
+}
+
+/// Columns of both but those that are refined.
+std::vector<std::string> chosen_columns(const StudyResults& a, const StudyResults& b) {
+  std::vector<std::string> out;
+  for (const StudyResults* one : {&a, &b})
+    for (const std::string& column : one->columns)
+      if (!answers::is_refinement(column) && std::find(out.begin(), out.end(), column) == out.end())
+        out.push_back(column);
+  return out;
+}
+
+/// The rows of a table of values with low and high, if the result has it. `level`: the column that says the level of
+/// all choices in words.
+void add_rows_of(const StudyResults& results, const char* name, const char* level,
+                 const std::vector<std::string>& chosen, std::vector<KeyedValue>& out) {
+  const Table* table = find_table(results.derived, name);
+  if (!table) return;
+  std::map<std::string, const CaseRecord*> records;
+  for (const CaseRecord& record : results.cases) records[record.id] = &record;
+  const TableReader rows(*table);
+  const std::size_t words = rows.column_if_any(level), stop = rows.column_if_any("stop"),
+                    id = rows.column_if_any("case");
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    VerdictRow row;
+    std::tie(row.measure, row.stop) = asks::split_measure(rows.text(r, "measure"));
+    if (stop != TableReader::absent) row.stop = rows.text(r, stop);
+    row.level = rows.text(r, words);
+    row.value = rows.number(r, "value");
+    row.low = rows.number(r, "low");
+    row.high = rows.number(r, "high");
+    row.unit = rows.text(r, "unit");
+    Row key{row.measure, row.stop, row.unit};
+    const auto record = records.find(rows.text(r, id));
+    if (record != records.end())
+      for (Cell& cell : axes_of(*record->second, chosen)) key.push_back(std::move(cell));
+    out.push_back({name, "", std::move(key), std::move(row)});
+  }
+}
+
+std::vector<KeyedValue> values_of(const AnalysedResults& results, const std::vector<std::string>& chosen) {
+  std::vector<KeyedValue> out;
+  add_verdicts(results, out);
+  add_rows_of(results, "limits", "method", chosen, out);
+  add_rows_of(results, "uncertainty", "", {}, out);
+  // Rows that nothing tells apart go together in their order.
+  std::map<std::string, std::size_t> met;
+  for (KeyedValue& one : out) {
+    one.key.insert(one.key.begin(), {one.table, one.of});
+    one.key.emplace_back(met[key_of(one.key)]++);
+  }
+  return out;
+}
+
+PairChange change_of(PairedValue& pair) {
+  if (!pair.b) return PairChange::only_a;
+  if (!pair.a) return PairChange::only_b;
+  const VerdictRow &a = *pair.a, &b = *pair.b;
+  if (a.value && b.value) pair.difference = *b.value - *a.value;
+  if (std::pair(a.value, a.verdict) == std::pair(b.value, b.verdict) &&
+      std::pair(a.low, a.high) == std::pair(b.low, b.high))
+    return PairChange::equal;
+  if (!a.low || !a.high || !b.low || !b.high) return PairChange::no_interval;
+  if (!pair.difference) return *a.low > *b.high || *b.low > *a.high ? PairChange::beyond : PairChange::within;
+  pair.u =
+      *pair.difference > 0 ? (*a.high - *a.value) + (*b.value - *b.low) : (*a.value - *a.low) + (*b.high - *b.value);
+  return std::abs(*pair.difference) > *pair.u ? PairChange::beyond : PairChange::within;
+}
+
+}  // namespace
+
+const char* change_word(PairChange change) {
+  switch (change) {
+    case PairChange::equal:
+      return "equal";
+    case PairChange::within:
+      return "within u";
+    case PairChange::beyond:
+      return "changed";
+    case PairChange::no_interval:
+      return "no interval";
+    case PairChange::only_a:
+      return "only in A";
+    case PairChange::only_b:
+      return "only in B";
+  }
+  return "";
+}
+
+bool PairedValue::has_values() const {
+  const auto has = [](const std::optional<VerdictRow>& row) { return row && (row->value || row->low); };
+  return has(a) || has(b);
+}
+
+std::size_t PairedResults::count(PairChange change) const {
+  return static_cast<std::size_t>(
+      std::count_if(values.begin(), values.end(), [&](const PairedValue& one) { return one.change == change; }));
+}
+
+PairedResults pair_results(const AnalysedResults& a, const AnalysedResults& b) {
+  PairedResults out{compare_studies(a, b), {}, {}};
+  const std::vector<std::string> chosen = chosen_columns(a, b);
+  std::map<std::string, std::size_t> places;
+  for (KeyedValue& one : values_of(a, chosen)) {
+    places[key_of(one.key)] = out.values.size();
+    out.values.push_back({one.table, one.of, std::move(one.row), {}});
+  }
+  for (KeyedValue& one : values_of(b, chosen)) {
+    const auto place = places.find(key_of(one.key));
+    if (place == places.end())
+      out.values.push_back({one.table, one.of, {}, std::move(one.row)});
+    else
+      out.values[place->second].b = std::move(one.row);
+  }
+  for (PairedValue& one : out.values) one.change = change_of(one);
+  for (const auto& [ask, answered] : a.asked.all) out.asks.push_back({json_text(ask), &answered, nullptr});
+  for (const auto& [ask, answered] : b.asked.all) {
+    const std::string text = json_text(ask);
+    const auto same =
+        std::find_if(out.asks.begin(), out.asks.end(), [&](const PairedAsk& one) { return one.ask == text && !one.b; });
+    if (same == out.asks.end())
+      out.asks.push_back({text, nullptr, &answered});
+    else
+      same->b = &answered;
+  }
+  return out;
+}
+
+}  // namespace ricochet
