@@ -93,20 +93,29 @@ Equal agreement(const StudyResults& results, const CaseRecord& stored, const Cas
   }
   const std::map<std::string, double> shares = shares_left_open(results, stored);
   bool within = stored.status == again.status;
-  std::size_t compared = 0;
+  std::size_t compared = 0, bare = 0;
   double largest = 0;
   for (const auto& [name, value] : again.measures) {
     const auto share = shares.find(name);
     const auto kept = std::find_if(stored.measures.begin(), stored.measures.end(),
                                    [&wanted = name](const auto& one) { return one.first == wanted; });
-    if (share == shares.end() || kept == stored.measures.end()) continue;
+    if (kept == stored.measures.end()) continue;
+    if (share == shares.end()) {
+      const MeasureInfo* info = measure_info(name);
+      bare += value != kept->second && !(info && info->of == MeasureInfo::Of::computation);
+      continue;
+    }
     ++compared;
     const double difference = std::abs(value - kept->second), open = share->second * std::abs(kept->second);
     within = within && difference <= open;
     if (open > 0) largest = std::max(largest, difference / open);
   }
   if (within && compared > 0) {
-    text = fmt::format("equal within u: {}, the largest difference is {:.2g} u", counted(compared, "measure"), largest);
+    text =
+        fmt::format("equal within u: {}, the largest difference is {:.2g} u{}", counted(compared, "measure"), largest,
+                    bare == 1  ? "; 1 measure differs and has no u"
+                    : bare > 1 ? fmt::format("; {} measures differ and have no u", bare)
+                               : "");
     return Equal::within;
   }
   constexpr std::size_t told = 3;

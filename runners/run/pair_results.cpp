@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
+#include <tuple>
 #include <utility>
 
 #include "runners/answers/compared.hpp"
@@ -123,6 +123,12 @@ const char* change_word(PairChange change) {
 bool PairedValue::has_values() const {
   const auto has = [](const std::optional<VerdictRow>& row) { return row && (row->value || row->low); };
   return has(a) || has(b);
+}
+
+std::string PairedValue::level() const {
+  const VerdictRow& row = any();
+  const bool bare = row.value && !row.low && !row.verdict.empty() && (!a || !b || a->verdict == b->verdict);
+  return row.level + (bare ? (row.level.empty() ? "" : ", ") + row.verdict : "");
 }
 
 std::size_t PairedResults::count(PairChange change) const {

@@ -21,12 +21,15 @@ const char* change_word(PairChange change);
 struct PairedValue {
   std::string table;  ///< verdicts, limits or uncertainty
   std::string of;     ///< the ask as JSON; "" of other tables
-  std::optional<asks::VerdictRow> a, b;
+  std::optional<asks::VerdictRow> a = {}, b = {};
   PairChange change = PairChange::equal;
-  std::optional<double> difference, u;  ///< b − a, and what the intervals leave of it
+  std::optional<double> difference = {}, u = {};  ///< b − a, and what the intervals leave of it
 
   const asks::VerdictRow& any() const { return a ? *a : *b; }
   bool has_values() const;
+  /// The levels of all choices in words, and what a number without an interval is where the table says it:
+  /// "half-width".
+  std::string level() const;
 };
 
 /// An ask with both answers; a null pointer where one does not ask it. These are of the results.

@@ -32,9 +32,9 @@ std::string words_of(const VerdictRow& row) {
   return words + (row.stop.empty() ? "" : (words.empty() ? "" : " at ") + row.stop);
 }
 
-std::string name_of(const VerdictRow& row, bool with_measure) {
-  const std::string measure = with_measure ? words_of(row) : "";
-  const std::string name = measure + (measure.empty() || row.level.empty() ? "" : ", ") + row.level;
+std::string name_of(const PairedValue& value, bool with_measure) {
+  const std::string measure = with_measure ? words_of(value.any()) : "", level = value.level();
+  const std::string name = measure + (measure.empty() || level.empty() ? "" : ", ") + level;
   return name.empty() ? "all" : name;
 }
 
@@ -48,7 +48,7 @@ std::string figure_of(const Values& values, bool with_measure) {
     if (++drawn > most_drawn) return "";
     units.insert(one->any().unit);
     for (const auto& [name, row] : {std::pair("A", &*one->a), {"B", &*one->b}}) {
-      rows.push_back({{"pair", name_of(*row, with_measure)}, {"name", name}, {"value", *row->value}});
+      rows.push_back({{"pair", name_of(*one, with_measure)}, {"name", name}, {"value", *row->value}});
       if (row->low && row->high) rows.back().update({{"low", *row->low}, {"high", *row->high}});
     }
   }
@@ -62,25 +62,30 @@ std::string figure_of(const Values& values, bool with_measure) {
 
 std::string group_html(const std::string& head, const std::string& id, const Values& values) {
   if (values.empty() && head.empty()) return "";
-  std::set<std::string> measures;
+  std::set<std::string> measures, units;
   bool verdicts = false;
   for (const PairedValue* one : values) {
     measures.insert(words_of(one->any()));
+    units.insert(unit_text(one->any()).empty() ? "" : one->any().unit);
     for (const auto& row : {one->a, one->b}) verdicts = verdicts || (row && !row->verdict.empty());
   }
   const bool with_measure = measures.size() > 1;
-  HtmlTable table("", {{"value of"}, {"A", true}, {"B", true}, {"B − A", true}, {"u of both", true}, {"change"}},
+  const auto head_of = [&](const char* name) {
+    return HtmlTable::Head{
+        units.size() == 1 && !units.begin()->empty() ? fmt::format("{} ({})", name, *units.begin()) : name, true};
+  };
+  HtmlTable table("", {{"value of"}, {"change"}, head_of("A"), head_of("B"), {"B − A", true}, {"u of both", true}},
                   "verdicts");
   if (verdicts) table.add({"verdicts"});
   for (const PairedValue* one : values) {
-    table.row(name_of(one->any(), with_measure));
+    table.row(name_of(*one, with_measure));
+    table.text(change_word(one->change), one->change == PairChange::beyond ? "changed" : "");
     for (const auto& row : {one->a, one->b})
       if (row && (row->value || row->low))
-        table.number(value_cell(*row) + unit_text(*row));
+        table.number(value_cell(*row) + (units.size() == 1 ? "" : unit_text(*row)));
       else
         table.absent();
     table.number(one->difference, 3).number(one->u, 3);
-    table.text(change_word(one->change), one->change == PairChange::beyond ? "changed" : "");
     if (!verdicts) continue;
     const std::string a = one->a ? one->a->verdict : "–", b = one->b ? one->b->verdict : "–";
     table.text(a == b ? a : a + " → " + b);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/report/html.hpp"
@@ -61,13 +62,21 @@ std::string values_text(const PairedResults& pairs) {
   std::string out = "values: " + counts_line(pairs) + "\n";
   const std::vector<const PairedValue*> rows = by_change(pairs);
   TextTable table({"of", "stop", "level", "unit", "A", "B", ""});
-  for (std::size_t k = 0; k < std::min(most_values, rows.size()); ++k) {
-    const VerdictRow& any = rows[k]->any();
-    table.add({answers::measure_words(any.measure).words, any.stop, any.level, any.unit == "1" ? "" : any.unit,
-               said(rows[k]->a), said(rows[k]->b), change_word(rows[k]->change)});
+  std::set<std::vector<std::string>> met;  // asks tell the same value more than once
+  std::size_t told = 0;
+  for (const PairedValue* one : rows) {
+    const VerdictRow& any = one->any();
+    std::vector<std::string> line{answers::measure_words(any.measure).words,
+                                  any.stop,
+                                  any.level,
+                                  any.unit == "1" ? "" : any.unit,
+                                  said(one->a),
+                                  said(one->b),
+                                  change_word(one->change)};
+    if (met.insert(line).second && ++told <= most_values) table.add(std::move(line));
   }
-  if (!rows.empty()) out += table.text(2);
-  if (rows.size() > most_values) out += fmt::format("  {} more on the page\n", rows.size() - most_values);
+  if (told > 0) out += table.text(2);
+  if (told > most_values) out += fmt::format("  {} more on the page\n", told - most_values);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <archive_entry.h>
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,9 @@
 
 #include "runners/pack/sha256.hpp"
 #include "runners/pack/zip_file.hpp"
+#include "runners/run/analysed_results.hpp"
+#include "runners/store/store.hpp"
+#include "runners/table/table_reader.hpp"
 #include "tests/runners/command/spoken_command.hpp"
 
 namespace command_tests {
@@ -135,6 +139,72 @@ TEST_CASE("pack: a result comes out as it went in, runs again from its study, an
   const Outcome wrong = here.run("verify rod.ricochet.zip --cases many");
   CHECK(wrong.code == 2);
   CHECK_THAT(wrong.err, Contains("expected a number of cases, or all"));
+}
+
+TEST_CASE("verify: a measure that is off is equal within u up to what step and mesh leave of it, and no further") {
+  using namespace ricochet;
+  const Folder here;
+  make_results(here);
+  const AnalysedResults made = with_tables(read_store(here / "made"));
+  // What the smaller of the two steps leaves of the energy, as its table has it.
+  const Table* limits = find_table(made.derived, "limits");
+  REQUIRE(limits != nullptr);
+  const TableReader rows(*limits);
+  std::string id, name;
+  double share = 0;
+  for (std::size_t r = 0; r < rows.size() && share == 0; ++r) {
+    const auto value = rows.number(r, "value"), u = rows.number(r, "u");
+    if (!value || !u || *value == 0) continue;
+    id = rows.text(r, "case");
+    name = rows.text(r, "measure");
+    share = *u / std::abs(*value);
+  }
+  REQUIRE(share > 0);
+  const auto verified = [&](const std::string& measure, double factor) {
+    const fs::path folder = here / "changed";
+    fs::remove_all(folder);
+    fs::copy(here / "made", folder, fs::copy_options::recursive);
+    StudyResults results = read_store(here / "made");
+    std::vector<ExpectedCase> expected;
+    for (CaseRecord& record : results.cases) {
+      expected.push_back({record.id, "as made"});
+      if (record.id == id)
+        for (auto& [known, value] : record.measures)
+          if (known == measure) value *= factor;
+    }
+    {
+      Store store(folder, true);
+      store.begin(results, expected);
+      store.save_environment(results.environment);
+      store.save(results.cases);
+    }
+    const fs::path file = here / "changed.zip";
+    fs::remove(file);
+    pack_results(folder, read_store(folder), "", file);
+    return here.run("verify changed.zip --cases all");
+  };
+  const Outcome same = verified(name, 1);
+  INFO(same.out << same.err);
+  CHECK(same.code == 0);
+  CHECK_THAT(same.out, Contains("\nbit-equal: 4 to the last bit, 0 within u, 0 not\n"));
+  for (const double off : {0.01, -0.5, 0.9}) {
+    const Outcome within = verified(name, 1 + off * share);
+    INFO(off << name << share << within.out << within.err);
+    CHECK(within.code == 0);
+    CHECK_THAT(within.out, Contains(id + ": equal within u: ") && !Contains("no u") &&
+                               Contains("\nequal within u: 3 to the last bit, 1 within u, 0 not\n"));
+  }
+  for (const double off : {1.5, -3.0}) {
+    const Outcome outside = verified(name, 1 + off * share);
+    INFO(off << outside.out << outside.err);
+    CHECK(outside.code == 3);
+    CHECK_THAT(outside.out,
+               Contains(id + ": not equal:") && Contains("\nnot equal: 3 to the last bit, 0 within u, 1 not\n"));
+  }
+  // What has no u is no part of the verdict, and is told.
+  const Outcome bare = verified("energy_start", 1.01);
+  INFO(bare.out << bare.err);
+  CHECK_THAT(bare.out, Contains("; 1 measure differs and has no u"));
 }
 
 TEST_CASE("pack: what is not a whole packed result is refused with its cause, and leaves nothing") {
