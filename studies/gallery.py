@@ -15,6 +15,8 @@ import urllib.parse
 FIGURE = re.compile(r'<svg class="ask-figure.*?</svg>', re.S)
 SKETCH = re.compile(r'<svg class="sketch.*?</svg>', re.S)
 STYLE = re.compile(r"<style>\n(.*?)</style>", re.S)
+SIZE = re.compile(r'viewBox="0 0 ([\d.]+) ([\d.]+)"')
+TALL = 330  # of a figure that is 400 wide
 HEAD = 1_500_000  # characters of a report: its style, sketch and answers
 
 LOCAL = """
@@ -26,9 +28,8 @@ LOCAL = """
 .cards > li[hidden] { display: none; }
 .cards h2 { border: 0; margin: 0 0 .3rem; padding: 0; font-size: 1.06rem; }
 .cards p { margin: .3rem 0; }
-.thumbnail { height: 190px; overflow: hidden; margin: .5rem 0; }
-.thumbnail svg { display: block; width: 100%; max-width: 100%; height: auto; }
-.thumbnail .sketch { height: 100%; }
+.thumbnail { height: 210px; margin: .5rem 0; }
+.thumbnail svg { display: block; width: 100%; max-width: 100%; height: 100%; }
 """
 
 SCRIPT = """"use strict";
@@ -94,7 +95,11 @@ def card(folder):
     with (folder / "report.html").open(encoding="utf-8") as page:
         report = page.read(HEAD)
     answer = report.find('<section id="answer"')
-    figure = FIGURE.search(report, max(answer, 0)) or SKETCH.search(report)
+    figure, sketch = FIGURE.search(report, max(answer, 0)), SKETCH.search(report)
+    # A tall figure is no thumbnail: the scene stands for it.
+    if figure and sketch and float(SIZE.search(figure.group(0)).group(2)) > TALL:
+        figure = None
+    figure = figure or sketch
     picture = figure.group(0) if figure else ""
     # It is a picture here: what it links and names belongs to the report.
     picture = re.sub(r' id="[^"]*"', "", picture)

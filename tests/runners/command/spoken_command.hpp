@@ -46,6 +46,7 @@ class Folder {
   }
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
+  const fs::path& path() const { return path_; }
   fs::path operator/(const std::string& name) const { return path_ / name; }
   fs::path write(const std::string& name, const std::string& text) const {
     std::ofstream(path_ / name, std::ios::binary) << text;
