@@ -134,7 +134,7 @@ int type_page(const fs::path& page) {
       while (i < block.lines.size() && !block.lines[i].starts_with("$ ")) expected.push_back(block.lines[i++]);
       const std::string line = "cd '" + folder.path().string() + "' && PATH=\"" +
                                fs::path(tests::places().command).parent_path().string() +
-                               ":$PATH\" RICOCHET_PLUGIN_PATH= && " + command + " >.out 2>.err </dev/null";
+                               ":$PATH\" RICOCHET_PLUGIN_PATH= && { " + command + "; } >.out 2>.err </dev/null";
       const int status = std::system(line.c_str());
       const std::string output = read_text(folder.path() / ".out");
       CAPTURE(page, command, output, read_text(folder.path() / ".err"));
@@ -179,7 +179,7 @@ TEST_CASE("pages: each page with commands does what it says, line by line") {
       WARN(name << " is not typed: no python3 here has SciPy");
       continue;
     }
-    CHECK(type_page(page) >= 2);
+    CHECK(type_page(page) >= 1);
   }
   CHECK(typed.contains("studies/tutorial.md"));
   for (const std::string& name : tasks) {
