@@ -172,7 +172,7 @@ std::string paired_page(const PairedResults& pairs, const AnalysedResults& a, co
       part.set("html", html);
       page.set(key, part);
     }
-  return report::filled("comparison", page);
+  return report::filled("pair", page);
 }
 
 }  // namespace ricochet

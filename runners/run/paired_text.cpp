@@ -117,7 +117,7 @@ std::string paired_text(const PairedResults& pairs, const AnalysedResults& a, co
 }
 
 Table paired_table(const PairedResults& pairs) {
-  Table table{"comparison",
+  Table table{"pair",
               "Two results beside each other. A row is a fact that differs, or a value of one or both.",
               {{"table", "", "study, environment, or the table that the value is of: verdicts, limits, uncertainty."},
                {"of", "", "JSON pointer, entry of the environment, or the ask; empty of other values."},
