@@ -53,7 +53,8 @@ bool same_problem(const SemiDiscrete& a, const SemiDiscrete& b) {
          same_matrix(a.inertia.velocity_mass, b.inertia.velocity_mass) &&
          same_matrix(a.inertia.inverse, b.inertia.inverse) && a.damping == b.damping &&
          a.support.pulsation == b.support.pulsation && a.contact_x == b.contact_x && a.stops == b.stops &&
-         a.own == b.own && a.rubbing == b.rubbing && same_rows(a.rubbed.rows, b.rubbed.rows) && same_load(a, b) && same_motions(a.motions, b.motions);
+         a.own == b.own && a.rubbing == b.rubbing && a.rubbed_speeds == b.rubbed_speeds &&
+         same_rows(a.rubbed.rows, b.rubbed.rows) && same_load(a, b) && same_motions(a.motions, b.motions);
 }
 
 // A load is a formula, which keeps what it works with inside: every program that may run beside others has its own.
@@ -120,8 +121,8 @@ bool LaneGroups::flies() const {
 int LaneGroups::add(LaneCandidate candidate) {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const LaneCandidate& known = groups_[g]->scene;
-    if (known.h == candidate.h && known.law == candidate.law && known.friction == candidate.friction && known.scheme == candidate.scheme &&
-        same_problem(*known.problem, *candidate.problem))
+    if (known.h == candidate.h && known.law == candidate.law && known.friction == candidate.friction &&
+        known.scheme == candidate.scheme && same_problem(*known.problem, *candidate.problem))
       return static_cast<int>(g);
   }
   auto group = std::make_unique<Group>();

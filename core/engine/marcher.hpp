@@ -150,6 +150,10 @@ class Marcher {
   }
   /// Σ weight lift(t + at·h).
   double lift_levels(int lane, int point, double t, const Levels& levels) const;
+  /// What a row that rubs is moved by against its surface at t, m/s; and Σ weight of the same as a way, V t counted
+  /// from t, with weights that sum to 0.
+  double rubbed_rate(int lane, int row, double t) const;
+  double rubbed_levels(int lane, int row, double t, const Levels& levels) const;
   const SupportMotions& motions() const { return program_.problem->motions; }
   /// Which stops pushed a lane at the last instant of contact: lower, upper.
   std::array<bool, 2> pushed_by(int lane) const;

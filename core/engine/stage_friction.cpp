@@ -52,38 +52,40 @@ StageFriction::StageFriction(const Program& program) {
 
 // u° of all rows and lanes: that of the stage without its own efforts, against the surface.
 void Marcher::measure_end_rates(const StageProgram& program, StageState& state, const double* z) {
-  const ObservedRows& rows = program_.problem->rubbed;
   const EndRate& end = program.facts.end_rate;
   std::array<const double*, most_slots + 1> slots{};
   std::copy(slot_pointers_.begin(), slot_pointers_.end(), slots.begin());
   slots[at(slot_count())] = z;
   measure_rows(program_.model->rubbed(), slot_count() + 1, slots.data(), state.end_rate_weights.data(), nullptr,
                state.end_rate.data());
-  for (const RubbingPoint& one : program_.problem->rubbing)
-    for (int k = 0; k < one.rows; ++k) {
-      const int row = one.row + k;
-      double surface = 0;
-      for (const Level& level : end.speeds) {
-        const double t = time() + level.at * program_.h;
-        surface += level.weight * (motions().empty() ? 0.0 : motions().sum(rows.on_motions.row(row), t, true));
-        surface -= level.weight * one.speed[at(k)];
-      }
-      for (const Level& level : end.places) {
-        const double t = time() + level.at * program_.h;
-        surface += level.weight * (motions().empty() ? 0.0 : motions().sum(rows.on_motions.row(row), t, false));
-        surface -= level.weight * level.at * program_.h * one.speed[at(k)];
-      }
-      for (int lane = 0; lane < lanes(); ++lane) {
-        double moved = surface;
-        if (rows.on_support[row] != 0 && program_.support) {
-          for (const Level& level : end.speeds)
-            moved += rows.on_support[row] * level.weight * support_rate(lane, time() + level.at * program_.h);
-          for (const Level& level : end.places)
-            moved += rows.on_support[row] * level.weight * support(lane, time() + level.at * program_.h);
-        }
-        state.end_rate.at(row, lane) += moved;
-      }
+  for (int row = 0; row < state.end_rate.rows(); ++row)
+    for (int lane = 0; lane < lanes(); ++lane) {
+      double& rate = state.end_rate.at(row, lane);
+      for (const Level& level : end.speeds)
+        rate += level.weight * rubbed_rate(lane, row, time() + level.at * program_.h);
+      rate += rubbed_levels(lane, row, time(), end.places);
     }
+}
+
+double Marcher::rubbed_rate(int lane, int row, double t) const {
+  const SemiDiscrete& problem = *program_.problem;
+  double rate = -problem.rubbed_speeds[row];
+  if (problem.rubbed.on_support[row] != 0 && program_.support)
+    rate += problem.rubbed.on_support[row] * support_rate(lane, t);
+  if (!motions().empty()) rate += motions().sum(problem.rubbed.on_motions.row(row), t, true);
+  return rate;
+}
+
+double Marcher::rubbed_levels(int lane, int row, double t, const Levels& levels) const {
+  const SemiDiscrete& problem = *program_.problem;
+  double way = 0;
+  if (problem.rubbed.on_support[row] != 0) way += problem.rubbed.on_support[row] * support_levels(lane, t, levels);
+  for (const Level& level : levels) {
+    way -= level.weight * level.at * program_.h * problem.rubbed_speeds[row];
+    if (!motions().empty())
+      way += level.weight * motions().sum(problem.rubbed.on_motions.row(row), t + level.at * program_.h, false);
+  }
+  return way;
 }
 
 // |N| of a point that rubs, in the units of the stage's efforts of friction.
@@ -143,8 +145,6 @@ LaneOutcome Marcher::find_friction(const StageProgram& program, StageState& stat
   FrictionProblem problem;
   problem.points = static_cast<int>(rub.number.size());
   problem.first_row = rub.first_row.data();
-  problem.number = rub.number.data();
-  problem.lane = lane;
   problem.matrix = rub.matrix.data();
   problem.stride = count;
   problem.free = rub.free.data();

@@ -180,6 +180,7 @@ void find_rubbing(const SceneSpec& scene, SemiDiscrete& problem) {
   const std::vector<NamedStop>& stops = scene.stops.named;
   const ObservedRows& all = problem.tangents;
   std::vector<Eigen::Triplet<double>> entries;
+  std::vector<double> speeds;
   for (std::size_t i = 0; i < stops.size(); ++i) {
     if (!stops[i].friction || problem.tangent_of[i] < 0) continue;
     if (stops[i].friction->none()) {
@@ -192,7 +193,7 @@ void find_rubbing(const SceneSpec& scene, SemiDiscrete& problem) {
     one.held = stops[i].friction->held;
     one.sliding = stops[i].friction->sliding;
     one.normal_force = stops[i].normal_force;
-    if (stops[i].tangent) one.speed[0] = stops[i].tangent->speed;
+    speeds.push_back(stops[i].tangent ? stops[i].tangent->speed : 0.0);
     for (SparseRows::InnerIterator it(all.rows, problem.tangent_of[i]); it; ++it)
       entries.emplace_back(one.row, static_cast<int>(it.col()), it.value());
     problem.rubbed.names.push_back(stops[i].name);
@@ -200,6 +201,7 @@ void find_rubbing(const SceneSpec& scene, SemiDiscrete& problem) {
   const auto count = static_cast<Eigen::Index>(problem.rubbing.size());
   problem.rubbed.rows.resize(count, all.rows.cols());
   problem.rubbed.rows.setFromTriplets(entries.begin(), entries.end());
+  problem.rubbed_speeds = Eigen::Map<const Eigen::VectorXd>(speeds.data(), count);
   problem.rubbed.on_support.resize(count);
   problem.rubbed.on_motions.resize(count, all.on_motions.cols());
   for (Eigen::Index k = 0; k < count; ++k) {
@@ -207,9 +209,9 @@ void find_rubbing(const SceneSpec& scene, SemiDiscrete& problem) {
     problem.rubbed.on_support[k] = all.on_support[from];
     // A damper's ground may move.
     const RubbingPoint& one = problem.rubbing[static_cast<std::size_t>(k)];
-    problem.rubbed.on_motions.row(k) =
-        one.normal_force && !problem.motions.empty() ? problem.motions.at_points.row(one.point).eval()
-                                                     : all.on_motions.row(from).eval();
+    problem.rubbed.on_motions.row(k) = one.normal_force && !problem.motions.empty()
+                                           ? problem.motions.at_points.row(one.point).eval()
+                                           : all.on_motions.row(from).eval();
   }
 }
 

@@ -2,7 +2,6 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <optional>
 #include <ricochet/contract/contact_law.hpp>
@@ -71,11 +70,10 @@ class DistributedLoad {
 
 /// A contact point that rubs: |p_t| ≤ μ|p_n| against u = T q' + lift − V, p_n its effort or a force that is given.
 struct RubbingPoint {
-  int point = 0;                         ///< contact point
-  int row = 0, rows = 1;                 ///< of SemiDiscrete::rubbed
-  double held = 0, sliding = 0;          ///< μ where it stuck in the stage before, and else
-  std::optional<double> normal_force;    ///< N
-  std::array<double, 2> speed = {0, 0};  ///< V of the surface along each row, m/s
+  int point = 0;                       ///< contact point
+  int row = 0, rows = 1;               ///< of SemiDiscrete::rubbed
+  double held = 0, sliding = 0;        ///< μ where it stuck in the stage before, and else
+  std::optional<double> normal_force;  ///< N
 
   bool operator==(const RubbingPoint&) const = default;
 };
@@ -126,6 +124,7 @@ struct SemiDiscrete {
   std::vector<int> tangent_of;                       ///< row of each contact point in them, −1: none; or empty
   std::vector<RubbingPoint> rubbing;                 ///< contact points with friction
   ObservedRows rubbed;                               ///< T, their rows
+  Eigen::VectorXd rubbed_speeds;                     ///< V of the surface along each of these, m/s
   Eigen::VectorXd position, velocity;                ///< q₀, v₀ of w
   double projection_energy = 0;  ///< ½qᵀKq + ½vᵀMv after projection minus before (J); 0 without projection
   /// ½ rᵀZ(ZᵀKZ)⁻¹Zᵀr, r = Kq₀ − F(0) − Hᵀp(q₀), Z = Ker M: what an initial state off the constraint of a singular mass

@@ -39,18 +39,13 @@ namespace {
 
 // How fast a point slides before a stage, by the velocity of the scheme.
 double speed_before(const Marcher& marcher, const StageView& view, const RubbingPoint& one) {
-  const SemiDiscrete& problem = *marcher.program().problem;
   const MarchModel& model = *marcher.program().model;
   const std::vector<double>& weights = marcher.program().plan.velocity.slots;
   double size = 0;
-  for (int k = 0; k < one.rows; ++k) {
-    const int row = one.row + k;
-    double speed = -one.speed[static_cast<std::size_t>(k)];
+  for (int row = one.row; row < one.row + one.rows; ++row) {
+    double speed = marcher.rubbed_rate(0, row, view.from);
     for (std::size_t j = 0; j < weights.size(); ++j)
       if (weights[j] != 0) speed += weights[j] * model.times(model.rubbed(), row, view.slots[j]);
-    if (problem.rubbed.on_support[row] != 0 && marcher.program().support)
-      speed += problem.rubbed.on_support[row] * marcher.support_rate(0, view.from);
-    if (!problem.motions.empty()) speed += problem.motions.sum(problem.rubbed.on_motions.row(row), view.from, true);
     size = std::hypot(size, speed);
   }
   return size;

@@ -256,29 +256,18 @@ void StageWorks::add_efforts(const Marcher& marcher, const StageView& view, cons
 void StageWorks::add_friction(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane,
                               const double* s, Works& works) {
   const std::vector<double>& weights = view.program->friction_work;
-  const SemiDiscrete& problem = model_.problem();
-  const int points = problem.points();
-  const double support = marcher.program().support ? marcher.support(lane, stage.support) : 0.0,
-               h = marcher.program().h;
-  for (const RubbingPoint& one : problem.rubbing)
-    for (int k = 0; k < one.rows; ++k) {
-      const int row = one.row + k;
-      double effort = 0;
-      for (int j = 0; j < std::min(static_cast<int>(weights.size()), view.efforts); ++j)
-        if (view.effort[j]) effort += weights[static_cast<std::size_t>(j)] * view.effort[j][(points + row) * T_ + lane];
-      double lift = problem.rubbed.on_support[row] * support;
-      for (const Level& level : stage.support_levels) {
-        lift -= level.weight * level.at * h * one.speed[static_cast<std::size_t>(k)];
-        if (!marcher.motions().empty())
-          lift +=
-              level.weight * marcher.motions().sum(problem.rubbed.on_motions.row(row), view.time + level.at * h, false);
-      }
-      const double way = model_.times(model_.rubbed(), row, s) + lift;
-      friction_works_[static_cast<std::size_t>(row)] = effort * way;
-      friction_ways_[static_cast<std::size_t>(row)] = way;
-      works.friction += effort * way;
-      works.loads -= effort * lift;
-    }
+  const int points = model_.problem().points();
+  for (int row = 0; row < model_.rubbed().rows(); ++row) {
+    double effort = 0;
+    for (int j = 0; j < std::min(static_cast<int>(weights.size()), view.efforts); ++j)
+      if (view.effort[j]) effort += weights[static_cast<std::size_t>(j)] * view.effort[j][(points + row) * T_ + lane];
+    const double lift = marcher.rubbed_levels(lane, row, view.time, stage.support_levels);
+    const double way = model_.times(model_.rubbed(), row, s) + lift;
+    friction_works_[static_cast<std::size_t>(row)] = effort * way;
+    friction_ways_[static_cast<std::size_t>(row)] = way;
+    works.friction += effort * way;
+    works.loads -= effort * lift;
+  }
 }
 
 void StageWorks::add_contact(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane,
