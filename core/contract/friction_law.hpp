@@ -1,8 +1,6 @@
 #pragma once
 #include <optional>
 #include <ricochet/contract/contact_law.hpp>
-#include <ricochet/contract/parameters.hpp>
-#include <span>
 
 namespace ricochet {
 
@@ -15,8 +13,6 @@ namespace ricochet {
 struct FrictionProblem {
   int points = 0;
   const int* first_row = nullptr;  ///< of each point, and behind the last one: points + 1 numbers
-  const int* number = nullptr;     ///< of each point among all that rub: what is kept of it stands there
-  int lane = 0;
   const double* matrix = nullptr;  ///< A, row by row, `stride` apart
   int stride = 0;
   const double* free = nullptr;   ///< u°, by row
@@ -37,14 +33,14 @@ struct FrictionProblem {
 /// Of FrictionLaw::memory_per_row().
 inline constexpr int most_friction_memory = 8;
 
-/// How the surfaces of stops rub: it knows neither the contact law nor the scheme. The loop calls prepare() once, and
-/// again when parameters of a lane change. It calls solve() for each lane with a bound, as often as the normal efforts
-/// of the stage have changed by what it found.
+/// How the surfaces of stops rub: it knows neither the contact law nor the scheme. All lanes have
+/// the parameters that it was made with. The loop calls prepare() before the first solve(). It calls solve() for each
+/// lane with a bound, as often as the normal efforts of the stage have changed by what it found.
 class FrictionLaw {
  public:
   virtual ~FrictionLaw() = default;
-  /// Sizes workspaces: at most so many points and rows at once; `lanes` holds one checked parameter set per lane.
-  virtual void prepare(int points, int rows, std::span<const Parameters> lanes) = 0;
+  /// Sizes workspaces: at most so many points and rows at once.
+  virtual void prepare(int points, int rows) = 0;
   /// Finds p. No allocation here.
   virtual LaneOutcome solve(FrictionProblem& problem) = 0;
   /// How fast a point drifts that is held by this share of its bound, m/s; 0: it does not.

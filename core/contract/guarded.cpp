@@ -159,9 +159,7 @@ class GuardedLaw final : public Guard<ContactLaw> {
 class GuardedFriction final : public Guard<FrictionLaw> {
  public:
   using Guard::Guard;
-  void prepare(int points, int rows, std::span<const Parameters> lanes) override {
-    RICOCHET_FORWARD(prepare, points, rows, lanes);
-  }
+  void prepare(int points, int rows) override { RICOCHET_FORWARD(prepare, points, rows); }
   LaneOutcome solve(FrictionProblem& problem) override { RICOCHET_FORWARD(solve, problem); }
   double creeps(double load_over_bound) const override {
     const double answer = ask("creeps", [&](auto& inner) { return inner.creeps(load_over_bound); });

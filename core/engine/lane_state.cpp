@@ -68,8 +68,7 @@ void Marcher::prepare_law() {
   const int points = program_.problem->points();
   ricochet::prepare_law(*program_.law, points, parameters, program_.problem->own);
   if (program_.friction)
-    program_.friction->prepare(static_cast<int>(program_.problem->rubbing.size()), program_.problem->rubbed.count(),
-                               {});
+    program_.friction->prepare(static_cast<int>(program_.problem->rubbing.size()), program_.problem->rubbed.count());
   const int kept = program_.law->memory_per_point();
   if (kept > 0 && memory_.rows() == 0) memory_ = Block(points * kept, program_.width);
   circles_.prepare(points, program_.width, program_.problem->circles(), kept);

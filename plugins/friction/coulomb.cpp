@@ -9,7 +9,7 @@ using namespace ricochet;
 class Coulomb final : public FrictionLaw {
  public:
   explicit Coulomb(const Parameters& parameters) : settles_(parameters.word("ringing") == "refuse") {}
-  void prepare(int points, int rows, std::span<const Parameters>) override { solver_.prepare(points, rows); }
+  void prepare(int points, int rows) override { solver_.prepare(points, rows); }
   LaneOutcome solve(FrictionProblem& problem) override { return solver_.solve(problem); }
   bool must_settle() const override { return settles_; }
 

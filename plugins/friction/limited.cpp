@@ -10,7 +10,7 @@ using namespace ricochet;
 class Limited final : public FrictionLaw {
  public:
   explicit Limited(const Parameters& parameters) : speed_(parameters.real("speed")) {}
-  void prepare(int points, int rows, std::span<const Parameters>) override {
+  void prepare(int points, int rows) override {
     solver_.prepare(points, rows);
     matrix_.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(rows));
   }

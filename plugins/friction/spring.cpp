@@ -12,7 +12,7 @@ class Spring final : public FrictionLaw {
  public:
   explicit Spring(const Parameters& parameters)
       : stiffness_(parameters.real("stiffness")), damping_(parameters.real("damping")) {}
-  void prepare(int points, int rows, std::span<const Parameters>) override {
+  void prepare(int points, int rows) override {
     solver_.prepare(points, rows);
     matrix_.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(rows));
     free_.resize(static_cast<std::size_t>(rows));

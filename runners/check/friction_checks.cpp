@@ -20,7 +20,7 @@ struct Rubbed {
   Eigen::MatrixXd A;
   Eigen::VectorXd free, effort;
   std::vector<double> bound, slid, remembered, remembers;
-  std::vector<int> first = {0}, number;
+  std::vector<int> first = {0};
   std::vector<unsigned char> sticks;
   double h = 1e-3;
   long long allocations = 0;
@@ -35,10 +35,7 @@ struct Rubbed {
         remembered(static_cast<std::size_t>(points * rows * kept), 0.0),
         remembers(remembered),
         sticks(static_cast<std::size_t>(points)) {
-    for (int i = 1; i <= points; ++i) {
-      first.push_back(i * rows);
-      number.push_back(i - 1);
-    }
+    for (int i = 1; i <= points; ++i) first.push_back(i * rows);
   }
   int points() const { return static_cast<int>(bound.size()); }
   int rows() const { return static_cast<int>(free.size()); }
@@ -52,7 +49,6 @@ struct Rubbed {
     FrictionProblem problem;
     problem.points = points();
     problem.first_row = first.data();
-    problem.number = number.data();
     problem.matrix = by_rows.data();
     problem.stride = rows();
     problem.free = free.data();
@@ -86,7 +82,7 @@ Verdict everywhere(const Friction& subject,
   for (const int points : {1, 5})
     for (const int rows : {1, 2}) {
       const auto law = subject.make();
-      law->prepare(points, points * rows, {});
+      law->prepare(points, points * rows);
       for (int k = 0; k < 60; ++k)
         if (std::string why = wrong(*law, random, points, rows); !why.empty())
           return fails(fmt::format("with {} point{} of {} row{}: {}", points, points == 1 ? "" : "s", rows,
@@ -198,7 +194,7 @@ std::pair<double, double> pulled(FrictionLaw& law, double load, int steps) {
 
 Verdict holds_and_slides(const Friction& subject) {
   const auto law = subject.make();
-  law->prepare(1, 1, {});
+  law->prepare(1, 1);
   constexpr int steps = 20000;
   const double held = pulled(*law, 0.97, steps).first, declared = law->creeps(0.97);
   if (std::abs(held) > declared * (1 + 1e-6) + 1e-9)

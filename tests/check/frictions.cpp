@@ -19,7 +19,7 @@ using Change = std::function<void(FrictionProblem& problem)>;
 class Changed final : public FrictionLaw {
  public:
   Changed(Change before, Change after) : before_(std::move(before)), after_(std::move(after)) {}
-  void prepare(int points, int rows, std::span<const Parameters>) override { solver_.prepare(points, rows); }
+  void prepare(int points, int rows) override { solver_.prepare(points, rows); }
   LaneOutcome solve(FrictionProblem& problem) override {
     if (before_) before_(problem);
     const LaneOutcome outcome = solver_.solve(problem);

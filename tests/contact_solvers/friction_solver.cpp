@@ -12,7 +12,7 @@ namespace {
 struct Made {
   Eigen::MatrixXd A;  // symmetric: row by row as well
   Eigen::VectorXd free, bound, start;
-  std::vector<int> first{0}, number;
+  std::vector<int> first{0};
   Eigen::VectorXd effort;
   std::vector<unsigned char> sticks;
   std::vector<double> slid;
@@ -24,11 +24,9 @@ struct Made {
     effort = start;
     sticks.assign(static_cast<std::size_t>(points), 0);
     slid.assign(static_cast<std::size_t>(points), 0);
-    number.resize(static_cast<std::size_t>(points));
     FrictionProblem problem;
     problem.points = points;
     problem.first_row = first.data();
-    problem.number = number.data();
     problem.matrix = A.data();
     problem.stride = rows;
     problem.free = free.data();

@@ -13,7 +13,7 @@ class Film final : public FrictionLaw {
   explicit Film(const Parameters& parameters) : viscosity_(parameters.real("viscosity")) {}
 
   // Called before anything else: what solve() needs is allocated here.
-  void prepare(int, int rows, std::span<const Parameters>) override { rate_.resize(static_cast<std::size_t>(rows)); }
+  void prepare(int, int rows) override { rate_.resize(static_cast<std::size_t>(rows)); }
 
   // One lane of one stage: efforts p with |p| ≤ s of each point, where the rates are u = free + matrix·p. Point by
   // point, each with the others as they are, until nothing moves. No allocation here.
