@@ -1,6 +1,7 @@
 #include "runners/study/axis_meaning.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "runners/study/declared_keys.hpp"
 #include "runners/study/study.hpp"
@@ -70,7 +71,11 @@ Column parameter_meaning(const std::string& column, const std::string& role, con
 }  // namespace
 
 const std::vector<std::string>& method_roles() {
-  static const std::vector<std::string> roles = {"mass", "contact", "friction", "time"};
+  static const std::vector<std::string> roles = [] {
+    std::vector<std::string> names;
+    for (const Role role : marched_roles) names.emplace_back(role_name(role));
+    return names;
+  }();
   return roles;
 }
 
@@ -78,11 +83,35 @@ bool is_method_role(const std::string& column) {
   return std::find(method_roles().begin(), method_roles().end(), column) != method_roles().end();
 }
 
+namespace {
+
+template <class Case>
+auto& choice_of(Case& study_case, Role role) {
+  switch (role) {
+    case Role::mass:
+      return study_case.mass;
+    case Role::contact:
+      return study_case.contact;
+    case Role::friction:
+      return study_case.friction;
+    case Role::time:
+      return study_case.time;
+    case Role::reference:
+      break;
+  }
+  throw std::logic_error("a case crosses no references");
+}
+
+}  // namespace
+
+MethodChoice& method_of(StudyCase& study_case, Role role) {
+  return choice_of(study_case, role);
+}
+
 std::vector<std::pair<Role, const MethodChoice*>> methods_of(const StudyCase& study_case) {
-  std::vector<std::pair<Role, const MethodChoice*>> all = {{Role::mass, &study_case.mass},
-                                                           {Role::contact, &study_case.contact}};
-  if (!study_case.friction.name.empty()) all.emplace_back(Role::friction, &study_case.friction);
-  all.emplace_back(Role::time, &study_case.time);
+  std::vector<std::pair<Role, const MethodChoice*>> all;
+  for (const Role role : marched_roles)
+    if (const MethodChoice& method = choice_of(study_case, role); !method.name.empty()) all.emplace_back(role, &method);
   return all;
 }
 
@@ -117,8 +146,7 @@ std::vector<Column> axis_meanings(const Study& study, const Registry& registry) 
   std::vector<Column> columns;
   for (const std::string& column : study.columns) {
     const std::vector<std::string> path = split(column);
-    const bool method =
-        path.size() > 1 && is_method_role(path.front());
+    const bool method = path.size() > 1 && is_method_role(path.front());
     columns.push_back(
         method ? parameter_meaning(column, path.front(), column.substr(path.front().size() + 1), study, registry)
                : axis_meaning(column, study.resolved));

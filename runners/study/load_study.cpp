@@ -222,7 +222,7 @@ bool has_friction(const Json& scene) {
 std::vector<MethodOptions> read_roles(Json& given, bool rubs, Catalogue& catalogue, Registry& registry,
                                       const std::filesystem::path& folder) {
   std::vector<MethodOptions> methods;
-  for (const Role role : {Role::mass, Role::contact, Role::friction, Role::time}) {
+  for (const Role role : marched_roles) {
     const std::string key = role_name(role);
     if (role == Role::friction && (!given.contains(key) || given[key].is_null())) {
       given.erase(key);

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -53,6 +54,10 @@ struct StudyCase {
   std::vector<std::pair<std::string, ParameterSpec>> swept;
 };
 
+/// The roles of methods that a study crosses, in the order of its axes.
+inline constexpr std::array marched_roles = {Role::mass, Role::contact, Role::friction, Role::time};
+/// The method of a case by such a role.
+MethodChoice& method_of(StudyCase& study_case, Role role);
 /// The methods that a case marches, by role.
 std::vector<std::pair<Role, const MethodChoice*>> methods_of(const StudyCase& study_case);
 

@@ -10,6 +10,7 @@
 #include "runners/study/check_object.hpp"
 #include "runners/study/fields.hpp"
 #include "runners/study/load_study.hpp"
+#include "runners/study/study.hpp"
 
 namespace ricochet {
 namespace {
@@ -292,7 +293,7 @@ class SchemaWriter {
         {"step", true},
         {"steps_per_period", true},
         {"march", true}};
-    for (const Role role : {Role::mass, Role::contact, Role::friction, Role::time}) {
+    for (const Role role : marched_roles) {
       properties[role_name(role)] = {{"description", "Name of a method, or a list of names."}};
       for (const std::string& name : registry_.names(role))
         for (const ParameterSpec& spec : registry_.manual(role, name)->parameters)

@@ -20,8 +20,6 @@
 namespace ricochet {
 namespace {
 
-constexpr std::array swept_roles = {Role::mass, Role::contact, Role::friction, Role::time};
-
 // Bytes of one row: sections, what else each value and start keeps (at most 64 impacts, a portrait), a cell with its
 // own section.
 constexpr double point_row = 7 * 8, orbit_rows = 64 * 5 * 8 + 200 * 5 * 8, cell_row = 1000, cell_point_row = 6 * 8;
@@ -79,7 +77,7 @@ std::vector<std::pair<std::string, std::string>> pointers_of(const Json& setting
 
 // The entries of a role that are named "/methods/ROLE/…" by a pointer; "" when it names none.
 std::string role_of(const std::string& pointer) {
-  for (const Role role : swept_roles)
+  for (const Role role : marched_roles)
     if (const std::string start = std::string("/methods/") + role_name(role) + "/"; pointer.starts_with(start))
       return role_name(role);
   return "";
@@ -87,7 +85,7 @@ std::string role_of(const std::string& pointer) {
 
 const ParameterSpec* parameter_of(const Registry& registry, const std::string& role, const std::string& method,
                                   const std::string& pointer) {
-  for (const Role known : swept_roles) {
+  for (const Role known : marched_roles) {
     if (role != role_name(known)) continue;
     if (const PluginManual* manual = registry.manual(known, method))
       for (const ParameterSpec& spec : manual->parameters)
@@ -98,7 +96,7 @@ const ParameterSpec* parameter_of(const Registry& registry, const std::string& r
 
 std::vector<std::string> method_scalars(const Json& methods, const Registry& registry) {
   std::vector<std::string> pointers;
-  for (const Role role : swept_roles)
+  for (const Role role : marched_roles)
     for (const Json& entry : methods.value(role_name(role), Json::array()))
       for (const ParameterSpec& spec : registry.manual(role, entry.at("name").get<std::string>())->parameters) {
         const std::string pointer = std::string("/methods/") + role_name(role) + "/" + spec.key;
@@ -225,10 +223,9 @@ void mark_sweep(const Json& settings, const Registry& registry, StudyCase& study
     const std::string role = role_of(pointer);
     if (role.empty()) continue;
     const std::string key = pointer.substr(pointer.rfind('/') + 1);
-    const MethodChoice& method = role == "mass"       ? study_case.mass
-                                 : role == "contact"  ? study_case.contact
-                                 : role == "friction" ? study_case.friction
-                                                      : study_case.time;
+    const auto marched =
+        std::find_if(marched_roles.begin(), marched_roles.end(), [&](Role one) { return role == role_name(one); });
+    const MethodChoice& method = method_of(study_case, *marched);
     const ParameterSpec* spec = parameter_of(registry, role, method.name, pointer);
     if (!spec) {
       if (!study_case.excluded)

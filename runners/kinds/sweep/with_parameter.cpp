@@ -117,17 +117,14 @@ StudyCase with_parameters(const StudyCase& study_case, const std::vector<std::pa
     if (pointer.starts_with("/scene/")) {
       change_scene(one, pointer, value);
       scene = true;
-    } else if (pointer.starts_with("/methods/mass/")) {
-      change_method(one, "mass", one.mass, pointer, value);
-    } else if (pointer.starts_with("/methods/contact/")) {
-      change_method(one, "contact", one.contact, pointer, value);
-    } else if (pointer.starts_with("/methods/friction/")) {
-      change_method(one, "friction", one.friction, pointer, value);
-    } else if (pointer.starts_with("/methods/time/")) {
-      change_method(one, "time", one.time, pointer, value);
-    } else {
-      throw InputError(pointer, "names neither a number of the scene nor a parameter of a method");
+      continue;
     }
+    const auto role = std::find_if(marched_roles.begin(), marched_roles.end(), [&where = pointer](Role known) {
+      return where.starts_with(fmt::format("/methods/{}/", role_name(known)));
+    });
+    if (role == marched_roles.end())
+      throw InputError(pointer, "names neither a number of the scene nor a parameter of a method");
+    change_method(one, role_name(*role), method_of(one, *role), pointer, value);
   }
   if (scene) {
     one.scene = on_mesh(read_scene(one.scene_json, one.files.get()), one.elements);
