@@ -1,75 +1,10 @@
 // Friction at stops: closed forms of blocks that slide, stick, are pressed and hit.
-#include <fmt/format.h>
-
 #include <cmath>
-#include <ricochet/measure/contact/friction_watch.hpp>
 
-#include "tests/marching.hpp"
-#include "tests/scene/structure/beam_files.hpp"
+#include "tests/engine/rubbing.hpp"
 
 using namespace ricochet;
 using namespace ricochet::testing;
-
-namespace {
-
-const Choice moreau{"moreau-jean", {{"theta", 0.5}}}, dumont{"newmark-dumont-paoli", {{"beta", 0.5}}},
-    alpha{"generalised-alpha", {{"rho_inf", 0.8}}};
-
-CompileOptions with_friction(const Choice& law) {
-  CompileOptions options;
-  options.make_friction = [law] { return make(registry().friction(law.name), law); };
-  return options;
-}
-
-// A block on a spring whose own motion is damped by a friction damper.
-SceneSpec damped_block(double mass, double stiffness, double normal_force, const FrictionSpec& mu) {
-  SceneSpec scene;
-  scene.structure = OscillatorSpec{.mass = mass, .stiffness = stiffness, .damping = 0, .force = {}};
-  NamedStop damper{.name = "damper", .at = {}, .to = {}, .lower = {}, .upper = {}};
-  damper.at.x = 0;
-  damper.normal_force = normal_force;
-  damper.friction = mu;
-  scene.stops.named = {damper};
-  return scene;
-}
-
-// Dofs uy (n) and ux (t) of one node: M, K and a stop uy ≥ 0 that rubs along ux; started at ux = 0 with `speed`.
-SceneSpec pressed_block(const Eigen::Matrix2d& M, double mu, const std::string& load, double speed,
-                        const std::string& pull = "0", double height = 0, double fall = 0) {
-  BeamFiles files{matrix_market(SparseMatrix(Eigen::Matrix2d::Zero().eval().sparseView())),
-                  matrix_market(SparseMatrix(M.sparseView())),
-                  "dof,node,component,x,y,z,held\n1,P,uy,0,0,0,\n2,P,ux,0,0,0,\n"};
-  SceneSpec scene = assembled_scene(assembled(files));
-  NamedStop floor{.name = "floor", .at = at_node("P"), .to = {}, .lower = 0.0, .upper = {}};
-  floor.tangent = TangentSpec{.slope_radius = 0, .direction = {}, .component = "ux", .speed = 0};
-  floor.friction = FrictionSpec{mu, mu};
-  scene.stops.named = {floor};
-  scene.load.terms = {{true, {}, {}, Formula(load, "", "t"), at_node("P")},
-                      {true, {}, {}, Formula(pull, "", "t"), at_node("P", "ux")}};
-  scene.initial.dofs = {{1, height, fall}, {2, 0, speed}};
-  return scene;
-}
-
-double along(const Marcher& made) {
-  return made.position(0)[1];
-}
-
-struct Watched {
-  EnergyAudit audit;
-  FrictionWatch watch;
-  Watched(const Marcher& made, double duration) : audit(made), watch(made, audit, {0, duration, 1}) {}
-};
-
-// Marches to the end under both observers.
-std::unique_ptr<Watched> watched(Marcher& made, double duration) {
-  auto all = std::make_unique<Watched>(made, duration);
-  const Observers observers{&all->audit, &all->watch};
-  made.start(observers);
-  made.march(std::llround(duration / made.program().h) - made.step(), observers);
-  return all;
-}
-
-}  // namespace
 
 TEST_CASE("friction: a block that slides to rest stays there, and its energy is heat", "[friction]") {
   // v²/(2 μ g) with μ g = 0.2 · 9.81; the last step is cut at order h².
