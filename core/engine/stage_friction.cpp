@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_friction.hpp>
 #include <ricochet/engine/stage_state.hpp>
@@ -18,6 +19,7 @@ namespace {
 
 constexpr double settled = 1e-13;     // change of p_t over the largest effort
 constexpr double negligible = 1e-12;  // what p_t moves a measure by, over what its own effort does
+constexpr double grains = 4 * std::numeric_limits<double>::epsilon();  // of a measure: sums of a few terms
 constexpr int most_turns = 400;
 constexpr int plain_every = 8;  // turns after which one is taken as it is
 
@@ -185,6 +187,22 @@ bool Marcher::friction_moves_normals(StageState& state, double reach, int lane) 
   return most > negligible * own;
 }
 
+namespace {
+
+// By how much round-off of what the law reads moves a bound of friction, N.
+double grain_of(const StageFriction& rub, const std::vector<RubbingPoint>& all, DelassusColumns& W, double reach) {
+  double most = 0;
+  for (const int i : rub.number) {
+    const RubbingPoint& one = all[at(i)];
+    if (one.normal_force || reach == 0) continue;
+    const double own = std::abs(reach) * W.column(one.point)[one.point];
+    if (own > 0) most = std::max(most, std::max(one.held, one.sliding) * std::abs(rub.measured[at(one.point)]) / own);
+  }
+  return grains * most;
+}
+
+}  // namespace
+
 void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane) {
   StageFriction& rub = *rubbing_;
   const int points = lower_.rows(), T = program_.width;
@@ -212,7 +230,8 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
       along += change * change;
     }
     for (std::size_t k = 0; k < rub.number.size(); ++k) largest = std::max(largest, rub.held[k]);
-    if (!outcome.converged || most <= settled * largest) break;
+    const double grain = grain_of(rub, program_.problem->rubbing, columns_of(state), reach);
+    if (!outcome.converged || most <= std::max(settled * largest, grain)) break;
     if (turn == 0 && !friction_moves_normals(state, std::max(std::abs(reach), std::abs(rate_reach)), lane)) {
       most = 0;
       break;
