@@ -98,7 +98,8 @@ FrictionFacts friction_facts(const DerivedPlan& derived, const std::optional<Eva
     if (by != 0) signs.push_back(p + 1);
     return p;
   };
-  held.pass(true, hold);
+  // A start that knows no friction disturbs them.
+  held.pass(true, [](double, double) { return 0.0; });
   for (int n = 0; n < most_steps; ++n) {
     signs.clear();
     held.pass(false, hold);

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <ricochet/contract/plan_algebra.hpp>
 #include <ricochet/contract/stage_facts.hpp>
 #include <ricochet/contract/unit_mass.hpp>
 
@@ -255,11 +256,23 @@ EndRate end_rate_of(const DerivedPlan& derived, const Stage& stage, const StageF
   return {};
 }
 
+// Of a start stage that finds an acceleration alone: the mean rate until its stops are looked at.
+EndRate rate_ahead(const Stage& stage, const Uniform& motion) {
+  const auto& now = stage.at(Evaluation::implicit_end);
+  if (!stage.impact || stage.impact->gate || !now) return {};
+  const double from = motion.moment(now->displacement), to = motion.moment(stage.impact->value);
+  const double length = (to - from) * motion.h();
+  if (!(length > 0)) return {};
+  using namespace plan_algebra;
+  return {(1 / length) * (stage.impact->value - now->displacement), {}, {{to, 1 / length}, {from, -1 / length}}};
+}
+
 void add_end_rates(const DerivedPlan& derived, const std::vector<Stage>& stages, Uniform motion,
                    std::vector<StageFacts>& facts) {
   for (std::size_t k = 0; k < stages.size(); ++k) {
     motion.measure(stages[k]);
     facts[k].end_rate = end_rate_of(derived, stages[k], facts[k], motion);
+    if (&stages == &derived.plan.start && !facts[k].end_rate.known()) facts[k].end_rate = rate_ahead(stages[k], motion);
     motion.pass(stages[k]);
   }
 }

@@ -121,8 +121,7 @@ TEST_CASE("friction: a bound that nothing reaches holds as a support does", "[fr
   sticks.stops.named = {damper};
   for (SceneSpec* scene : {&sticks, &held}) {
     scene->load.terms = {{true, {}, {}, Formula("4*cos(11*t)", "", "t"), at_node("P", "ux")}};
-    // Nothing pulls at Q yet: of some schemes the first acceleration knows no friction.
-    scene->initial.dofs = {{1, 0, 0.2}};
+    scene->initial.dofs = {{1, 0.01, 0.2}};
   }
   for (const Choice& time : {moreau, dumont, alpha, Choice{"bathe"}}) {
     INFO(time.name);
