@@ -68,6 +68,16 @@ ParameterSpec word_parameter(std::string key, std::vector<std::string> words, st
   return spec;
 }
 
+ParameterSpec table_parameter(std::string key, std::string unit, bool optional, std::string text) {
+  ParameterSpec spec;
+  spec.key = std::move(key);
+  spec.type = ParameterSpec::Type::table;
+  spec.unit = std::move(unit);
+  if (optional) spec.fallback = ParameterTable();
+  spec.text = std::move(text);
+  return spec;
+}
+
 ParameterSpec with_role(ParameterSpec spec, ParameterRole role) {
   spec.role = role;
   return spec;
@@ -88,11 +98,28 @@ bool Parameters::flag(const std::string& key) const {
 const std::string& Parameters::word(const std::string& key) const {
   return get<std::string>(values_, key);
 }
+const ParameterTable& Parameters::table(const std::string& key) const {
+  return get<ParameterTable>(values_, key);
+}
 
 std::optional<double> value_of_role(const std::vector<ParameterSpec>& declared, const Parameters& values,
                                     ParameterRole role) {
   for (const ParameterSpec& spec : declared)
     if (spec.role == role && values.values().count(spec.key) > 0) return values.real(spec.key);
+  return std::nullopt;
+}
+
+std::optional<TableFault> check_table(const ParameterTable& table) {
+  const auto row = [&](std::size_t i) { return fmt::format("[{}, {}]", table[i][0], table[i][1]); };
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (!std::isfinite(table[i][0]) || !std::isfinite(table[i][1])) return TableFault{i, row(i) + " is not finite"};
+    if (i == 0 && (table[0][0] != 0 || table[0][1] != 0)) return TableFault{0, "the first row is " + row(0)};
+    if (i > 0 && !(table[i][0] > table[i - 1][0]))
+      return TableFault{i, "x does not grow from " + row(i - 1) + " to " + row(i)};
+    if (i > 0 && !(table[i][1] >= table[i - 1][1]))
+      return TableFault{i, "y falls from " + row(i - 1) + " to " + row(i)};
+  }
+  if (table.size() < 2) return TableFault{0, table.empty() ? "there is no row" : "there is one row"};
   return std::nullopt;
 }
 
@@ -112,6 +139,14 @@ std::optional<std::string> check_parameter(const ParameterSpec& spec, const Para
     case ParameterSpec::Type::boolean:
       if (std::holds_alternative<bool>(value)) return std::nullopt;
       return std::string("expected true or false");
+    case ParameterSpec::Type::table: {
+      const auto* table = std::get_if<ParameterTable>(&value);
+      if (!table) return std::string("expected ") + table_words;
+      const bool none = table->empty() && spec.fallback == ParameterValue(ParameterTable());
+      const auto fault = none ? std::nullopt : check_table(*table);
+      if (!fault) return std::nullopt;
+      return fmt::format("expected {}; row {}: {}", table_words, fault->row + 1, fault->text);
+    }
     case ParameterSpec::Type::word:
       break;
   }

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <optional>
@@ -8,8 +10,11 @@
 
 namespace ricochet {
 
-/// A parameter value: real, integer, boolean or one of a list of words.
-using ParameterValue = std::variant<double, long long, bool, std::string>;
+/// Points [x, y] of a graph made of straight lines, from [0, 0] on: x grows, y does not fall. Empty: there is none.
+using ParameterTable = std::vector<std::array<double, 2>>;
+
+/// A parameter value: real, integer, boolean, one of a list of words, or a table.
+using ParameterValue = std::variant<double, long long, bool, std::string, ParameterTable>;
 
 /// An interval of admissible reals; each end is open or closed.
 struct Range {
@@ -29,10 +34,10 @@ enum class ParameterRole { none, restitution, stiffness, damping };
 
 /// One parameter of a plugin, declared once; checking, `describe` and the JSON Schema all read this.
 struct ParameterSpec {
-  enum class Type { real, integer, boolean, word };
+  enum class Type { real, integer, boolean, word, table };
   std::string key;  ///< [a-z][a-z0-9_]*
   Type type = Type::real;
-  std::string unit;                          ///< SI, "1" when dimensionless
+  std::string unit;                          ///< SI, "1" when dimensionless; of a table "N against m"
   std::optional<ParameterValue> fallback;    ///< default; absent means the study must give it
   Range range;                               ///< for real and integer
   std::vector<std::string> words;            ///< for word
@@ -46,6 +51,8 @@ ParameterSpec real_parameter(std::string key, std::string unit, std::optional<do
 ParameterSpec integer_parameter(std::string key, std::optional<long long> fallback, Range range, std::string text);
 ParameterSpec word_parameter(std::string key, std::vector<std::string> words, std::optional<std::string> fallback,
                              std::string text);
+/// A table that may be left out where it is optional; the default is then none.
+ParameterSpec table_parameter(std::string key, std::string unit, bool optional, std::string text);
 /// The same parameter, with a role: with_role(real_parameter("e", …), ParameterRole::restitution).
 ParameterSpec with_role(ParameterSpec spec, ParameterRole role);
 
@@ -58,6 +65,7 @@ class Parameters {
   long long integer(const std::string& key) const;
   bool flag(const std::string& key) const;
   const std::string& word(const std::string& key) const;
+  const ParameterTable& table(const std::string& key) const;
   void set(const std::string& key, ParameterValue value) { values_[key] = std::move(value); }
   const std::map<std::string, ParameterValue>& values() const { return values_; }
 
@@ -68,6 +76,16 @@ class Parameters {
 /// The value of the number that has this role among the parameters declared, or nothing where none has it.
 std::optional<double> value_of_role(const std::vector<ParameterSpec>& declared, const Parameters& values,
                                     ParameterRole role);
+
+/// What is wrong with a table, and in which row of it; the first such row.
+struct TableFault {
+  std::size_t row = 0;
+  std::string text;
+};
+/// Of a table that is there: at least two rows, the first [0, 0], x growing, y never falling, all finite.
+std::optional<TableFault> check_table(const ParameterTable& table);
+/// What a table is expected to be, for sentences.
+inline constexpr const char* table_words = "rows [x, y] from [0, 0] on, x growing, y never falling";
 
 /// Checks one value against its declaration; returns the sentence that says what was expected, or nothing when it fits.
 /// An integer is accepted where a real is expected; nothing is ever clamped.

@@ -166,15 +166,23 @@ class Reader {
 void write(const ParameterValue& value, Writer& out) {
   out.number(value.index());
   if (const auto* word = std::get_if<std::string>(&value)) return out.text(*word);
+  if (const auto* table = std::get_if<ParameterTable>(&value)) {
+    out.number(table->size());
+    for (const auto& row : *table)
+      for (const double number : row) out.number(number);
+    return;
+  }
   std::visit(
       [&](const auto& one) {
-        if constexpr (!std::is_same_v<std::decay_t<decltype(one)>, std::string>) out.number(one);
+        if constexpr (std::is_arithmetic_v<std::decay_t<decltype(one)>>) out.number(one);
       },
       value);
 }
 
+constexpr std::size_t many = 100000;
+
 ParameterValue read_value(Reader& in) {
-  constexpr std::size_t reals = 0, integers = 1, booleans = 2;
+  constexpr std::size_t reals = 0, integers = 1, booleans = 2, words = 3;
   switch (in.count(std::variant_size_v<ParameterValue>)) {
     case reals:
       return in.number<double>();
@@ -182,9 +190,15 @@ ParameterValue read_value(Reader& in) {
       return in.number<long long>();
     case booleans:
       return in.number<char>() != 0;
-    default:
+    case words:
       return in.text();
+    default:
+      break;
   }
+  ParameterTable table(in.count(many));
+  for (auto& row : table)
+    for (double& number : row) number = in.number<double>();
+  return table;
 }
 
 void write(const ParameterSpec& spec, Writer& out) {
@@ -202,10 +216,8 @@ void write(const ParameterSpec& spec, Writer& out) {
   out.number(static_cast<std::size_t>(spec.role));
 }
 
-constexpr std::size_t many = 100000;
-
 ParameterSpec read_spec(Reader& in) {
-  constexpr std::size_t types = 4, roles = 4;
+  constexpr std::size_t types = 5, roles = 4;
   ParameterSpec spec;
   spec.key = in.text();
   spec.type = static_cast<ParameterSpec::Type>(in.count(types));

@@ -99,6 +99,7 @@ ParameterValue unlike(const ParameterSpec& spec, const ParameterValue& value, in
   const auto turn = static_cast<std::size_t>(which);
   if (spec.type == ParameterSpec::Type::word) return spec.words[turn % spec.words.size()];
   if (spec.type == ParameterSpec::Type::boolean) return which % 2 == 0;
+  if (spec.type == ParameterSpec::Type::table) return value;
   const Range& range = spec.range;
   const bool bounded = std::isfinite(range.low) && std::isfinite(range.high);
   constexpr std::array<double, lanes_of_block> shares = {0.3, 0.8, 0.45, 0.65}, factors = {1, 3, 0.5, 1.7};

@@ -141,9 +141,14 @@ double as_real(const ParameterValue& value) {
   return std::get<double>(value);
 }
 
+// Of 100 N at 1 mm: one slope, and two.
+const ParameterTable straight = {{0, 0}, {1e-3, 100}}, bent = {{0, 0}, {5e-4, 25}, {1e-3, 100}};
+
 ParameterValue first_value(const ParameterSpec& spec) {
   if (spec.fallback) return *spec.fallback;
   switch (spec.type) {
+    case Type::table:
+      return straight;
     case Type::word:
       return spec.words.empty() ? std::string() : spec.words.front();
     case Type::boolean:
@@ -163,6 +168,7 @@ std::vector<ParameterValue> further_values(const ParameterSpec& spec) {
   if (spec.type == Type::word)
     for (const std::string& word : spec.words) values.emplace_back(word);
   if (spec.type == Type::boolean) values = {true, false};
+  if (spec.type == Type::table) values = {straight, bent};
   if (spec.type != Type::real && spec.type != Type::integer) return values;
   const Range& range = spec.range;
   if (bounded(range)) {
@@ -181,6 +187,8 @@ std::vector<ParameterValue> further_values(const ParameterSpec& spec) {
 std::string value_text(const ParameterValue& value) {
   if (const auto* word = std::get_if<std::string>(&value)) return *word;
   if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* table = std::get_if<ParameterTable>(&value))
+    return table->empty() ? "none" : fmt::format("of {} rows", table->size());
   return fmt::format("{:g}", as_real(value));
 }
 

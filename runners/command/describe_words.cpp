@@ -187,6 +187,8 @@ const char* type_word(const ParameterSpec& spec) {
       return "whole number";
     case ParameterSpec::Type::boolean:
       return "true or false";
+    case ParameterSpec::Type::table:
+      return "table";
     case ParameterSpec::Type::word:
       break;
   }
@@ -200,6 +202,8 @@ std::string admissible_values(const ParameterSpec& spec) {
       return spec.range.text();
     case ParameterSpec::Type::boolean:
       return "true, false";
+    case ParameterSpec::Type::table:
+      return table_words;
     case ParameterSpec::Type::word:
       break;
   }

@@ -41,6 +41,8 @@ std::string expectation(const Field& field) {
       return "expected a whole number in " + spec.range.text();
     case ParameterSpec::Type::boolean:
       return "expected true or false";
+    case ParameterSpec::Type::table:
+      return std::string("expected a table, ") + table_words + unit_text(spec);
     case ParameterSpec::Type::word:
       break;
   }
@@ -49,6 +51,7 @@ std::string expectation(const Field& field) {
 
 Json check_scalar(const Field& field, const Json& value, const std::string& pointer) {
   if ((field.nullable && value.is_null()) || (field.or_flag && value.is_boolean())) return value;
+  if (field.spec.type == ParameterSpec::Type::table) return check_rows(value, pointer, expectation(field));
   const ParameterValue given = to_parameter(value, field.spec.type, pointer, expectation(field));
   if (check_parameter(field.spec, given)) {
     std::string hint;
@@ -187,7 +190,8 @@ Json check_share(const Json& value, const std::string& pointer) {
 
 Json check_levels(const Json& value, const std::string& pointer) {
   if (!value.is_object() || value.empty())
-    throw InputError(pointer, "expected an object of axes and their levels, as {\"step\": 1e-5}; found " + quote(value));
+    throw InputError(pointer,
+                     "expected an object of axes and their levels, as {\"step\": 1e-5}; found " + quote(value));
   for (const auto& [key, level] : value.items())
     if (!level.is_primitive() || level.is_null())
       throw InputError(pointer_to(pointer, key), "expected one level, a number or a word; found " + quote(level));
@@ -218,9 +222,14 @@ Json check_objects(const Field& field, const Json& value, const std::string& poi
   return result;
 }
 
-// A list of positions or of objects is one value; a list that holds words or lists is an axis.
+// A list of positions, of objects or of rows is one value; a list that holds words or lists of these is an axis.
 bool is_axis(const Field& field, const Json& value) {
   if (!field.axis || !value.is_array()) return false;
+  if (field.spec.type == ParameterSpec::Type::table)
+    return std::any_of(value.begin(), value.end(), [](const Json& item) {
+      return item.is_null() ||
+             (item.is_array() && std::any_of(item.begin(), item.end(), [](const Json& row) { return row.is_array(); }));
+    });
   if (field.form == Field::Form::formula) return !is_object_list(field, value);
   if (field.form != Field::Form::places) return true;
   return std::any_of(value.begin(), value.end(), [](const Json& item) { return item.is_string() || item.is_array(); });
@@ -253,7 +262,7 @@ Json check_value(const Field& field, const Json& value, const std::string& point
       return check_bodies(field, value, pointer, axes);
     case Field::Form::scalar:
       if (field.per_body && value.is_object()) return check_per_body(field, value, pointer);
-      if (value.is_array() && !field.axis)
+      if (value.is_array() && !field.axis && field.spec.type != ParameterSpec::Type::table)
         throw InputError(pointer, expectation(field) + "; a list is not possible here");
       return check_scalar(field, value, pointer);
     case Field::Form::text:

@@ -31,6 +31,9 @@ std::vector<const Field*> fields_of(const ObjectForm& form, const Json& value, c
 /// {"dofs": [{"dof", "weight"}]}, and returns it complete. Throws InputError by pointer.
 Json check_place(const Field& field, const Json& value, const std::string& pointer);
 
+/// Checks the rows of a table. Throws InputError by pointer, with a sentence that begins with what was expected.
+Json check_rows(const Json& value, const std::string& pointer, const std::string& expected);
+
 /// Checks the three numbers of a direction. Throws InputError by pointer.
 Json check_direction(const Json& value, const std::string& pointer);
 

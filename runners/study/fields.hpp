@@ -30,7 +30,7 @@ struct ObjectForm {
 /// One key of an object.
 struct Field {
   enum class Form {
-    scalar,    ///< a number, whole number, boolean or word, as `spec` declares
+    scalar,    ///< a number, whole number, boolean, word or table, as `spec` declares
     text,      ///< any string
     formula,   ///< a number or a formula in `variables`; where there is a nested object, also a list of such objects
     place,     ///< one place of the structure (check_place.cpp)
@@ -97,8 +97,10 @@ ObjectForm method_form(const PluginManual& manual);
 /// The ways in which an entry of `ask` may be written, one for each verb. Given by the registry of verbs.
 std::vector<ObjectForm> ask_ways();
 
-/// A default or a bound as JSON.
+/// A value as JSON; a table that is empty is null.
 Json to_json(const ParameterValue& value);
+/// Such a value again, as its declaration reads it.
+ParameterValue to_value(const ParameterSpec& spec, const Json& value);
 
 }  // namespace ricochet
 

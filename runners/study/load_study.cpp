@@ -127,8 +127,19 @@ std::string column_of(const std::string& scene_pointer) {
   return column;
 }
 
+// Where the study says what the factory of a method points at: an element of a list, where one was chosen there.
+std::string pointer_of_option(const MethodOption& option, const InputError& error) {
+  const std::string& told = error.pointer();
+  const std::size_t key = std::min(told.find('/', 1), told.size());
+  const std::string at = option.places.front() + told.substr(0, key);
+  for (const std::string& place : option.places)
+    if (place.starts_with(at + "/")) return place + told.substr(key);
+  return option.places.front() + told;
+}
+
 // Asks each contact law whether it may push back what lies beyond a stop. One of somebody else is not asked here: where
-// it does not, the rows of its cases say so. Returns whether some law does.
+// it does not, the rows of its cases say so. Returns whether some law does. Throws InputError for parameters that do
+// not go together.
 bool ask_beyond(std::vector<MethodOption>& contacts, const Catalogue& catalogue, const Registry& registry) {
   constexpr double barely = 1e-12;  // m
   for (MethodOption& option : contacts) {
@@ -140,6 +151,8 @@ bool ask_beyond(std::vector<MethodOption>& contacts, const Catalogue& catalogue,
       const auto law = registry.contact(choice.name)->make(choice.parameters);
       const ForceBeyond beyond = force_beyond(*law, choice.parameters);
       option.starts_beyond = beyond && beyond(barely);
+    } catch (const InputError& error) {
+      throw InputError(pointer_of_option(option, error), error.what());
     } catch (...) {  // told in its rows
     }
   }

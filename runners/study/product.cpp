@@ -219,20 +219,6 @@ std::string name_of(const Json& entry, const std::string& pointer) {
   return name->get<std::string>();
 }
 
-ParameterValue to_value(const ParameterSpec& spec, const Json& value) {
-  switch (spec.type) {
-    case ParameterSpec::Type::real:
-      return value.get<double>();
-    case ParameterSpec::Type::integer:
-      return value.get<long long>();
-    case ParameterSpec::Type::boolean:
-      return value.get<bool>();
-    case ParameterSpec::Type::word:
-      break;
-  }
-  return value.get<std::string>();
-}
-
 }  // namespace
 
 MethodOptions read_methods(Role role, const Json& value, const std::string& pointer, Catalogue& catalogue,

@@ -198,7 +198,24 @@ const ObjectForm& study_form() {
 }
 
 Json to_json(const ParameterValue& value) {
+  if (const auto* table = std::get_if<ParameterTable>(&value); table && table->empty()) return nullptr;
   return std::visit([](const auto& v) { return Json(v); }, value);
+}
+
+ParameterValue to_value(const ParameterSpec& spec, const Json& value) {
+  switch (spec.type) {
+    case ParameterSpec::Type::real:
+      return value.get<double>();
+    case ParameterSpec::Type::integer:
+      return value.get<long long>();
+    case ParameterSpec::Type::boolean:
+      return value.get<bool>();
+    case ParameterSpec::Type::table:
+      return value.is_null() ? ParameterTable() : value.get<ParameterTable>();
+    case ParameterSpec::Type::word:
+      break;
+  }
+  return value.get<std::string>();
 }
 
 ObjectForm method_form(const PluginManual& manual) {
@@ -208,6 +225,7 @@ ObjectForm method_form(const PluginManual& manual) {
     Field field;
     field.spec = spec;
     field.axis = true;
+    field.nullable = spec.fallback == ParameterValue(ParameterTable());
     if (spec.fallback) {
       const auto* whole = std::get_if<long long>(&*spec.fallback);
       field.fallback =

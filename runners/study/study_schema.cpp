@@ -112,8 +112,9 @@ class SchemaWriter {
     if (field.axis) {
       // A list of positions is one value of "at", and also looks like a list of values,
       const Json list = {{"type", "array"}, {"items", schema}, {"minItems", 1}, {"uniqueItems", true}};
-      // and so does a list of objects of "load".
-      const bool listed = field.form == Field::Form::places || !field.nested.empty();
+      // and so do a list of objects of "load" and one of rows.
+      const bool listed =
+          field.form == Field::Form::places || !field.nested.empty() || field.spec.type == ParameterSpec::Type::table;
       schema = listed ? Json{{"anyOf", Json::array({schema, list})}} : shared("a", value_or_list(schema, list));
     }
     std::string text = field.spec.text;
@@ -233,6 +234,12 @@ class SchemaWriter {
         return {{"type", "boolean"}};
       case ParameterSpec::Type::word:
         return spec.words.empty() ? Json{{"type", "string"}} : Json{{"enum", spec.words}};
+      case ParameterSpec::Type::table:
+        return {
+            {"type", "array"},
+            {"minItems", 2},
+            {"items",
+             {{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", {{"type", "number"}, {"minimum", 0}}}}}};
       case ParameterSpec::Type::real:
       case ParameterSpec::Type::integer:
         break;

@@ -74,6 +74,24 @@ TEST_CASE("a value fits or the sentence says what was expected") {
   CHECK_THAT(*check_parameter(flag, 1LL), Contains("expected true or false"));
 }
 
+TEST_CASE("a table fits, or the sentence names its row") {
+  const ParameterSpec force = table_parameter("force", "N against m", false, "p."),
+                      back = table_parameter("back", "N against m", true, "b.");
+  CHECK_FALSE(force.fallback.has_value());
+  CHECK(std::get<ParameterTable>(*back.fallback).empty());
+  const ParameterTable good = {{0, 0}, {1e-4, 0}, {3e-4, 400}};
+  CHECK_FALSE(check_parameter(force, good));
+  CHECK_FALSE(check_parameter(back, good));
+  CHECK_FALSE(check_parameter(back, ParameterTable()));
+  CHECK_THAT(*check_parameter(force, ParameterTable()), Contains("there is no row"));
+  CHECK_THAT(*check_parameter(force, 1.0), Contains("expected rows [x, y] from [0, 0] on"));
+  CHECK_THAT(*check_parameter(force, ParameterTable{{0, 0}, {2, 1}, {1, 2}}),
+             Contains("row 3: x does not grow from [2, 1] to [1, 2]"));
+  CHECK_THAT(*check_parameter(force, ParameterTable{{0, 0}, {1, infinity}}), Contains("row 2: [1, inf] is not finite"));
+  CHECK(Parameters({{"t", good}}).table("t") == good);
+  CHECK_THROWS_WITH(Parameters({{"t", 1.0}}).table("t"), Contains("'t' has another type"));
+}
+
 TEST_CASE("an infinite value fits only an interval that is closed there") {
   CHECK(check_parameter(real_parameter("k", "N/m", std::nullopt, {0, infinity, true, true}, "k."), infinity));
   CHECK_FALSE(check_parameter(real_parameter("k", "N/m", std::nullopt, {0, infinity, true, false}, "k."), infinity));

@@ -38,6 +38,9 @@ inline Registry stand_ins() {
   registry.add_contact(stand_in("rigid", {}), law);
   registry.add_contact(
       stand_in("spring", {real_parameter("stiffness", "N/m", std::nullopt, {0, infinity, true, false}, "k.")}), law);
+  registry.add_contact(stand_in("rows", {table_parameter("force", "N against m", false, "p."),
+                                         table_parameter("back", "N against m", true, "b.")}),
+                       law);
   registry.add_time(stand_in("three-level", {real_parameter("beta", "1", 0.5, {0, 1, false, false}, "β."),
                                              real_parameter("restitution", "1", 0.0, {0, 1, false, false}, "e."),
                                              integer_parameter("order", 2, {1, 4, false, false}, "Order.")}),
