@@ -58,32 +58,20 @@ class ElastoPlastic final : public PointwiseContact {
   void solve(ReducedProblem& problem) override {
     problem_ = &problem;
     PointwiseContact::solve(problem);
-    for (const int lane : problem.touched) keep_sets(lane);
+    const bool own = laws_.size() > static_cast<std::size_t>(problem.lanes);
+    for (const int lane : problem.touched)
+      each_depth(problem, lane, [&](int point, int side, double depth) {
+        const YieldingSpring& law = laws_[static_cast<std::size_t>(own ? point * problem.lanes + lane : lane)];
+        double& kept = problem.memory_of(lane, memory_of_side(side))[point];
+        kept = law.set(depth, kept);
+      });
   }
   double potential(const StopState& at) const override {
     const YieldingSpring& law = laws_[static_cast<std::size_t>(at.set)];
-    return law.spring.stored(at.depth - law.set(at.depth, at.memory[which(at.side)]));
+    return law.spring.stored(at.depth - law.set(at.depth, at.memory[memory_of_side(at.side)]));
   }
 
  private:
-  static int which(int side) { return side > 0 ? 0 : 1; }
-
-  // Of the depths that the efforts lead to.
-  void keep_sets(int number) const {
-    const LaneProblem lane = problem_->lane(number);
-    const bool own = laws_.size() > static_cast<std::size_t>(problem_->lanes);
-    for (int i = 0; i < lane.points; ++i) {
-      double place = lane.free[i];
-      for (int j = 0; lane.reach > 0 && j < lane.points; ++j)
-        if (lane.effort[j] != 0) place += lane.reach * lane.delassus->column(j)[i] * lane.effort[j];
-      const YieldingSpring& law = laws_[static_cast<std::size_t>(own ? i * problem_->lanes + number : number)];
-      for (const int side : {1, -1}) {
-        double& kept = problem_->memory_of(number, which(side))[i];
-        kept = law.set(side > 0 ? lane.lower[i] - place : place - lane.upper[i], kept);
-      }
-    }
-  }
-
   void set_lanes(std::span<const Parameters> lanes) override {
     laws_.clear();
     for (const Parameters& lane : lanes) {
@@ -92,7 +80,7 @@ class ElastoPlastic final : public PointwiseContact {
     }
   }
   double kept(const ContactState& state) const {
-    return problem_->memory_of(state.lane, which(state.side))[state.point];
+    return problem_->memory_of(state.lane, memory_of_side(state.side))[state.point];
   }
   PointForce at(const ContactState& state) const override {
     return laws_[static_cast<std::size_t>(state.set)].at(state.depth, state.rate, kept(state));

@@ -161,6 +161,14 @@ struct Dashpot {
   /// Over a step: on the share of its way that lies beyond the stop, [δ₊ − δ⁻₊]/(δ − δ⁻): no jump at entry.
   PointForce over(const ContactState& step) const { return of(step.rate, beyond(step)); }
 
+  /// That share of the way, and how it changes.
+  static PointForce beyond(const ContactState& state) {
+    if (state.depth > 0 && state.before > 0) return {.value = 1};
+    const double way = state.depth - state.before, square = way * way;
+    if (state.depth > 0) return {state.depth / way, -state.before / square, 0, state.depth / square};
+    return {-state.before / way, state.before / square, 0, -state.depth / square};
+  }
+
  private:
   PointForce of(double rate, const PointForce& share) const {
     if (one_way && !(rate > 0)) return {};
@@ -171,12 +179,6 @@ struct Dashpot {
             .before = viscosity * share.before * rate,
             .dissipation = viscous * rate};
   }
-  static PointForce beyond(const ContactState& state) {
-    if (state.depth > 0 && state.before > 0) return {.value = 1};
-    const double way = state.depth - state.before, square = way * way;
-    if (state.depth > 0) return {state.depth / way, -state.before / square, 0, state.depth / square};
-    return {-state.before / way, state.before / square, 0, -state.depth / square};
-  }
 };
 
 /// A spring beside a dashpot, which never pull. What the spring gives back beyond that is lost too.
@@ -186,7 +188,25 @@ inline PointForce beside(const PointForce& elastic, const PointForce& viscous, d
           .stiffness = elastic.stiffness + viscous.stiffness,
           .viscosity = viscous.viscosity,
           .before = elastic.before + viscous.before,
-          .dissipation = viscous.dissipation};
+          .dissipation = elastic.dissipation + viscous.dissipation};
+}
+
+/// Calls keep(point, side, δ) with the depths that the efforts of a solved lane lead to, at both stops of each point.
+template <class Keep>
+void each_depth(const ReducedProblem& problem, int number, Keep keep) {
+  const LaneProblem lane = problem.lane(number);
+  for (int i = 0; i < lane.points; ++i) {
+    double place = lane.free[i];
+    for (int j = 0; lane.reach > 0 && j < lane.points; ++j)
+      if (lane.effort[j] != 0) place += lane.reach * lane.delassus->column(j)[i] * lane.effort[j];
+    keep(i, 1, lane.lower[i] - place);
+    keep(i, -1, place - lane.upper[i]);
+  }
+}
+
+/// The number that a law keeps of each of the two stops of a point.
+inline int memory_of_side(int side) {
+  return side > 0 ? 0 : 1;
 }
 
 /// What `evaluation` means for a law that damps.

@@ -61,6 +61,11 @@ constexpr AxisWords scene_words[] = {{"structure.damping.stiffness", "viscosity"
                                      {"steps_per_period", "", " steps per period"},
                                      {"march", "", ""}};
 
+/// A table of rows: too long for a sentence.
+bool is_table(const std::string& value) {
+  return value.starts_with("[[");
+}
+
 /// Words of a key as they are said: "every step" of "every-step".
 std::string spaced(std::string text) {
   std::replace(text.begin(), text.end(), '-', ' ');
@@ -128,8 +133,7 @@ std::vector<std::string> Compared::columns_of(const std::string& choice) const {
 std::vector<std::string> Compared::scene_columns() const {
   std::vector<std::string> own;
   for (const std::string& column : columns_)
-    if (axis_role(column) == column && !is_method_role(column) && column != "march")
-      own.push_back(column);
+    if (axis_role(column) == column && !is_method_role(column) && column != "march") own.push_back(column);
   return own;
 }
 
@@ -175,6 +179,7 @@ std::string Compared::value_words(const std::string& column, const std::string& 
     const std::string name = last_part(column);
     if (const std::string letter = symbol(name); !letter.empty() && number)
       return letter + " = " + fraction_text(*number) + unit_of(column);
+    if (is_table(value)) return table_words(column, value);
     // "implicit evaluation", "second-order start"; of a mass matrix the value says it: "P1".
     if (!number && value != "true" && value != "false")
       return role == "mass" ? value : value + " " + report::in_words(name);
@@ -187,6 +192,16 @@ std::string Compared::value_words(const std::string& column, const std::string& 
       return std::string(words.before) + (*words.before ? " " : "") + shown + unit;
     }
   return report::in_words(last_part(column)) + " " + shown + (number ? unit_of(column) : "");
+}
+
+std::string Compared::table_words(const std::string& column, const std::string& value) const {
+  std::vector<std::string> tables;
+  for (const CaseRecord& one : results_.cases)
+    if (const std::string& other = text(one, column);
+        is_table(other) && std::find(tables.begin(), tables.end(), other) == tables.end())
+      tables.push_back(other);
+  const auto number = std::find(tables.begin(), tables.end(), value) - tables.begin() + 1;
+  return report::in_words(last_part(column)) + (tables.size() > 1 ? " table " + std::to_string(number) : " table");
 }
 
 std::string Compared::level(const CaseRecord& record, const std::string& choice) const {

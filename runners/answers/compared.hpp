@@ -50,6 +50,8 @@ class Compared {
 
   /// A value of a column in words: "β = ½", "stiffness 1e6 N/m", "viscosity 1e-4 s", "implicit".
   std::string value_words(const std::string& column, const std::string& value) const;
+  /// A table by its number among those of the study: "unloading table 2"; of one alone, "unloading table".
+  std::string table_words(const std::string& column, const std::string& value) const;
   /// A method's or a mass matrix's own word: "rigid stops" of "signorini".
   std::string method_words(const std::string& role, const std::string& name) const;
   /// The unit of a column, with a space before it; "".

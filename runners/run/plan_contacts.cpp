@@ -205,12 +205,38 @@ std::string lines_of(const StudyCase& one, double h, const Registry& registry) {
 
 }  // namespace
 
+namespace {
+
+// Of a law of tables, what its first millimetre gives, against the weight of what it moves: a slip of units is seen.
+std::string table_line(const StudyCase& one, const Registry& registry) {
+  const auto& values = one.contact.parameters.values();
+  if (std::none_of(values.begin(), values.end(),
+                   [](const auto& value) { return std::holds_alternative<ParameterTable>(value.second); }))
+    return "";
+  const auto law = make_law(one, registry);
+  if (law->absent() || !law->reads() || law->changes_problem()) return "";
+  law->prepare(1, {&one.contact.parameters, 1});
+  constexpr double millimetre = 1e-3, gravity = 9.81;
+  const double stored = law->potential({.depth = millimetre}), force = stored / millimetre;
+  const auto spring = spring_of(one, {"", -1, 2 * stored / (millimetre * millimetre)}, registry);
+  std::string text = fmt::format("    {}: {:.3g} N over the first mm of depth, in the mean", one.contact.name, force);
+  if (spring && force < gravity * spring->mass)
+    text += fmt::format("; less than {:.3g} N, the weight of the {:.3g} kg that move: are its rows in m and N?",
+                        gravity * spring->mass, spring->mass);
+  return text + "\n";
+}
+
+}  // namespace
+
 std::string contacts_text(const std::vector<PlannedCase>& cases, const CasePlanner& planner, const Registry& registry) {
   std::set<std::string> met;
   std::string text;
   std::size_t told = 0, more = 0;
   for (const PlannedCase& planned : cases) {
     const StudyCase& one = *planned.study_case;
+    if (told < most_contact_lines &&
+        met.insert(structures_of(one.scene_json).dump() + content_of(one.contact).dump()).second)
+      text += planner.ask(one, [&] { return table_line(one, registry); });
     for (const double h : {planned.plan.coarsest_step, planned.plan.finest_step}) {
       if (h <= 0) continue;
       const std::string key = structures_of(one.scene_json).dump() + content_of(one.contact).dump() +

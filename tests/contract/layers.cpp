@@ -273,15 +273,15 @@ TEST_CASE("a kind of study is known by name in the folders of the kinds alone") 
 
 TEST_CASE("core and runners know no method by name") {
   // These are words of every day as well; they may stand in a sentence.
-  const std::set<std::string> ordinary = {"consistent", "damper", "exact",   "layer",    "limited",
-                                          "lumped",     "none",   "penalty", "singular", "spring"};
+  const std::set<std::string> ordinary = {"consistent", "damper",  "exact",    "layer",  "limited", "lumped",
+                                          "none",       "penalty", "singular", "spring", "table"};
   // The study format has one method by default: how stops rub.
   const auto of_the_format = [](const Source& source, const std::string& name) {
     return name == "coulomb" && source.name.starts_with("runners/study/");
   };
   // "exact" is how well a scheme keeps the restitution coefficient. "none" is also what a
-  // table shows for no value, and a projection of the initial state. "layer" is a function of every law. They may stand
-  // alone where nothing is decided by them.
+  // table shows for no value, and a projection of the initial state. "layer" is a function of every law, "table" a kind
+  // of parameter. They may stand alone where nothing is decided by them.
   const auto decides = [](const std::string& before) {
     return before.ends_with("==") || before.ends_with("!=") || before.ends_with("compare(") ||
            before.ends_with("count(") || before.ends_with("find(") || before.ends_with("case") ||
@@ -292,9 +292,9 @@ TEST_CASE("core and runners know no method by name") {
     for (const Source& source : sources(folder))
       for (const Literal& literal : literals(source.text))
         for (const std::string& name : names) {
-          const bool exact =
-              literal.text == name &&
-              ((name != "none" && name != "exact" && name != "layer" && name != "spring") || decides(literal.before));
+          const bool exact = literal.text == name &&
+                             (!std::set<std::string>{"none", "exact", "layer", "spring", "table"}.count(name) ||
+                              decides(literal.before));
           const bool named = !ordinary.count(name) && has_word(literal.text, name);
           if ((exact || named) && !of_the_format(source, name))
             FAIL_CHECK(source.name << " names the method " << name << ": \"" << literal.text << '"');

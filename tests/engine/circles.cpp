@@ -208,6 +208,7 @@ TEST_CASE("along its first axis a hole is a stop with two bounds, for every comp
     bool before = false;
     for (const ParameterSpec& spec : registry().contact(name)->manual.parameters) {
       if (!spec.fallback) values[spec.key] = spec.key == "stiffness" ? 1e6 : spec.unit == "m" ? 1e-4 : 0.1;
+      if (spec.key == "depth_force") values[spec.key] = ParameterTable{{0, 0}, {1e-4, 50}, {1e-3, 1e3}};
       before = before || spec.unit == "m";
     }
     if (before) continue;  // it acts before the stop, and so from both sides of a flat one at once

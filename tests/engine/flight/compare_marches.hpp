@@ -71,6 +71,8 @@ inline CompileOptions modal_options(MarchWay way, long long steps) {
 inline Choice with_values(const PluginManual& manual) {
   Choice choice{manual.name, {}};
   for (const ParameterSpec& spec : manual.parameters) {
+    if (!spec.fallback && spec.type == ParameterSpec::Type::table)
+      choice.values[spec.key] = ParameterTable{{0, 0}, {1, 1e4}};
     if (spec.fallback || spec.type != ParameterSpec::Type::real) continue;
     choice.values[spec.key] = spec.range.high < 10 ? 0.5 : 1e4;
   }

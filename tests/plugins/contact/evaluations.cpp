@@ -29,7 +29,10 @@ Choice law_of(const std::string& name, const std::string& evaluation) {
       {"hunt-crossley", {{"stiffness", 1e5}, {"damping", 0.05}}},
       {"kelvin-voigt", {{"stiffness", 1e4}, {"viscosity", 3.0}}},
       {"lankarani-nikravesh", {{"stiffness", 1e5}, {"restitution", 0.95}}},
-      {"elasto-plastic", {{"stiffness", 1e4}, {"yield_force", 50.0}, {"hardening", 0.3}}}};
+      {"elasto-plastic", {{"stiffness", 1e4}, {"yield_force", 50.0}, {"hardening", 0.3}}},
+      {"table",
+       {{"depth_force", ParameterTable{{0, 0}, {0.01, 50}, {0.02, 200}}},
+        {"unloading", ParameterTable{{0, 0}, {0.015, 60}, {0.02, 200}}}}}};
   Choice choice{name, values.at(name)};
   choice.values["evaluation"] = evaluation;
   return choice;
@@ -70,7 +73,7 @@ TEST_CASE("conserving laws keep the energy of the scheme and of the stops, whate
 }
 
 TEST_CASE("conserving laws that damp lose what they report, to round-off") {
-  const std::string name = GENERATE("hunt-crossley", "kelvin-voigt", "lankarani-nikravesh", "elasto-plastic");
+  const std::string name = GENERATE("hunt-crossley", "kelvin-voigt", "lankarani-nikravesh", "elasto-plastic", "table");
   const Run run = bounced(law_of(name, "conserving"), midpoint, true);
   const Run alone = bounced(law_of(name, "conserving"), midpoint);
   INFO(name << ": drift " << run.drift << ", without the losses " << alone.change);

@@ -24,7 +24,10 @@ std::vector<Choice> compliant_laws() {
       {"hunt-crossley", {{"stiffness", 1e7}, {"damping", 0.05}}},
       {"kelvin-voigt", {{"stiffness", 1e5}, {"viscosity", 3.0}}},
       {"lankarani-nikravesh", {{"stiffness", 1e7}, {"restitution", 0.95}}},
-      {"elasto-plastic", {{"stiffness", 1e5}, {"yield_force", 5.0}, {"hardening", 0.2}}}};
+      {"elasto-plastic", {{"stiffness", 1e5}, {"yield_force", 5.0}, {"hardening", 0.2}}},
+      {"table",
+       {{"depth_force", ParameterTable{{0, 0}, {5e-5, 3}, {2e-4, 30}}},
+        {"unloading", ParameterTable{{0, 0}, {1e-4, 5}, {2e-4, 30}}}}}};
   std::vector<Choice> laws;
   for (const auto& [name, parameters] : values)
     for (const std::string& evaluation : evaluations_of_laws) {
