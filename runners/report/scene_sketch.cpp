@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 // Pixels of the drawing: where a structure begins, how long it is, and how far stops may lie off.
 constexpr double sketch_width = 640, sketch_height = 184, sketch_left = 76, sketch_span = 480, together_span = 420,
                  nearest_gap = 9, widest_gap = 44, tallest_nodes = 230, least_span = 36, points_span = 140,
-                 row_half = 62;
+                 row_half = 62, damper_length = 44;
 constexpr std::size_t most_labelled = 12, most_unnamed = 4;
 
 /// Pixels between rest and a stop: gaps are to scale among each other, none so small that it does not show.
@@ -262,6 +262,25 @@ class SceneDrawing {
     return label_(x + 12 * dx, y + low, text, !across ? "middle" : dx > 0 ? "start" : "end", dy > 0 ? 1 : -1);
   }
 
+  // A plate between two that press it, on the ground or on a rod to the other place.
+  void draw_damper(const Spot& at, double dx, double dy, bool on_rod) {
+    const auto point = [&](double along, double across) {
+      return std::pair(at.x + along * dx - across * dy, at.y + along * dy + across * dx);
+    };
+    const auto stroke = [&](std::pair<double, double> from, std::pair<double, double> to) {
+      strokes_ += line(from.first, from.second, to.first, to.second, "stop");
+    };
+    constexpr double begins = 16, ends = 34, wide = 5;
+    stroke(point(0, 0), point(ends - 4, 0));
+    for (const double side : {-wide, wide}) stroke(point(begins, side), point(ends, side));
+    stroke(point(ends, -wide), point(ends, wide));
+    stroke(point(ends, 0), point(damper_length, 0));
+    if (!on_rod) {
+      const auto [x, y] = point(damper_length, 0);
+      strokes_ += face(x, y, dx, dy);
+    }
+  }
+
   void draw_stop(std::size_t i) {
     const SceneValues::Stop& stop = stops_[i];
     const Json drawn = drawn_stop(i);
@@ -299,6 +318,12 @@ class SceneDrawing {
       return;
     }
     const double dx = at->dx / size, dy = at->dy / size;
+    if (stop.pressed) {
+      draw_damper(*at, dx, dy, to.has_value());
+      join(at->x + damper_length * dx, at->y + damper_length * dy);
+      if (named) strokes_ += beside(at->x + damper_length * dx, at->y + damper_length * dy, dx, dy, stop.name);
+      return;
+    }
     for (const auto& [side, value, more] :
          {std::tuple(1.0, stop.upper, at->front), std::tuple(-1.0, stop.lower, at->back)}) {
       if (!value) continue;

@@ -61,6 +61,7 @@ class SceneValues {
     nlohmann::ordered_json at, to = {};          ///< to: null for the ground
     std::optional<double> lower, upper, radius;  ///< radius: of a clearance
     std::string name = {};                       ///< where it has one
+    std::optional<double> pressed = {};          ///< N, of a friction damper, which has no bounds
   };
   /// The stops, of a list all; else at most twelve places of a structure this long; none where there is no contact.
   std::vector<Stop> stops(double length) const;

@@ -153,7 +153,7 @@ std::vector<SceneValues::Stop> SceneValues::stops(double length) const {
     for (const SceneJson& stop : *list)
       out.push_back({stop.value("at", SceneJson()), stop.value("to", SceneJson()), number_at(stop, "lower"),
                      number_at(stop, "upper"), number_at(stop.value("clearance", SceneJson()), "radius"),
-                     stop.value("name", "")});
+                     stop.value("name", ""), number_at(stop, "normal_force")});
     return out;
   }
   const SceneJson *lower = at("/scene/stops/lower"), *upper = at("/scene/stops/upper"), *where = at("/scene/stops/at");

@@ -48,10 +48,10 @@ NumberTable impacts_head() {
 Table stops_head() {
   return {
       "stops",
-      "One stop of one contact point of one case that was ever touched.",
+      "One stop of one contact point of one case that was ever touched; or a friction damper, which has no sides.",
       {point_column,
        x_column,
-       {"side", "", "The stop: lower or upper."},
+       {"side", "", "The stop: lower or upper; empty of a friction damper."},
        {"impacts", "1", "Number of times that the point closed there; contact from the start is none."},
        {"peak_force", "N", "Largest force."},
        {"mean_force", "N", "Mean of the force over the time in contact."},
@@ -63,6 +63,13 @@ Table stops_head() {
         "impact."},
        {"largest_speed_in", "m/s", "Largest velocity with which the point came; empty where it hit nothing."}},
       {}};
+}
+
+// Whether a stop has no bounds: it rubs under a force that is given.
+bool is_damper(int stop, const StopList& list, const SemiDiscrete& problem) {
+  return std::any_of(problem.rubbing.begin(), problem.rubbing.end(), [&](const RubbingPoint& one) {
+    return one.normal_force && list.stop_of[static_cast<std::size_t>(one.point)] == stop;
+  });
 }
 
 // Where a stop stands, m.
@@ -150,19 +157,29 @@ void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher
   for (int point = 0; point < list.count(); ++point) {
     if (named)
       put_stop_measures(record, list.names[static_cast<std::size_t>(point)], stop_reading(contacts, ended, point));
+    const auto add_row = [&](Row row, std::optional<StopSide> side) {
+      if (named) row.push_back(list.names[static_cast<std::size_t>(point)]);
+      const Row cells = stop_reading_cells(stop_reading(contacts, ended, point, side));
+      row.insert(row.end(), cells.begin(), cells.end());
+      row.resize(stops.columns.size());
+      stops.rows.push_back(std::move(row));
+    };
+    if (is_damper(point, list, problem)) {
+      Row row(stops_head().columns.size());
+      row[0] = point;
+      row[1] = position_of(point, list, problem);
+      add_row(std::move(row), std::nullopt);
+      continue;
+    }
     for (const StopSide side : {StopSide::lower, StopSide::upper}) {
       const StopTotals& totals = contacts.totals(point, side);
       if (totals.impacts == 0 && totals.contact_time == 0) continue;
       peak = std::max(peak, totals.peak_force);
       time += totals.contact_time;
-      stops.rows.push_back({point, position_of(point, list, problem), side_names[static_cast<std::size_t>(side)],
-                            totals.impacts, totals.peak_force, totals.mean_force(), totals.rms_force(),
-                            totals.contact_time, totals.impulse, totals.normal_work,
-                            totals.impacts > 0 ? Cell(totals.fastest) : Cell()});
-      if (named) stops.rows.back().push_back(list.names[static_cast<std::size_t>(point)]);
-      const Row cells = stop_reading_cells(stop_reading(contacts, ended, point, side));
-      stops.rows.back().insert(stops.rows.back().end(), cells.begin(), cells.end());
-      stops.rows.back().resize(stops.columns.size());
+      add_row({point, position_of(point, list, problem), side_names[static_cast<std::size_t>(side)], totals.impacts,
+               totals.peak_force, totals.mean_force(), totals.rms_force(), totals.contact_time, totals.impulse,
+               totals.normal_work, totals.impacts > 0 ? Cell(totals.fastest) : Cell()},
+              side);
     }
   }
   put_measure(record, "peak_contact_force", peak);
@@ -197,28 +214,29 @@ namespace {
 
 // What is known of every curve.
 Table common_curves() {
-  return {"curves",
-          "One sample of the motion of one case; the name of the file is the case.",
-          {{"t", "s", "Time of the sample."},
-           {"tip_displacement", "m", "Displacement of the tip: absolute, unless scene.frame is supports."},
-           {"tip_velocity", "m/s", "Absolute velocity of the tip, the mean over the last sub-step."},
-           {"kinetic", "J", "Kinetic energy ½vᵀMv in the frame of the clamp, where the scheme's velocity stands."},
-           {"elastic", "J", "Elastic energy ½qᵀKq."},
-           {"contact", "J", "Energy that the springs at the stops store; 0 where they are rigid."},
-           {"load", "J", "Potential of the steady loads; with elastic and contact it is 0 where these are lowest."},
-           {"energy", "J", "The common mechanical energy: kinetic, elastic, contact and load."},
-           {"scheme_energy", "J", "The scheme's own discrete energy; kinetic, elastic and contact where it declares none."},
-           {"contact_force", "N", "Sum of the contact efforts over the points at the last step, positive upwards."},
-           {"penetration", "m", "Distance by which a contact point is past its stop, the largest over the points."},
-           {"active", "1", "Number of contact points that are closed."},
-           {"contact_force_total", "N",
-            "Sum of the forces at the contact points by magnitude at the last step: those of opposite stops do not "
-            "cancel."},
-           {"contact_force_peak", "N", "Largest force of one contact point since the sample before, from every step."},
-           {"tip_displacement_low", "m", "Smallest displacement of the tip since the sample before, from every step."},
-           {"tip_displacement_high", "m", "Largest displacement of the tip since the sample before."},
-           {"penetration_peak", "m", "Largest penetration since the sample before, from every step."}},
-          {}};
+  return {
+      "curves",
+      "One sample of the motion of one case; the name of the file is the case.",
+      {{"t", "s", "Time of the sample."},
+       {"tip_displacement", "m", "Displacement of the tip: absolute, unless scene.frame is supports."},
+       {"tip_velocity", "m/s", "Absolute velocity of the tip, the mean over the last sub-step."},
+       {"kinetic", "J", "Kinetic energy ½vᵀMv in the frame of the clamp, where the scheme's velocity stands."},
+       {"elastic", "J", "Elastic energy ½qᵀKq."},
+       {"contact", "J", "Energy that the springs at the stops store; 0 where they are rigid."},
+       {"load", "J", "Potential of the steady loads; with elastic and contact it is 0 where these are lowest."},
+       {"energy", "J", "The common mechanical energy: kinetic, elastic, contact and load."},
+       {"scheme_energy", "J", "The scheme's own discrete energy; kinetic, elastic and contact where it declares none."},
+       {"contact_force", "N", "Sum of the contact efforts over the points at the last step, positive upwards."},
+       {"penetration", "m", "Distance by which a contact point is past its stop, the largest over the points."},
+       {"active", "1", "Number of contact points that are closed."},
+       {"contact_force_total", "N",
+        "Sum of the forces at the contact points by magnitude at the last step: those of opposite stops do not "
+        "cancel."},
+       {"contact_force_peak", "N", "Largest force of one contact point since the sample before, from every step."},
+       {"tip_displacement_low", "m", "Smallest displacement of the tip since the sample before, from every step."},
+       {"tip_displacement_high", "m", "Largest displacement of the tip since the sample before."},
+       {"penetration_peak", "m", "Largest penetration since the sample before, from every step."}},
+      {}};
 }
 
 }  // namespace

@@ -236,3 +236,17 @@ TEST_CASE("a stop whose numbers are lists, with parameters of its own, is told a
         "x = 0.5 m, lower 0 m, upper 0.001 and 0.002 m, moves with clamp, stiffness 1e5 and 1e6 N/m, restitution 0.5");
   CHECK(count(report::scene_svg(study), "<line class=\"stop\"") == 2);
 }
+
+TEST_CASE("a friction damper is a plate that is pressed, on the ground or on a rod to its other place", "[report]") {
+  Scene scene = beam();
+  scene["scene"]["stops"] = Scene::parse(R"([{"name": "pad", "at": {"x": 1}, "normal_force": 40, "friction": 0.2}])");
+  const std::string grounded = report::scene_svg(scene);
+  CHECK(count(grounded, ">pad<") == 1);
+  // A rod in, two cheeks, their end, a rod out; then the ground and its hatch.
+  CHECK(count(grounded, "class=\"stop\"") == 7);
+  scene["scene"]["stops"][0]["to"] = {{"x", 0.5}};
+  const std::string between = report::scene_svg(scene);
+  CHECK(count(between, ">pad<") == 1);
+  CHECK(count(between, "class=\"stop\"") == 6);  // without the ground, with a mark at the other place
+  CHECK(count(between, "class=\"stop link\"") == 1);
+}

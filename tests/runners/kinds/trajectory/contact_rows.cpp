@@ -184,3 +184,35 @@ TEST_CASE("a study that compares lists its impacts too, and one without contact 
   CHECK_FALSE(find_table(free.numbers, "impacts"));
   CHECK_FALSE(measure(free, "peak_contact_force"));
 }
+
+TEST_CASE("a friction damper has one row without a side, and what it takes is there") {
+  Json study = Json::parse(R"json({
+    "name": "damped", "kind": "trajectory",
+    "scene": {"structure": {"type": "oscillator", "mass": 3, "stiffness": 400},
+              "stops": [{"name": "wall", "at": {"x": 0}, "upper": 0.01},
+                        {"name": "damper", "at": {"x": 0}, "normal_force": 40, "friction": 0.15}],
+              "initial": {"displacement": 0, "velocity": 1}},
+    "methods": {"mass": "consistent", "contact": {"name": "penalty", "stiffness": 1e5}, "time": "moreau-jean"},
+    "step": 1e-4, "duration": 0.05})json");
+  const StudyResults results = results_of(study);
+  const CaseRecord& record = results.cases.at(0);
+  REQUIRE(record.status == "done");
+  const Table* stops = find_table(record.tables, "stops");
+  REQUIRE(stops);
+  REQUIRE(stops->rows.size() == 2);
+  const auto cell = [&](std::size_t row, const char* name) {
+    return stops->rows.at(row).at(find_column(stops->columns, name).value());
+  };
+  CHECK(cell(0, "stop").text() == "wall");
+  CHECK(cell(0, "side").text() == "upper");
+  CHECK(cell(0, "friction_power").text().empty());
+  CHECK(cell(1, "stop").text() == "damper");
+  CHECK(cell(1, "point").number() == 1);
+  for (const char* name : {"side", "impacts", "peak_force", "contact_time", "normal_work"})
+    CHECK(cell(1, name).text().empty());
+  // It slides all along: μN times its way, by the time. The step that turns at the wall has a way of h v of 0.04 m.
+  CHECK(cell(1, "stick_share").number() == 0);
+  CHECK(cell(1, "friction_power").number().value() ==
+        Approx(0.15 * 40 * cell(1, "slip_distance").number().value() / 0.05).epsilon(2.5e-3));
+  CHECK(cell(1, "slip_distance").number().value() > 0.01);
+}
