@@ -1,4 +1,4 @@
-"""Writes studies/own-tube-friction: K, M and dofs of a tube clamped at one end that bends in two planes (N, m, kg, s)."""
+"""Writes studies/own-tube-friction: K, M and dofs of a tube, clamped at one end, in two planes (N, m, kg, s)."""
 import pathlib
 
 EI, RHO_S, LENGTH, PARTS = 90.0, 0.8, 1.2, 6  # N m², kg/m
