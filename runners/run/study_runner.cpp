@@ -153,7 +153,7 @@ class FolderRun {
     fresh_.merge(find_missing(cases_, fingerprints_, kept_, excluded, pending));
     if (!fresh_.empty()) {
       const Environment now = runner_.environment();
-      store_.save_environment(kept_.empty() ? now : merge_environments(now, store_.load().environment));
+      store_.save_environment(kept_.empty() ? now : merge_environments(now, store_.environment()));
     }
     if (!excluded.empty()) store_.save(excluded);
     const std::size_t running = pending.size();

@@ -73,9 +73,12 @@ std::map<std::string, std::string> sums_of_all(SQLite::Database& database, const
   bool of_case = true;
   for (const std::string& query : queries(prefix, false)) {
     SQLite::Statement rows(database, query);
+    // A case's rows come one after the other.
+    auto found = sums.end();
     while (rows.executeStep()) {
-      const std::string key = rows.getColumn(0).getString();
-      const auto found = of_case ? sums.try_emplace(key).first : sums.find(key);
+      const SQLite::Column key = rows.getColumn(0);
+      if (found == sums.end() || found->first != key.getText())
+        found = of_case ? sums.try_emplace(key.getString()).first : sums.find(key.getString());
       if (found != sums.end()) add_row(rows, of_case, found->second);
     }
     of_case = false;

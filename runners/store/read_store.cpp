@@ -269,11 +269,11 @@ Environment read_environment(SQLite::Database& database) {
   return environment;
 }
 
-StudyResults read_tables(SQLite::Database& database) {
+StudyResults read_tables(SQLite::Database& database, bool compared) {
   StudyResults results;
   SQLite::Transaction transaction(database);
   read_study(database, results);
-  results.damage.merge(find_damage(database));
+  if (!compared) results.damage.merge(find_damage(database));
   try {
     SQLite::Statement rows(database, fmt::format("SELECT {} FROM cases ORDER BY position", kStoredCase));
     while (rows.executeStep()) results.cases.push_back(case_of(rows));

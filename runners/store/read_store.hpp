@@ -23,8 +23,9 @@ std::unique_ptr<SQLite::Database> open_store(const std::filesystem::path& folder
 void with_store(const std::filesystem::path& folder, const std::function<void(SQLite::Database&)>& use);
 
 /// Reads every table in one read transaction: the state after some whole number of finished cases. The series of these
-/// are read when somebody asks for them.
-StudyResults read_tables(SQLite::Database& database);
+/// are read when somebody asks for them. `compared`: each case was compared with its checksums, or written, by this
+/// process.
+StudyResults read_tables(SQLite::Database& database, bool compared = false);
 
 /// What it holds of the study, and the environment; no cases.
 StudyResults read_head(SQLite::Database& database);

@@ -62,8 +62,9 @@ std::set<std::string> Store::settle_rows() {
       insert(prepared_->of(fmt::format("DELETE FROM {} WHERE case_id = ?", table)), id);
     insert(prepared_->of("DELETE FROM sums WHERE case_id = ?"), id);
   }
-  Environment environment;
-  if (!damaged_keys(*database_).contains("environment")) environment = read_environment(*database_);
+  if (damaged_keys(*database_).contains("environment"))  // stated anew it would pass for whole
+    write_environment({{{"environment", "damaged, left out"}}});
+  Environment environment = read_environment(*database_);
   set_aside(*database_, aside, environment);
   SQLite::Statement move(*database_, "UPDATE cases SET position = ? WHERE id = ?");
   for (const std::string& id : kept) {

@@ -109,6 +109,7 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
     seal_study(*database_);
   });
   rows_ = kept;
+  begun_ = true;
   return kept;
 }
 
@@ -137,6 +138,13 @@ int Store::of_other_arithmetic() const {
     if (others.executeStep()) count = others.getColumn(0).getInt();
   });
   return count;
+}
+
+Environment Store::environment() const {
+  const std::lock_guard guard(mutex_);
+  Environment environment;
+  guarded(file_, database_.get(), [&] { environment = read_environment(*database_); });
+  return environment;
 }
 
 void Store::write_environment(const Environment& environment) {
@@ -338,7 +346,7 @@ StudyResults Store::load() const {
   StudyResults results;
   guarded(file_, database_.get(), [&] {
     group_->commit();
-    results = read_tables(*database_);
+    results = read_tables(*database_, begun_);
   });
   if (results.damage.any()) throw StoreError(damage_text(file_, results.damage));
   return results;

@@ -125,6 +125,8 @@ class Store {
   /// How many finished cases were computed with another arithmetic than this run's.
   int of_other_arithmetic() const;
 
+  /// Where the stored cases ran.
+  Environment environment() const;
   /// Replaces the environment.
   void save_environment(const Environment& environment);
 
@@ -158,7 +160,8 @@ class Store {
   /// Makes the views of these results anew (schema.hpp): for who reads the store with SQL.
   void make_views(const StudyResults& results);
 
-  /// Everything the store holds; the series of finished cases are read when somebody asks for them.
+  /// Everything the store holds; the series of finished cases are read when somebody asks for them. What begin() found
+  /// whole is not compared with its checksums again.
   StudyResults load() const;
 
  private:
@@ -177,6 +180,7 @@ class Store {
   std::string arithmetic_;
   std::unique_ptr<SQLite::Database> database_;
   std::map<std::string, std::pair<std::string, int>> expected_;  // id → fingerprint, position
+  bool begun_ = false;  // all rows were compared with their checksums, or are this run's
   int returned_ = 0;
   std::vector<std::string> damaged_;
   std::set<std::string> rows_;  // ids that have one

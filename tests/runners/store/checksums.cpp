@@ -95,6 +95,23 @@ TEST_CASE("checksums: what is said of the study is written again, a damaged envi
   change(folder.path(), "UPDATE environment SET value = 'another'");
   CHECK_THAT(read_error(folder.path()), Catch::Contains("damaged in the environment"));
   CHECK(read_what_is_whole(folder.path()).cases.size() == 2);
+  // A run keeps nothing of it.
+  CHECK(open_error(folder.path()).empty());
+  const StudyResults kept = read_store(folder.path());
+  REQUIRE(kept.environment.entries.size() == 1);
+  CHECK(kept.environment.entries[0] == std::pair<std::string, std::string>("environment", "damaged, left out"));
+}
+
+TEST_CASE("checksums: a run compares what it finds once, and a reader always") {
+  const ScratchFolder folder;
+  fill(folder.path());
+  Store store(folder.path(), false);
+  CHECK(store.begin(sample_results(), kExpected).size() == 2);
+  change(folder.path(), "UPDATE measures SET value = 7 WHERE name = 'impacts'");
+  // What begin() saw stands: the lock keeps other runs away.
+  CHECK(store.load().damage.cases.empty());
+  CHECK_THAT(read_error(folder.path()), Catch::Contains("case c0123456789"));
+  CHECK(store.begin(sample_results(), kExpected) == std::set<std::string>{"cabcdefabcd"});
 }
 
 TEST_CASE("checksums: a motion that is damaged is not there, one of an earlier program is") {
