@@ -7,6 +7,7 @@
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/store/fingerprint.hpp"
+#include "runners/study/load_study.hpp"
 #include "runners/table/text.hpp"
 
 namespace ricochet {
@@ -58,6 +59,8 @@ int command_slurm(const Arguments& arguments, std::ostream& out) {
   if (arguments.time.empty()) throw UsageError("slurm expects --time T, the time limit of one start of the job");
   const long long limit = slurm_seconds(arguments.time);
   const fs::path program = ranks_program();
+  if (!StudyText::is_file(arguments.operands.front()))
+    throw UsageError("slurm expects the file of a study: the job reads it later, and a pipe gives its text once");
   return with_study(arguments, [&](const OpenStudy& open) -> int {
     // Time enough to bring what is under way to the store.
     constexpr long long most_notice = 120, part_of_limit = 4;

@@ -31,13 +31,14 @@ namespace ricochet {
 namespace fs = std::filesystem;
 
 int with_study(const Arguments& arguments, const std::function<int(const OpenStudy&)>& use) {
-  const std::filesystem::path file = arguments.operands.front();
+  const std::filesystem::path name = arguments.operands.front();
   OpenStudy open{{}, standard_catalogue(arguments.plugins), {}};
+  std::optional<StudyText> given;
   try {
-    open.study = load_study(file, open.catalogue, open.registry);
+    open.study = load_study(given.emplace(name), open.catalogue, open.registry);
     return use(open);
   } catch (const InputError& error) {
-    throw StudyError(explain(error, file));
+    throw StudyError(given ? explain(error, *given) : explained(error, StudyText::place_of(name), ""));
   }
 }
 

@@ -1,12 +1,14 @@
 #include "runners/json/json_text.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <functional>
+#include <memory>
 #include <ricochet/contract/errors.hpp>
 #include <set>
 #include <sstream>
@@ -21,6 +23,10 @@ namespace {
 struct Token {
   std::size_t begin = 0, end = 0;
 };
+
+[[noreturn]] void cannot_be_read() {
+  throw InputError("", std::string("cannot be read: ") + std::strerror(errno));
+}
 
 bool in_word(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
@@ -323,19 +329,25 @@ std::string read_text(const std::filesystem::path& file, const std::string& expe
   // Opening a pipe waits for who writes to it, and a device may have no end.
   if (std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored))
     throw InputError("", "is a pipe, a socket or a device; expected " + expected + ", a JSON file");
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) cannot_be_read();
+  const std::unique_ptr<const int, void (*)(const int*)> closing(&descriptor, [](const int* one) { ::close(*one); });
+  return read_to_end(descriptor, expected);
+}
+
+std::string read_to_end(int descriptor, const std::string& expected) {
   // Files of /proc have no size to ask for.
   std::string text, piece(std::size_t{1} << 16U, '\0');
-  while (stream && text.size() <= largest_text) {
-    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    text.append(piece, 0, static_cast<std::size_t>(stream.gcount()));
+  for (;;) {
+    const ssize_t got = ::read(descriptor, piece.data(), piece.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) cannot_be_read();
+    if (got == 0) return text;
+    text.append(piece, 0, static_cast<std::size_t>(got));
+    if (text.size() > largest_text)
+      throw InputError("",
+                       fmt::format("has more than {} MiB; expected {}, a JSON file", largest_text >> 20U, expected));
   }
-  if (text.size() > largest_text)
-    throw InputError("", fmt::format("has more than {} MiB; expected {}, a JSON file", largest_text >> 20U, expected));
-  if (!stream.eof())
-    throw InputError("", std::string("cannot be read: ") + (errno ? std::strerror(errno) : "unknown cause"));
-  return text;
 }
 
 std::string explained(const InputError& error, std::string place, const std::string& text) {

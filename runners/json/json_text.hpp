@@ -53,8 +53,11 @@ std::optional<TextPosition> locate(const std::string& text, const std::string& p
 /// Bytes of the largest text that is read.
 inline constexpr std::size_t largest_text = std::size_t{32} << 20U;
 
-/// A text file. Throws InputError, pointer "", where it cannot be read, is a folder or too large; `expected`: "a study".
+/// A text file. Throws InputError, pointer "", where it cannot be read, is a folder or too large; `expected`: "a
+/// study".
 std::string read_text(const std::filesystem::path& file, const std::string& expected);
+/// What an open file, a pipe or a terminal gives until its end. Throws InputError as read_text() does.
+std::string read_to_end(int descriptor, const std::string& expected);
 
 /// The error as a person reads it: "PLACE:LINE: at /json/pointer: what is wrong; what was expected", the line where
 /// `text` is not empty.

@@ -354,8 +354,8 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   return study;
 }
 
-Study load_study(const std::filesystem::path& file, Catalogue& catalogue, Registry& registry) {
-  return parse_study(read_text(file, "a study"), catalogue, registry, file.parent_path());
+Study load_study(const StudyText& study, Catalogue& catalogue, Registry& registry) {
+  return parse_study(study.text, catalogue, registry, study.folder);
 }
 
 const StudyCase* find_case(const Study& study, const std::string& id) {
@@ -364,15 +364,15 @@ const StudyCase* find_case(const Study& study, const std::string& id) {
   return found == study.cases.end() ? nullptr : &*found;
 }
 
-std::string explain(const InputError& error, const std::filesystem::path& file) {
+std::string explain(const InputError& error, const StudyText& study) {
   std::string text;
   try {
-    if (!error.pointer().empty()) parse_json(text = read_text(file, "a study"));
+    if (!error.pointer().empty()) parse_json(text = study.text);
   } catch (const InputError& twice) {
     // A key given twice: the text can still be located in. Anything else has no line to tell.
     if (twice.pointer().empty()) text.clear();
   }
-  return explained(error, file.string(), text);
+  return explained(error, study.place, text);
 }
 
 }  // namespace ricochet
