@@ -279,7 +279,8 @@ class IsolatedCases::Coordinator {
       quiet += std::min(seconds_since(heard_at), 2 * poll_interval);
       heard_at = Clock::now();
       if (state == Channel::Heard::silence) {
-        silent = quiet > lost_after;
+        const bool stopped = quiet > 2 * alive_every && worker.stopped();
+        silent = quiet > (stopped ? longest_stop_of(find_case(context_.study, id)) : lost_after);
         if (silent) worker.kill();
       }
       if (state != Channel::Heard::message) continue;

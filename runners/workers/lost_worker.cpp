@@ -9,6 +9,14 @@
 #include "runners/march/prepare_case.hpp"
 
 namespace ricochet {
+namespace {
+
+/// The process waits for a signal that nobody will send, and so would the next one.
+bool stopped_itself(const WorkerEnd& end) {
+  return end.stopped && end.in_third_party();
+}
+
+}  // namespace
 
 Lost ended_for_nonsense(Worker& worker) {
   worker.kill();
@@ -38,6 +46,10 @@ double longest_call_of(const StudyCase& study_case) {
   return std::isfinite(budget) ? budget : longest;
 }
 
+double longest_stop_of(const StudyCase* study_case) {
+  return study_case ? std::min(lost_after, longest_call_of(*study_case)) : lost_after;
+}
+
 bool over_budget(const Lost& lost, const StudyCase& study_case) {
   return lost.given_up && std::isfinite(budget_of(study_case));
 }
@@ -45,11 +57,11 @@ bool over_budget(const Lost& lost, const StudyCase& study_case) {
 bool failed_by(const Lost& lost, const StudyCase& study_case, int& attempt) {
   constexpr int attempts = 2;
   if (lost.end.host_lost) return false;
-  return over_budget(lost, study_case) || attempt++ == attempts;
+  return over_budget(lost, study_case) || stopped_itself(lost.end) || attempt++ == attempts;
 }
 
 std::string sentence(const Lost& lost, const StudyCase& study_case) {
-  if (!lost.given_up) return lost.end.sentence("twice");
+  if (!lost.given_up) return lost.end.sentence(stopped_itself(lost.end) ? "" : "twice");
   const GivenUp& call = *lost.given_up;
   if (over_budget(lost, study_case))
     return fmt::format("plugin {} did not return from {}() within the budget of {:g} s", call.plugin, call.function,

@@ -44,11 +44,14 @@ void check_ready(const WorkerReady& ready, const std::string& host, const std::s
 /// s that a call of a plugin's function may last for this case: its budget, or 60 where it has none.
 double longest_call_of(const StudyCase& study_case);
 
+/// s for which a process is waited for that a signal stopped in a call for this case, or for none.
+double longest_stop_of(const StudyCase* study_case);
+
 /// Whether a call lasted longer than the budget that the case states.
 bool over_budget(const Lost& lost, const StudyCase& study_case);
 
-/// Whether the case fails by the loss: it has a budget and used it up, or a second worker is lost with it. `attempt`
-/// counts these workers from 1; a machine that is gone does not count.
+/// Whether the case fails by the loss: it has a budget and used it up, a third-party function stopped the process, or a
+/// second worker is lost with it. `attempt` counts these workers from 1; a machine that is gone does not count.
 bool failed_by(const Lost& lost, const StudyCase& study_case, int& attempt);
 
 /// "plugin contact 'x' (x.so), solve(): its process was ended twice by …": why it failed.

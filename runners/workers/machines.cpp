@@ -242,7 +242,7 @@ void serialize(Archive& archive, HostFacts& facts) {
 
 template <class Archive>
 void serialize(Archive& archive, WorkerEnd& end) {
-  archive(end.cause, end.place, end.in_call, end.last_lines, end.no_memory, end.silent, end.host_lost);
+  archive(end.cause, end.place, end.in_call, end.last_lines, end.no_memory, end.silent, end.stopped, end.host_lost);
 }
 
 std::string to_bytes(const Message& message) {

@@ -167,12 +167,15 @@ struct WorkerEnd {
   std::string last_lines = {};  ///< of its stderr, "|" between two
   bool no_memory = false;       ///< it wanted more memory than it may take
   bool silent = false;          ///< it said nothing for too long, and was killed for that
+  bool stopped = false;         ///< a signal had stopped it in a plugin's function
   bool host_lost = false;       ///< the machine it was on is gone: no fault of its own
 
   /// "plugin contact 'x' (x.so), solve(): its process was ended by signal 11 (segmentation fault); it wrote: …". Where
   /// no function was under way the third-party libraries of the study are named.
   /// `times`: put behind the verb, "twice".
   std::string sentence(const std::string& times = "") const;
+  /// Whether a function of a third-party library was under way.
+  bool in_third_party() const;
 };
 
 /// A process that marches, here or on another machine. One thread talks to it; kill() may come from another one.
@@ -184,6 +187,8 @@ class Worker {
   /// Its next message.
   virtual Channel::Heard receive(Message& message, double seconds) = 0;
   virtual void kill() = 0;
+  /// Whether a signal stopped its process in a plugin's function, as far as this machine can see.
+  virtual bool stopped() { return false; }
   /// Waits until it has ended. Once.
   virtual WorkerEnd end() = 0;
 };

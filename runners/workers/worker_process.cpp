@@ -62,6 +62,10 @@ constexpr std::size_t kept_of_stderr = 2000;
   throw RunError(fmt::format("no worker process can be started: {}: {}", what, std::strerror(errno)));
 }
 
+bool names(const std::string& place, const std::filesystem::path& library) {
+  return place.find(library.string()) != std::string::npos;
+}
+
 std::string ended_by(int status) {
   return WIFEXITED(status) ? fmt::format("exit code {}", WEXITSTATUS(status)) : signal_in_words(WTERMSIG(status));
 }
@@ -89,15 +93,21 @@ std::string WorkerEnd::sentence(const std::string& times) const {
   bool told = in_call;
   for (const auto& library : described_libraries()) {
     others.push_back(library.string());
-    told = told || place.find(library.string()) != std::string::npos;
+    told = told || names(place, library);
   }
   std::string text = told ? place : "";
   const std::string often = times.empty() ? "" : " " + times;
-  text += silent ? fmt::format("its process did not answer any more and was killed{}", often)
+  text += silent ? fmt::format("its process {} and was killed{}",
+                               stopped ? "was stopped by a signal" : "did not answer any more", often)
                  : fmt::format("its process was ended{} by {}", often, cause);
   if (!told && !others.empty()) text += fmt::format("; third-party libraries in it: {}", fmt::join(others, ", "));
   if (!last_lines.empty()) text += fmt::format("; it wrote: {}", last_lines);
   return text;
+}
+
+bool WorkerEnd::in_third_party() const {
+  const auto libraries = described_libraries();
+  return in_call && std::any_of(libraries.begin(), libraries.end(), [&](const auto& one) { return names(place, one); });
 }
 
 WorkerProcess::WorkerProcess() {
@@ -165,8 +175,16 @@ WorkerProcess::~WorkerProcess() {
 }
 
 void WorkerProcess::kill() {
+  if (stopped()) killed_stopped_ = true;
   const std::lock_guard guard(mutex_);
   if (!ended_) ::kill(pid_, SIGKILL);
+}
+
+bool WorkerProcess::stopped() {
+  siginfo_t info{};
+  const std::lock_guard guard(mutex_);
+  return !ended_ && note_.note().seen().serial != 0 &&
+         ::waitid(P_PID, static_cast<id_t>(pid_), &info, WSTOPPED | WNOHANG | WNOWAIT) == 0 && info.si_pid == pid_;
 }
 
 WorkerEnd WorkerProcess::end() {
@@ -194,6 +212,7 @@ WorkerEnd WorkerProcess::end() {
   const SeenCall call = note.seen();
   found.place = call.place();
   found.in_call = call.serial != 0;
+  found.stopped = killed_stopped_;
   const std::lock_guard guard(mutex_);
   found.last_lines = last_lines_;
   while (found.last_lines.ends_with('\n')) found.last_lines.pop_back();

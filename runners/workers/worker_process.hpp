@@ -47,6 +47,7 @@ class WorkerProcess : public Worker {
   /// Gone where its process has ended: others that it began may hold its end of the channel.
   Channel::Heard receive(Message& message, double seconds) override;
   void kill() override;
+  bool stopped() override;
   WorkerEnd end() override;
 
  private:
@@ -60,6 +61,7 @@ class WorkerProcess : public Worker {
   std::mutex mutex_;
   std::string last_lines_;
   std::atomic<bool> ended_ = false;
+  std::atomic<bool> killed_stopped_ = false;
 };
 
 /// The name of this machine, "?" where it has none.

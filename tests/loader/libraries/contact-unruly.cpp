@@ -53,6 +53,7 @@ void do_it(const std::string& what) {
   if (what == "_exit") ::_exit(0);
   if (what == "kill") ::raise(SIGKILL);
   if (what == "loop") forever();
+  if (what == "stop") ::raise(SIGSTOP);
   if (what == "deaf") {
     be_deaf();
     for (;;) {

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -172,6 +173,19 @@ TEST_CASE("unruly: whatever ends a worker in a law, its case is failed and the l
   CHECK(ran.code == 3);
   check_rows(here, "failed", told);
   check_rows(here, "failed", "plugin contact 'unruly' (" + library + ")");
+}
+
+TEST_CASE("unruly: a law that stops its process is waited for once, for as long as a call may last") {
+  const ScratchFolder here;
+  const auto begun = std::chrono::steady_clock::now();
+  const CommandOutput ran = run_unruly(here, "solve stop");
+  INFO(ran.out << ran.err);
+  CHECK(ran.code == 3);
+  check_rows(here, "failed",
+             "plugin contact 'unruly' (" + library +
+                 "), solve(): its process was stopped by a signal and was killed");
+  // Two such cases with a budget of 2 s each; a silent process is waited for 60 s, twice.
+  CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds(60));
 }
 
 TEST_CASE("unruly: a thread that crashes outside of any function is told with the libraries that may have begun it") {
