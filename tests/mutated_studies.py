@@ -3,7 +3,8 @@
 
     python3 tests/mutated_studies.py build/release/bin/ricochet 2000 [SEED]
 
-Numbers are scaled, up to 300 decades; methods become others of their role; keys go. The law: no signal, no hang, no
+Numbers are scaled, up to 300 decades, or become the ends of what a double, or a text, can say; methods become others of
+their role; keys go. What a study made is drawn again by `report`. The law: no signal, no hang, no
 internal error, no control character; exit code 2 with a place in the study, or 0 or 3 with a report whose tables have
 no cell that is not a number. Exit code 1 where it does not hold.
 """
@@ -21,6 +22,9 @@ from damaged_stores import ran
 
 STUDIES = pathlib.Path(__file__).resolve().parent.parent / "studies"
 FACTORS = [0.1, 0.5, 0.9, 1.1, 2, 10] * 3 + [0, -1, 1e3, 1e-3, 1e6, 1e-6, 1e12, 1e-12, 1e100, 1e-100, 1e300, 1e-300]
+# As they stand in the text, and a list of more numbers than a study may have cases.
+EXTREMES = ["1e308", "-1e308", "-0.0", "-0", "5e-324", "8e-312", "2.3e-308", "1e400", "1e-400", "NaN", "-Infinity",
+            '"NaN"', '"inf"', "9223372036854775807", "18446744073709551616", "null", "[]", "[[1]]", "{}", "LIST"]
 FORM = ("elements", "samples", "transient", "keep", "steps_per_period", "repeats", "compare", "observe", "outputs", "modes")
 ENDS = {"work-precision": {"repeats": 1, "samples": 20}, "convergence": {"samples": 20}}
 
@@ -103,6 +107,19 @@ def scaled(dice, number):
     return value if abs(value) < float("inf") else number
 
 
+def extreme(dice):
+    """A mark that written() puts such a text in the place of."""
+    return f"<{dice.choice(EXTREMES)}>"
+
+
+def written(study):
+    numbers = "[" + ", ".join(str(1 + i / 4096) for i in range(200001)) + "]"
+    text = json.dumps(study, indent=1)
+    for one in EXTREMES:
+        text = text.replace(json.dumps(f"<{one}>"), numbers if one == "LIST" else one)
+    return text
+
+
 def mutated(dice, study, methods):
     for role in study["methods"]:
         if dice.random() < 0.4:
@@ -114,7 +131,7 @@ def mutated(dice, study, methods):
         if isinstance(value, bool):
             put(study, at, not value)
         elif isinstance(value, (int, float)):
-            put(study, at, scaled(dice, value))
+            put(study, at, extreme(dice) if dice.random() < 0.2 else scaled(dice, value))
         elif isinstance(value, str) and dice.random() < 0.3:
             number = re.search(r"[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?", value)
             if number and at[0] == "scene":
@@ -162,7 +179,7 @@ def main():
             path = dice.choice(shipped)
             study = mutated(dice, smaller(dice, json.loads(path.read_text())), methods)
             file, out = place / "study.json", place / "out"
-            file.write_text(json.dumps(study, indent=1))
+            file.write_text(written(study))
             shutil.rmtree(out, ignore_errors=True)
             try:
                 code, said = ran(program, "run", str(file), "--out", str(out), *dice.choice([[], [], ["--inline"]]))
@@ -180,6 +197,9 @@ def main():
                 why = f"no place: {said[:300]}"
             elif code != 2:
                 why = wrong_cells(out) if (out / "report.html").exists() else "no report"
+                again, told = ran(program, "report", str(out))
+                if not why and again not in (0, 3):
+                    why = f"report: exit code {again}: {told[-600:]}"
             if why:
                 kept = pathlib.Path(tempfile.gettempdir()) / f"mutated-{seed}-{number}.json"
                 shutil.copy(file, kept)
