@@ -326,6 +326,7 @@ std::optional<Refusal> meet_friction(Program& program, const DerivedPlan& derive
   if (!options.make_friction) return Refusal{"friction is not marched here: leave the friction of the stops out"};
   program.friction = options.make_friction();
   const FrictionFacts facts = friction_facts(derived, program.law->reads());
+  program.held_root = facts.held_root;
   const std::string why = !facts.why_none.empty() ? facts.why_none : program.friction->must_settle() ? facts.rings : "";
   if (!why.empty()) return Refusal{said("friction does not run under this time scheme: {}. {}", why, friction_remedy)};
   return std::nullopt;

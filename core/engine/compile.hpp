@@ -115,6 +115,7 @@ struct Program {
   std::unique_ptr<ContactLaw> law;
   std::unique_ptr<FrictionLaw> friction;  ///< null: nothing rubs
   std::vector<JamNumber> jam;             ///< of each rubbing point
+  double held_root = 0;                   ///< FrictionFacts::held_root, where something rubs
   std::vector<LaneSpec> lanes;
   int width = 1;     ///< T
   int tangents = 0;  ///< tangent columns per lane, behind the lanes

@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <ricochet/contract/said_format.hpp>
 #include <ricochet/engine/jamming.hpp>
+#include <ricochet/engine/stage_friction.hpp>
 #include <ricochet/scene/stop_parameters.hpp>
 
 namespace ricochet {
@@ -21,6 +24,42 @@ double given_way(const Program& program, const StageProgram& stage, int point) {
   return most > 0 && stage.measure_z > 0 ? 1 / (stage.measure_z * most) : 0.0;
 }
 
+// |W_nt| over W_nn and what gives way, of the rows behind the points.
+double flat_coupling(const RubbingPoint& one, int points, const double* column, double gives_way) {
+  double across = 0;
+  for (int k = 0; k < one.rows; ++k) across = std::hypot(across, column[points + one.row + k]);
+  const double own = column[one.point] + gives_way;
+  return own > 0 ? across / own : 0.0;
+}
+
+// The same of the direction of a circle in which it is largest.
+template <class Columns>
+double round_coupling(const RubbingPoint& one, int points, const Columns& column_of, double gives_way) {
+  constexpr int directions = 180;
+  std::array<std::vector<double>, 2> columns;  // a column holds till the next one is asked for
+  for (const int axis : {0, 1}) {
+    const double* column = column_of(one.point + axis);
+    columns[static_cast<std::size_t>(axis)].assign(column, column + points + one.row + one.rows);
+  }
+  double most = 0;
+  std::vector<double> turned(columns[0].size());
+  for (int k = 0; k < directions; ++k) {
+    const double angle = std::numbers::pi * k / directions;
+    const std::array<double, 2> normal{std::cos(angle), std::sin(angle)};
+    for (std::size_t row = 0; row < turned.size(); ++row)
+      turned[row] = normal[0] * columns[0][row] + normal[1] * columns[1][row];
+    const auto at = static_cast<std::size_t>(one.point);
+    const double own = normal[0] * turned[at] + normal[1] * turned[at + 1] + gives_way;
+    double across = 0;
+    for (int tangent = 0; tangent < one.tangents(); ++tangent) {
+      const Tangent way = tangent_of(one, tangent, normal);
+      across = std::hypot(across, way.of(turned.data() + points + way.row));
+    }
+    if (own > 0) most = std::max(most, across / own);
+  }
+  return most;
+}
+
 void add_stage(Program& program, StageProgram& stage, std::vector<JamNumber>& numbers) {
   if (!stage.reads_contact || !stage.op || stage.friction_momentum == 0) return;
   StageDelassus plain(*stage.op, *program.model, nullptr);
@@ -30,11 +69,10 @@ void add_stage(Program& program, StageProgram& stage, std::vector<JamNumber>& nu
   for (std::size_t i = 0; i < problem.rubbing.size(); ++i) {
     const RubbingPoint& one = problem.rubbing[i];
     if (one.normal_force) continue;
-    const double* column = impulse ? impulse->column(one.point) : plain.column(one.point);
-    double across = 0;
-    for (int k = 0; k < one.rows; ++k) across = std::hypot(across, column[problem.points() + one.row + k]);
-    const double own = column[one.point] + given_way(program, stage, one.point);
-    const double coupling = own > 0 ? across / own : 0.0;
+    const auto column = [&](int point) { return impulse ? impulse->column(point) : plain.column(point); };
+    const double gives_way = given_way(program, stage, one.point);
+    const double coupling = one.round ? round_coupling(one, problem.points(), column, gives_way)
+                                      : flat_coupling(one, problem.points(), column(one.point), gives_way);
     if (coupling <= numbers[i].coupling) continue;
     const double number = std::max(one.held, one.sliding) * coupling;
     numbers[i] = number > round_off ? JamNumber{coupling, number} : JamNumber{};

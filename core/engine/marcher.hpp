@@ -248,13 +248,20 @@ class Marcher {
   void measure_rows(const RowMatrix& rows, int terms, const double* const* x, const double* weights,
                     const double* offset, double* out);
   void add_motions(const Levels& levels, bool rate, Block& out) const;
+  double gate_slack(const StageProgram& program, StageState& state, int point, int lane);
   void open_gates(StageProgram& program, StageState& state, std::span<const double* const> terms);
 
   // stage_friction.cpp: efforts along surfaces that rub.
   void rub(const StageProgram& program, StageState& state, const double* z);
   void rub_lane(const StageProgram& program, StageState& state, int lane);
   void measure_end_rates(const StageProgram& program, StageState& state, const double* z);
-  double normal_force(const StageProgram& program, const StageState& state, int point, int lane) const;
+  struct Pressed {
+    double force = 0;                // N
+    std::array<double, 2> normal{};  // of a round point
+  };
+  Pressed pressed(const StageProgram& program, const StageState& state, int point, int lane) const;
+  void find_pressed(const StageProgram& program, const StageState& state, int lane);
+  void gather_friction(const StageProgram& program, StageState& state, int lane, bool first);
   LaneOutcome find_friction(const StageProgram& program, StageState& state, int lane, bool first);
   double moved_by_friction(StageState& state, const std::vector<double>& efforts, int point);
   bool friction_moves_normals(StageState& state, double reach, int lane);

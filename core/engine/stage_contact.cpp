@@ -51,6 +51,14 @@ void Marcher::add_motions(const Levels& levels, bool rate, Block& out) const {
   }
 }
 
+// What round-off opens is closed: a gap this far below what the last effort of the point moves it by in a step, m.
+double Marcher::gate_slack(const StageProgram& program, StageState& state, int point, int lane) {
+  constexpr double round_off = 1e-10;
+  const double p = state.effort[0].at(point, lane);
+  if (p == 0) return 0;
+  return round_off * program_.h * std::abs(program.reach * p * columns_of(state).column(point)[point]);
+}
+
 // Gap test and approach test: a side that is open has an infinite bound; a closed one may rebound.
 void Marcher::open_gates(StageProgram& program, StageState& state, std::span<const double* const> terms) {
   const VelocityGate& gate = *program.gate;
@@ -70,8 +78,11 @@ void Marcher::open_gates(StageProgram& program, StageState& state, std::span<con
   state.closed_lanes = 0;
   for (int lane = 0; lane < T; ++lane) {
     bool closed = false;
-    for (int i = 0; i < points; ++i)
-      closed = closed || state.gap.at(i, lane) <= lower_.at(i, lane) || state.gap.at(i, lane) >= upper_.at(i, lane);
+    for (int i = 0; i < points; ++i) {
+      const double slack = gate_slack(program, state, i, lane);
+      closed = closed || state.gap.at(i, lane) <= lower_.at(i, lane) + slack ||
+               state.gap.at(i, lane) >= upper_.at(i, lane) - slack;
+    }
     state.closed_lanes |= static_cast<std::uint32_t>(closed) << lane;
   }
   if (state.closed_lanes == 0) return;
@@ -84,7 +95,8 @@ void Marcher::open_gates(StageProgram& program, StageState& state, std::span<con
     for (int i = 0; i < points; ++i) {
       const double restitution = state.rebound[static_cast<std::size_t>(i)];
       const double gap = state.gap.at(i, lane), speed = state.approach.at(i, lane);
-      const bool lower = gap <= lower_.at(i, lane), upper = gap >= upper_.at(i, lane);
+      const double slack = gate_slack(program, state, i, lane);
+      const bool lower = gap <= lower_.at(i, lane) + slack, upper = gap >= upper_.at(i, lane) - slack;
       const double from_lower = speed > still ? -speed : -restitution * std::min(speed, 0.0);
       const double from_upper = speed < -still ? -speed : -restitution * std::max(speed, 0.0);
       state.gate_lower.at(i, lane) = lower ? from_lower : -infinity;

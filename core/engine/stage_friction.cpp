@@ -29,10 +29,29 @@ std::size_t at(int i) {
 
 }  // namespace
 
+double Tangent::of(const double* values, std::ptrdiff_t stride) const {
+  double sum = share[0] * values[0];
+  for (int k = 1; k < count; ++k) sum += share[at(k)] * values[k * stride];
+  return sum;
+}
+
+double Tangent::effort(const double* efforts, std::ptrdiff_t stride) const {
+  double squares = 0;
+  for (int k = 0; k < count; ++k) squares += share[at(k)] * share[at(k)];
+  return of(efforts, stride) / squares;
+}
+
+Tangent tangent_of(const RubbingPoint& one, int number, const std::array<double, 2>& normal) {
+  if (!one.round) return {one.row + number, 1, {1, 0, 0}};
+  if (number == 0) return {one.row, 3, {-normal[1], normal[0], 1}};
+  return {one.row + 3, 2, {normal[0], normal[1], 0}};
+}
+
 StageFriction::StageFriction(const Program& program) {
   const SemiDiscrete& problem = *program.problem;
   const int T = program.width, count = static_cast<int>(problem.rubbing.size()), all = problem.rubbed.count();
   for (Block* block : {&normal, &sticks, &slid}) *block = Block(count, T);
+  along = Block(2 * count, T);
   per_row = program.friction->memory_per_row();
   if (per_row > 0) kept = Block(all * per_row, T);
   for (auto* numbers : {&remembered, &remembers}) numbers->resize(at(all * per_row));
@@ -41,7 +60,9 @@ StageFriction::StageFriction(const Program& program) {
   for (const RubbingPoint& one : problem.rubbing)
     if (one.normal_force) always = (std::uint32_t{1} << program.lanes.size()) - 1;
   if (program.lanes.size() == 32) always = always != 0 ? ~std::uint32_t{0} : 0;
-  rows.reserve(at(all));
+  tangents.reserve(at(all));
+  kept_at.reserve(at(all));
+  directions.resize(at(count));
   first_row.reserve(at(count) + 1);
   number.reserve(at(count));
   matrix.resize(at(all) * at(all));
@@ -90,79 +111,110 @@ double Marcher::rubbed_levels(int lane, int row, double t, const Levels& levels)
   return way;
 }
 
-// |N| of a point that rubs, in the units of the stage's efforts of friction.
-double Marcher::normal_force(const StageProgram& program, const StageState& state, int point, int lane) const {
+// |N| of a point that rubs, in the units of the stage's efforts of friction, and the direction of a round one.
+Marcher::Pressed Marcher::pressed(const StageProgram& program, const StageState& state, int point, int lane) const {
   const RubbingPoint& one = program_.problem->rubbing[at(point)];
-  if (one.normal_force) return *one.normal_force;
-  const std::size_t e = at(one.point) * at(program_.width) + at(lane);
-  if (state.impulse) return std::abs(state.effort[0].data()[e]);
-  double normal = 0;
-  for (std::size_t k = 0; k < program.effort.size() && k < state.effort_pointers.size(); ++k)
-    if (state.effort_pointers[k]) normal += program.effort[k] * state.effort_pointers[k][e];
-  return std::abs(normal) / program.friction_weight;
+  if (one.normal_force) return {*one.normal_force, {}};
+  const auto normal = [&](int row) {
+    const std::size_t e = at(row) * at(program_.width) + at(lane);
+    if (state.impulse) return state.effort[0].data()[e];
+    double sum = 0;
+    for (std::size_t k = 0; k < program.effort.size() && k < state.effort_pointers.size(); ++k)
+      if (state.effort_pointers[k]) sum += program.effort[k] * state.effort_pointers[k][e];
+    return sum / program.friction_weight;
+  };
+  if (!one.round) return {std::abs(normal(one.point)), {}};
+  const double x = normal(one.point), y = normal(one.point + 1), size = std::hypot(x, y);
+  if (!(size > 0)) return {};
+  return {size, {-x / size, -y / size}};
 }
 
-// p_t of a lane for the normal efforts as they are, into `found`.
-LaneOutcome Marcher::find_friction(const StageProgram& program, StageState& state, int lane, bool first) {
+// The points that something presses, and their tangents.
+void Marcher::find_pressed(const StageProgram& program, const StageState& state, int lane) {
   StageFriction& rub = *rubbing_;
-  const int points = lower_.rows(), T = program_.width;
+  rub.tangents.clear();
+  rub.kept_at.clear();
+  rub.number.clear();
+  rub.first_row.assign(1, 0);
+  const std::vector<RubbingPoint>& all = program_.problem->rubbing;
+  for (int i = 0; i < static_cast<int>(all.size()); ++i) {
+    const Pressed found = pressed(program, state, i, lane);
+    if (!(found.force > 0)) continue;
+    const std::size_t next = rub.number.size();
+    const RubbingPoint& one = all[at(i)];
+    rub.normals[next] = found.force;
+    rub.directions[next] = found.normal;
+    rub.sliding[next] = one.sliding * found.force;
+    rub.held[next] = rub.sticks.at(i, lane) != 0 ? one.held * found.force : rub.sliding[next];
+    rub.number.push_back(i);
+    for (int k = 0; k < one.tangents(); ++k) {
+      rub.tangents.push_back(tangent_of(one, k, found.normal));
+      rub.kept_at.push_back(one.row + k);
+    }
+    rub.first_row.push_back(static_cast<int>(rub.tangents.size()));
+  }
+}
+
+// u° and A of these tangents, and what they begin with.
+void Marcher::gather_friction(const StageProgram& program, StageState& state, int lane, bool first) {
+  StageFriction& rub = *rubbing_;
+  const int points = lower_.rows(), T = program_.width, count = static_cast<int>(rub.tangents.size());
   const double of_normal = program.friction_reach * (state.impulse ? 1.0 : program.effort[0]),
                of_own = program.friction_reach * (state.impulse ? 1.0 : program.friction_weight);
   DelassusColumns& W = columns_of(state);
-  rub.rows.clear();
-  rub.number.clear();
-  rub.first_row.assign(1, 0);
-  std::swap(rub.found, rub.found_before);
-  std::fill(rub.found.begin(), rub.found.end(), 0.0);
-  const std::vector<RubbingPoint>& all = program_.problem->rubbing;
-  for (int i = 0; i < static_cast<int>(all.size()); ++i) {
-    const double normal = normal_force(program, state, i, lane);
-    if (!(normal > 0)) continue;
-    const std::size_t next = rub.number.size();
-    rub.normals[next] = normal;
-    rub.sliding[next] = all[at(i)].sliding * normal;
-    rub.held[next] = rub.sticks.at(i, lane) != 0 ? all[at(i)].held * normal : rub.sliding[next];
-    rub.number.push_back(i);
-    for (int k = 0; k < all[at(i)].rows; ++k) rub.rows.push_back(all[at(i)].row + k);
-    rub.first_row.push_back(static_cast<int>(rub.rows.size()));
-  }
-  LaneOutcome outcome;
-  if (rub.rows.empty()) return outcome;
-  const int count = static_cast<int>(rub.rows.size());
+  std::fill_n(rub.matrix.begin(), count * count, 0.0);
   for (int b = 0; b < count; ++b) {
-    const double* column = W.column(points + rub.rows[at(b)]);
-    for (int a = 0; a < count; ++a) rub.matrix[at(a * count + b)] = of_own * column[points + rub.rows[at(a)]];
+    const Tangent& way = rub.tangents[at(b)];
+    for (int l = 0; l < way.count; ++l) {
+      if (way.share[at(l)] == 0) continue;
+      const double *column = W.column(points + way.row + l), share = of_own * way.share[at(l)];
+      for (int a = 0; a < count; ++a)
+        rub.matrix[at(a * count + b)] += share * rub.tangents[at(a)].of(column + points + rub.tangents[at(a)].row);
+    }
   }
   for (int a = 0; a < count; ++a) {
-    const int row = rub.rows[at(a)];
-    rub.free[at(a)] = state.end_rate.at(row, lane);
-    rub.effort[at(a)] = first ? state.effort[0].at(points + row, lane) : rub.found_before[at(row)];
+    const Tangent& way = rub.tangents[at(a)];
+    rub.free[at(a)] = way.of(&state.end_rate.at(way.row, lane), T);
+    rub.effort[at(a)] = first ? way.effort(&state.effort[0].at(points + way.row, lane), T)
+                              : way.effort(rub.found_before.data() + way.row);
+    for (int k = 0; k < rub.per_row; ++k)
+      rub.remembered[at(a * rub.per_row + k)] = rub.kept.at(rub.kept_at[at(a)] * rub.per_row + k, lane);
   }
   for (int i = 0; i < points; ++i) {
     const double p = of_normal * state.effort[0].data()[i * T + lane];
     if (p == 0) continue;
     const double* column = W.column(i);
-    for (int a = 0; a < count; ++a) rub.free[at(a)] += p * column[points + rub.rows[at(a)]];
+    for (int a = 0; a < count; ++a)
+      rub.free[at(a)] += p * rub.tangents[at(a)].of(column + points + rub.tangents[at(a)].row);
   }
+}
+
+// p_t of a lane for the normal efforts as they are, into `found`.
+LaneOutcome Marcher::find_friction(const StageProgram& program, StageState& state, int lane, bool first) {
+  StageFriction& rub = *rubbing_;
+  std::swap(rub.found, rub.found_before);
+  std::fill(rub.found.begin(), rub.found.end(), 0.0);
+  find_pressed(program, state, lane);
+  if (rub.tangents.empty()) return {};
+  gather_friction(program, state, lane, first);
   FrictionProblem problem;
   problem.points = static_cast<int>(rub.number.size());
   problem.first_row = rub.first_row.data();
   problem.matrix = rub.matrix.data();
-  problem.stride = count;
+  problem.stride = static_cast<int>(rub.tangents.size());
   problem.free = rub.free.data();
   problem.bound = rub.sliding.data();
   problem.bound_static = rub.held.data();
   problem.h = program.friction_momentum;
-  for (int a = 0; a < count; ++a)
-    for (int k = 0; k < rub.per_row; ++k)
-      rub.remembered[at(a * rub.per_row + k)] = rub.kept.at(rub.rows[at(a)] * rub.per_row + k, lane);
   problem.remembered = rub.remembered.data();
   problem.remembers = rub.remembers.data();
   problem.effort = rub.effort.data();
   problem.sticks = rub.holds.data();
   problem.slid = rub.slides.data();
-  outcome = program_.friction->solve(problem);
-  for (int a = 0; a < count; ++a) rub.found[at(rub.rows[at(a)])] = rub.effort[at(a)];
+  const LaneOutcome outcome = program_.friction->solve(problem);
+  for (std::size_t a = 0; a < rub.tangents.size(); ++a)
+    for (int k = 0; k < rub.tangents[a].count; ++k)
+      rub.found[at(rub.tangents[a].row + k)] += rub.tangents[a].share[at(k)] * rub.effort[a];
   return outcome;
 }
 
@@ -263,14 +315,15 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
   for (int i = 0; i < rub.sticks.rows(); ++i)
     rub.sticks.at(i, lane) = rub.slid.at(i, lane) = rub.normal.at(i, lane) = 0;
   for (int i = 0; i < rub.kept.rows(); ++i) rub.kept.at(i, lane) = 0;
-  for (std::size_t a = 0; a < rub.rows.size(); ++a)
+  for (std::size_t a = 0; a < rub.tangents.size(); ++a)
     for (int k = 0; k < rub.per_row; ++k)
-      rub.kept.at(rub.rows[a] * rub.per_row + k, lane) = rub.remembers[a * at(rub.per_row) + at(k)];
+      rub.kept.at(rub.kept_at[a] * rub.per_row + k, lane) = rub.remembers[a * at(rub.per_row) + at(k)];
   for (std::size_t k = 0; k < rub.number.size(); ++k) {
     const int i = rub.number[k];
     rub.sticks.at(i, lane) = rub.holds[k] != 0 ? 1 : 0;
     rub.slid.at(i, lane) = rub.slides[k];
     rub.normal.at(i, lane) = rub.normals[k];
+    for (const std::size_t axis : {0, 1}) rub.along.at(2 * i + static_cast<int>(axis), lane) = rub.directions[k][axis];
   }
   bool finite = true;
   for (std::size_t row = 0; row < rub.found.size(); ++row) {

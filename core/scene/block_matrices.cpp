@@ -64,7 +64,7 @@ SemiDiscrete alone(const JoinedBodies& bodies, std::size_t number, const SemiDis
 }  // namespace
 
 ModalBasis join_bases(const JoinedBodies& bodies, const SemiDiscrete& problem, const SparseMatrix& mass,
-                      const BasisSpec& spec) {
+                      const SparseRows& rows, const BasisSpec& spec) {
   ModalBasis out;
   int statics = 0;
   for (std::size_t b = 0; b < bodies.all.size(); ++b) {
@@ -77,7 +77,7 @@ ModalBasis join_bases(const JoinedBodies& bodies, const SemiDiscrete& problem, c
     ModalBasis::Part& part = out.parts.emplace_back();
     part.first = body.first;
     part.mass = M;
-    part.contact = problem.contact.middleCols(body.first, body.dofs());
+    part.contact = rows.middleCols(body.first, body.dofs());
     try {
       part.basis = std::make_shared<const ModalBasis>(modal_basis(K, M, part.contact, body.held, own));
     } catch (const InputError& error) {
@@ -86,7 +86,7 @@ ModalBasis join_bases(const JoinedBodies& bodies, const SemiDiscrete& problem, c
     out.modes += part.basis->modes;
     statics += part.basis->dofs() - part.basis->modes;
   }
-  const Index all = out.modes + statics, points = problem.contact.rows();
+  const Index all = out.modes + statics, points = rows.rows();
   out.shapes = MatrixXd::Zero(problem.space.dofs, all);
   out.stiffness = VectorXd::Zero(all);
   out.squares = VectorXd::Zero(out.modes);

@@ -88,9 +88,9 @@ void begin_bodies(const JoinedBodies& bodies, const InitialSpec& initial, SemiDi
 /// Throws InputError for an initial state that its body does not have, below /scene/initial/BODY.
 void check_initial_of_bodies(const JoinedBodies& bodies, const InitialSpec& initial);
 
-/// A basis of each body, joined: modes of all bodies first, then the coordinates of stops.
+/// A basis of each body, joined: modes of all bodies first, then the coordinates of stops. `rows`: what efforts push.
 ModalBasis join_bases(const JoinedBodies& bodies, const SemiDiscrete& problem, const SparseMatrix& mass,
-                      const BasisSpec& spec);
+                      const SparseRows& rows, const BasisSpec& spec);
 
 /// The mass of each body by itself, joined; that of an oscillator is its own. `build`: the mass of a problem of one
 /// body.

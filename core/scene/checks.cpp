@@ -14,6 +14,7 @@
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/supports.hpp>
+#include <ricochet/scene/surfaces.hpp>
 
 namespace ricochet {
 
@@ -339,7 +340,7 @@ void check_scene(const SceneSpec& shared, int elements, const ForceBeyond& beyon
   require(!scene.initial.equilibrium || (scene.initial.displacement.is_zero() && scene.initial.dofs.empty()),
           "/scene/initial/equilibrium", "stands beside a displacement; expected one of both");
   check_points(scene, space);
-  check_tangents(scene, space);
+  check_surfaces(scene, space);
   if (std::holds_alternative<AssembledSpec>(scene.structure)) return check_assembled(scene, space, beyond);
   require(scene.initial.dofs.empty(), "/scene/initial/file",
           fmt::format("a {} begins as formulas in x say; expected displacement and velocity", space.structure));

@@ -47,11 +47,15 @@ void check_bounds(const NamedStop& stop, std::size_t number, const ForceBeyond& 
 }
 
 void check_friction(const NamedStop& stop, std::size_t number) {
-  if (stop.tangent && !stop.tangent->given() && !stop.normal_force && !stop.side)
-    throw InputError(
-        stop_pointer(number, "/tangent"),
-        fmt::format("the tangent of stop {} says nothing; expected slope_radius, direction or component", stop.name));
-  if (stop.tangent && stop.tangent->speed != 0 && !stop.friction)
+  if (stop.across && stop.side)
+    throw InputError(stop_pointer(number, "/tangent"),
+                     fmt::format("stop {} is a clearance, which has its own tangents; expected one object", stop.name));
+  for (const auto* tangent : {&stop.tangent, &stop.across})
+    if (*tangent && !(*tangent)->given() && !stop.normal_force && !stop.side)
+      throw InputError(
+          stop_pointer(number, "/tangent"),
+          fmt::format("the tangent of stop {} says nothing; expected slope_radius, direction or component", stop.name));
+  if (!stop.friction && ((stop.tangent && stop.tangent->speed != 0) || (stop.across && stop.across->speed != 0)))
     throw InputError(
         stop_pointer(number, "/tangent/speed"),
         fmt::format("stop {} has no friction: a surface that runs does nothing; expected friction", stop.name));
@@ -60,12 +64,9 @@ void check_friction(const NamedStop& stop, std::size_t number) {
   if (mu.held < mu.sliding)
     throw InputError(stop_pointer(number, "/friction/static"),
                      fmt::format("static {:g} is below dynamic {:g}; expected static ≥ dynamic", mu.held, mu.sliding));
-  if (stop.side)
-    throw InputError(
-        stop_pointer(number, "/friction"),
-        fmt::format("stop {} is a clearance, where friction is not marched; expected a stop with bounds", stop.name));
+  if (stop.side) return;
   if (stop.normal_force) {
-    if (stop.tangent && stop.tangent->given())
+    if (stop.across || (stop.tangent && stop.tangent->given()))
       throw InputError(stop_pointer(number, "/tangent"),
                        fmt::format("stop {} has a normal force: what slides is its own displacement; expected speed "
                                    "alone, or no tangent",

@@ -23,9 +23,6 @@ struct ObservedRows {
 
 /// Throws InputError for names that are none or stand twice, also beside stops, and for places that are not there.
 void check_points(const SceneSpec& scene, const FiniteElementSpace& space);
-/// Throws InputError for tangents that the structure or the place of their stop does not have.
-void check_tangents(const SceneSpec& scene, const FiniteElementSpace& space);
-
 /// Fills points and tangents of a problem whose supports and motions are known.
 void observe_rows(const SceneSpec& scene, SemiDiscrete& problem);
 

@@ -28,11 +28,12 @@ struct PointSpec {
 };
 
 /// What moves along the surface of a stop while it is pushed. At most one is given beside the speed; of a stop with a
-/// normal force none, as what slides there is the displacement of the stop itself.
+/// normal force none, as what slides there is the displacement of the stop itself. Of a clearance, the speed is that
+/// of the rim of what moves in it, counter-clockwise from u₁ to u₂: r Ω of a rod that turns.
 struct TangentSpec {
   double slope_radius = 0;        ///< m: r of r θ, the surface of a tube that bends
   std::vector<double> direction;  ///< three numbers, at the nodes of the stop
-  std::string component;          ///< of the nodes of the stop
+  std::string component;          ///< of the places of the stop
   double speed = 0;               ///< of the surface along it, m/s
 
   bool given() const { return slope_radius > 0 || !direction.empty() || !component.empty(); }

@@ -189,7 +189,7 @@ struct NamedStop {
   std::optional<Place> to;  ///< absent: the ground
   std::optional<double> lower, upper;
   std::string moves_with = {};  ///< the support that carries it, or all; empty: it stands still
-  std::optional<TangentSpec> tangent = {};
+  std::optional<TangentSpec> tangent = {}, across = {};  ///< the second one, of a stop that slides in a plane
   StopParameters own = {};
   std::shared_ptr<const MotionSpec> motion = {};  ///< of its own; null: none
   std::optional<ClearanceSide> side = {};         ///< of a clearance, whose sides follow each other
@@ -244,6 +244,7 @@ struct InitialSpec {
   Projection projection = Projection::none;
   std::vector<DofState> dofs = {};               ///< of matrices that are given: those that do not begin at rest at 0
   bool equilibrium = false;                      ///< the displacement is that at rest under F(0) and the stops
+  bool frictionless = false;                     ///< that of stops that do not rub
   Formula displacement_z = {}, velocity_z = {};  ///< of u_z of a beam in two planes
   std::string body = {};                         ///< which this is of, among of_bodies
   std::vector<InitialSpec> of_bodies = {};       ///< of several bodies those that do not begin at rest at 0

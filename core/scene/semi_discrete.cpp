@@ -19,6 +19,7 @@
 #include <ricochet/scene/structure/assembled_structure.hpp>
 #include <ricochet/scene/structure/missing_residuals.hpp>
 #include <ricochet/scene/supports.hpp>
+#include <ricochet/scene/surfaces.hpp>
 #include <ricochet/scene/whole_load.hpp>
 #include <stdexcept>
 
@@ -260,16 +261,17 @@ InertiaOrRefusal build_mass(const SemiDiscrete& problem, const MassStrategy& mas
                           .modes = true,
                           .attached = problem.basis->stops(),
                           .attached_mass = !problem.space.given || problem.space.given->attached_mass};
-  space.contact_dofs = touched_dofs(SparseRows(problem.basis->at_points.sparseView()));
+  space.contact_dofs = touched_dofs(SparseRows(problem.basis->at_points.topRows(problem.points()).sparseView()));
   return mass.build(space);
 }
 
 // What was made on the dofs of the mesh, in the coordinates of the basis.
-void march_in_basis(const SceneSpec& scene, const SparseMatrix& mass, SemiDiscrete& problem, DistributedLoad& load) {
+void march_in_basis(const SceneSpec& scene, const SparseMatrix& mass, const SparseRows& pushed, SemiDiscrete& problem,
+                    DistributedLoad& load) {
   const ModalBasis& basis = *problem.basis;
   const bool least_squares = scene.initial.projection == InitialSpec::Projection::least_squares;
   for (Eigen::VectorXd* state : {&problem.position, &problem.velocity})
-    *state = least_squares ? in_basis_by_least_squares(basis, *state) : in_basis(basis, mass, problem.contact, *state);
+    *state = least_squares ? in_basis_by_least_squares(basis, *state) : in_basis(basis, mass, pushed, *state);
   SparseMatrix stiffness(basis.dofs(), basis.dofs());
   for (int i = 0; i < basis.dofs(); ++i) stiffness.insert(i, i) = basis.stiffness[i];
   stiffness.makeCompressed();
@@ -279,9 +281,9 @@ void march_in_basis(const SceneSpec& scene, const SparseMatrix& mass, SemiDiscre
     problem.damping.matrix =
         std::make_shared<const SparseMatrix>(((damping + damping.transpose()) / 2).eval().sparseView());
   }
-  problem.contact = basis.at_points.sparseView();
-  for (SparseRows* rows : {&problem.tip, &problem.observed.rows, &problem.fields.rows, &problem.tangents.rows,
-                           &problem.rubbed.rows})
+  problem.contact = basis.at_points.topRows(problem.points()).sparseView();
+  for (SparseRows* rows :
+       {&problem.tip, &problem.observed.rows, &problem.fields.rows, &problem.tangents.rows, &problem.rubbed.rows})
     *rows = problem.on_unknowns(std::move(*rows));
   problem.support_shape = basis.shapes.transpose() * problem.support_shape;
   load.project({problem.basis, &basis.shapes});
@@ -300,6 +302,8 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   ForceBeyond beyond;
   if (law_decides) beyond = law->changes_problem() ? anywhere_beyond() : force_beyond(*law, *parameters);
   check_scene(scene, elements, beyond);
+  if (law && !law->absent() && !compliant)
+    if (auto refusal = refuse_polygon(scene.stops)) return *refusal;
 
   SemiDiscrete problem = structure_alone(scene.structure, elements);
   problem.notes.insert(problem.notes.begin(), scene.notes.begin(), scene.notes.end());
@@ -316,9 +320,11 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   const JoinedBodies* bodies = bodies_of(scene.structure);
   // The modes of K with the consistent or given mass, whatever mass is marched.
   const SparseMatrix whole = scene.basis ? consistent_mass(problem.space) : SparseMatrix();
+  const SparseRows pushed_rows = scene.basis ? pushed_rows_of(scene, problem) : SparseRows();
   if (scene.basis)
-    problem.basis = bodies ? std::make_shared<const ModalBasis>(join_bases(*bodies, problem, whole, *scene.basis))
-                           : shared_basis(problem.stiffness, whole, problem.contact, problem.held, *scene.basis);
+    problem.basis =
+        bodies ? std::make_shared<const ModalBasis>(join_bases(*bodies, problem, whole, pushed_rows, *scene.basis))
+               : shared_basis(problem.stiffness, whole, pushed_rows, problem.held, *scene.basis);
   const auto build = [&](const SemiDiscrete& one) { return build_mass(one, mass); };
   auto built = bodies ? join_masses(*bodies, problem, build) : build(problem);
   if (auto* refusal = std::get_if<Refusal>(&built)) return *refusal;
@@ -345,7 +351,7 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   if (law_decides && !law->absent() && !law->reads())
     if (auto refusal = keep_nearest_bounds(problem)) return *refusal;
   interpolate_initial(scene, problem);
-  if (problem.basis) march_in_basis(scene, whole, problem, *load);
+  if (problem.basis) march_in_basis(scene, whole, pushed_rows, problem, *load);
   if (bodies && problem.damping.matrix)
     problem.damping.matrix = std::make_shared<const SparseMatrix>(join_dampings(*bodies, problem));
   problem.load = std::move(load);
@@ -358,9 +364,8 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   if (scene.initial.equilibrium) {
     if (problem.basis) still = problem.basis->shapes.transpose() * still;
     if (law_decides) prepare_law(*law, std::max(1, problem.points()), {parameters, 1}, problem.own);
-    if (!problem.rubbing.empty())
-      problem.notes.push_back("the state at rest is found without friction: with friction it is not unique");
     Equilibrium found = equilibrium(problem, still, lift_at_start(problem), law_decides ? law : nullptr);
+    check_rest(scene.initial, found, problem);
     problem.position = std::move(found.position);
     if (!found.pushed.isZero(0)) pushed = std::move(found.pushed);
   }

@@ -68,13 +68,17 @@ class DistributedLoad {
   mutable Eigen::VectorXd nodal_;
 };
 
-/// A contact point that rubs: |p_t| ≤ μ|p_n| against u = T q' + lift − V, p_n its effort or a force that is given.
+/// A contact point that rubs: |p_t| ≤ μ|p_n| against u = T q' + lift − V, p_n its effort or a force that is given. A
+/// round one is met in the direction n = (n₁, n₂) of its circle. Its rows are u₁, u₂ and the rim, which nothing but its
+/// speed moves; of a surface that bends also r θ₁ and r θ₂. Its tangents are −n₂u₁ + n₁u₂ + rim and n₁rθ₁ + n₂rθ₂.
 struct RubbingPoint {
-  int point = 0;                       ///< contact point
+  int point = 0;                       ///< contact point, of a round one that of u₁
   int row = 0, rows = 1;               ///< of SemiDiscrete::rubbed
+  bool round = false;                  ///< in a clearance that is met as a circle
   double held = 0, sliding = 0;        ///< μ where it stuck in the stage before, and else
   std::optional<double> normal_force;  ///< N
 
+  int tangents() const { return round ? rows / 2 : rows; }
   bool operator==(const RubbingPoint&) const = default;
 };
 

@@ -198,9 +198,17 @@ Json check_levels(const Json& value, const std::string& pointer) {
   return value;
 }
 
-// A list of any length of objects, each of its own name, in the place of one object. An empty one is the key left out.
+void check_at_most(const Field& field, const Json& value, const std::string& pointer) {
+  if (field.at_most != 0 && value.size() > field.at_most)
+    throw InputError(pointer, "expected at most " + std::to_string(field.at_most) + " objects, found " +
+                                  std::to_string(value.size()));
+}
+
+// A list of objects in the place of one object. An empty one is the key left out.
 Json check_listed(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
+  if (value.empty() && field.fallback->is_null()) return *field.fallback;
   if (value.empty()) return check_object(field.nested.front(), *field.fallback, pointer, axes);
+  check_at_most(field, value, pointer);
   Json result = Json::array();
   for (std::size_t i = 0; i < value.size(); ++i)
     result.push_back(check_object(field.listed.front(), value[i], pointer_to(pointer, i), axes));
@@ -213,9 +221,7 @@ Json check_objects(const Field& field, const Json& value, const std::string& poi
   if (!value.is_array()) throw InputError(pointer, expected + ", found " + quote(value));
   if (field.count != 0 && value.size() != field.count)
     throw InputError(pointer, expected + ", found " + std::to_string(value.size()));
-  if (field.at_most != 0 && value.size() > field.at_most)
-    throw InputError(pointer, "expected at most " + std::to_string(field.at_most) + " objects, found " +
-                                  std::to_string(value.size()));
+  check_at_most(field, value, pointer);
   Json result = Json::array();
   for (std::size_t i = 0; i < value.size(); ++i)
     result.push_back(check_object(field.nested.front(), value[i], pointer_to(pointer, i), axes));

@@ -201,8 +201,7 @@ StopsSpec read_stops(const Json& json, StudyFiles* files) {
                      optional_place(one.at("to")),
                      bound(one.at("lower")),
                      bound(one.at("upper")),
-                     with.is_string() ? with.get<std::string>() : "",
-                     read_tangent(one)};
+                     with.is_string() ? with.get<std::string>() : ""};
       if (!with.is_string())
         stop.motion =
             std::make_shared<const MotionSpec>(read_motion(with, pointer_to("/scene/stops", i) + "/moves_with", files));

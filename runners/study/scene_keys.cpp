@@ -85,10 +85,12 @@ Field initial_key() {
   keys.fields.back().axis = true;
   std::vector<Field> more = file_fields();
   keys.fields.push_back(std::move(more.front()));
-  Field rest = quiet(of_form(Field::Form::scalar, "equilibrium", Json(false),
-                             "Whether it begins at rest under F(0) and its stops: K q = F(0) + Hᵀp.")
-                         .as("at rest under F(0)"));
-  rest.spec.type = ParameterSpec::Type::boolean;
+  Field rest = quiet(single(word("equilibrium", {"frictionless"}, std::nullopt,
+                                 "Whether it begins at rest under F(0) and its stops: K q = F(0) + Hᵀp; where they "
+                                 "rub, \"frictionless\".")
+                                .as("at rest under F(0)")));
+  rest.fallback = Json(false);
+  rest.or_flag = true;
   keys.fields.push_back(std::move(rest));
   for (std::size_t i = 1; i < more.size(); ++i) keys.fields.push_back(std::move(more[i]));
   Field field = object("initial", Json::object(),
@@ -138,7 +140,9 @@ InitialSpec read_initial(const Json& scene, StudyFiles* files) {
   spec.projection = initial.at("projection") == "constraint"      ? InitialSpec::Projection::constraint
                     : initial.at("projection") == "least-squares" ? InitialSpec::Projection::least_squares
                                                                   : InitialSpec::Projection::none;
-  spec.equilibrium = initial.value("equilibrium", false);
+  const Json rest = initial.value("equilibrium", Json(false));
+  spec.frictionless = rest.is_string();
+  spec.equilibrium = rest.is_string() || rest.get<bool>();
   return spec;
 }
 
@@ -178,11 +182,17 @@ std::vector<Field> observed_of_stops() {
   direction.fields.back().count = 3;
   ObjectForm component;
   component.fields = {
-      of_form(Field::Form::text, "component", std::nullopt, "Component along it, at the nodes of the stop.")};
+      of_form(Field::Form::text, "component", std::nullopt, "Component along it, at the places of the stop.")};
   ObjectForm tangent;
   tangent.fields = {quiet(real("speed", "m/s", any, 0.0, "Speed of the surface along it, where it rubs.")
                               .as("speed of the surface", "the speed of the surface"))};
   tangent.ways = {radius, direction, component, ObjectForm()};
+  Field along =
+      quiet(object("tangent", Json(nullptr),
+                   "Motion along the surface, for wear and friction; of a plane, a list of two; absent: none.", tangent)
+                .as("tangent"));
+  along.listed = {tangent};
+  along.at_most = 2;
   ObjectForm coefficients;
   coefficients.fields = {real("static", "1", non_negative, std::nullopt, "μ of a point that stuck before.")
                              .as("static μ", "the static friction of a stop"),
@@ -198,10 +208,7 @@ std::vector<Field> observed_of_stops() {
                                      "Force that presses a friction damper, in the place of bounds; absent: none."))
                            .as("normal force", "the normal force of a damper"));
   normal.axis = true;
-  return {
-      quiet(object("tangent", Json(nullptr), "Motion along the surface, for wear and friction; absent: none.", tangent)
-                .as("tangent")),
-      std::move(friction), std::move(normal)};
+  return {std::move(along), std::move(friction), std::move(normal)};
 }
 
 Place read_place(const Json& json) {
@@ -249,14 +256,19 @@ StopParameters read_own(const Json& stop) {
   return {value("stiffness"), value("damping"), value("restitution")};
 }
 
-std::optional<TangentSpec> read_tangent(const Json& stop) {
-  const Json given = stop.value("tangent", Json());
-  if (given.is_null()) return std::nullopt;
-  return TangentSpec{given.value("slope_radius", 0.0), given.value("direction", std::vector<double>()),
-                     given.value("component", ""), given.value("speed", 0.0)};
+namespace {
+
+TangentSpec read_tangent(const Json& given) {
+  return {given.value("slope_radius", 0.0), given.value("direction", std::vector<double>()),
+          given.value("component", ""), given.value("speed", 0.0)};
 }
 
+}  // namespace
+
 void read_friction(const Json& stop, NamedStop& out) {
+  const Json tangents = stop.value("tangent", Json());
+  if (!tangents.is_null()) out.tangent = read_tangent(tangents.is_array() ? tangents.at(0) : tangents);
+  if (tangents.is_array() && tangents.size() > 1) out.across = read_tangent(tangents[1]);
   if (const Json given = stop.value("friction", Json()); given.is_number())
     out.friction = FrictionSpec{given.get<double>(), given.get<double>()};
   else if (given.is_object())

@@ -39,7 +39,6 @@ Place read_place(const Json& json);
 /// nearly so: another word in its place, or no name.
 bool is_of_each(const Field& field, const Json& value, const std::string& pointer);
 std::vector<PointSpec> read_points(const Json& scene);
-std::optional<TangentSpec> read_tangent(const Json& stop);
 /// friction and normal_force of a stop.
 void read_friction(const Json& stop, NamedStop& out);
 StopParameters read_own(const Json& stop);

@@ -152,8 +152,11 @@ class SchemaWriter {
       case Field::Form::files:
         return {{"type", Json::array({"object", "null"})}};
       case Field::Form::object:
-        if (!field.listed.empty())
-          return either("array", {{"items", object(field.listed.front())}}, object(field.nested.front()));
+        if (!field.listed.empty()) {
+          Json items{{"items", object(field.listed.front())}};
+          if (field.at_most != 0) items["maxItems"] = field.at_most;
+          return or_null(field, either("array", items, object(field.nested.front())));
+        }
         if (!field.given.empty())
           return {{"anyOf", Json::array({object(field.nested.front()),
                                          {{"type", "object"},

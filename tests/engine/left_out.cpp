@@ -78,8 +78,8 @@ Place own_place(double x) {
 SceneSpec thrown_beam(StopParameters middle = {}, StopParameters end = {}) {
   SceneSpec scene = working_set();
   scene.stops = {};
-  scene.stops.named = {{"middle", own_place(0.7505), {}, -0.02, 0.05, "", {}, middle},
-                       {"end", own_place(1.501), {}, -0.05, 0.1, "", {}, end}};
+  scene.stops.named = {{"middle", own_place(0.7505), {}, -0.02, 0.05, "", {}, {}, middle},
+                       {"end", own_place(1.501), {}, -0.05, 0.1, "", {}, {}, end}};
   return scene;
 }
 
@@ -90,8 +90,8 @@ SceneSpec thrown_pair(StopParameters first, StopParameters second) {
                                                "dof,node,component,x,y,z,held\n1,A,ux,0,0,0,\n2,B,ux,0,0,0,\n"}),
                                     {});
   scene.initial.dofs = {{1, 0, 1}, {2, 0, 1}};
-  scene.stops.named = {{"a", at_node("A", "ux"), {}, {}, 0.01, "", {}, first},
-                       {"b", at_node("B", "ux"), {}, {}, 0.01, "", {}, second}};
+  scene.stops.named = {{"a", at_node("A", "ux"), {}, {}, 0.01, "", {}, {}, first},
+                       {"b", at_node("B", "ux"), {}, {}, 0.01, "", {}, {}, second}};
   return scene;
 }
 

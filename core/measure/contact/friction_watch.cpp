@@ -38,15 +38,21 @@ int FrictionWatch::number_of(int stop) const {
 namespace {
 
 // How fast a point slides before a stage, by the velocity of the scheme.
-double speed_before(const Marcher& marcher, const StageView& view, const RubbingPoint& one) {
+double speed_before(const Marcher& marcher, const StageView& view, const RubbingPoint& one,
+                    const std::array<double, 2>& normal) {
   const MarchModel& model = *marcher.program().model;
   const std::vector<double>& weights = marcher.program().plan.velocity.slots;
   double size = 0;
-  for (int row = one.row; row < one.row + one.rows; ++row) {
-    double speed = marcher.rubbed_rate(0, row, view.from);
-    for (std::size_t j = 0; j < weights.size(); ++j)
-      if (weights[j] != 0) speed += weights[j] * model.times(model.rubbed(), row, view.slots[j]);
-    size = std::hypot(size, speed);
+  for (int k = 0; k < one.tangents(); ++k) {
+    const Tangent way = tangent_of(one, k, normal);
+    std::array<double, 3> speeds{};
+    for (int l = 0; l < way.count; ++l) {
+      double& speed = speeds[static_cast<std::size_t>(l)];
+      speed = marcher.rubbed_rate(0, way.row + l, view.from);
+      for (std::size_t j = 0; j < weights.size(); ++j)
+        if (weights[j] != 0) speed += weights[j] * model.times(model.rubbed(), way.row + l, view.slots[j]);
+    }
+    size = std::hypot(size, way.of(speeds.data()));
   }
   return size;
 }
@@ -77,20 +83,21 @@ void FrictionWatch::stage_solved(const Marcher& marcher, const StageView& view) 
       continue;
     }
     const bool held = found.sticks.at(number, 0) != 0;
+    const std::array<double, 2> normal_along{found.along.at(2 * number, 0), found.along.at(2 * number + 1, 0)};
     const double slid = found.slid.at(number, 0),
-                 before = point.pressed ? point.slid : speed_before(marcher, view, one);
+                 before = point.pressed ? point.slid : speed_before(marcher, view, one, normal_along);
     const bool changed = point.pressed && point.held != held;
     point.pressed = true;
     point.held = held;
     point.slid = slid;
     if (part < 0) continue;
     double force = 0, work = 0, way = 0;
-    for (int k = 0; k < one.rows; ++k) {
-      const auto row = static_cast<std::size_t>(one.row + k);
-      force = std::hypot(force, view.effort[0][(problem.points() + one.row + k) * T]);
-      work += audit_.works().friction_works()[row];
-      way = std::hypot(way, audit_.works().friction_ways()[row]);
+    for (int k = 0; k < one.tangents(); ++k) {
+      const Tangent along = tangent_of(one, k, normal_along);
+      force = std::hypot(force, along.effort(view.effort[0] + (problem.points() + along.row) * T, T));
+      way = std::hypot(way, along.of(audit_.works().friction_ways().data() + along.row));
     }
+    for (int k = 0; k < one.rows; ++k) work += audit_.works().friction_works()[static_cast<std::size_t>(one.row + k)];
     FrictionTotals& totals = totals_[i * static_cast<std::size_t>(window_.count) + static_cast<std::size_t>(part)];
     const double slides = 0.5 * (before + slid);
     totals.time += momentum;

@@ -16,6 +16,7 @@ TangentWatch::TangentWatch(const Marcher& marcher, const WindowParts& window)
     if (row < 0) continue;
     if (!tangents_.empty()) tangents_.back().count = row - tangents_.back().first;
     tangents_.emplace_back().first = row;
+    tangents_.back().round = problem.round(stops.row[static_cast<std::size_t>(stop)]);
     tangents_.back().count = rows_.count() - row;
   }
   work_.resize(tangents_.size() * static_cast<std::size_t>(window.count));
@@ -33,7 +34,7 @@ TangentWatch::TangentWatch(const Marcher& marcher, const WindowParts& window)
 }
 
 double TangentWatch::Tangent::along(const std::array<double, 2>& normal) const {
-  if (count == 1) return speed[0];
+  if (!round) return count == 1 ? speed[0] : std::hypot(speed[0], speed[1]);
   const double circle = normal[0] * speed[1] - normal[1] * speed[0];
   return count == 2 ? std::abs(circle) : std::hypot(circle, normal[0] * speed[2] + normal[1] * speed[3]);
 }

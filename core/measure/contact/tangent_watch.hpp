@@ -14,8 +14,9 @@ namespace ricochet {
 ///
 /// V⁻ over the sub-step before the instant and V⁺ over that of the instant. A clearance met in the direction n has
 /// |V|² = (n × v)² + (r n·θ')². The first part is along the circle. The second, of a surface of radius r that bends, is
-/// along the beam. The rows are u₁, u₂ and r θ₁, r θ₂. Tangents are read, never pushed; points are stops. It looks at a
-/// step before the ImpactRecorder that tells it of instants. Every step is shown to it where there are tangents.
+/// along the beam. The rows are u₁, u₂ and r θ₁, r θ₂. Of two tangents V is the length of both. Tangents are read,
+/// never pushed; points are stops. It looks at a step before the ImpactRecorder that tells it of instants. Every step
+/// is shown to it where there are tangents.
 class TangentWatch final : public StepObserver, public ContactListener {
  public:
   TangentWatch(const Marcher& marcher, const WindowParts& window);
@@ -42,6 +43,7 @@ class TangentWatch final : public StepObserver, public ContactListener {
   };
   struct Tangent {
     int first = 0, count = 1;                // its rows
+    bool round = false;                      // of a clearance
     std::array<double, 4> place{}, speed{};  // at the last opening, over the sub-step before it
     std::vector<Waiting> waiting = {};       // Σ I of instants that wait for V⁺, by their directions
     double slid = 0;                         // Σ I |V⁻| of these

@@ -257,6 +257,26 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
 // What a row with its measures takes in the store, and a sample of its curve: sixteen numbers. Measured.
 constexpr double bytes_of_row = 3000, bytes_of_sample = 128;
 
+namespace {
+
+// What a reader should know of a stop that rubs: coupling, how soon a held effort settles, how fast it creeps.
+std::string rubbing_note(const Program& program, std::size_t number) {
+  constexpr double left = 0.01;
+  const RubbingPoint& one = program.problem->rubbing[number];
+  const double root = std::abs(program.held_root), creeps = program.friction->creeps(1);
+  std::string text =
+      fmt::format("stop {} rubs, μ {:g}: normal and tangent are coupled by {:.2g} (jam number {:.2g})",
+                  program.problem->stops[static_cast<std::size_t>(one.point)], std::max(one.held, one.sliding),
+                  program.jam[number].coupling, program.jam[number].number);
+  if (creeps > 0) return text + fmt::format("; held, it creeps by up to {:.3g} m/s", creeps);
+  if (root >= 1) return text + "; a disturbance of a held effort stays";
+  const double steps = root > 0 ? std::ceil(std::log(left) / std::log(root)) : 0;
+  return text + (steps > 0 ? fmt::format("; a held effort forgets 99 % of a disturbance in {:g} steps", steps)
+                           : "; a held effort is right at once");
+}
+
+}  // namespace
+
 CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   CasePlan plan;
   const Prepared prepared = prepare_case(study_case, registry);
@@ -266,13 +286,8 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   if (!prepared.program) return plan;
   for (Said& doubt : run_doubts(study_case, prepared))
     if (!doubt.text.empty()) plan.notes.push_back(std::move(doubt.text));
-  for (std::size_t i = 0; i < prepared.program->jam.size(); ++i) {
-    const RubbingPoint& one = prepared.problem->rubbing[i];
-    plan.notes.push_back(
-        fmt::format("stop {} rubs, μ {:g}: normal and tangent are coupled by {:.2g} (jam number {:.2g})",
-                    prepared.problem->stops[static_cast<std::size_t>(one.point)], std::max(one.held, one.sliding),
-                    prepared.program->jam[i].coupling, prepared.program->jam[i].number));
-  }
+  for (std::size_t i = 0; i < prepared.program->jam.size(); ++i)
+    plan.notes.push_back(rubbing_note(*prepared.program, i));
   plan.coarsest_step = plan.finest_step = study_case.step;
   plan.operator_name = operator_name(prepared.program->kind);
   plan.left_out = left_out_pairs(prepared.program->left_out);

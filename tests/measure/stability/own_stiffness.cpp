@@ -14,7 +14,7 @@ SceneSpec two_stops(StopParameters first, StopParameters second) {
   Place middle, end;
   middle.x = 0.5;
   end.x = 1;
-  scene.stops.named = {{"middle", middle, {}, -0.1, {}, "", {}, first}, {"end", end, {}, -0.1, {}, "", {}, second}};
+  scene.stops.named = {{"middle", middle, {}, -0.1, {}, "", {}, {}, first}, {"end", end, {}, -0.1, {}, "", {}, {}, second}};
   return scene;
 }
 
