@@ -73,6 +73,45 @@ StageFriction::StageFriction(const Program& program) {
   rate.resize(at(problem.points()));
 }
 
+FrictionChange StageFriction::change() const {
+  FrictionChange out;
+  for (std::size_t row = 0; row < found.size(); ++row) {
+    const double off = found[row] - given[row], change = off - off_before[row];
+    out.most = std::max(out.most, std::abs(off));
+    out.largest = std::max(out.largest, std::abs(found[row]));
+    out.down += off * change;
+    out.along += change * change;
+  }
+  for (std::size_t k = 0; k < number.size(); ++k) out.largest = std::max(out.largest, held[k]);
+  return out;
+}
+
+void StageFriction::give(double back) {
+  for (std::size_t row = 0; row < found.size(); ++row) {
+    const double off = found[row] - given[row];
+    given[row] = found[row] - back * (found[row] - found_before[row]);
+    off_before[row] = off;
+  }
+}
+
+void StageFriction::forget(int lane) {
+  for (int i = 0; i < sticks.rows(); ++i) sticks.at(i, lane) = slid.at(i, lane) = normal.at(i, lane) = 0;
+  for (int i = 0; i < kept.rows(); ++i) kept.at(i, lane) = 0;
+}
+
+void StageFriction::keep(int lane) {
+  forget(lane);
+  for (std::size_t a = 0; a < tangents.size(); ++a)
+    for (int k = 0; k < per_row; ++k) kept.at(kept_at[a] * per_row + k, lane) = remembers[a * at(per_row) + at(k)];
+  for (std::size_t k = 0; k < number.size(); ++k) {
+    const int i = number[k];
+    sticks.at(i, lane) = holds[k] != 0 ? 1 : 0;
+    slid.at(i, lane) = slides[k];
+    normal.at(i, lane) = normals[k];
+    for (const int axis : {0, 1}) along.at(2 * i + axis, lane) = directions[k][at(axis)];
+  }
+}
+
 // u° of all rows and lanes: that of the stage without its own efforts, against the surface.
 void Marcher::measure_end_rates(const StageProgram& program, StageState& state, const double* z) {
   const EndRate& end = program.facts.end_rate;
@@ -247,8 +286,9 @@ double grain_of(const StageFriction& rub, const std::vector<RubbingPoint>& all, 
   for (const int i : rub.number) {
     const RubbingPoint& one = all[at(i)];
     if (one.normal_force || reach == 0) continue;
-    const double own = std::abs(reach) * W.column(one.point)[one.point];
-    if (own > 0) most = std::max(most, std::max(one.held, one.sliding) * std::abs(rub.measured[at(one.point)]) / own);
+    const double own = std::abs(reach) * W.column(one.point)[one.point],
+                 measured = std::hypot(rub.measured[at(one.point)], one.round ? rub.measured[at(one.point + 1)] : 0.0);
+    if (own > 0) most = std::max(most, std::max(one.held, one.sliding) * measured / own);
   }
   return grains * most;
 }
@@ -272,16 +312,9 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
   double largest = 0, most = 0;
   while (true) {
     outcome = find_friction(program, state, lane, turn == 0);
-    most = largest = 0;
-    double down = 0, along = 0;
-    for (std::size_t row = 0; row < rub.found.size(); ++row) {
-      const double off = rub.found[row] - rub.given[row], change = off - rub.off_before[row];
-      most = std::max(most, std::abs(off));
-      largest = std::max(largest, std::abs(rub.found[row]));
-      down += off * change;
-      along += change * change;
-    }
-    for (std::size_t k = 0; k < rub.number.size(); ++k) largest = std::max(largest, rub.held[k]);
+    const FrictionChange change = rub.change();
+    most = change.most;
+    largest = change.largest;
     const double grain = grain_of(rub, program_.problem->rubbing, columns_of(state), reach);
     if (!outcome.converged || most <= std::max(settled * largest, grain)) break;
     if (turn == 0 && !friction_moves_normals(state, std::max(std::abs(reach), std::abs(rate_reach)), lane)) {
@@ -289,12 +322,7 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
       break;
     }
     if (++turn > most_turns) break;
-    const double back = turn > 1 && turn % plain_every != 0 && along > 0 ? down / along : 0.0;
-    for (std::size_t row = 0; row < rub.found.size(); ++row) {
-      const double off = rub.found[row] - rub.given[row];
-      rub.given[row] = rub.found[row] - back * (rub.found[row] - rub.found_before[row]);
-      rub.off_before[row] = off;
-    }
+    rub.give(turn > 1 && turn % plain_every != 0 && change.along > 0 ? change.down / change.along : 0.0);
     for (int i = 0; i < points; ++i) {
       const double moved = moved_by_friction(state, rub.given, i);
       state.free.at(i, lane) = rub.measured[at(i)] + reach * moved;
@@ -312,19 +340,7 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
   }
   rub.turns[at(lane)] = turn;
   rub.residual[at(lane)] = std::max(outcome.residual, largest > 0 ? most / largest : 0.0);
-  for (int i = 0; i < rub.sticks.rows(); ++i)
-    rub.sticks.at(i, lane) = rub.slid.at(i, lane) = rub.normal.at(i, lane) = 0;
-  for (int i = 0; i < rub.kept.rows(); ++i) rub.kept.at(i, lane) = 0;
-  for (std::size_t a = 0; a < rub.tangents.size(); ++a)
-    for (int k = 0; k < rub.per_row; ++k)
-      rub.kept.at(rub.kept_at[a] * rub.per_row + k, lane) = rub.remembers[a * at(rub.per_row) + at(k)];
-  for (std::size_t k = 0; k < rub.number.size(); ++k) {
-    const int i = rub.number[k];
-    rub.sticks.at(i, lane) = rub.holds[k] != 0 ? 1 : 0;
-    rub.slid.at(i, lane) = rub.slides[k];
-    rub.normal.at(i, lane) = rub.normals[k];
-    for (const std::size_t axis : {0, 1}) rub.along.at(2 * i + static_cast<int>(axis), lane) = rub.directions[k][axis];
-  }
+  rub.keep(lane);
   bool finite = true;
   for (std::size_t row = 0; row < rub.found.size(); ++row) {
     state.effort[0].at(points + static_cast<int>(row), lane) = rub.found[row];
@@ -367,9 +383,7 @@ void Marcher::rub(const StageProgram& program, StageState& state, const double* 
       rub_lane(program, state, lane);
       continue;
     }
-    for (int i = 0; i < rub.sticks.rows(); ++i)
-      rub.sticks.at(i, lane) = rub.slid.at(i, lane) = rub.normal.at(i, lane) = 0;
-    for (int i = 0; i < rub.kept.rows(); ++i) rub.kept.at(i, lane) = 0;
+    rub.forget(lane);
     for (int row = points; row < state.effort[0].rows(); ++row) state.effort[0].at(row, lane) = 0;
     rub.residual[at(lane)] = rub.turns[at(lane)] = 0;
   }

@@ -21,10 +21,23 @@ struct Tangent {
 /// Tangent 0 or 1 of a point, of a round one for its direction n.
 Tangent tangent_of(const RubbingPoint& one, int number, const std::array<double, 2>& normal);
 
+/// By how much friction found something else than what the normal efforts were found with, N: the largest of rows, the
+/// largest effort or bound, and the sums of the secant.
+struct FrictionChange {
+  double most = 0, largest = 0, down = 0, along = 0;
+};
+
 /// What friction found in the last stage that looked at contact, and the workspace of finding it. Allocates when
 /// constructed only.
 struct StageFriction {
   explicit StageFriction(const Program& program);
+
+  FrictionChange change() const;
+  /// The normal efforts are to be found with what friction found, less `back` times its change of the last turn.
+  void give(double back);
+  /// What was found of a lane, as its state; or nothing.
+  void keep(int lane);
+  void forget(int lane);
 
   Block normal;                  ///< |N|, N, by rubbing point and lane; 0: nothing presses
   Block sticks;                  ///< 1: held; part of a lane's state

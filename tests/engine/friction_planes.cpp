@@ -35,7 +35,7 @@ void push_node(SceneSpec& scene, const std::string& component, const std::string
 }
 
 // A mass on springs with dofs uy, ux, uz of one node and a floor uy ≥ 0 that rubs in the plane of ux and uz.
-SceneSpec on_floor(double mass, double mu, const std::vector<double>& stiffness = {1e-9, 1e-9, 1e-9}) {
+SceneSpec on_floor(double mass, double mu, const std::vector<double>& stiffness = {800, 1e-9, 1e-9}) {
   SceneSpec scene =
       assembled_scene(assembled({diagonal_market(stiffness), diagonal_market({mass, mass, mass}),
                                  "dof,node,component,x,y,z,held\n1,P,uy,0,0,0,\n2,P,ux,0,0,0,\n3,P,uz,0,0,0,\n"}));
