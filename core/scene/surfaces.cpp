@@ -86,7 +86,12 @@ PlaceRow tangent_row(const SceneSpec& scene, const FiniteElementSpace& space, co
     }
     if (place.node.empty() && (tangent.component.empty() || !(place.x || place.point.find('.') != std::string::npos)))
       refuse_tangent(scene, stop, pointer);
-    return place_row(scene, space, turned(place, tangent), pointer);
+    try {
+      return place_row(scene, space, turned(place, tangent), pointer);
+    } catch (const InputError& error) {
+      // The point is not one that the study names.
+      throw InputError(place.point.empty() ? error.pointer() : pointer + "/component", error.what());
+    }
   };
   return stop.to ? difference(row(stop.at), row(*stop.to)) : row(stop.at);
 }
