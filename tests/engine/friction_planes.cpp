@@ -2,31 +2,16 @@
 #include <fmt/format.h>
 
 #include <numbers>
-#include <ricochet/measure/contact/friction_watch.hpp>
 #include <ricochet/scene/clearances.hpp>
 
-#include "tests/marching.hpp"
-#include "tests/scene/structure/beam_files.hpp"
+#include "tests/engine/rubbing.hpp"
 
 using namespace ricochet;
 using namespace ricochet::testing;
 
 namespace {
 
-const Choice of_moreau{"moreau-jean", {{"theta", 0.5}}}, of_dumont{"newmark-dumont-paoli", {{"beta", 0.5}}},
-    soft{"penalty", {{"stiffness", 6e4}, {"evaluation", std::string("averaged")}}};
-
-CompileOptions exact_friction() {
-  CompileOptions options;
-  options.make_friction = [] { return make(registry().friction("coulomb"), {"coulomb"}); };
-  return options;
-}
-
-std::string diagonal_market(const std::vector<double>& values) {
-  std::string text = fmt::format("%%MatrixMarket matrix coordinate real symmetric\n{0} {0} {0}\n", values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) text += fmt::format("{0} {0} {1}\n", i + 1, values[i]);
-  return text;
-}
+const Choice soft{"penalty", {{"stiffness", 6e4}, {"evaluation", std::string("averaged")}}};
 
 void push_node(SceneSpec& scene, const std::string& component, const std::string& history) {
   LoadTerm term{.force = true, .at = {}, .shape = Formula(), .history = Formula(history, "", "t")};
@@ -35,23 +20,20 @@ void push_node(SceneSpec& scene, const std::string& component, const std::string
 }
 
 // A mass on springs with dofs uy, ux, uz of one node and a floor uy ≥ 0 that rubs in the plane of ux and uz.
-SceneSpec on_floor(double mass, double mu, const std::vector<double>& stiffness = {800, 1e-9, 1e-9}) {
-  SceneSpec scene =
-      assembled_scene(assembled({diagonal_market(stiffness), diagonal_market({mass, mass, mass}),
-                                 "dof,node,component,x,y,z,held\n1,P,uy,0,0,0,\n2,P,ux,0,0,0,\n3,P,uz,0,0,0,\n"}));
-  NamedStop floor{.name = "floor", .at = at_node("P"), .to = {}, .lower = 0.0, .upper = {}};
-  floor.tangent = TangentSpec{.slope_radius = 0, .direction = {}, .component = "ux", .speed = 0};
+SceneSpec on_floor(double mass, double mu, const Eigen::Vector3d& stiffness = {800, 0, 0}) {
+  SceneSpec scene = given_scene(stiffness.asDiagonal(), mass * Eigen::Matrix3d::Identity(),
+                                "dof,node,component,x,y,z,held\n1,P,uy,0,0,0,\n2,P,ux,0,0,0,\n3,P,uz,0,0,0,\n");
+  NamedStop floor = rubbing_floor(mu);
   floor.across = TangentSpec{.slope_radius = 0, .direction = {}, .component = "uz", .speed = 0};
-  floor.friction = FrictionSpec{mu, mu};
   scene.stops.named = {floor};
   return scene;
 }
 
 // A mass on springs in a plane, within a circle that rubs.
 SceneSpec in_circle(double mass, double stiffness, double damping, double radius, double mu, double speed) {
-  SceneSpec scene = assembled_scene(assembled({diagonal_market({stiffness, stiffness}), diagonal_market({mass, mass}),
-                                               "dof,node,component,x,y,z,held\n1,P,uy,0,0,0,\n2,P,uz,0,0,0,\n"}),
-                                    {0, damping / mass});
+  SceneSpec scene =
+      given_scene(stiffness * Eigen::Matrix2d::Identity(), mass * Eigen::Matrix2d::Identity(),
+                  "dof,node,component,x,y,z,held\n1,P,uy,0,0,0,\n2,P,uz,0,0,0,\n", "", {0, damping / mass});
   Place node;
   node.node = "P";
   NamedStop hole{.name = "hole", .at = node, .to = {}, .lower = {}, .upper = {}};
@@ -69,14 +51,11 @@ struct Rubbed {
 };
 
 Rubbed rubbed(const SceneSpec& scene, const Methods& methods, double h, double duration, double from = 0) {
-  Marcher made = marcher(scene, 1, methods, h, exact_friction());
-  EnergyAudit audit(made);
-  FrictionWatch watch(made, audit, {from, duration, 1});
-  const Observers observers{&audit, &watch};
-  made.start(observers);
-  made.march(std::llround(duration / h) - made.step(), observers);
+  Marcher made = marcher(scene, 1, methods, h, with_friction({"coulomb"}));
+  const auto all = watched(made, duration, from);
   REQUIRE(made.status(0).running);
-  return {made.position(0), watch.has(0) ? watch.totals(0) : FrictionTotals(), audit.totals(0), watch.residual()};
+  const FrictionWatch& watch = all->watch;
+  return {made.position(0), watch.has(0) ? watch.totals(0) : FrictionTotals(), all->audit.totals(0), watch.residual()};
 }
 
 }  // namespace
@@ -84,7 +63,7 @@ Rubbed rubbed(const SceneSpec& scene, const Methods& methods, double h, double d
 TEST_CASE("friction: a mass put on a belt at an angle is brought along by a disc of efforts", "[friction]") {
   // From (0, 1.5) against (2, 0): 2.5 m/s along one line are lost at μg, whatever the axes.
   const double g = 9.81, mu = 0.3, at_rest = 2.5 / (mu * g);
-  for (const Choice& time : {of_moreau, of_dumont}) {
+  for (const Choice& time : {moreau, dumont}) {
     INFO(time.name);
     SceneSpec scene = on_floor(1.2, mu);
     push_node(scene, "uy", "-1.2*9.81");
@@ -105,7 +84,7 @@ TEST_CASE("friction: no direction of a plane is special", "[friction]") {
   // A cone of springs, so that the path curves; turned by 30 degrees the tangents are the others.
   const double angle = std::numbers::pi / 6, c = std::cos(angle), s = std::sin(angle);
   const auto run = [&](bool turned, double mu) {
-    SceneSpec scene = on_floor(1.2, mu, {1e-9, 300, 800});
+    SceneSpec scene = on_floor(1.2, mu, {0, 300, 800});
     push_node(scene, "uy", "-1.2*9.81*(1+0.4*cos(9*t))");
     push_node(scene, "ux", "3*cos(7*t)");
     push_node(scene, "uz", "2*sin(5*t)");
@@ -116,7 +95,7 @@ TEST_CASE("friction: no direction of a plane is special", "[friction]") {
       floor.tangent = TangentSpec{.slope_radius = 0, .direction = {c, 0, s}, .component = "", .speed = 0};
       floor.across = TangentSpec{.slope_radius = 0, .direction = {-s, 0, c}, .component = "", .speed = 0};
     }
-    return rubbed(scene, {{"consistent"}, {"signorini"}, of_moreau}, 1e-3, 2).place;
+    return rubbed(scene, {{"consistent"}, {"signorini"}, moreau}, 1e-3, 2).place;
   };
   const Eigen::VectorXd plain = run(false, 0.1);
   CHECK((plain - run(true, 0.1)).norm() <= 1e-10 * plain.norm());
@@ -127,7 +106,7 @@ TEST_CASE("friction: a rotor rubs all round its hole as its balance of forces sa
   // (k − mω²)R + N + i(cωR + μN) = F e^{−iφ}, N = κ(R − r); its rim turns with the whirl: u = ωR + 5 m/s.
   const double R = 0.0144349658, N = 146.09795, power = 175.62282, omega = 70;
   const double phase = -std::atan2(60 * omega * R + 0.2 * N, (8000 - 2 * omega * omega) * R + N);
-  for (const Choice& time : {of_moreau, of_dumont}) {
+  for (const Choice& time : {moreau, dumont}) {
     INFO(time.name);
     SceneSpec scene = in_circle(2, 8000, 60, 0.012, 0.2, 5);
     push_node(scene, "uy", "150*cos(70*t)");
@@ -155,7 +134,7 @@ TEST_CASE("friction: what rests in a hole is held, and stays, until its cone is 
     push_node(scene, "uy", fmt::format("{:.17g}", normal));
     push_node(scene, "uz", fmt::format("{:.17g}", 20 * std::sin(angle)));
     scene.initial.dofs = {{1, depth, 0}, {2, 0, 0}};
-    const Rubbed found = rubbed(scene, {{"consistent"}, soft, of_moreau}, 1e-4, 0.02);
+    const Rubbed found = rubbed(scene, {{"consistent"}, soft, moreau}, 1e-4, 0.02);
     if (beyond < 1) {
       CHECK(std::abs(found.place[1]) <= 1e-12);
       CHECK(found.friction.held == Approx(found.friction.time));
@@ -172,7 +151,7 @@ TEST_CASE("friction: a scene that is turned rubs in its hole as it did", "[frict
     const double c = std::cos(angle), s = std::sin(angle);
     SceneSpec scene = in_circle(2, 500, 0, 1e-3, 0.2, 0.05);
     scene.initial.dofs = {{1, c * 1e-4 - s * 5e-4, c * 0.5 - s * 0.2}, {2, s * 1e-4 + c * 5e-4, s * 0.5 + c * 0.2}};
-    return rubbed(scene, {{"consistent"}, {"penalty", {{"stiffness", 1e6}}}, of_moreau}, 1e-5, 0.05);
+    return rubbed(scene, {{"consistent"}, {"penalty", {{"stiffness", 1e6}}}, moreau}, 1e-5, 0.05);
   };
   const Rubbed still = run(0);
   CHECK(still.friction.heat > 0.01 * 0.29);

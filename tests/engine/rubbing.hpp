@@ -46,9 +46,9 @@ inline NamedStop rubbing_floor(double mu) {
 
 /// A structure of these matrices, whose dofs stand in the text of a table; C in the format of Matrix Market.
 inline SceneSpec given_scene(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M, const std::string& dofs,
-                             const std::string& C = "") {
+                             const std::string& C = "", const Damping& damping = {}) {
   BeamFiles files{matrix_market(SparseMatrix(K.sparseView())), matrix_market(SparseMatrix(M.sparseView())), dofs};
-  return assembled_scene(assembled(files, 1, C));
+  return assembled_scene(assembled(files, 1, C), damping);
 }
 
 /// Dofs uy (n) and ux (t) of one node over such a floor; started at ux = 0 with `speed`.
@@ -70,15 +70,15 @@ inline double along(const Marcher& made) {
 struct Watched {
   EnergyAudit audit;
   FrictionWatch watch;
-  Watched(const Marcher& made, double duration) : audit(made), watch(made, audit, {0, duration, 1}) {}
+  Watched(const Marcher& made, double begin, double end) : audit(made), watch(made, audit, {begin, end, 1}) {}
 };
 
-/// Marches to the end under both observers.
-inline std::unique_ptr<Watched> watched(Marcher& made, double duration) {
-  auto all = std::make_unique<Watched>(made, duration);
+/// Marches to the end under both observers; friction counts from `begin`.
+inline std::unique_ptr<Watched> watched(Marcher& made, double end, double begin = 0) {
+  auto all = std::make_unique<Watched>(made, begin, end);
   const Observers observers{&all->audit, &all->watch};
   made.start(observers);
-  made.march(std::llround(duration / made.program().h) - made.step(), observers);
+  made.march(std::llround(end / made.program().h) - made.step(), observers);
   return all;
 }
 
@@ -86,13 +86,9 @@ inline std::unique_ptr<Watched> watched(Marcher& made, double duration) {
 inline FrictionTotals rubbed_over(const SceneSpec& scene, const Methods& methods, double h, double begin, double end,
                                   const CompileOptions& options = {}) {
   Marcher made = marcher(scene, 1, methods, h, options);
-  EnergyAudit audit(made);
-  FrictionWatch watch(made, audit, {begin, end, 1});
-  const Observers observers{&audit, &watch};
-  made.start(observers);
-  made.march(std::llround(end / h) - made.step(), observers);
+  const auto all = watched(made, end, begin);
   REQUIRE(made.status(0).running);
-  return watch.totals(0);
+  return all->watch.totals(0);
 }
 
 }  // namespace ricochet::testing
