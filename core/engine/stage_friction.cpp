@@ -313,10 +313,12 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
   while (true) {
     outcome = find_friction(program, state, lane, turn == 0);
     const FrictionChange change = rub.change();
+    // Round-off of a measure says less of a soft law than of a rigid one: turns end where they gain nothing more.
+    const bool gains = turn == 0 || change.most < 0.5 * most;
     most = change.most;
     largest = change.largest;
     const double grain = grain_of(rub, program_.problem->rubbing, columns_of(state), reach);
-    if (!outcome.converged || most <= std::max(settled * largest, grain)) break;
+    if (!outcome.converged || most <= settled * largest || (most <= grain && !gains)) break;
     if (turn == 0 && !friction_moves_normals(state, std::max(std::abs(reach), std::abs(rate_reach)), lane)) {
       most = 0;
       break;

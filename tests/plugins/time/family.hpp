@@ -19,7 +19,14 @@ inline std::string label(const Choice& time) {
   text << time.name;
   for (const auto& [key, value] : time.values) {
     text << ' ' << key << " = ";
-    std::visit([&](const auto& v) { text << v; }, value);
+    std::visit(
+        [&](const auto& v) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(v)>, ParameterTable>)
+            text << v.size() << " rows";
+          else
+            text << v;
+        },
+        value);
   }
   return text.str();
 }

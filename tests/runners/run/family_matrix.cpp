@@ -13,7 +13,7 @@ using namespace ricochet;
 
 namespace {
 
-const std::string file = tests::places().source + "/studies/family-matrix.json";
+const std::filesystem::path file = tests::places().source + "/studies/family-matrix.json";
 
 }  // namespace
 
