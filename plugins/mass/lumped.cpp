@@ -24,9 +24,9 @@ void register_lumped(Registry& registry) {
   manual.summary = "diagonal mass: half of each element at its ends";
   manual.text =
       R"(Hermite elements: the consistent diagonal scaled to the element's mass, ρSℓ/2 per translation and ρSℓ³/78 per
-          rotation, and half of the rotary inertia ρIℓ; rotation = none leaves rotations without inertia, a singular
-          mass whose kernel is the rotations (its contact nodes still carry inertia, unlike the singular method). Linear
-          elements: row sums, ρSℓ/2. Frequencies converge with order 2 in the element length.)";
+          rotation; rotation = none leaves rotations without inertia, a singular mass whose kernel is the rotations
+          (its contact nodes still carry inertia, unlike the singular method). Linear elements: row sums, ρSℓ/2.
+          Frequencies converge with order 2 in the element length.)";
   manual.source =
       R"(Hinton, Rock, Zienkiewicz 1976, A note on mass lumping and related processes in the finite element method,
           Earthquake Eng. Struct. Dyn. 4, 245-249)";

@@ -5,23 +5,20 @@ namespace ricochet {
 
 /// What one end of an element carries (Hinton, Rock and Zienkiewicz 1976). A translation carries half the element's
 /// mass. The rotation of a Hermite element carries its consistent diagonal scaled alike: ρSℓ(156, 4ℓ², 156, 4ℓ²)/420
-/// gives ρSℓ³/78; with shear its own diagonal is scaled alike. Rotary inertia is half of ρIℓ for each rotation: in a
-/// scaled diagonal it would go with ℓ² wherever rotations are slopes.
+/// gives ρSℓ³/78. With shear or rotary inertia their consistent diagonal is scaled alike.
 inline double lumped_share(const FiniteElementSpace& space, const FiniteElementSpace::Element& element, int function) {
   const double mass = element.line_density * element.length;
-  const bool rotation = space.basis == FiniteElementSpace::Basis::hermite && function % 2 == 1;
-  const double rotary = rotation ? element.rotary * element.length / 2 : 0;
-  if (element.shear != 0) {
+  if (element.shear != 0 || element.rotary != 0) {
     FiniteElementSpace alone;
     alone.basis = space.basis;
     alone.dofs = 4;
     alone.elements = {element};
     alone.elements.front().dof = {0, 1, 2, 3};
-    alone.elements.front().rotary = 0;
     const Eigen::VectorXd diagonal = consistent_mass(alone).diagonal();
-    return mass * diagonal[function] / (diagonal[0] + diagonal[2]) + rotary;
+    return mass * diagonal[function] / (diagonal[0] + diagonal[2]);
   }
-  return (rotation ? mass * element.length * element.length / 78 : mass / 2) + rotary;
+  const bool rotation = space.basis == FiniteElementSpace::Basis::hermite && function % 2 == 1;
+  return rotation ? mass * element.length * element.length / 78 : mass / 2;
 }
 
 /// The diagonal of all elements and point masses; rotations without inertia where they shall have none.
