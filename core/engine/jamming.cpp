@@ -24,15 +24,17 @@ double given_way(const Program& program, const StageProgram& stage, int point) {
   return most > 0 && stage.measure_z > 0 ? 1 / (stage.measure_z * most) : 0.0;
 }
 
-// |W_nt| over W_nn and what gives way, of the rows behind the points.
-double flat_coupling(const RubbingPoint& one, int points, const double* column, double gives_way) {
+// |W_nt| over `own`, W_nn and what gives way; `rubbed`: a column of W along n, of the rows that rub.
+double coupling_along(const RubbingPoint& one, const std::array<double, 2>& normal, const double* rubbed, double own) {
   double across = 0;
-  for (int k = 0; k < one.rows; ++k) across = std::hypot(across, column[points + one.row + k]);
-  const double own = column[one.point] + gives_way;
+  for (int tangent = 0; tangent < one.tangents(); ++tangent) {
+    const Tangent way = tangent_of(one, tangent, normal);
+    across = std::hypot(across, way.of(rubbed + way.row));
+  }
   return own > 0 ? across / own : 0.0;
 }
 
-// The same of the direction of a circle in which it is largest.
+// That of the direction of a circle in which it is largest.
 template <class Columns>
 double round_coupling(const RubbingPoint& one, int points, const Columns& column_of, double gives_way) {
   constexpr int directions = 180;
@@ -50,12 +52,7 @@ double round_coupling(const RubbingPoint& one, int points, const Columns& column
       turned[row] = normal[0] * columns[0][row] + normal[1] * columns[1][row];
     const auto at = static_cast<std::size_t>(one.point);
     const double own = normal[0] * turned[at] + normal[1] * turned[at + 1] + gives_way;
-    double across = 0;
-    for (int tangent = 0; tangent < one.tangents(); ++tangent) {
-      const Tangent way = tangent_of(one, tangent, normal);
-      across = std::hypot(across, way.of(turned.data() + points + way.row));
-    }
-    if (own > 0) most = std::max(most, across / own);
+    most = std::max(most, coupling_along(one, normal, turned.data() + points, own));
   }
   return most;
 }
@@ -71,8 +68,13 @@ void add_stage(Program& program, StageProgram& stage, std::vector<JamNumber>& nu
     if (one.normal_force) continue;
     const auto column = [&](int point) { return impulse ? impulse->column(point) : plain.column(point); };
     const double gives_way = given_way(program, stage, one.point);
-    const double coupling = one.round ? round_coupling(one, problem.points(), column, gives_way)
-                                      : flat_coupling(one, problem.points(), column(one.point), gives_way);
+    double coupling = 0;
+    if (one.round) {
+      coupling = round_coupling(one, problem.points(), column, gives_way);
+    } else {
+      const double* normal = column(one.point);
+      coupling = coupling_along(one, {}, normal + problem.points(), normal[one.point] + gives_way);
+    }
     if (coupling <= numbers[i].coupling) continue;
     const double number = std::max(one.held, one.sliding) * coupling;
     numbers[i] = number > round_off ? JamNumber{coupling, number} : JamNumber{};

@@ -317,8 +317,8 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
     const bool gains = turn == 0 || change.most < 0.5 * most;
     most = change.most;
     largest = change.largest;
-    const double grain = grain_of(rub, program_.problem->rubbing, columns_of(state), reach);
-    if (!outcome.converged || most <= settled * largest || (most <= grain && !gains)) break;
+    if (!outcome.converged || most <= settled * largest) break;
+    if (!gains && most <= grain_of(rub, program_.problem->rubbing, columns_of(state), reach)) break;
     if (turn == 0 && !friction_moves_normals(state, std::max(std::abs(reach), std::abs(rate_reach)), lane)) {
       most = 0;
       break;
