@@ -215,8 +215,8 @@ Commands packed_commands() {
        command_pack},
       {"verify",
        "FILE [--cases N|all]",
-       "Check a packed result, compute some of its cases again, and say whether they are bit-equal, equal within u or "
-       "not.",
+       "Check a packed result, compute some of its cases again, and say whether they are bit-equal, equal to six "
+       "digits, equal within u, or not.",
        1,
        1,
        {cases, plugin},

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <numeric>
 #include <ostream>
 #include <random>
 #include <system_error>
@@ -16,15 +14,14 @@
 #include "runners/kinds/stored_study.hpp"
 #include "runners/pack/sha256.hpp"
 #include "runners/report/summary_page.hpp"
+#include "runners/run/agreement.hpp"
 #include "runners/run/analysed_results.hpp"
 #include "runners/run/environment.hpp"
-#include "runners/run/merge_folders.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/folder_lock.hpp"
 #include "runners/store/store.hpp"
 #include "runners/store/temporary_folder.hpp"
-#include "runners/table/table_reader.hpp"
 #include "runners/table/text.hpp"
 
 namespace ricochet {
@@ -63,68 +60,6 @@ std::vector<const CaseRecord*> drawn(const std::vector<const CaseRecord*>& all, 
   return found;
 }
 
-/// u / |value| of each measure of the case's methods, by the table of limits: what step and mesh leave open of it.
-std::map<std::string, double> shares_left_open(const StudyResults& results, const CaseRecord& record) {
-  std::map<std::string, double> shares;
-  const Table* limits = find_table(results.derived, "limits");
-  if (!limits) return shares;
-  const TableReader rows(*limits);
-  const std::size_t measure = rows.column("measure"), value = rows.column("value"), u = rows.column("u");
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const bool same = std::all_of(record.axes.begin(), record.axes.end(), [&](const auto& axis) {
-      const std::size_t column = rows.column_if_any(axis.first);
-      return column == TableReader::absent || rows.text(r, column).empty() ||
-             rows.text(r, column) == cell_of(axis.second).text();
-    });
-    const auto at = rows.number(r, value), open = rows.number(r, u);
-    if (same && at && open && *at != 0) shares[rows.text(r, measure)] = *open / std::abs(*at);
-  }
-  return shares;
-}
-
-enum class Equal { bits, within, no };
-
-/// How the case computed again agrees with the stored one; `text` says it in a line or more.
-Equal agreement(const StudyResults& results, const CaseRecord& stored, const CaseRecord& again, std::string& text) {
-  const Comparison found = compare(stored, again);
-  if (found.differences.empty()) {
-    text = "equal to the last bit";
-    return Equal::bits;
-  }
-  const std::map<std::string, double> shares = shares_left_open(results, stored);
-  bool within = stored.status == again.status;
-  std::size_t compared = 0, bare = 0;
-  double largest = 0;
-  for (const auto& [name, value] : again.measures) {
-    const auto share = shares.find(name);
-    const auto kept = std::find_if(stored.measures.begin(), stored.measures.end(),
-                                   [&wanted = name](const auto& one) { return one.first == wanted; });
-    if (kept == stored.measures.end()) continue;
-    if (share == shares.end()) {
-      const MeasureInfo* info = measure_info(name);
-      bare += value != kept->second && !(info && info->of == MeasureInfo::Of::computation);
-      continue;
-    }
-    ++compared;
-    const double difference = std::abs(value - kept->second), open = share->second * std::abs(kept->second);
-    within = within && difference <= open;
-    if (open > 0) largest = std::max(largest, difference / open);
-  }
-  if (within && compared > 0) {
-    text =
-        fmt::format("equal within u: {}, the largest difference is {:.2g} u{}", counted(compared, "measure"), largest,
-                    bare == 1  ? "; 1 measure differs and has no u"
-                    : bare > 1 ? fmt::format("; {} measures differ and have no u", bare)
-                               : "");
-    return Equal::within;
-  }
-  constexpr std::size_t told = 3;
-  text = compared == 0 && within ? "not equal, and the study says no u:" : "not equal:";
-  for (std::size_t k = 0; k < std::min(told, found.differences.size()); ++k) text += "\n    " + found.differences[k];
-  if (found.differences.size() > told) text += fmt::format("\n    and {} more", found.differences.size() - told);
-  return Equal::no;
-}
-
 /// What computes here and did not there, a line.
 std::string other_program(const Environment& there) {
   const Environment here = describe_environment({});
@@ -151,20 +86,23 @@ int compute_again(const Arguments& arguments, const fs::path& place, std::ostrea
   if (chosen.empty()) return exit_done;
   const StoredStudy stored(results, arguments.plugins);
   const StopSignal signals;
-  std::map<Equal, std::size_t> counts;
+  const AgreementOf agreement(results);
+  std::map<Agreement, std::size_t> counts;
   for (const CaseRecord* record : chosen) {
     const CaseRecord again =
         march_again(place / packed::results, *kind, stored, stored.find(record->id), signals.requested());
     std::string text;
-    ++counts[agreement(results, *record, again, text)];
+    ++counts[agreement(*record, again, text)];
     out << fmt::format("  {}: {}\n", record->id, text);
   }
-  const char* verdict = counts[Equal::no] > 0       ? "not equal"
-                        : counts[Equal::within] > 0 ? "equal within u"
-                                                    : "bit-equal";
-  out << fmt::format("{}: {} to the last bit, {} within u, {} not\n", verdict, counts[Equal::bits],
-                     counts[Equal::within], counts[Equal::no]);
-  return counts[Equal::no] > 0 ? exit_some_failed : exit_done;
+  const char* verdict = counts[Agreement::no] > 0       ? "not equal"
+                        : counts[Agreement::within] > 0 ? "equal within u"
+                        : counts[Agreement::digits] > 0 ? "equal to six digits"
+                                                        : "bit-equal";
+  out << fmt::format("{}: {} to the last bit, {} to six digits, {} within u, {} not\n", verdict,
+                     counts[Agreement::bits], counts[Agreement::digits], counts[Agreement::within],
+                     counts[Agreement::no]);
+  return counts[Agreement::no] > 0 ? exit_some_failed : exit_done;
 }
 
 }  // namespace
