@@ -399,11 +399,12 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   const double by_flights = flies ? predict_flights(*problem, work, options.expected_steps) : 0;
   if (program.kind == OperatorKind::automatic)
     program.kind = cheapest_kind(*problem, work, program.width, options.expected_steps);
-  // A prediction within a factor of two of the other chooses nothing.
+  // Both predictions may be wrong by so much. Somebody looks at a step that is marched.
+  constexpr double sure = 1.2, looked_at = 1e-7;
   if (flies && options.march == MarchWay::automatic) {
     const Cost every_step = predict_cost(program.kind, *problem, work, program.width);
-    flies = 2 * by_flights <
-            every_step.setup_seconds + static_cast<double>(options.expected_steps) * every_step.step_seconds;
+    flies = sure * by_flights < every_step.setup_seconds +
+                                    static_cast<double>(options.expected_steps) * (every_step.step_seconds + looked_at);
   }
   if (flies)
     program.kind = OperatorKind::modal;

@@ -49,8 +49,8 @@ double available_memory() {
 
 namespace {
 
-// Nanoseconds per multiply-add, by block width 1, 2, 4, 8, 16, 32, as measured by `bench_march --calibrate` (AVX2,
-// Intel Xeon, 2.5 GHz). Substitution at one lane is bound by latency, not by throughput. The rate of a substitution
+// Nanoseconds per multiply-add, by block width 1, 2, 4, 8, 16, 32, as measured by `bench_march --calibrate` (AVX-512,
+// AMD EPYC, 2.4 GHz). Substitution at one lane is bound by latency, not by throughput. The rate of a substitution
 // through CHOLMOD's factor is from the benchmark's own rows, over 700 multiply-adds. It is the sparse row less the
 // band, plus the substitution that the band has in its place.
 struct Rates {
@@ -90,21 +90,32 @@ SparseFill counted_fill(const SemiDiscrete& problem) {
 
 // What a stage costs besides, whatever its size: calls and the motion of the support. Per step and per lane there is
 // the check of contact, closed now and then. What `bench_march` and `bench_decay` measure over their products and sums.
-constexpr double per_stage = 130, per_contact = 170, per_contact_lane = 25;
+constexpr double per_stage = 25, per_contact = 20, per_contact_lane = 12;
+// Of the rate of a measure by index, rows that are full, as those of modes are; of passes apart, those made as one.
+constexpr double full_rows = 0.6, joined = 0.6;
 
 Rates rates(int width) {
-  if (width == 1) return {0.16, 0.48, 1.77, 0.08, 0.30, 0.34};
-  if (width == 2) return {0.20, 0.20, 0.90, 0.07, 0.20, 0.17};
-  if (width == 4) return {0.12, 0.11, 0.50, 0.063, 0.115, 0.098};
-  if (width == 8) return {0.081, 0.078, 0.32, 0.058, 0.115, 0.073};
-  if (width == 16) return {0.067, 0.064, 0.21, 0.10, 0.135, 0.089};
-  return {0.064, 0.118, 0.22, 0.10, 0.125, 0.087};
+  if (width == 1) return {0.117, 0.35, 1.77, 0.045, 0.172, 0.252};
+  if (width == 2) return {0.161, 0.130, 0.90, 0.041, 0.145, 0.131};
+  if (width == 4) return {0.083, 0.066, 0.50, 0.039, 0.074, 0.065};
+  if (width == 8) return {0.042, 0.034, 0.32, 0.039, 0.035, 0.035};
+  if (width == 16) return {0.030, 0.022, 0.21, 0.039, 0.039, 0.030};
+  return {0.028, 0.017, 0.22, 0.039, 0.061, 0.046};
 }
 
-// A step in modes, and a search of a flight, as bench_flight measures them.
+// ns of a stage in modes and one lane. Update, step and the measure of one point are one pass; more points are measured
+// apart.
+double in_modes(double n, double slots, double points, const Rates& rate) {
+  const double updated = n * (slots + 1) * slots, stepped = n * (slots + 1), measured = points * n * (slots + 2);
+  if (points <= 1) return (updated + stepped + measured) * joined * rate.elementwise;
+  return updated * rate.elementwise + stepped * rate.diagonal + measured * full_rows * rate.measure;
+}
+
+// A step in modes, and a search of a flight, as `bench_flight --auto` measures them. A flight tells in which steps no
+// point has to be measured.
 double visit_seconds(const SemiDiscrete& problem, const StepWork& work) {
-  return predict_cost(OperatorKind::modal, problem, work, 1).step_seconds + 5e-7 +
-         2.5e-10 * problem.dofs() * problem.points();
+  const double n = problem.dofs(), step = in_modes(n, work.slots, 1, rates(1)) + per_stage + per_contact;
+  return std::max(1, work.solves) * step * 1e-9 + 5e-7 + 4e-10 * n * problem.points();
 }
 
 }  // namespace
@@ -123,15 +134,15 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork
   const double border = inertia.factored() ? static_cast<double>(inertia.coupling.rows()) : 0;
   const double nano = 1e-9, stages = std::max(1, work.solves);
   Cost cost;
-  const double entries = kind == OperatorKind::modal ? static_cast<double>(problem.points()) * n
-                                                     : static_cast<double>(problem.measured().nonZeros());
-  double nanoseconds = n * (slots + 1) * slots * rate.elementwise + entries * (slots + 2) * rate.measure;
+  double nanoseconds = 0;
   if (kind == OperatorKind::modal) {
-    nanoseconds += n * (slots + 1) * rate.diagonal;
-    cost.setup_seconds = 20 * n * n * n * nano;
+    nanoseconds = in_modes(n, slots, problem.points(), rate);
+    cost.setup_seconds = 2 * n * n * n * nano;
     const bool assembled = problem.load && problem.load->has_formula() && !problem.load->constant_in_time();
     if (assembled) nanoseconds += n * n / lanes;
   } else {
+    const auto entries = static_cast<double>(problem.measured().nonZeros());
+    nanoseconds = n * (slots + 1) * slots * rate.elementwise + entries * (slots + 2) * rate.measure;
     double w = half_bandwidth(problem.stiffness);
     if (problem.space.given || problem.basis) w = std::max<double>(w, half_bandwidth(inertia.mass));
     const double v = border > 0 ? w + 2 : w, r = inertia.inverted() ? half_bandwidth(inertia.inverse) : 0;
@@ -160,7 +171,7 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork
 double predict_flights(const SemiDiscrete& problem, const StepWork& work, long long steps) {
   const double n = problem.dofs(),
                visited = std::min(static_cast<double>(steps), 4 * std::sqrt(static_cast<double>(steps)));
-  return 3e-9 * n * n * n + 1.5e-5 * n + visited * visit_seconds(problem, work);
+  return 3e-8 * std::pow(n, 2.5) + 5e-6 * n + visited * visit_seconds(problem, work);
 }
 
 double predict_visits(const SemiDiscrete& problem, const StepWork& work, double steps) {

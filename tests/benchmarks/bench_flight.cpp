@@ -4,6 +4,7 @@
 //
 //     bench_flight [--rounds N] [--only WORD]
 //     bench_flight --flown N [--only WORD]     N flown marches alone, for a profiler
+//     bench_flight --auto yes [--rounds N] [--only WORD]     both ways, set-up included, beside what `auto` takes
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,6 +41,8 @@ struct Outcome {
   Eigen::VectorXd end;
   double energy = 0, damping = 0, loads = 0, impulse = 0, residual = 0, gain = 0;
   long long contact_steps = 0, impacts = 0;
+  bool flew = false;
+  double predicted = 0;  // of all steps and the set-up, ns
   std::string refusal;
 };
 
@@ -78,6 +81,10 @@ Outcome march(const Scene& scene, MarchWay way, Registry& registry) {
     out.refusal = refusal->sentence.text;
     return out;
   }
+  out.flew = std::get<Program>(program).flight != nullptr;
+  out.predicted =
+      1e9 * (std::get<Program>(program).predicted_setup_seconds +
+             static_cast<double>(options.expected_steps) * std::get<Program>(program).predicted_step_seconds);
   Marcher marcher(std::move(std::get<Program>(program)));
   EnergyAudit audit(marcher, SamplingMode::seldom);
   ImpactRecorder recorder(marcher);
@@ -140,19 +147,78 @@ std::vector<Scene> scenes() {
   return list;
 }
 
+std::vector<Scene> scenes_of_sizes() {
+  std::vector<Scene> list;
+  for (const int elements : {20, 50, 100, 200, 400}) {
+    for (const double h : {1e-4, 1e-5, 2e-6}) {
+      Scene one{fmt::format("free nodes N {} h {:g}", elements, h), free_swing(0)};
+      one.mass = "consistent";
+      one.elements = elements;
+      one.h = h;
+      one.duration = elements > 100 ? 0.1 : 0.25;
+      list.push_back(one);
+      one.name = fmt::format("damped tip N {} h {:g}", elements, h);
+      one.scene = free_swing(1e-4);
+      one.scene.stops.place = StopsSpec::Place::tip;
+      list.push_back(one);
+    }
+  }
+  return list;
+}
+
+double median(std::vector<double>& values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+// Whether `auto` takes the faster way: where they are a third apart, it has to.
+void compare_choices(int rounds, const std::string& only, Registry& registry) {
+  constexpr double apart = 1.33;
+  int scenes = 0, wrong = 0;
+  for (const Scene& scene : scenes_of_sizes()) {
+    if (scene.name.find(only) == std::string::npos) continue;
+    std::vector<double> every_step, flights, set_up;
+    Outcome every, flown;
+    for (int round = 0; round < rounds; ++round) {
+      every = march(scene, MarchWay::every_step, registry);
+      flown = march(scene, MarchWay::flights, registry);
+      every_step.push_back(every.set_up + every.nanoseconds);
+      flights.push_back(flown.set_up + flown.nanoseconds);
+      set_up.push_back(flown.set_up);
+    }
+    const bool flew = march(scene, MarchWay::automatic, registry).flew;
+    const double marched = median(every_step), left_out = median(flights);
+    const bool bad = flew ? left_out > apart * marched : marched > apart * left_out;
+    ++scenes;
+    wrong += bad;
+    fmt::print(
+        "{:<28} every step {:>8.1f} ms ({:.1f} predicted), flights {:>8.1f} ms ({:.1f}), of it set-up {:.1f}; "
+        "auto {}{}\n",
+        scene.name, marched / 1e6, every.predicted / 1e6, left_out / 1e6, flown.predicted / 1e6, median(set_up) / 1e6,
+        flew ? "flies" : "marches", bad ? ", the slower way" : "");
+  }
+  fmt::print("{} of {} choices are the slower way by a third\n", wrong, scenes);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   int rounds = 1, flown_alone = 0;
+  bool choices = false;
   std::string only;
   for (int i = 1; i + 1 < argc; ++i) {
     if (std::strcmp(argv[i], "--rounds") == 0) rounds = std::atoi(argv[i + 1]);
     if (std::strcmp(argv[i], "--flown") == 0) flown_alone = std::atoi(argv[i + 1]);
     if (std::strcmp(argv[i], "--only") == 0) only = argv[i + 1];
+    if (std::strcmp(argv[i], "--auto") == 0) choices = true;
   }
   Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
   Registry registry;
   catalogue.open_all(registry);
+  if (choices) {
+    compare_choices(std::max(1, rounds), only, registry);
+    return 0;
+  }
   for (const Scene& scene : scenes()) {
     if (scene.name.find(only) == std::string::npos) continue;
     const int alone = scene.every_step ? flown_alone : std::max(1, flown_alone);

@@ -54,3 +54,32 @@ TEST_CASE("the operator follows the number of contact points") {
     CHECK(cheapest_kind(*tip, {2, solves, false}, 1, 10) == OperatorKind::band);
   }
 }
+
+TEST_CASE("automatic marches count what flights cost before their first step") {
+  // Half a second at the same step: the dense modes of 400 elements cost more than all steps of the band do.
+  const auto flies = [](int elements, double h) {
+    SceneSpec scene = working_set();
+    scene.stops.place = StopsSpec::Place::nodes;
+    CompileOptions options;
+    options.march = MarchWay::automatic;
+    options.expected_steps = std::llround(0.5 / h);
+    const auto problem = problem_of(scene, elements, {"consistent"});
+    const auto program = compiled(problem, {{"consistent"}, {"signorini"}, {"newmark-dumont-paoli"}}, h, options);
+    return std::get<Program>(program).flight != nullptr;
+  };
+  CHECK_FALSE(flies(20, 1e-3));
+  CHECK(flies(20, 1e-5));
+  CHECK(flies(100, 1e-6));
+  CHECK_FALSE(flies(400, 1e-5));
+}
+
+TEST_CASE("a step in modes with one contact point is predicted to cost less than one in the band") {
+  // As bench_march counts: a fifth to a third at one lane, a half at eight.
+  const auto tip = problem_of(working_set(), 50, {"consistent"});
+  const auto ratio = [&](int width) {
+    return predict_cost(OperatorKind::modal, *tip, {2, 1, false}, width).step_seconds /
+           predict_cost(OperatorKind::band, *tip, {2, 1, false}, width).step_seconds;
+  };
+  CHECK(ratio(1) < 0.33);
+  CHECK(ratio(8) < 0.7);
+}
