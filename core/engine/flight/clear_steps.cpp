@@ -47,6 +47,12 @@ StepReadings::StepReadings(const StepRows& rows, const FlightWatch& watch, int p
             [&](const Eigen::RowVectorXd& own) -> Eigen::RowVectorXd { return own * turn; });
 }
 
+std::vector<double> StepReadings::row() const {
+  std::vector<double> row(weights_.begin(), weights_.begin() + size_);
+  row.insert(row.end(), drive_.begin(), drive_.begin() + drives_);
+  return row;
+}
+
 double StepReadings::operator()(int step, const double* x, const double* e) const {
   double value;
   read(step, 1, x, e, &value);

@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <cmath>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
+#include <ricochet/engine/flight/push_tables.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 #include <utility>
 
 namespace ricochet {
@@ -183,6 +186,7 @@ long long Flight::search(Columns columns, const double* e, ClosedSteps::Past pas
 
 FlightSums Flight::fly(long long k, Columns columns, ClosedSteps::Past past, bool works) {
   FlightSums sums;
+  pushed_asked_ = false;
   if (steps_) {
     steps_->leave(columns[0], past);
     return steps_->sums();
@@ -243,69 +247,113 @@ void Flight::tip_extremes(double& low, double& high) {
     }
     return;
   }
-  if (flown_ <= at_once) return read_all(start_, flown_, low, high);
+  Sought sought{nullptr, set_->tip_readings(), 0, low, high};
+  if (flown_ <= at_once)
+    read_all(start_, flown_, sought);
+  else
+    find_extremes(set_->tip(), sought);
+  low = sought.low;
+  high = sought.high;
+}
+
+void Flight::see_at(Sought& sought, const Leg& leg) {
+  values_.resize(static_cast<std::size_t>(sought.bound->watch(0).rows.rows()));
+  sought.bound->values(0, leg.x.data(), leg.e, values_.data());
+  sought.see(values_[static_cast<std::size_t>(sought.point)]);
+}
+
+// Of many steps.
+void Flight::find_extremes(const ExtremeBounds& bounds, Sought& sought) {
+  sought.bound = bounds.each.get();
   // The last first: most of what comes before it is then known to be no extreme.
   legs_[1] = start_;
   advance(flown_ - 1, legs_[1]);
-  double last = 0;
-  set_->tip().values(0, legs_[1].x.data(), legs_[1].e, &last);
-  low = std::min(low, last);
-  high = std::max(high, last);
+  see_at(sought, legs_[1]);
   legs_[0] = start_;
-  FlightBound* by_four = set_->tip_by_four();
-  if (!by_four) return search(set_->tip(), 0, flown_, 1, low, high);
-  if (told_by_ends(set_->tip(), legs_[0], flown_, 1, low, high)) return;
+  if (!bounds.by_four) return search(sought, 0, flown_, 1);
+  if (told_by_ends(sought, legs_[0], flown_, 1)) return;
+  sought.bound = bounds.by_four.get();
   for (long long first = 0; first < std::min(4LL, flown_); ++first) {
     legs_[0] = start_;
     advance(first, legs_[0]);
-    search(*by_four, 0, (flown_ - first + 3) / 4, 4, low, high);
+    search(sought, 0, (flown_ - first + 3) / 4, 4);
   }
 }
 
 // Whether the first of k readings and the last one are all that may be an extreme; these are then told.
-bool Flight::told_by_ends(FlightBound& tip, const Leg& leg, long long k, int stride, double& low, double& high) {
-  const auto see = [&](double value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  };
-  tip.set_state(leg.x.data(), leg.e);
-  see(tip.value(0, 0));
+bool Flight::told_by_ends(Sought& sought, const Leg& leg, long long k, int stride) {
+  FlightBound& bound = *sought.bound;
+  bound.set_state(leg.x.data(), leg.e);
+  sought.see(bound.value(0, sought.point));
   if (k == 1) return true;
-  const FlightBound::Range range = tip.range(0, 0, k - 1);
-  if (range.low >= low && range.high <= high) return true;
+  const FlightBound::Range range = bound.range(0, sought.point, k - 1);
+  if (range.low >= sought.low && range.high <= sought.high) return true;
   if (k > 2) {
-    const FlightBound::Range change = tip.range(1, 0, k - 2);
+    const FlightBound::Range change = bound.range(1, sought.point, k - 2);
     if (change.low <= 0 && change.high >= 0) return false;
   }
   last_ = leg;
   advance((k - 1) * stride, last_);
-  double last = 0;
-  tip.values(0, last_.x.data(), last_.e, &last);
-  see(last);
+  see_at(sought, last_);
   return true;
 }
 
-// The tip after each of some steps from a leg on.
-void Flight::read_all(const Leg& leg, long long steps, double& low, double& high) {
+// After each of some steps from a leg on.
+void Flight::read_all(const Leg& leg, long long steps, Sought& sought) {
   last_ = leg;
-  set_->tip_readings().each(set_->motion(), steps, last_.x.data(), last_.e, [&](double tip) {
-    low = std::min(low, tip);
-    high = std::max(high, tip);
-  });
+  sought.readings.each(set_->motion(), steps, last_.x.data(), last_.e, [&](double value) { sought.see(value); });
 }
 
 // Of k readings from a leg on, `stride` steps apart: by halves, as far as they may tell something.
-void Flight::search(FlightBound& tip, std::size_t depth, long long k, int stride, double& low, double& high) {
+void Flight::search(Sought& sought, std::size_t depth, long long k, int stride) {
   const Leg& leg = legs_[depth];
-  if (told_by_ends(tip, leg, k, stride, low, high)) return;
+  if (told_by_ends(sought, leg, k, stride)) return;
   // Halves of few steps cost more than their readings.
-  if ((k - 1) * stride < soon_read) return read_all(leg, (k - 1) * stride + 1, low, high);
+  if ((k - 1) * stride < soon_read) return read_all(leg, (k - 1) * stride + 1, sought);
   Leg& next = legs_[depth + 1];
   next = leg;
   advance(k / 2 * stride, next);
-  search(tip, depth + 1, k - k / 2, stride, low, high);
+  search(sought, depth + 1, k - k / 2, stride);
   next = leg;
-  search(tip, depth + 1, k / 2, stride, low, high);
+  search(sought, depth + 1, k / 2, stride);
+}
+
+std::span<const Flight::Pushed> Flight::pushed() {
+  if (std::exchange(pushed_asked_, true)) return pushed_;
+  pushed_.clear();
+  if (steps_ || set_->closed().empty()) return pushed_;
+  std::vector<PushTables>* const tables = set_->push_tables(flown_);
+  if (!tables) return pushed_;
+  pushed_.resize(tables->size());
+  for (std::size_t i = 0; i < tables->size(); ++i) push_point(i, (*tables)[i]);
+  return pushed_;
+}
+
+// The long powers of two by tables, the rest step by step.
+void Flight::push_point(std::size_t i, PushTables& tables) {
+  const double side = set_->closed()[i].lower ? 1 : -1;
+  const StepReadings& readings = set_->effort(i);
+  Pushed& one = pushed_[i];
+  Leg& leg = legs_[0];
+  leg = start_;
+  double sum = 0;
+  for (int power = PushTables::shortest; flown_ >> power != 0; ++power) {
+    if (((flown_ >> power) & 1) == 0) continue;
+    tables.add(power, leg.x.data(), leg.e, sum, one.squares);
+    set_->motion().leap(power, leg.x.data(), leg.e);
+  }
+  const long long rest = flown_ & ((1LL << PushTables::shortest) - 1);
+  readings.each(set_->motion(), rest, leg.x.data(), leg.e, [&](double p) {
+    sum += p;
+    one.squares += p * p;
+  });
+  one.sum = side * sum;
+  Sought sought{nullptr, readings, static_cast<int>(i), infinity, -infinity};
+  find_extremes(set_->effort_extremes(), sought);
+  one.most = std::max(std::abs(sought.low), std::abs(sought.high));
+  leg = start_;
+  advance(flown_ - 1, leg);
+  one.last = side * readings(0, leg.x.data(), leg.e);
 }
 
 }  // namespace ricochet

@@ -82,6 +82,12 @@ class Flight {
             std::span<const double>{});
     }
   }
+  /// Σ|p|, Σp², the largest |p| and the last of each closed point over these steps, without reading each. None where
+  /// that would not cost less: then each_stage() tells. Found once for all who ask. Where a step has one stage.
+  struct Pushed {
+    double sum = 0, squares = 0, most = 0, last = 0;  // N, N²
+  };
+  std::span<const Pushed> pushed();
   /// Whether no step without contact can gain energy beyond what loads bring, whatever the state.
   bool free_never_gains() const { return free_->works().never_gains(); }
 
@@ -113,9 +119,23 @@ class Flight {
   void advance(long long k, Leg& leg) const { set_->motion().advance(k, leg.x.data(), leg.e); }
   /// Those of the steps from `first`, a multiple of effort_block, on; returns how many.
   long long find_efforts(long long first);
-  bool told_by_ends(FlightBound& tip, const Leg& leg, long long k, int stride, double& low, double& high);
-  void read_all(const Leg& leg, long long steps, double& low, double& high);
-  void search(FlightBound& tip, std::size_t depth, long long k, int stride, double& low, double& high);
+  /// One point of a measure, whose extremes over the steps left out are looked for.
+  struct Sought {
+    FlightBound* bound;
+    const StepReadings& readings;
+    int point = 0;
+    double low, high;
+    void see(double value) {
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  };
+  void see_at(Sought& sought, const Leg& leg);
+  void find_extremes(const ExtremeBounds& bounds, Sought& sought);
+  bool told_by_ends(Sought& sought, const Leg& leg, long long k, int stride);
+  void read_all(const Leg& leg, long long steps, Sought& sought);
+  void search(Sought& sought, std::size_t depth, long long k, int stride);
+  void push_point(std::size_t i, PushTables& tables);
 
   double layer_;
   bool crossed_ = false;     // whether stops pass each other somewhere
@@ -141,6 +161,9 @@ class Flight {
   std::vector<double> efforts_;
   Leg after_efforts_;
   long long efforts_from_ = -1, effort_next_ = 0;
+  std::vector<Pushed> pushed_;
+  std::vector<double> values_;  // of the points of a measure
+  bool pushed_asked_ = false;
   std::vector<Leg> legs_;  // of a search, by depth
   std::vector<std::vector<double>> slots_;
   std::vector<double*> slot_pointers_;
@@ -174,6 +197,8 @@ struct StepInterval {
       high = std::max(high, step.tip);
     }
   }
+  /// See Flight::pushed.
+  std::span<const Flight::Pushed> pushed() const { return flight->pushed(); }
   /// Of steps left out, each stage in turn: see Flight::each_stage.
   template <class See>
   void each_stage(See&& see) const {

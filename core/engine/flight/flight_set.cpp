@@ -4,6 +4,7 @@
 #include <ricochet/contact_solvers/circle_solver.hpp>
 #include <ricochet/engine/flight/flight_motion.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
+#include <ricochet/engine/flight/push_tables.hpp>
 #include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
 #include <ricochet/kernels/flight_kernels.hpp>
@@ -339,17 +340,43 @@ void FlightSet::leave(const std::vector<double>& x, const double* e, double* con
     Eigen::Map<VectorXd>(slots[j], rows_).noalias() += lift_[static_cast<std::size_t>(j)] * drive;
 }
 
-FlightBound& FlightSet::tip() {
-  if (tip_) return *tip_;
-  FlightWatch change = tip_watch_;
+FlightSet::~FlightSet() = default;
+
+ExtremeBounds FlightSet::extremes_of(const FlightWatch& value) const {
+  FlightWatch change = value;
   change.difference = true;
-  change.drive = tip_watch_.drive * drive_.change(1);
-  tip_ = std::make_unique<FlightBound>(*step_rows_, std::vector<FlightWatch>{tip_watch_, change});
-  if (!tip_->alternates()) return *tip_;
-  change.drive = tip_watch_.drive * drive_.change(4);
-  tip_by_four_ = std::make_unique<FlightBound>(*step_rows_, std::vector<FlightWatch>{tip_watch_, std::move(change)}, 2);
-  if (!tip_by_four_->cause().empty()) tip_by_four_.reset();
-  return *tip_;
+  change.drive = value.drive * drive_.change(1);
+  ExtremeBounds bounds{std::make_unique<FlightBound>(*step_rows_, std::vector<FlightWatch>{value, change}), nullptr};
+  if (!bounds.each->alternates()) return bounds;
+  change.drive = value.drive * drive_.change(4);
+  bounds.by_four = std::make_unique<FlightBound>(*step_rows_, std::vector<FlightWatch>{value, std::move(change)}, 2);
+  if (!bounds.by_four->cause().empty()) bounds.by_four.reset();
+  return bounds;
+}
+
+const ExtremeBounds& FlightSet::tip() {
+  if (!tip_.each) tip_ = extremes_of(tip_watch_);
+  return tip_;
+}
+
+const ExtremeBounds& FlightSet::effort_extremes() {
+  if (effort_extremes_.each) return effort_extremes_;
+  FlightWatch unbounded = bound_->watch(effort_watch_);
+  unbounded.lower.assign(closed_.size(), -infinity);
+  unbounded.upper.assign(closed_.size(), infinity);
+  effort_extremes_ = extremes_of(unbounded);
+  return effort_extremes_;
+}
+
+std::vector<PushTables>* FlightSet::push_tables(long long steps) {
+  constexpr double most_bytes = 2e6;  // of one table
+  if (steps >> PushTables::shortest == 0 || PushTables::bytes(*motion_) > most_bytes) return nullptr;
+  pushed_steps_ += steps;
+  if (push_tables_.empty()) {
+    if (pushed_steps_ < PushTables::worth(*motion_)) return nullptr;
+    for (std::size_t i = 0; i < closed_.size(); ++i) push_tables_.emplace_back(*motion_, effort(i));
+  }
+  return &push_tables_;
 }
 
 const StepReadings& FlightSet::tip_readings() {

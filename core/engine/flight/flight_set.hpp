@@ -33,6 +33,8 @@ class StepReadings {
 
   /// `step` ≤ block steps after (x, e).
   double operator()(int step, const double* x, const double* e) const;
+  /// Its weights over x and e in the step that begins now, slots × modes + drives.
+  std::vector<double> row() const;
   /// It in each of the first `steps` ≤ block steps.
   void first(int steps, const double* x, const double* e, double* out) const { read(0, steps, x, e, out); }
   /// Its value in the step that begins now, and its first, second and third differences over those that follow. The
@@ -106,12 +108,21 @@ class ClearSteps {
   long long read_ = 0;
 };
 
+class PushTables;
+
+/// What may be asked of extremes of one measure at some points: it (watch 0) and its change to the next step (watch 1),
+/// unbounded; and the same of every fourth step, where some mode alternates, else null.
+struct ExtremeBounds {
+  std::unique_ptr<FlightBound> each, by_four;
+};
+
 class FlightSet {
  public:
   /// `program` marches one lane in modal coordinates; its `lanes.front()` says where the stops are. `layer` (m): the
   /// law acts from so far before them. `twin`: one that holds the same points, on whatever side; their modes are one.
   FlightSet(const Program& program, double layer, std::vector<ClosedPoint> closed, int powers,
             const FlightSet* twin = nullptr);
+  ~FlightSet();
 
   /// Why this motion cannot fly; empty where it can.
   const std::string& cause() const { return cause_; }
@@ -130,16 +141,19 @@ class FlightSet {
   ClearSteps& clear_steps() { return *clear_steps_; }
   const FlightMotion& motion() const { return *motion_; }
   const FlightWorks& works() const { return *works_; }
-  /// The tip after the step (watch 0), and its change to the next (watch 1), unbounded; made when first asked for.
-  FlightBound& tip();
-  /// The same of every fourth step, once tip() was asked for; null where no mode alternates.
-  FlightBound* tip_by_four() { return tip_by_four_.get(); }
+  /// Of the tip after the step; made when first asked for.
+  const ExtremeBounds& tip();
   /// The tip after each step; made when first asked for.
   const StepReadings& tip_readings();
   /// The effort of a closed point in each step, N.
   const StepReadings& effort(std::size_t closed) {
     return clear_steps_->readings(effort_watch_, static_cast<int>(closed));
   }
+  /// Of the efforts of closed points; made when first asked for.
+  const ExtremeBounds& effort_extremes();
+  /// Sums of efforts of each closed point over `steps` steps, once so many have been asked for that tables pay; before,
+  /// or where they would be large, null.
+  std::vector<PushTables>* push_tables(long long steps);
   int modes() const { return modes_; }
   /// Of one step.
   const StepRows& step_rows() const { return *step_rows_; }
@@ -153,6 +167,7 @@ class FlightSet {
   Eigen::RowVectorXd unknown_at_rest(const Stage& plan, const Eigen::MatrixXd& steady) const;
   void set_bounds(FlightWatch& watch, const LaneSpec& lane, double layer) const;
   Eigen::MatrixXd lift_of(const Combination& c, const Eigen::MatrixXd& lifted) const;
+  ExtremeBounds extremes_of(const FlightWatch& value) const;
   FlightWorks::Forms forms(const Program& program, const StepRows& rows, const Eigen::VectorXd& mass,
                            const Eigen::MatrixXd& lifted);
 
@@ -175,7 +190,10 @@ class FlightSet {
   Eigen::MatrixXd closed_rows_;                   // H_I
   std::unique_ptr<const StepRows> step_rows_;
   FlightWatch tip_watch_;
-  std::unique_ptr<FlightBound> bound_, tip_, tip_by_four_;
+  std::unique_ptr<FlightBound> bound_;
+  ExtremeBounds tip_, effort_extremes_;
+  std::vector<PushTables> push_tables_;
+  long long pushed_steps_ = 0;  // that push_tables() was asked of
   std::unique_ptr<FlightMotion> motion_;
   std::unique_ptr<ClearSteps> clear_steps_;
   std::unique_ptr<FlightWorks> works_;

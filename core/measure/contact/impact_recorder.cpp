@@ -99,6 +99,7 @@ void ImpactRecorder::press_left_out(const Marcher& marcher, const StepInterval& 
           model_.contact().times(closed.point, latest_.data()) + marcher.lift(0, closed.point, latest_time_);
     left_at_ = latest_time_;
   }
+  if (listeners_.empty() && press_sums(stages.front(), steps)) return;
   steps.each_stage([&](int at, std::span<const double> efforts, std::span<const double> places) {
     const StageProgram& stage = stages[static_cast<std::size_t>(at)];
     if (!efforts.empty() && stage.opens_instant) {
@@ -124,6 +125,31 @@ void ImpactRecorder::press_left_out(const Marcher& marcher, const StepInterval& 
     if (at + 1 == static_cast<int>(stages.size())) begins += h_;
   });
   left_ = !tells_slots_;
+}
+
+// All instants of closed points that rest, at once; false where only each of them is told.
+bool ImpactRecorder::press_sums(const StageProgram& stage, const StepInterval& steps) {
+  if (!stage.opens_instant || !stage.closes_instant || !(stage.momentum > 0)) return false;
+  const auto pushed = steps.pushed();
+  if (pushed.empty()) return false;
+  Lane& lane = lanes_.front();
+  const double lasts = stage.momentum;
+  lane.force = 0;
+  for (std::size_t i = 0; i < pushed.size(); ++i) {
+    const int point = steps.closed[i].point;
+    move(lane, point, 0);
+    Point& one = lane.points[static_cast<std::size_t>(point)];
+    StopTotals all;
+    all.impulse = lasts * pushed[i].sum;
+    all.contact_time = lasts * static_cast<double>(steps.steps);
+    all.squares = lasts * pushed[i].squares;
+    all.peak_force = pushed[i].most;
+    add(lane, one, all, pushed[i].last, stop(lane, point, one.side));
+    one.pushed = lasts * pushed[i].last;
+  }
+  left_at_ = steps.from + static_cast<double>(steps.steps - 1) * h_ + stage.facts.from * h_;
+  left_ = !tells_slots_;
+  return true;
 }
 
 // The first of them, of what opened before them, and the last one, for what closes in the step after them.
@@ -160,24 +186,32 @@ void ImpactRecorder::move_to_place(Lane& lane, int point, double place, double t
   one.place = place;
 }
 
+// What instants of a closed point gave; `force`: of the last of them.
+void ImpactRecorder::add(Lane& lane, const Point& one, const StopTotals& given, double force, StopTotals& totals) {
+  lane.force += force;
+  lane.peak = std::max(lane.peak, given.peak_force);
+  totals.impulse += given.impulse;
+  totals.contact_time += given.contact_time;
+  totals.squares += given.squares;
+  totals.peak_force = std::max(totals.peak_force, given.peak_force);
+  if (one.row >= lane.impacts.size()) return;
+  Impact& impact = lane.impacts[one.row];
+  impact.impulse += given.impulse;
+  impact.duration += given.contact_time;
+  impact.peak_force = std::max(impact.peak_force, given.peak_force);
+  impact.release_force = force;
+}
+
 // One more instant of a closed point.
 void ImpactRecorder::press(Lane& lane, int point, double lasts, double time, bool closes) {
   Point& one = lane.points[static_cast<std::size_t>(point)];
   const double force = lasts > 0 ? one.given / lasts : 0.0;
-  lane.force += force;
-  lane.peak = std::max(lane.peak, force);
-  StopTotals& totals = stop(lane, point, one.side);
-  totals.impulse += one.given;
-  totals.contact_time += lasts;
-  totals.squares += one.given * force;
-  totals.peak_force = std::max(totals.peak_force, force);
-  if (one.row < lane.impacts.size()) {
-    Impact& impact = lane.impacts[one.row];
-    impact.impulse += one.given;
-    impact.duration += lasts;
-    impact.peak_force = std::max(impact.peak_force, force);
-    impact.release_force = force;
-  }
+  StopTotals all;
+  all.impulse = one.given;
+  all.contact_time = lasts;
+  all.squares = one.given * force;
+  all.peak_force = force;
+  add(lane, one, all, force, stop(lane, point, one.side));
   if (&lane == &lanes_.front())
     for (ContactListener* listener : listeners_)
       listener->instant({point, one.side > 0 ? StopSide::lower : StopSide::upper, time, lasts, one.given, force, closes,

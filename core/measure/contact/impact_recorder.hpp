@@ -143,6 +143,8 @@ class ImpactRecorder final : public StepObserver {
   void let_go(const Marcher& marcher, const StageView& view);
   static void move(Lane& lane, int point, double now, double across = 0);
   void move_to_place(Lane& lane, int point, double place, double time);
+  bool press_sums(const StageProgram& stage, const StepInterval& steps);
+  static void add(Lane& lane, const Point& one, const StopTotals& given, double force, StopTotals& totals);
   void press(Lane& lane, int point, double lasts, double time, bool closes);
 
   const MarchModel& model_;

@@ -393,6 +393,11 @@ void EnergyAudit::add_flown(const Marcher& marcher, const StepInterval& steps) {
   ContactTotals& contact = state.contact;
   contact.contact_steps += steps.instants * steps.steps;
   contact.deepest_penetration = std::max(contact.deepest_penetration, steps.penetration);
+  if (const auto pushed = steps.pushed(); !pushed.empty()) {
+    const double momentum = marcher.program().stages.front().momentum;
+    for (const Flight::Pushed& one : pushed) contact.impulse += momentum * one.sum;
+    return;
+  }
   steps.each_stage([&](int stage, std::span<const double> efforts, std::span<const double>) {
     const double momentum = marcher.program().stages[static_cast<std::size_t>(stage)].momentum;
     for (const double p : efforts) contact.impulse += momentum * std::abs(p);

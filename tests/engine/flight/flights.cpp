@@ -216,12 +216,12 @@ TEST_CASE("every value that a bound promises to hold stays within it") {
     for (double& value : x) value = 1e-3 * normal(random);
     double e[3] = {0.02 * std::sin(draw), 0.02 * std::cos(draw), 1};
     const long long k = 1LL << (draw % 8);
-    set.tip().set_state(x.data(), e);
-    const FlightBound::Range range = set.tip().range(0, 0, k);
+    set.tip().each->set_state(x.data(), e);
+    const FlightBound::Range range = set.tip().each->range(0, 0, k);
     double low = 1e9, high = -1e9;
     for (long long i = 0; i <= k; ++i) {
       double value = 0;
-      set.tip().values(0, x.data(), e, &value);
+      set.tip().each->values(0, x.data(), e, &value);
       low = std::min(low, value);
       high = std::max(high, value);
       set.motion().leap(0, x.data(), e);
