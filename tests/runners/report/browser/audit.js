@@ -1,10 +1,14 @@
-// What a reader cannot read: boxes that pass the right edge, letters below 12 pixels, contrast below 4.5 (WCAG 2.1),
-// words that lie on each other or pass the edge of their chart. An expression that gives a list of what is wrong.
+// What a reader cannot read: boxes that pass the right edge or, on paper, their lower one, letters below 12 pixels,
+// contrast below 4.5 (WCAG 2.1), words that lie on each other or pass the edge of their chart. Paper has its own
+// drawings, and the summary's letters go down to 6.5 points, those of captions and legends to 0.86 of that. An
+// expression that gives a list of what is wrong.
 (() => {
+  const paper = matchMedia("print").matches;
   ricochet.later.fillAll();
-  ricochet.figures.forEach((figure) => figure.drawAll());
-  const out = [], {contrast, channels} = ricochet.theme, least = 4.5, smallest = 11.95,
-        scrolls = ".scroll, .scene, .extremes, .hidden, .skip, .notes, pre, script, noscript";
+  paper ? ricochet.paper.prepare() : ricochet.figures.forEach((figure) => figure.drawAll());
+  const out = [], {contrast, channels} = ricochet.theme, least = 4.5, smallest = paper ? 7.4 : 11.95,
+        scrolls = (paper ? ".on-paper svg *, .drawing svg *" : ".scroll") +
+      ", .scene, .extremes, .hidden, .skip, .notes, pre, script, noscript";
   const seen = (e) => e.getClientRects().length > 0,
         said = (e) => e.tagName + " " + (e.className.baseVal ?? e.className) + " " + e.textContent.trim().slice(0, 40);
   const behind = (e) => {
@@ -19,6 +23,8 @@
     if (!seen(e)) continue;
     if (!e.closest(scrolls) && e.getBoundingClientRect().right > innerWidth + 1)
       out.push("passes the edge: " + said(e));
+    if (paper && e.matches(".scroll, .notes, .told, figure, section, details") && e.scrollHeight > e.clientHeight + 2)
+      out.push("goes on beneath its box: " + said(e));
     if (!has(e) || e.closest("script, noscript, .skip, .hidden, [aria-pressed=false], sup, sub")) continue;
     const style = getComputedStyle(e), svg = e.closest("svg"), box = svg && svg.viewBox.baseVal,
           size = parseFloat(style.fontSize) * (box && box.width ? svg.getBoundingClientRect().width / box.width : 1),

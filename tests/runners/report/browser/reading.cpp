@@ -15,7 +15,8 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const char* const read_kinds[] = {"trajectory", "convergence", "work-precision", "stability", "bifurcation", "basins"};
+const char* const read_kinds[] = {"trajectory",  "convergence", "work-precision", "stability",
+                                  "bifurcation", "basins",      "continuation"};
 
 // Expressions that the page answers.
 // Boxes and words that pass the right edge of what is seen, but for what lies in a box that scrolls by itself.
@@ -63,20 +64,27 @@ TEST_CASE("on a phone nothing is wider than the screen, and a swipe over a chart
 }
 
 TEST_CASE(
-    "nothing passes an edge, no words lie on each other, all letters can be read, at any width and on a dark screen",
+    "nothing passes an edge, no words lie on each other, all letters can be read, at any width, on a dark screen and "
+    "on paper",
     "[report][browser]") {
   if (left_out()) return;
   const std::string audit = read_text(tests::places().source + "/tests/runners/report/browser/audit.js");
   browser::Json steps = browser::Json::array();
-  for (const std::string kind :
-       {"trajectory", "convergence", "work-precision", "stability", "bifurcation", "basins", "asks", "film"})
-    for (const int width : {1400, 800, 390, -1400})
-      steps.push_back({{"name", kind + " " + std::to_string(width)},
-                       {"page", report_of("studies", kind)},
-                       {"width", std::abs(width)},
-                       {"height", 1000},
-                       {"dark", width < 0},
-                       {"evaluate", {audit}}});
+  const auto add = [&](const std::string& kind, const std::string& how, int width) -> browser::Json& {
+    steps.push_back({{"name", kind + " " + how},
+                     {"page", report_of("studies", kind)},
+                     {"width", width},
+                     {"height", 1000},
+                     {"evaluate", {audit}}});
+    return steps.back();
+  };
+  std::vector<std::string> kinds(std::begin(read_kinds), std::end(read_kinds));
+  for (const char* more : {"asks", "film"}) kinds.emplace_back(more);
+  for (const std::string& kind : kinds) {
+    for (const int width : {1400, 800, 390}) add(kind, std::to_string(width), width);
+    add(kind, "dark", 1400)["dark"] = true;
+    add(kind, "paper", 680)["print"] = true;  // CSS pixels between the margins of A4
+  }
   const browser::Json said = driven("reading-audit", steps);
   for (const auto& [name, answer] : said.items()) {
     INFO(name);
