@@ -7,6 +7,7 @@
 #include <ricochet/contract/said_format.hpp>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/cost_model.hpp>
+#include <ricochet/engine/effort_worth.hpp>
 #include <ricochet/engine/indefinite_step.hpp>
 #include <ricochet/engine/jamming.hpp>
 #include <ricochet/engine/left_out.hpp>
@@ -149,13 +150,6 @@ std::optional<Refusal> fill(StageProgram& program, const Stage& stage, const Pro
   return std::nullopt;
 }
 
-// What momentum an effort of 1 N gives to a free mass within the stage itself, N s.
-double momentum_at_once(const StepPlan& plan, const Stage& stage) {
-  double moved = 0;
-  for (std::size_t j = 0; j < plan.velocity.slots.size(); ++j) moved += plan.velocity.slots[j] * stage.update[j].z;
-  return stage.matrix.M != 0 ? moved / stage.matrix.M : 0.0;
-}
-
 // What a stage that gives work back needs to know of the one whose work it is.
 void connect_works(Program& program) {
   for (std::size_t k = 0; k < program.stages.size(); ++k) {
@@ -166,128 +160,6 @@ void connect_works(Program& program) {
     program.stages[source].motion_levels = work.support;
     program.stages[source].motion_phase = PhaseWeights(work.support, program.problem->support.pulsation, program.h);
   }
-}
-
-void say_what_is_left_out(Program& program) {
-  const SemiDiscrete& problem = *program.problem;
-  const auto say = [&](std::string item, std::string reason) {
-    program.left_out.push_back({std::move(item), std::move(reason)});
-  };
-  say("damping matrix C", problem.damping.by_modes() ? "C is a number for each mode"
-                          : problem.damping.matrix   ? "C is a matrix of its own"
-                          : problem.damped()         ? "C = αK + ηM is folded into the weights of K and M"
-                                                     : "the structure is undamped");
-  if (!program.support && problem.motions.empty()) say("inertia load of the support", "the support does not move");
-  if (!program.load)
-    say("distributed load", "it is zero");
-  else if (program.load_constant)
-    say("assembly of the distributed load at each step", "it does not depend on t");
-  if (!program.contact) {
-    say("contact rows and box problem", program.law->absent() ? "contact law none" : "no stop anywhere");
-  } else {
-    const auto absent = [&](bool lower) {
-      for (const LaneSpec& lane : program.lanes)
-        for (int i = 0; i < problem.points(); ++i)
-          if (std::isfinite(lower ? lane.lower[i] : lane.upper[i])) return false;
-      return true;
-    };
-    if (absent(true)) say("lower stop", "absent");
-    if (absent(false)) say("upper stop", "absent");
-    if (program.law->closed_form(problem.points()))
-      say("active-set search", problem.points() == 1 ? "one contact point: closed form" : "the law has a closed form");
-    if (!program.eager_delassus)
-      say("Delassus columns of points never touched", "computed when a point is first touched");
-  }
-  for (std::size_t k = 0; k < program.stages.size(); ++k)
-    if (!program.stages[k].op && program.stages[k].folded.solves())
-      say(fmt::format("solve of stage {}", k + 1), "without contact nothing drives it");
-  bool mass_products = false;
-  for (const StageProgram& stage : program.stages) mass_products = mass_products || stage.folded.uses_mass();
-  if (!mass_products) say("products with M", "the scheme's right-hand side has none");
-  if (problem.inertia.factored() && program.kind != OperatorKind::modal)
-    say("the mass matrix itself", "M = Bᵀ C_v⁻¹ B acts through its factors");
-  if (problem.inertia.inverted() && program.kind != OperatorKind::modal)
-    say("the mass matrix itself", "M⁻¹ is known: without K a stage is a product with it, with K it is a border");
-  say_unused(program);
-  if (program.tangents == 0) say("tangent columns", "no exponent is asked for");
-}
-
-// Efforts of friction as those of a law that weights none of before.
-StageEfforts friction_read(const std::vector<StageProgram>& stages) {
-  StageEfforts efforts(stages.size());
-  for (std::size_t k = 0; k < stages.size(); ++k)
-    if (stages[k].reads_contact) efforts[k] = {{stages[k].friction_weight}, stages[k].impulse.weight};
-  return efforts;
-}
-
-StageEfforts efforts_read(const std::vector<StageProgram>& stages) {
-  StageEfforts efforts(stages.size());
-  for (std::size_t k = 0; k < stages.size(); ++k)
-    if (stages[k].reads_contact) efforts[k] = {stages[k].effort, stages[k].impulse.weight};
-  return efforts;
-}
-
-// Σ_j w_j e₋ⱼ + w_ι ι p, e₋ⱼ = Σ_k π_k p₋ⱼ₋ₖ with the weights of the stage j before; `cyclic`: stages without end.
-std::vector<double> work_efforts(const WorkForm& work, std::size_t stage, const StageEfforts& efforts, bool cyclic) {
-  const std::size_t stages = efforts.size();
-  std::vector<double> weights;
-  for (std::size_t j = 0; j < work.effort.size() && (cyclic || j <= stage); ++j) {
-    const std::vector<double>& pi = efforts[(stage + stages * j - j) % stages].weights;
-    if (weights.size() < j + pi.size()) weights.resize(j + pi.size(), 0.0);
-    for (std::size_t k = 0; k < pi.size(); ++k) weights[j + k] += work.effort[j] * pi[k];
-  }
-  if (efforts[stage].impulse != 0) weights[0] += work.impulse * efforts[stage].impulse;
-  return weights;
-}
-
-// What an effort of friction of each stage is worth.
-void add_friction_facts(Program& program) {
-  const StageEfforts efforts = friction_read(program.stages), start = friction_read(program.start);
-  const EffortMomenta momenta = effort_momenta(program.plan, start, efforts);
-  const auto add = [&](std::vector<StageProgram>& stages, const std::vector<Stage>& plan, const StageEfforts& read,
-                       const std::vector<double>& worth, bool cyclic) {
-    for (std::size_t k = 0; k < stages.size(); ++k) {
-      if (!stages[k].reads_contact) continue;
-      stages[k].friction_momentum = worth[k];
-      if (const auto& work = plan[k].work)
-        stages[k].friction_work = work_efforts(*work, k, read, cyclic);
-      else if (!cyclic)
-        stages[k].friction_work = {momentum_at_once(program.plan, plan[k]) * stages[k].friction_weight};
-    }
-  };
-  add(program.stages, program.plan.stages, efforts, momenta.stages, true);
-  add(program.start, program.plan.start, start, momenta.start, false);
-}
-
-// What an effort of each stage is worth, and which stages share a contact instant.
-std::optional<Refusal> add_contact_facts(Program& program) {
-  const StageEfforts efforts = efforts_read(program.stages), start = efforts_read(program.start);
-  const EffortMomenta momenta = effort_momenta(program.plan, start, efforts);
-  if (program.contact && !momenta.why_none.empty())
-    return Refusal{"contact gives no definite impulse under this time scheme, as " + momenta.why_none +
-                   ": use another time scheme, or the contact law none"};
-  StageProgram* last = nullptr;
-  for (std::size_t k = 0; k < program.stages.size(); ++k) {
-    StageProgram& stage = program.stages[k];
-    if (!stage.reads_contact) continue;
-    stage.momentum = momenta.stages[k];
-    if (const auto& work = program.plan.stages[k].work) stage.work_effort = work_efforts(*work, k, efforts, true);
-    stage.opens_instant = !last || std::abs(stage.facts.instant - last->facts.instant) > 1e-9;
-    if (last && stage.opens_instant) last->closes_instant = true;
-    last = &stage;
-  }
-  if (last) last->closes_instant = true;
-  for (std::size_t k = 0; k < program.start.size(); ++k) {
-    StageProgram& stage = program.start[k];
-    if (!stage.reads_contact) continue;
-    stage.opens_instant = stage.closes_instant = true;
-    stage.momentum = momenta.start[k];
-    if (const auto& work = program.plan.start[k].work)
-      stage.work_effort = work_efforts(*work, k, start, false);
-    else
-      stage.work_effort = {momentum_at_once(program.plan, program.plan.start[k])};
-  }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -308,6 +180,7 @@ LaneSpec scene_lane(const SemiDiscrete& problem, const Parameters& law) {
   lane.lower = problem.lower;
   lane.upper = problem.upper;
   lane.law = law;
+  for (const RubbingPoint& one : problem.rubbing) lane.rubbing.push_back(one.given);
   return lane;
 }
 
@@ -315,8 +188,22 @@ namespace {
 
 // A damper acts without stops.
 bool meets_contact(const SemiDiscrete& problem, const ContactLaw& law) {
-  const auto damper = [](const RubbingPoint& one) { return one.normal_force.has_value(); };
+  const auto damper = [](const RubbingPoint& one) { return one.given.normal_force.has_value(); };
   return problem.points() > 0 && (!law.absent() || std::any_of(problem.rubbing.begin(), problem.rubbing.end(), damper));
+}
+
+// Why the law reads nothing in this scheme, or nothing.
+std::optional<Refusal> refuse_unread(const Program& program) {
+  if (!program.contact) return std::nullopt;
+  const std::optional<Evaluation> evaluation = program.law->reads();
+  const StageEfforts efforts = stage_efforts(program.plan.stages, evaluation);
+  if (std::any_of(efforts.begin(), efforts.end(), [](const StageEffort& one) { return !one.weights.empty(); }))
+    return std::nullopt;
+  if (!evaluation) return Refusal{"the time scheme has no impact measure for a rigid law: use a penalty"};
+  return Refusal{std::string("the time scheme offers no ") + evaluation_word(*evaluation) +
+                 " evaluation of a compliant law" +
+                 (*evaluation == Evaluation::conserving ? ", nor the displacement before the step" : "") +
+                 ": choose another evaluation"};
 }
 
 // The friction law, or why the plan has none.
@@ -377,7 +264,10 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   program.width = lane_width(static_cast<int>(lanes.size()) * (1 + program.tangents));
   program.support = options.moving_support;
   program.lanes = std::move(lanes);
+  for (const LaneSpec& lane : program.lanes)
+    if (lane.rubbing.size() != problem->rubbing.size()) throw std::logic_error("a lane has no friction of its own");
   program.contact = meets_contact(*problem, *program.law);
+  if (auto refusal = refuse_unread(program)) return *refusal;
   if (auto refusal = meet_friction(program, derived, options)) return *refusal;
   for (const LaneSpec& lane : program.lanes) program.support = program.support || lane.amplitude != 0;
   program.load = problem->load && !problem->load->absent();
@@ -425,20 +315,11 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
     program.start[k].facts = derived.start[k];
     if (auto refusal = fill(program.start[k], program.plan.start[k], program)) return *refusal;
   }
-  bool contact_read = false, mass_only = true;
+  bool mass_only = true;
   for (std::size_t k = 0; k < program.stages.size(); ++k) {
     program.stages[k].facts = derived.stages[k];
     if (auto refusal = fill(program.stages[k], program.plan.stages[k], program)) return *refusal;
-    contact_read = contact_read || program.stages[k].reads_contact;
     mass_only = mass_only && program.stages[k].folded.stiffness == 0;
-  }
-  if (program.contact && !contact_read) {
-    if (const auto evaluation = program.law->reads())
-      return Refusal{std::string("the time scheme offers no ") + evaluation_word(*evaluation) +
-                     " evaluation of a compliant law" +
-                     (*evaluation == Evaluation::conserving ? ", nor the displacement before the step" : "") +
-                     ": choose another evaluation"};
-    return Refusal{"the time scheme has no impact measure for a rigid law: use a penalty"};
   }
   connect_works(program);
   if (auto refusal = add_contact_facts(program)) return *refusal;
@@ -453,7 +334,7 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   }
   if (program.friction)
     if (auto refusal = refuse_jamming(program)) return *refusal;
-  say_what_is_left_out(program);
+  say_left_out(program);
   program.every_step_because = grounded;
   if (!flies) return program;
   if (const std::string cause = let_fly(program, options); !cause.empty()) {

@@ -22,6 +22,7 @@ struct LaneSpec {
   Eigen::VectorXd position, velocity;  ///< q₀, v₀ of w, nodal
   Eigen::VectorXd lower, upper;        ///< g1, g2 at the contact points, absolute
   Parameters law;                      ///< checked parameters of the contact law
+  std::vector<Rubbing> rubbing = {};   ///< μ and N of each rubbing point
 };
 
 /// The lane that the scene itself describes.
@@ -44,6 +45,8 @@ struct LeftOut {
 struct JamNumber {
   double coupling = 0;  ///< J/μ
   double number = 0;    ///< J; 0 below 1e-9, which is round-off
+  double across = 0;    ///< W_tt/W_nn along that coupling, of a rigid law
+  double mu = 0;        ///< the largest of all lanes
 };
 
 struct CompileOptions {

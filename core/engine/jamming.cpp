@@ -57,6 +57,17 @@ double round_coupling(const RubbingPoint& one, int points, const Columns& column
   return most;
 }
 
+// W_tt along the coupling; of a flat point.
+double along_coupling(const RubbingPoint& one, const double* normal, const auto& column_of, int points) {
+  double squares = 0, sum = 0;
+  for (int a = 0; a < one.rows; ++a) {
+    const double* column = column_of(points + one.row + a);
+    for (int b = 0; b < one.rows; ++b) sum += normal[one.row + a] * column[points + one.row + b] * normal[one.row + b];
+    squares += normal[one.row + a] * normal[one.row + a];
+  }
+  return squares > 0 ? sum / squares : 0.0;
+}
+
 void add_stage(Program& program, StageProgram& stage, std::vector<JamNumber>& numbers) {
   if (!stage.reads_contact || !stage.op || stage.friction_momentum == 0) return;
   StageDelassus plain(*stage.op, *program.model, nullptr);
@@ -65,23 +76,64 @@ void add_stage(Program& program, StageProgram& stage, std::vector<JamNumber>& nu
   const SemiDiscrete& problem = *program.problem;
   for (std::size_t i = 0; i < problem.rubbing.size(); ++i) {
     const RubbingPoint& one = problem.rubbing[i];
-    if (one.normal_force) continue;
+    if (one.given.normal_force) continue;
     const auto column = [&](int point) { return impulse ? impulse->column(point) : plain.column(point); };
     const double gives_way = given_way(program, stage, one.point);
-    double coupling = 0;
+    JamNumber found;
+    double& coupling = found.coupling;
     if (one.round) {
       coupling = round_coupling(one, problem.points(), column, gives_way);
     } else {
-      const double* normal = column(one.point);
-      coupling = coupling_along(one, {}, normal + problem.points(), normal[one.point] + gives_way);
+      const double* kept = column(one.point);  // a column holds till the next one is asked for
+      const std::vector<double> normal(kept, kept + problem.points() + one.row + one.rows);
+      const double own = normal[static_cast<std::size_t>(one.point)] + gives_way;
+      coupling = coupling_along(one, {}, normal.data() + problem.points(), own);
+      if (!program.law->reads() && own > 0)
+        found.across = along_coupling(one, normal.data() + problem.points(), column, problem.points()) / own;
     }
     if (coupling <= numbers[i].coupling) continue;
-    const double number = std::max(one.held, one.sliding) * coupling;
-    numbers[i] = number > round_off ? JamNumber{coupling, number} : JamNumber{};
+    for (const LaneSpec& lane : program.lanes) found.mu = std::max(found.mu, lane.rubbing[i].largest());
+    found.number = found.mu * coupling;
+    numbers[i] = found.number > round_off ? found : JamNumber{};
   }
 }
 
+// One impact of a point at −1 m/s along its normal and τ along its coupling c, d across, W_nn = 1: E after over E
+// before.
+struct ObliqueImpact {
+  double coupling, across, mu, restitution;
+
+  double energy(double normal, double tangent) const {
+    return across * normal * normal - 2 * coupling * normal * tangent + tangent * tangent;
+  }
+  /// What sliding against `way` leaves along the tangent, less τ.
+  double slid(double way) const {
+    return (1 + restitution) * (coupling - way * mu * across) / (1 - way * mu * coupling);
+  }
+  double kept(double tau) const {
+    const double up = slid(1), down = slid(-1);
+    const double after = tau + up > 0 ? tau + up : tau + down < 0 ? tau + down : 0.0;
+    return energy(restitution, after) / energy(-1, tau);
+  }
+};
+
 }  // namespace
+
+double largest_gain(const JamNumber& point, double restitution) {
+  const double c = point.coupling, d = point.across;
+  if (c == 0 || restitution == 0 || !(d > c * c)) return 0;
+  const ObliqueImpact impact{c, d, point.mu, restitution};
+  double most = std::max(impact.kept(-c), 1.0);
+  for (const double way : {1.0, -1.0}) {
+    // While it slides both energies are quadratic in τ: τ² + 2Aτ + B over τ² + 2cτ + d.
+    const double k = impact.slid(way), A = k - c * restitution, B = impact.energy(restitution, k);
+    const double a = c - A, b = d - B, e = A * d - c * B, root = b * b - 4 * a * e;
+    most = std::max(most, impact.kept(-k));
+    if (a == 0 || root < 0) continue;
+    for (const double sign : {1.0, -1.0}) most = std::max(most, impact.kept((-b + sign * std::sqrt(root)) / (2 * a)));
+  }
+  return most - 1;
+}
 
 std::vector<JamNumber> jam_numbers(Program& program) {
   std::vector<JamNumber> numbers(program.problem->rubbing.size());
@@ -100,8 +152,8 @@ std::optional<Refusal> refuse_jamming(Program& program) {
     return Refusal{said(
         "stop {} may jam: μ = {:.4g} times the coupling {:.4g} of its normal and tangent is {:.4g}, and 1 or more has "
         "several motions. Use a smaller friction",
-        program.problem->stops[static_cast<std::size_t>(one.point)], std::max(one.held, one.sliding),
-        program.jam[i].coupling, program.jam[i].number)};
+        program.problem->stops[static_cast<std::size_t>(one.point)], program.jam[i].mu, program.jam[i].coupling,
+        program.jam[i].number)};
   }
   return std::nullopt;
 }

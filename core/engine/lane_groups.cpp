@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <ricochet/engine/cost_model.hpp>
@@ -19,13 +21,15 @@ bool same_matrix(const SparseMatrix& a, const SparseMatrix& b) {
   return a.nonZeros() == 0 || (a - b).cwiseAbs().sum() == 0;
 }
 
-// Loads are formulas: they are the same when they give the same forces at times that no period hides.
+constexpr std::array<double, 5> instants{0.0, 0.0137, 0.1973, 0.7719, 3.3391};  // no period hides them, s
+
+// Loads are formulas: they are the same when they give the same forces at these instants.
 bool same_load(const SemiDiscrete& a, const SemiDiscrete& b) {
   const bool absent = !a.load || a.load->absent();
   if (absent != (!b.load || b.load->absent())) return false;
   if (absent) return true;
   Eigen::VectorXd left = Eigen::VectorXd::Zero(a.dofs()), right = left;
-  for (const double t : {0.0, 0.0137, 0.1973, 0.7719, 3.3391}) {
+  for (const double t : instants) {
     a.load->assemble(t, left.data());
     b.load->assemble(t, right.data());
     if (left != right) return false;
@@ -33,18 +37,36 @@ bool same_load(const SemiDiscrete& a, const SemiDiscrete& b) {
   return true;
 }
 
+bool alike(const TimeHistory& a, const TimeHistory& b) {
+  return std::all_of(instants.begin(), instants.end(), [&](double t) { return a.value(t) == b.value(t); });
+}
+
 // Histories as well.
 bool same_motions(const SupportMotions& a, const SupportMotions& b) {
   if (a.histories.size() != b.histories.size()) return false;
   if (a.empty()) return true;
   if (a.at_points != b.at_points || a.at_tip != b.at_tip) return false;
-  for (const double t : {0.0, 0.0137, 0.1973, 0.7719, 3.3391})
-    if (a.values(t, false) != b.values(t, false)) return false;
+  for (std::size_t j = 0; j < a.histories.size(); ++j)
+    if (!alike(*a.histories[j], *b.histories[j])) return false;
   return true;
 }
 
 bool same_rows(const SparseRows& a, const SparseRows& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() && (a.rows() == 0 || (a - b).squaredNorm() == 0);
+}
+
+// Coefficients are those of lanes.
+bool same_rubbing(const SemiDiscrete& a, const SemiDiscrete& b) {
+  if (a.rubbing.size() != b.rubbing.size() || a.rubbed_speeds != b.rubbed_speeds ||
+      a.rubbed_motions.size() != b.rubbed_motions.size())
+    return false;
+  for (std::size_t i = 0; i < a.rubbing.size(); ++i)
+    if (!a.rubbing[i].like(b.rubbing[i])) return false;
+  for (std::size_t k = 0; k < a.rubbed_motions.size(); ++k) {
+    const SurfaceMotion &one = a.rubbed_motions[k], &other = b.rubbed_motions[k];
+    if (one.row != other.row || one.share != other.share || !alike(*one.history, *other.history)) return false;
+  }
+  return true;
 }
 
 bool same_problem(const SemiDiscrete& a, const SemiDiscrete& b) {
@@ -53,8 +75,8 @@ bool same_problem(const SemiDiscrete& a, const SemiDiscrete& b) {
          same_matrix(a.inertia.velocity_mass, b.inertia.velocity_mass) &&
          same_matrix(a.inertia.inverse, b.inertia.inverse) && a.damping == b.damping &&
          a.support.pulsation == b.support.pulsation && a.contact_x == b.contact_x && a.stops == b.stops &&
-         a.own == b.own && a.rubbing == b.rubbing && a.rubbed_speeds == b.rubbed_speeds &&
-         same_rows(a.rubbed.rows, b.rubbed.rows) && same_load(a, b) && same_motions(a.motions, b.motions);
+         a.own == b.own && same_rubbing(a, b) && same_rows(a.rubbed.rows, b.rubbed.rows) && same_load(a, b) &&
+         same_motions(a.motions, b.motions);
 }
 
 // A load is a formula, which keeps what it works with inside: every program that may run beside others has its own.

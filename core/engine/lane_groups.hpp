@@ -23,9 +23,9 @@ struct LaneCandidate {
 };
 
 /// Scenes sorted into groups that march as lanes of one factorisation: same matrices, same step, same scheme and law.
-/// Amplitude, phase, stops, initial state and the law's per-lane parameters may differ. The operator is chosen with the
-/// first group, for a block of eight lanes and a long integration. All programs have the same one. States are thus in
-/// the same coordinates, and results do not depend bitwise on the number of lanes.
+/// Amplitude, phase, stops, friction, initial state and the law's per-lane parameters may differ. The operator is
+/// chosen with the first group, for a block of eight lanes and a long integration. All programs have the same one.
+/// States are thus in the same coordinates, and results do not depend bitwise on the number of lanes.
 class LaneGroups {
  public:
   /// `way`: whether orbits march as lanes, or one by one and leave out steps (automatic: what is expected to cost

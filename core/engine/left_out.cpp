@@ -82,6 +82,8 @@ std::optional<Refusal> refuse_restitution(const Program& program) {
            name)};
 }
 
+namespace {
+
 // What stops have of their own that neither law nor scheme has a use for.
 void say_unused(Program& program) {
   const SemiDiscrete& problem = *program.problem;
@@ -99,6 +101,52 @@ void say_unused(Program& program) {
   if (!gate)
     say(ParameterRole::restitution,
         program.law->reads() ? "a compliant law rebounds by its own force" : "the time scheme has none");
+}
+
+}  // namespace
+
+void say_left_out(Program& program) {
+  const SemiDiscrete& problem = *program.problem;
+  const auto say = [&](std::string item, std::string reason) {
+    program.left_out.push_back({std::move(item), std::move(reason)});
+  };
+  say("damping matrix C", problem.damping.by_modes() ? "C is a number for each mode"
+                          : problem.damping.matrix   ? "C is a matrix of its own"
+                          : problem.damped()         ? "C = αK + ηM is folded into the weights of K and M"
+                                                     : "the structure is undamped");
+  if (!program.support && problem.motions.empty()) say("inertia load of the support", "the support does not move");
+  if (!program.load)
+    say("distributed load", "it is zero");
+  else if (program.load_constant)
+    say("assembly of the distributed load at each step", "it does not depend on t");
+  if (!program.contact) {
+    say("contact rows and box problem", program.law->absent() ? "contact law none" : "no stop anywhere");
+  } else {
+    const auto absent = [&](bool lower) {
+      for (const LaneSpec& lane : program.lanes)
+        for (int i = 0; i < problem.points(); ++i)
+          if (std::isfinite(lower ? lane.lower[i] : lane.upper[i])) return false;
+      return true;
+    };
+    if (absent(true)) say("lower stop", "absent");
+    if (absent(false)) say("upper stop", "absent");
+    if (program.law->closed_form(problem.points()))
+      say("active-set search", problem.points() == 1 ? "one contact point: closed form" : "the law has a closed form");
+    if (!program.eager_delassus)
+      say("Delassus columns of points never touched", "computed when a point is first touched");
+  }
+  for (std::size_t k = 0; k < program.stages.size(); ++k)
+    if (!program.stages[k].op && program.stages[k].folded.solves())
+      say(fmt::format("solve of stage {}", k + 1), "without contact nothing drives it");
+  bool mass_products = false;
+  for (const StageProgram& stage : program.stages) mass_products = mass_products || stage.folded.uses_mass();
+  if (!mass_products) say("products with M", "the scheme's right-hand side has none");
+  if (problem.inertia.factored() && program.kind != OperatorKind::modal)
+    say("the mass matrix itself", "M = Bᵀ C_v⁻¹ B acts through its factors");
+  if (problem.inertia.inverted() && program.kind != OperatorKind::modal)
+    say("the mass matrix itself", "M⁻¹ is known: without K a stage is a product with it, with K it is a border");
+  say_unused(program);
+  if (program.tangents == 0) say("tangent columns", "no exponent is asked for");
 }
 
 double Program::farthest_layer() const {

@@ -58,7 +58,7 @@ StageFriction::StageFriction(const Program& program) {
   residual.resize(at(T));
   turns.resize(at(T));
   for (const RubbingPoint& one : problem.rubbing)
-    if (one.normal_force) always = (std::uint32_t{1} << program.lanes.size()) - 1;
+    if (one.given.normal_force) always = (std::uint32_t{1} << program.lanes.size()) - 1;
   if (program.lanes.size() == 32) always = always != 0 ? ~std::uint32_t{0} : 0;
   tangents.reserve(at(all));
   kept_at.reserve(at(all));
@@ -132,6 +132,8 @@ void Marcher::measure_end_rates(const StageProgram& program, StageState& state, 
 double Marcher::rubbed_rate(int lane, int row, double t) const {
   const SemiDiscrete& problem = *program_.problem;
   double rate = -problem.rubbed_speeds[row];
+  for (const SurfaceMotion& one : problem.rubbed_motions)
+    if (one.row == row) rate -= one.share * one.history->rate(t);
   if (problem.rubbed.on_support[row] != 0 && program_.support)
     rate += problem.rubbed.on_support[row] * support_rate(lane, t);
   if (!motions().empty()) rate += motions().sum(problem.rubbed.on_motions.row(row), t, true);
@@ -143,9 +145,11 @@ double Marcher::rubbed_levels(int lane, int row, double t, const Levels& levels)
   double way = 0;
   if (problem.rubbed.on_support[row] != 0) way += problem.rubbed.on_support[row] * support_levels(lane, t, levels);
   for (const Level& level : levels) {
-    way -= level.weight * level.at * program_.h * problem.rubbed_speeds[row];
-    if (!motions().empty())
-      way += level.weight * motions().sum(problem.rubbed.on_motions.row(row), t + level.at * program_.h, false);
+    const double later = level.at * program_.h;
+    way -= level.weight * later * problem.rubbed_speeds[row];
+    for (const SurfaceMotion& one : problem.rubbed_motions)
+      if (one.row == row) way -= level.weight * one.share * (one.history->value(t + later) - one.history->value(t));
+    if (!motions().empty()) way += level.weight * motions().sum(problem.rubbed.on_motions.row(row), t + later, false);
   }
   return way;
 }
@@ -153,7 +157,7 @@ double Marcher::rubbed_levels(int lane, int row, double t, const Levels& levels)
 // |N| of a point that rubs, in the units of the stage's efforts of friction, and the direction of a round one.
 Marcher::Pressed Marcher::pressed(const StageProgram& program, const StageState& state, int point, int lane) const {
   const RubbingPoint& one = program_.problem->rubbing[at(point)];
-  if (one.normal_force) return {*one.normal_force, {}};
+  if (const auto& force = program_.lanes[at(lane)].rubbing[at(point)].normal_force) return {*force, {}};
   const auto normal = [&](int row) {
     const std::size_t e = at(row) * at(program_.width) + at(lane);
     if (state.impulse) return state.effort[0].data()[e];
@@ -181,10 +185,11 @@ void Marcher::find_pressed(const StageProgram& program, const StageState& state,
     if (!(found.force > 0)) continue;
     const std::size_t next = rub.number.size();
     const RubbingPoint& one = all[at(i)];
+    const Rubbing& surface = program_.lanes[at(lane)].rubbing[at(i)];
     rub.normals[next] = found.force;
     rub.directions[next] = found.normal;
-    rub.sliding[next] = one.sliding * found.force;
-    rub.held[next] = rub.sticks.at(i, lane) != 0 ? one.held * found.force : rub.sliding[next];
+    rub.sliding[next] = surface.sliding * found.force;
+    rub.held[next] = rub.sticks.at(i, lane) != 0 ? surface.held * found.force : rub.sliding[next];
     rub.number.push_back(i);
     for (int k = 0; k < one.tangents(); ++k) {
       rub.tangents.push_back(tangent_of(one, k, found.normal));
@@ -281,14 +286,15 @@ bool Marcher::friction_moves_normals(StageState& state, double reach, int lane) 
 namespace {
 
 // By how much round-off of what the law reads moves a bound of friction, N.
-double grain_of(const StageFriction& rub, const std::vector<RubbingPoint>& all, DelassusColumns& W, double reach) {
+double grain_of(const StageFriction& rub, const Program& program, int lane, DelassusColumns& W, double reach) {
   double most = 0;
   for (const int i : rub.number) {
-    const RubbingPoint& one = all[at(i)];
-    if (one.normal_force || reach == 0) continue;
+    const RubbingPoint& one = program.problem->rubbing[at(i)];
+    const Rubbing& surface = program.lanes[at(lane)].rubbing[at(i)];
+    if (surface.normal_force || reach == 0) continue;
     const double own = std::abs(reach) * W.column(one.point)[one.point],
                  measured = std::hypot(rub.measured[at(one.point)], one.round ? rub.measured[at(one.point + 1)] : 0.0);
-    if (own > 0) most = std::max(most, std::max(one.held, one.sliding) * measured / own);
+    if (own > 0) most = std::max(most, surface.largest() * measured / own);
   }
   return grains * most;
 }
@@ -318,7 +324,7 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
     most = change.most;
     largest = change.largest;
     if (!outcome.converged || most <= settled * largest) break;
-    if (!gains && most <= grain_of(rub, program_.problem->rubbing, columns_of(state), reach)) break;
+    if (!gains && most <= grain_of(rub, program_, lane, columns_of(state), reach)) break;
     if (turn == 0 && !friction_moves_normals(state, std::max(std::abs(reach), std::abs(rate_reach)), lane)) {
       most = 0;
       break;

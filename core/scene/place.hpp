@@ -1,10 +1,13 @@
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace ricochet {
+
+struct MotionSpec;
 
 /// A place of a structure, as a study writes it. Exactly one of: x; node and component; node and direction; dofs;
 /// point. Of several bodies with the name of one; that of an oscillator needs no more.
@@ -35,6 +38,8 @@ struct TangentSpec {
   std::vector<double> direction;  ///< three numbers, at the nodes of the stop
   std::string component;          ///< of the places of the stop
   double speed = 0;               ///< of the surface along it, m/s
+  /// What the surface does along it beside that speed; null: nothing.
+  std::shared_ptr<const MotionSpec> motion = {};
 
   bool given() const { return slope_radius > 0 || !direction.empty() || !component.empty(); }
 };

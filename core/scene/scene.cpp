@@ -117,6 +117,32 @@ bool moves_by_histories(const SceneSpec& scene) {
                                                [](const NamedStop& stop) { return stop.motion != nullptr; });
 }
 
+std::vector<GivenMotion> given_motions(const SceneSpec& scene) {
+  std::vector<GivenMotion> out;
+  const auto key = [](const MotionSpec& motion) {
+    return motion.gives == MotionSpec::Gives::acceleration ? "/acceleration" : "/displacement";
+  };
+  for (std::size_t i = 0; i < scene.motions.size(); ++i)
+    out.push_back({&scene.motions[i], fmt::format("/scene/motions/{}{}", i, key(scene.motions[i])), "a motion"});
+  for (std::size_t i = 0; i < scene.stops.named.size(); ++i) {
+    const NamedStop& stop = scene.stops.named[i];
+    if (i > 0 && scene.stops.named[i - 1].entry == stop.entry) continue;  // another side of a clearance
+    const std::string pointer = fmt::format("/scene/stops/{}", stop.entry);
+    if (stop.motion)
+      out.push_back(
+          {stop.motion.get(), pointer + "/moves_with" + key(*stop.motion), "the motion of the stop " + stop.name});
+    for (const auto* tangent : {&stop.tangent, &stop.across})
+      if (*tangent && (*tangent)->motion)
+        out.push_back({(*tangent)->motion.get(),
+                       fmt::format("{}/tangent{}/speed", pointer,
+                                   !stop.across               ? ""
+                                   : tangent == &stop.tangent ? "/0"
+                                                              : "/1"),
+                       "the surface of the stop " + stop.name});
+  }
+  return out;
+}
+
 bool LoadSpec::uses_t() const {
   return formula.uses_t() || std::any_of(terms.begin(), terms.end(), [](const LoadTerm& term) {
            return !ricochet::is_zero(term) && term.history.uses_t();

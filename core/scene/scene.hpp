@@ -159,8 +159,6 @@ struct StopParameters {
   bool operator==(const StopParameters&) const = default;
 };
 
-struct MotionSpec;
-
 /// Coulomb's coefficients: μ of a point that stuck in the stage before, and of one that slides.
 struct FrictionSpec {
   double held = 0, sliding = 0;
@@ -218,12 +216,13 @@ struct SupportSpec {
   double phase = 0;      ///< rad
 };
 
-/// A motion φ(t) that some supports have, given as a function of time.
+/// A motion φ(t) of supports, a stop or a surface, given as a function of time.
 struct MotionSpec {
+  enum class Gives { displacement, speed, acceleration };
   std::vector<std::string> supports;            ///< their names; empty: all
   std::shared_ptr<const TimeHistory> history;   ///< φ, m
   std::shared_ptr<const TimeTable> table = {};  ///< what it was made of; null: of something else
-  bool accelerates = true;                      ///< whether the table gives φ'', and not φ
+  Gives gives = Gives::acceleration;            ///< what the table gives of φ
   std::string component = {};                   ///< of a beam in two planes: uy or uz; empty: uy
   double period = 0;                            ///< s, after which it repeats; 0: none is declared
 };
@@ -301,5 +300,13 @@ struct SceneSpec {
 
 /// Whether supports or stops move by histories, beside the harmonic support.
 bool moves_by_histories(const SceneSpec& scene);
+
+/// A motion by a history, where the study gives it, and what a sentence calls it ("a motion").
+struct GivenMotion {
+  const MotionSpec* motion = nullptr;
+  std::string pointer, what;
+};
+/// Those of supports, stops and surfaces, each once.
+std::vector<GivenMotion> given_motions(const SceneSpec& scene);
 
 }  // namespace ricochet

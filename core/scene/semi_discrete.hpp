@@ -68,18 +68,36 @@ class DistributedLoad {
   mutable Eigen::VectorXd nodal_;
 };
 
+/// What a surface has of friction: μ where a point stuck in the stage before, and else. N where a force is given (N).
+struct Rubbing {
+  double held = 0, sliding = 0;
+  std::optional<double> normal_force = {};
+  double largest() const { return std::max(held, sliding); }
+  bool operator==(const Rubbing&) const = default;
+};
+
+/// What the surface of a row of what rubs does beside its constant speed: share·φ(t), m.
+struct SurfaceMotion {
+  int row = 0;
+  double share = 1;
+  std::shared_ptr<const TimeHistory> history;
+};
+
 /// A contact point that rubs: |p_t| ≤ μ|p_n| against u = T q' + lift − V, p_n its effort or a force that is given. A
 /// round one is met in the direction n = (n₁, n₂) of its circle. Its rows are u₁, u₂ and the rim, which nothing but its
 /// speed moves; of a surface that bends also r θ₁ and r θ₂. Its tangents are −n₂u₁ + n₁u₂ + rim and n₁rθ₁ + n₂rθ₂.
 struct RubbingPoint {
-  int point = 0;                       ///< contact point, of a round one that of u₁
-  int row = 0, rows = 1;               ///< of SemiDiscrete::rubbed
-  bool round = false;                  ///< in a clearance that is met as a circle
-  double held = 0, sliding = 0;        ///< μ where it stuck in the stage before, and else
-  std::optional<double> normal_force;  ///< N
+  int point = 0;          ///< contact point, of a round one that of u₁
+  int row = 0, rows = 1;  ///< of SemiDiscrete::rubbed
+  bool round = false;     ///< in a clearance that is met as a circle
+  Rubbing given;          ///< by the scene; lanes have their own
 
   int tangents() const { return round ? rows / 2 : rows; }
-  bool operator==(const RubbingPoint&) const = default;
+  /// The same but for what lanes have of their own.
+  bool like(const RubbingPoint& other) const {
+    return point == other.point && row == other.row && rows == other.rows && round == other.round &&
+           given.normal_force.has_value() == other.given.normal_force.has_value();
+  }
 };
 
 /// The semi-discrete problem for w = u − φ:
@@ -129,6 +147,7 @@ struct SemiDiscrete {
   std::vector<RubbingPoint> rubbing;                 ///< contact points with friction
   ObservedRows rubbed;                               ///< T, their rows
   Eigen::VectorXd rubbed_speeds;                     ///< V of the surface along each of these, m/s
+  std::vector<SurfaceMotion> rubbed_motions = {};    ///< what surfaces do beside it
   Eigen::VectorXd position, velocity;                ///< q₀, v₀ of w
   double projection_energy = 0;  ///< ½qᵀKq + ½vᵀMv after projection minus before (J); 0 without projection
   /// ½ rᵀZ(ZᵀKZ)⁻¹Zᵀr, r = Kq₀ − F(0) − Hᵀp(q₀), Z = Ker M: what an initial state off the constraint of a singular mass

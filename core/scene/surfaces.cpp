@@ -176,6 +176,11 @@ void find_rubbing(const SceneSpec& scene, SemiDiscrete& problem) {
   const ObservedRows& all = problem.tangents;
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<double> speeds;
+  const auto moves = [&](double share, const TangentSpec& tangent) {
+    if (tangent.motion && share != 0)
+      problem.rubbed_motions.push_back({static_cast<int>(speeds.size()), share, tangent.motion->history});
+    speeds.push_back(share * tangent.speed);
+  };
   constexpr int rim = -1;
   std::vector<int> from;  // of each row, the tangent that it is
   for (std::size_t i = 0; i < stops.size(); ++i) {
@@ -187,18 +192,16 @@ void find_rubbing(const SceneSpec& scene, SemiDiscrete& problem) {
     RubbingPoint& one = problem.rubbing.emplace_back();
     one.point = static_cast<int>(i);
     one.row = static_cast<int>(from.size());
-    one.held = stops[i].friction->held;
-    one.sliding = stops[i].friction->sliding;
-    one.normal_force = stops[i].normal_force;
+    one.given = {stops[i].friction->held, stops[i].friction->sliding, stops[i].normal_force};
     one.round = stops[i].side.has_value();
-    const double speed = stops[i].tangent ? stops[i].tangent->speed : 0.0;
+    const TangentSpec along = stops[i].tangent.value_or(TangentSpec{});
     for (int k = problem.tangent_of[i]; k < all.count() && all.names[static_cast<std::size_t>(k)] == stops[i].name;
          ++k) {
       from.push_back(k);
-      speeds.push_back(one.round ? 0.0 : k == problem.tangent_of[i] ? speed : stops[i].across->speed);
+      moves(one.round ? 0.0 : 1.0, one.round || k == problem.tangent_of[i] ? along : *stops[i].across);
       if (!one.round || k != problem.tangent_of[i] + 1) continue;
       from.push_back(rim);
-      speeds.push_back(-speed);
+      moves(-1, along);
     }
     one.rows = static_cast<int>(from.size()) - one.row;
     problem.rubbed.names.resize(from.size(), stops[i].name);
@@ -218,15 +221,15 @@ void find_rubbing(const SceneSpec& scene, SemiDiscrete& problem) {
   // A damper's ground may move.
   if (!problem.motions.empty())
     for (const RubbingPoint& one : problem.rubbing)
-      if (one.normal_force) problem.rubbed.on_motions.row(one.row) = problem.motions.at_points.row(one.point);
+      if (one.given.normal_force) problem.rubbed.on_motions.row(one.row) = problem.motions.at_points.row(one.point);
   problem.rubbed.rows.resize(count, all.rows.cols());
   problem.rubbed.rows.setFromTriplets(entries.begin(), entries.end());
 }
 
 void check_rest(const InitialSpec& initial, const Equilibrium& found, SemiDiscrete& problem) {
-  const bool pressed =
-      !found.pushed.isZero(0) || std::any_of(problem.rubbing.begin(), problem.rubbing.end(),
-                                             [](const RubbingPoint& one) { return one.normal_force.has_value(); });
+  const bool pressed = !found.pushed.isZero(0) ||
+                       std::any_of(problem.rubbing.begin(), problem.rubbing.end(),
+                                   [](const RubbingPoint& one) { return one.given.normal_force.has_value(); });
   if (problem.rubbing.empty() || !pressed) return;
   if (!initial.frictionless)
     throw InputError("/scene/initial/equilibrium",

@@ -289,10 +289,8 @@ std::vector<const TimeTable*> tables_of(const SceneSpec& scene) {
   std::vector<const TimeTable*> found;
   for (const LoadTerm& term : scene.load.terms)
     if (term.table) found.push_back(term.table.get());
-  for (const MotionSpec& motion : scene.motions)
-    if (motion.table) found.push_back(motion.table.get());
-  for (const NamedStop& stop : scene.stops.named)
-    if (stop.motion && stop.motion->table) found.push_back(stop.motion->table.get());
+  for (const GivenMotion& one : given_motions(scene))
+    if (one.motion->table) found.push_back(one.motion->table.get());
   return found;
 }
 

@@ -71,6 +71,13 @@ ObjectForm start_form() {
   return keys;
 }
 
+// V(t) of a surface, integrated exactly.
+std::vector<ObjectForm> speed_ways() {
+  ObjectForm table;
+  table.fields = table_fields("m/s", {"linear", "step"}, {"error", "zero", "hold"});
+  return {std::move(table), sampled("m/s")};
+}
+
 TimeTable::Beyond beyond(const std::string& word) {
   if (word == "zero") return TimeTable::Beyond::zero;
   return word == "hold" ? TimeTable::Beyond::hold : TimeTable::Beyond::error;
@@ -209,6 +216,12 @@ ObjectForm stop_motion_form() {
   return keys;
 }
 
+ObjectForm speed_history() {
+  ObjectForm either;
+  either.ways = speed_ways();
+  return either;
+}
+
 ObjectForm motion_form() {
   ObjectForm acceleration;
   acceleration.fields = table_fields("m/s²", {"linear"}, {"error", "zero", "hold"});
@@ -247,7 +260,7 @@ MotionSpec read_motion(const Json& json, const std::string& pointer, StudyFiles*
   const bool accelerates = json.contains("acceleration");
   const std::string key = accelerates ? "acceleration" : "displacement", here = pointer + "/" + key;
   const Json& given = json.at(key);
-  motion.accelerates = accelerates;
+  motion.gives = accelerates ? MotionSpec::Gives::acceleration : MotionSpec::Gives::displacement;
   if (given.contains("amplitude")) {
     const double pulsation = given.at("pulsation").get<double>();
     motion.period = 2 * std::numbers::pi / pulsation;
@@ -269,6 +282,28 @@ MotionSpec read_motion(const Json& json, const std::string& pointer, StudyFiles*
   return motion;
 }
 
+void read_speed(const Json& given, const std::string& pointer, StudyFiles* files, TangentSpec& tangent) {
+  if (given.is_number()) {
+    tangent.speed = given.get<double>();
+    return;
+  }
+  TimeTable table =
+      given.contains("file") ? read_table(given, pointer, files) : sample(given, pointer, TimeTable::Between::linear);
+  MotionSpec motion;
+  motion.gives = MotionSpec::Gives::speed;
+  motion.period = table.period;
+  motion.table = std::make_shared<const TimeTable>(table);
+  if (table.period > 0) {
+    table.period = 0;
+    const PiecewiseCubic way = PiecewiseCubic::interpolate(table).integral();
+    tangent.speed = (way.value(table.times.back()) - way.value(table.times.front())) / motion.period;
+    table.period = motion.period;
+    for (double& value : table.values) value -= tangent.speed;
+  }
+  motion.history = std::make_shared<const PiecewiseCubic>(PiecewiseCubic::interpolate(table).integral());
+  tangent.motion = std::make_shared<const MotionSpec>(std::move(motion));
+}
+
 void check_tables(const SceneSpec& scene, double duration) {
   const auto check = [&](const std::shared_ptr<const TimeTable>& table, const std::string& pointer) {
     if (!table || table->covers(0, duration, 1e-9 * duration)) return;
@@ -282,13 +317,7 @@ void check_tables(const SceneSpec& scene, double duration) {
   };
   for (std::size_t i = 0; i < scene.load.terms.size(); ++i)
     check(scene.load.terms[i].table, fmt::format("/scene/load/{}/{}", i, scene.load.terms[i].force ? "force" : "time"));
-  for (std::size_t i = 0; i < scene.motions.size(); ++i)
-    check(scene.motions[i].table,
-          fmt::format("/scene/motions/{}/{}", i, scene.motions[i].accelerates ? "acceleration" : "displacement"));
-  for (std::size_t i = 0; i < scene.stops.named.size(); ++i)
-    if (const auto& motion = scene.stops.named[i].motion)
-      check(motion->table,
-            fmt::format("/scene/stops/{}/moves_with/{}", i, motion->accelerates ? "acceleration" : "displacement"));
+  for (const GivenMotion& one : given_motions(scene)) check(one.motion->table, one.pointer);
 }
 
 std::vector<Json*> histories_with_files(Json& scene) {
@@ -302,11 +331,12 @@ std::vector<Json*> histories_with_files(Json& scene) {
   };
   check_list("load", {"force", "time"});
   check_list("motions", {"acceleration", "displacement"});
-  if (scene.contains("stops") && scene["stops"].is_array())
-    for (Json& stop : scene["stops"])
-      for (const char* key : {"acceleration", "displacement"})
-        if (const Json::json_pointer file(std::string("/moves_with/") + key + "/file"); stop.contains(file))
-          found.push_back(&stop["moves_with"][key]);
+  if (!scene.contains("stops") || !scene["stops"].is_array()) return found;
+  for (Json& stop : scene["stops"])
+    for (const char* key : {"/moves_with/acceleration", "/moves_with/displacement", "/tangent/speed",
+                            "/tangent/0/speed", "/tangent/1/speed"})
+      if (stop.contains(Json::json_pointer(std::string(key) + "/file")))
+        found.push_back(&stop[Json::json_pointer(key)]);
   return found;
 }
 

@@ -206,7 +206,7 @@ StopsSpec read_stops(const Json& json, StudyFiles* files) {
         stop.motion =
             std::make_shared<const MotionSpec>(read_motion(with, pointer_to("/scene/stops", i) + "/moves_with", files));
       stop.own = read_own(one);
-      read_friction(one, stop);
+      read_surface(one, pointer_to("/scene/stops", i), files, stop);
       add_stop(std::move(stop), one, i, stops.named);
     }
     return stops;

@@ -9,6 +9,7 @@
 
 #include "runners/json/json_text.hpp"
 #include "runners/study/body_keys.hpp"
+#include "runners/study/histories.hpp"
 #include "runners/study/study_files.hpp"
 #include "runners/table/text.hpp"
 
@@ -184,8 +185,10 @@ std::vector<Field> observed_of_stops() {
   component.fields = {
       of_form(Field::Form::text, "component", std::nullopt, "Component along it, at the places of the stop.")};
   ObjectForm tangent;
-  tangent.fields = {quiet(real("speed", "m/s", any, 0.0, "Speed of the surface along it, where it rubs.")
-                              .as("speed of the surface", "the speed of the surface"))};
+  tangent.fields = {
+      quiet(real("speed", "m/s", any, 0.0, "Speed of the surface along it, where it rubs; or its history.")
+                .as("speed of the surface", "the speed of the surface"))};
+  tangent.fields.front().given.push_back(speed_history());
   tangent.ways = {radius, direction, component, ObjectForm()};
   Field along =
       quiet(object("tangent", Json(nullptr),
@@ -258,17 +261,22 @@ StopParameters read_own(const Json& stop) {
 
 namespace {
 
-TangentSpec read_tangent(const Json& given) {
-  return {given.value("slope_radius", 0.0), given.value("direction", std::vector<double>()),
-          given.value("component", ""), given.value("speed", 0.0)};
+TangentSpec read_tangent(const Json& given, const std::string& pointer, StudyFiles* files) {
+  TangentSpec tangent{.slope_radius = given.value("slope_radius", 0.0),
+                      .direction = given.value("direction", std::vector<double>()),
+                      .component = given.value("component", "")};
+  if (given.contains("speed")) read_speed(given.at("speed"), pointer + "/speed", files, tangent);
+  return tangent;
 }
 
 }  // namespace
 
-void read_friction(const Json& stop, NamedStop& out) {
+void read_surface(const Json& stop, const std::string& pointer, StudyFiles* files, NamedStop& out) {
   const Json tangents = stop.value("tangent", Json());
-  if (!tangents.is_null()) out.tangent = read_tangent(tangents.is_array() ? tangents.at(0) : tangents);
-  if (tangents.is_array() && tangents.size() > 1) out.across = read_tangent(tangents[1]);
+  const std::string here = pointer + "/tangent";
+  if (tangents.is_object()) out.tangent = read_tangent(tangents, here, files);
+  if (tangents.is_array()) out.tangent = read_tangent(tangents.at(0), here + "/0", files);
+  if (tangents.is_array() && tangents.size() > 1) out.across = read_tangent(tangents[1], here + "/1", files);
   if (const Json given = stop.value("friction", Json()); given.is_number())
     out.friction = FrictionSpec{given.get<double>(), given.get<double>()};
   else if (given.is_object())

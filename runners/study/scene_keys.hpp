@@ -39,8 +39,8 @@ Place read_place(const Json& json);
 /// nearly so: another word in its place, or no name.
 bool is_of_each(const Field& field, const Json& value, const std::string& pointer);
 std::vector<PointSpec> read_points(const Json& scene);
-/// friction and normal_force of a stop.
-void read_friction(const Json& stop, NamedStop& out);
+/// Tangents, friction and normal force of a stop, which stands at `pointer`.
+void read_surface(const Json& stop, const std::string& pointer, StudyFiles* files, NamedStop& out);
 StopParameters read_own(const Json& stop);
 
 // Keys of beams in two planes and of clearances.

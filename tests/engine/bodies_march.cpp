@@ -210,7 +210,7 @@ TEST_CASE("supports of one name move together, in each body by its own static mo
   table.times = {0, 0.1, 2};
   table.values = {0, 3, -1};
   const auto motion = std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(table, 0, 0));
-  two.motions = {{{"ground"}, motion, {}, true}};
+  two.motions = {{{"ground"}, motion}};
   SceneSpec one;
   one.structure = beam;
   one.stops.named = {{"a", along_beam(1), {}, -9, {}}};

@@ -122,7 +122,7 @@ TEST_CASE("a stop that moves by itself is one that its support carries") {
   auto opposite = std::make_shared<MotionSpec>();
   for (double& value : table.values) value = -value;
   carried.motions = {
-      {{}, std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(table, 0, 0)), {}, true}};
+      {{}, std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(table, 0, 0))}};
   // w'' + … = F − s φ'': a load that gives s φ'' back leaves w as it is.
   carried.load.terms.clear();
   LoadTerm back;

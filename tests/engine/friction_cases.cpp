@@ -1,5 +1,7 @@
 // Friction at stops: discs that bounce, walls, a slider without mass, gain by restitution, published oscillators.
 #include <array>
+#include <random>
+#include <ricochet/engine/jamming.hpp>
 
 #include "tests/engine/rubbing.hpp"
 
@@ -32,6 +34,16 @@ SceneSpec shaken(double mass, double stiffness, double normal_force, double mu, 
   SceneSpec scene = damped_block(mass, stiffness, normal_force, {mu, mu});
   scene.load = Formula(fmt::format("-{}*sin(2*pi*{}*t)", mass * acceleration, frequency), "", "t");
   return scene;
+}
+
+// What a damper slides along, which goes at this speed and by this motion.
+TangentSpec along_by(double speed, std::shared_ptr<const TimeHistory> history) {
+  MotionSpec motion;
+  motion.history = std::move(history);
+  TangentSpec out;
+  out.speed = speed;
+  out.motion = std::make_shared<const MotionSpec>(motion);
+  return out;
 }
 
 }  // namespace
@@ -136,10 +148,48 @@ TEST_CASE("friction: with restitution a coupled impact may gain what its equatio
       const Eigen::Vector2d after(e * 0.857392, 0);
       const double left = 0.5 * after.dot(M * after);
       CHECK(energy.last.kinetic == Approx(left).margin(1e-10));
+      // It comes from where an impact gains most.
+      CHECK(largest_gain(made.program().jam[0], e) == Approx(std::max(left / brought - 1, 0.0)).epsilon(1e-6));
       if (e > 0) CHECK(left / brought == Approx(1.265625).epsilon(1e-5));
       CHECK(rate_over(made, 0, 20) == Approx(after[0]).margin(1e-10));
       CHECK(rate_over(made, 1, 20) == Approx(0).margin(1e-10));
     }
+}
+
+TEST_CASE("friction: no direction of approach gains more than what plan says, and one gains as much", "[friction]") {
+  std::mt19937 draw(7);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  int gains = 0;
+  for (int n = 0; n < 400; ++n) {
+    JamNumber point;
+    point.across = std::exp(4 * uniform(draw) - 2);
+    point.coupling = std::sqrt(point.across) * uniform(draw);
+    point.mu = 0.99 * uniform(draw) / std::max(point.coupling, 0.1);
+    const double e = uniform(draw), c = point.coupling, d = point.across;
+    const auto energy = [&](double v, double u) { return (d * v * v - 2 * c * v * u + u * u) / (d - c * c); };
+    double most = 0;
+    for (int k = 1; k < 20000; ++k) {
+      const double tau = std::tan(M_PI * (k / 20000.0 - 0.5)) * std::sqrt(d - c * c) - c;
+      // Sticks where W⁻¹(1 + e, −τ) lies in the cone; slides else against where it ends.
+      const double p = (d * (1 + e) + c * tau) / (d - c * c), q = (-tau - c * (1 + e)) / (d - c * c);
+      double after = 0;
+      if (std::abs(q) > point.mu * p)
+        for (const double way : {1.0, -1.0}) {
+          const double push = (1 + e) / (1 - way * point.mu * c), slid = tau + push * (c - way * point.mu * d);
+          if (way * slid > 0) after = slid;
+        }
+      most = std::max(most, energy(e, after) / energy(-1, tau) - 1);
+    }
+    INFO("c = " << c << ", d = " << d << ", mu = " << point.mu << ", e = " << e);
+    const double told = largest_gain(point, e);
+    CHECK(told >= most - 1e-12);
+    // Directions are 1.6e-4 rad apart, and the largest gain may stand where sticking begins.
+    CHECK(told <= most + 1e-3 * (1 + most));
+    gains += told > 0;
+    CHECK(largest_gain(point, 0) == 0);
+  }
+  CHECK(gains > 20);
+  CHECK(largest_gain({.coupling = 0.6, .number = 0.18, .across = 1, .mu = 0.3}, 0.5) == 0);
 }
 
 TEST_CASE("friction: a block on a shaken floor wears and sticks as long as its events say", "[friction]") {
@@ -157,6 +207,14 @@ TEST_CASE("friction: a block on a shaken floor wears and sticks as long as its e
           rubbed_over(shaken(3, 0, 40, 0.15, row.acceleration, 4), {{"consistent"}, {"none"}, time}, h, 6, 10);
       CHECK(seen.wear / 4 == Approx(row.wear).epsilon(row.wear_off).margin(0));
       CHECK(seen.held / seen.time == Approx(row.share).epsilon(0).margin(row.share_off));
+      // Told of from the ground, the surface goes by (A/ω)(1 − cos ωt).
+      SceneSpec moved = shaken(3, 0, 40, 0.15, 0, 4);
+      const double w = 8 * M_PI, A = row.acceleration;
+      moved.load = LoadSpec();
+      moved.stops.named[0].tangent = along_by(A / w, std::make_shared<const HarmonicMotion>(A / (w * w), w, M_PI));
+      const FrictionTotals told = rubbed_over(moved, {{"consistent"}, {"none"}, time}, h, 6, 10);
+      CHECK(told.wear / 4 == Approx(row.wear).epsilon(row.wear_off).margin(1e-12));
+      CHECK(told.held / told.time == Approx(row.share).epsilon(0).margin(row.share_off));
     }
 }
 

@@ -1,6 +1,7 @@
 // Friction at stops of tubes: motions found by an independent march, in two planes and along a turning surface.
 #include <array>
 #include <ricochet/measure/contact/stop_places.hpp>
+#include <set>
 
 #include "tests/engine/rubbing.hpp"
 
@@ -188,6 +189,31 @@ TEST_CASE("friction: none, and none that acts, leave the bits of a tube alone", 
     for (NamedStop& stop : scene->stops.named) stop.lower = -1.0;
   for (NamedStop& stop : open_without.stops.named) stop.friction = {};
   CHECK(bits(open) == bits(open_without));
+}
+
+TEST_CASE("friction: lanes with coefficients of their own have the bits of a lane alone", "[friction]") {
+  constexpr double h = 2.5e-4;
+  constexpr int steps = 2000, lanes = 8;
+  const Methods methods{{"consistent"}, spring_of_a_stop, moreau};
+  const auto share = [](int lane) { return 0.2 + 0.2 * lane; };
+  Marcher block = marcher(swept_tube(), 1, methods, h, {}, [&](const LaneSpec& one) {
+    std::vector<LaneSpec> all(lanes, one);
+    for (int lane = 0; lane < lanes; ++lane)
+      for (Rubbing& surface : all[static_cast<std::size_t>(lane)].rubbing)
+        surface.held = surface.sliding = share(lane) * surface.held;
+    return all;
+  });
+  block.start();
+  block.march(steps - block.step());
+  std::set<double> ends;
+  for (int lane = 0; lane < lanes; ++lane) {
+    Marcher alone = marcher(swept_tube(share(lane)), 1, methods, h);
+    alone.start();
+    alone.march(steps - alone.step());
+    CHECK(alone.position(0) == block.position(lane));
+    ends.insert(block.position(lane).squaredNorm());
+  }
+  CHECK(ends.size() == lanes);
 }
 
 TEST_CASE("friction: the order of the stops does not matter", "[friction]") {

@@ -230,7 +230,7 @@ TEST_CASE("a tube on four plates under El Centro follows its modes") {
   scene.structure = beam;
   scene.stops = {};
   scene.motions = {
-      {{}, std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(table, 0, 0)), {}, true}};
+      {{}, std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(table, 0, 0))}};
   scene.from_supports = true;
   scene.basis = BasisSpec{12, true};
   const auto problem = problem_of(scene, 48, {"consistent"});
@@ -303,7 +303,7 @@ TEST_CASE("a beam described by its modes and its residual moves as the beam in t
   }
   const TimeTable ground{"ground", {0, 0.3, 0.6, 1}, {0, 3, -2, 0}};
   const MotionSpec motion{
-      {"left"}, std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(ground, 0, 0)), {}, true};
+      {"left"}, std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(ground, 0, 0))};
   for (const bool shaken : {false, true})
     for (const char* mass : {"singular", "consistent"}) {
       SceneSpec beam = scene;

@@ -50,8 +50,8 @@ TEST_CASE("two masses on supports that move apart meet as in code_aster (SDND102
                          "dof,node,component,x,y,z,held\n1,S1,ux,0,0,0,left\n2,A,ux,0,0,0,\n"};
   const Damping damping{.beyond = 0.07};
   SceneSpec two = assembled_scene(assembled(pair), damping), one = assembled_scene(assembled(single), damping);
-  two.motions = {{{"left"}, shaken(1, 0.5), {}, true}, {{"right"}, shaken(-1, 0.5), {}, true}};
-  one.motions = {{{"left"}, shaken(1, 0.5), {}, true}};
+  two.motions = {{{"left"}, shaken(1, 0.5)}, {{"right"}, shaken(-1, 0.5)}};
+  one.motions = {{{"left"}, shaken(1, 0.5)}};
   two.stops.named = {{"gap", at_node("A", "ux"), at_node("B", "ux"), {}, 1e-3},
                      {"seen", at_node("A", "ux"), {}, -1, {}}};
   one.stops.named = {{"wall", at_node("A", "ux"), {}, {}, 5e-4}};
@@ -128,7 +128,7 @@ TEST_CASE("a support that is driven away alone leaves a chain as its static mode
     table.values.push_back(2e5 * std::pow(table.times.back(), 2));
   }
   const auto history = std::make_shared<const PiecewiseCubic>(PiecewiseCubic::integrate_twice(table, 0, 0));
-  scene.motions = {{{"left"}, history, {}, true}};
+  scene.motions = {{{"left"}, history}};
   scene.from_supports = true;
   scene.stops.named = {{"a", at_node("A", "ux"), {}, -1e9, {}}, {"b", at_node("B", "ux"), {}, -1e9, {}}};
   const auto problem = problem_of(scene, 1, {"consistent"});

@@ -115,29 +115,30 @@ PiecewiseCubic PiecewiseCubic::interpolate(const TimeTable& table) {
   return {std::move(starts), std::move(pieces), table.period};
 }
 
-PiecewiseCubic PiecewiseCubic::integrate_twice(const TimeTable& acceleration, double position, double velocity) {
-  PiecewiseCubic rate = interpolate(acceleration);
-  // From any position and velocity at the first instant, then moved to those at t = 0.
-  std::vector<Piece> pieces(rate.pieces_.size());
-  double at = 0, speed = 0;
-  for (std::size_t i = 1; i < pieces.size(); ++i) {
-    const Piece& a = rate.pieces_[i];
-    pieces[i] = {at, speed, a[0] / 2, a[1] / 6};
-    if (i + 1 == pieces.size()) break;
-    const double s = rate.starts_[i + 1] - rate.starts_[i];
-    at += s * (speed + s * (a[0] / 2 + s * a[1] / 6));
-    speed += s * (a[0] + s * a[1] / 2);
-  }
-  // What comes before the first instant ends there with the same position and velocity.
-  const double a = rate.pieces_[0][0], s = rate.starts_[1] - rate.starts_[0];
-  pieces[0] = {a * s * s / 2, -a * s, a / 2, 0};
-  const PiecewiseCubic raw(rate.starts_, pieces, rate.period_);
-  const double more = velocity - raw.rate(0), place = position - raw.value(0) - more * raw.within(0);
+PiecewiseCubic PiecewiseCubic::integral() const {
+  std::vector<Piece> pieces(pieces_.size());
+  const auto moved = [](const Piece& c, double s) { return s * (c[0] + s * (c[1] / 2 + s * c[2] / 3)); };
+  double at = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    pieces[i][0] += place + more * rate.starts_[i];
+    const Piece& c = pieces_[i];
+    const double s = i + 1 < pieces.size() ? starts_[i + 1] - starts_[i] : 0.0;
+    // What comes before the first instant ends there at 0.
+    pieces[i] = {i == 0 ? -moved(c, s) : at, c[0], c[1] / 2, c[2] / 3};
+    if (i > 0) at += moved(c, s);
+  }
+  return {starts_, std::move(pieces), period_};
+}
+
+PiecewiseCubic PiecewiseCubic::integrate_twice(const TimeTable& acceleration, double position, double velocity) {
+  // From any position and velocity at the first instant, then moved to those at t = 0.
+  const PiecewiseCubic raw = interpolate(acceleration).integral().integral();
+  const double more = velocity - raw.rate(0), place = position - raw.value(0) - more * raw.within(0);
+  std::vector<Piece> pieces = raw.pieces_;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    pieces[i][0] += place + more * raw.starts_[i];
     pieces[i][1] += more;
   }
-  return {std::move(rate.starts_), std::move(pieces), rate.period_};
+  return {raw.starts_, std::move(pieces), raw.period_};
 }
 
 SteadyStart steady_start(const TimeTable& acceleration) {

@@ -70,6 +70,8 @@ class PiecewiseCubic : public TimeHistory {
   /// The values of a table: straight between instants, a natural cubic spline, or each value until the next instant.
   /// The spline has f'' = 0 at both ends; of a table that repeats, f' and f'' are equal there.
   static PiecewiseCubic interpolate(const TimeTable& table);
+  /// ∫f dt, 0 at the first instant, of an f whose pieces have no t³. Of what repeats: where its mean is 0.
+  PiecewiseCubic integral() const;
   /// The motion whose acceleration is that of a table, straight between instants. It has f'' exactly, and f and f' as
   /// its exact integrals with f(0) and f'(0) as given (m, m/s).
   static PiecewiseCubic integrate_twice(const TimeTable& acceleration, double position, double velocity);

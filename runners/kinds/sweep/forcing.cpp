@@ -37,15 +37,7 @@ std::vector<Wave> histories_of(const SceneSpec& scene) {
   const auto add = [&](std::string pointer, std::string what, double period) {
     out.push_back({std::move(pointer), std::move(what), period > 0 ? of_period(period) : 0});
   };
-  const auto motion_of = [](const MotionSpec& motion) {
-    return motion.accelerates ? "/acceleration" : "/displacement";
-  };
-  for (std::size_t i = 0; i < scene.motions.size(); ++i)
-    add(pointer_to("/scene/motions", i) + motion_of(scene.motions[i]), "a motion", scene.motions[i].period);
-  for (const NamedStop& stop : scene.stops.named)
-    if (stop.motion)
-      add(pointer_to("/scene/stops", stop.entry) + "/moves_with" + motion_of(*stop.motion),
-          "the motion of the stop " + stop.name, stop.motion->period);
+  for (GivenMotion& one : given_motions(scene)) add(std::move(one.pointer), std::move(one.what), one.motion->period);
   for (std::size_t i = 0; i < scene.load.terms.size(); ++i)
     if (const LoadTerm& term = scene.load.terms[i]; term.table)
       add(pointer_to("/scene/load", i) + (term.force ? "/force" : "/time"), "the table of the load",
@@ -238,7 +230,7 @@ std::string forcing_note(const SceneSpec& scene) {
 }
 
 bool is_forced(const SceneSpec& scene) {
-  return !harmonics_of(scene, false).empty() || scene.load.uses_t() || moves_by_histories(scene);
+  return !harmonics_of(scene, false).empty() || scene.load.uses_t() || !given_motions(scene).empty();
 }
 
 namespace {

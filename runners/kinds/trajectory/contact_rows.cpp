@@ -68,7 +68,7 @@ Table stops_head() {
 // Whether a stop has no bounds: it rubs under a force that is given.
 bool is_damper(int stop, const StopList& list, const SemiDiscrete& problem) {
   return std::any_of(problem.rubbing.begin(), problem.rubbing.end(), [&](const RubbingPoint& one) {
-    return one.normal_force && list.stop_of[static_cast<std::size_t>(one.point)] == stop;
+    return one.given.normal_force && list.stop_of[static_cast<std::size_t>(one.point)] == stop;
   });
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/jamming.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/contact/friction_watch.hpp>
 #include <ricochet/measure/contact/stop_contacts.hpp>
@@ -260,14 +261,20 @@ constexpr double bytes_of_row = 3000, bytes_of_sample = 128;
 namespace {
 
 // What a reader should know of a stop that rubs: coupling, how soon a held effort settles, how fast it creeps.
-std::string rubbing_note(const Program& program, std::size_t number) {
+std::string rubbing_note(const Program& program, std::size_t number, double scheme_restitution) {
   constexpr double left = 0.01;
   const RubbingPoint& one = program.problem->rubbing[number];
+  const auto point = static_cast<std::size_t>(one.point);
   const double root = std::abs(program.held_root), creeps = program.friction->creeps(1);
-  std::string text =
-      fmt::format("stop {} rubs, μ {:g}: normal and tangent are coupled by {:.2g} (jam number {:.2g})",
-                  program.problem->stops[static_cast<std::size_t>(one.point)], std::max(one.held, one.sliding),
-                  program.jam[number].coupling, program.jam[number].number);
+  std::string text = fmt::format("stop {} rubs, μ {:g}: normal and tangent are coupled by {:.2g} (jam number {:.2g})",
+                                 program.problem->stops[point], one.given.largest(), program.jam[number].coupling,
+                                 program.jam[number].number);
+  const std::vector<StopParameters>& own = program.problem->own;
+  const double e = own.empty() ? scheme_restitution : own[point].restitution.value_or(scheme_restitution);
+  const double gain = largest_gain(program.jam[number], e);
+  if (gain > 5e-4)
+    text += fmt::format("; with restitution {:g} an impact may give up to {:.3g} % more energy than it finds", e,
+                        100 * gain);
   if (creeps > 0) return text + fmt::format("; held, it creeps by up to {:.3g} m/s", creeps);
   if (root >= 1) return text + "; a disturbance of a held effort stays";
   const double steps = root > 0 ? std::ceil(std::log(left) / std::log(root)) : 0;
@@ -287,7 +294,7 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   for (Said& doubt : run_doubts(study_case, prepared))
     if (!doubt.text.empty()) plan.notes.push_back(std::move(doubt.text));
   for (std::size_t i = 0; i < prepared.program->jam.size(); ++i)
-    plan.notes.push_back(rubbing_note(*prepared.program, i));
+    plan.notes.push_back(rubbing_note(*prepared.program, i, scheme_restitution(study_case, registry).value_or(0)));
   plan.coarsest_step = plan.finest_step = study_case.step;
   plan.operator_name = operator_name(prepared.program->kind);
   plan.left_out = left_out_pairs(prepared.program->left_out);

@@ -1,6 +1,8 @@
 // Edges of a machine and of a study: limits of the system, a million cells, numbers at the end of what a double says.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -120,4 +122,39 @@ TEST_CASE("edges: energies below the least normal number are computed, stored, d
     CHECK(said.code == 0);
     CHECK_THAT(said.err, !Contains("internal error"));
   }
+}
+
+TEST_CASE("edges: control characters of a study are shown as such, on a terminal, in each table and on the page") {
+  const ScratchFolder here;
+  Json study = subnormal("trajectory");
+  study["question"] = "Is \x1b[31mred\x1b[0m \x07 or \xc2\x9b\x32J, \xe2\x80\xaertl?";
+  study["//"] = "\x1b]0;title\x07";
+  study["methods"]["contact"] = Json::parse(R"([{"name": "penalty", "stiffness": [1e4, 2e4]}])");
+  study["exclude"] = Json::array({{{"contact.stiffness", 2e4}, {"why", "as \x1b[1m says"}}});
+  write_text(here / "study.json", study.dump());
+  const auto raw = [](const std::string& text) {
+    const auto control = [](unsigned char c) { return (c < 32 && c != '\n' && c != '\t') || c == 127; };
+    return std::any_of(text.begin(), text.end(), control) || text.find("\xc2\x9b") != std::string::npos ||
+           text.find("\xe2\x80\xae") != std::string::npos;
+  };
+  for (const std::string words : {"plan study.json", "run study.json --out out", "run study.json --out out --table",
+                                  "report out", "status out"}) {
+    const CommandOutput said = say(here, words);
+    INFO(words << ": " << said.err);
+    CHECK(said.code == 0);
+    CHECK_FALSE(raw(said.out));
+    CHECK_FALSE(raw(said.err));
+    if (words.starts_with("plan"))
+      CHECK_THAT(said.out, Contains("<U+001B>[31mred") && Contains("<U+009B>2J, <U+202E>rtl"));
+  }
+  int files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(here / "out")) {
+    if (!entry.is_regular_file() || entry.path().extension() == ".sqlite") continue;
+    CAPTURE(entry.path());
+    CHECK_FALSE(raw(read_text(entry.path())));
+    ++files;
+  }
+  CHECK(files > 10);
+  CHECK_THAT(read_text(here / "out/cases.csv"), Contains("as <U+001B>[1m says"));
+  CHECK_THAT(read_text(here / "out/report.html"), Contains("U+001B"));
 }

@@ -167,6 +167,51 @@ TEST_CASE("an accelerogram moves a structure alike in each form, and the case sa
   CHECK_THAT(refused("d.csv", 2), Contains("d.csv: the column t [ms] is in ms; expected s"));
 }
 
+TEST_CASE("a surface goes by a number, a table of it, or its formula; a period leaves it a mean", "[friction]") {
+  Studies studies;
+  studies.write("belt.csv", "t,V\n0,0.08\n1,0.08\n");
+  studies.write("swing.csv", "t,V\n0,0.05\n0.1,0.15\n0.2,0.05\n");
+  const auto end_with = [&](const Json& speed) {
+    const Json study = Json::parse(R"json({
+      "name": "belt", "kind": "trajectory",
+      "scene": {"structure": {"type": "oscillator", "mass": 1.5, "stiffness": 600},
+                "stops": [{"name": "belt", "at": {"x": 0}, "normal_force": 20, "friction": 0.1, "tangent": {}}]},
+      "methods": {"mass": "consistent", "contact": "none", "time": "moreau-jean"},
+      "step": 1e-3, "duration": 0.4, "samples": 20})json");
+    Json with = study;
+    with["scene"]["stops"][0]["tangent"]["speed"] = speed;
+    return end_of(studies.of(with).front(), "tip_displacement");
+  };
+  const double still = end_with(0), constant = end_with(0.08);
+  CHECK(still == 0);
+  CHECK(std::abs(constant) > 1e-4);
+  CHECK(end_with({{"file", "belt.csv"}, {"value", "V"}, {"after", "hold"}}) == Approx(constant).epsilon(1e-12));
+  CHECK(end_with({{"formula", "0.08"}, {"every", 0.1}, {"until", 1}}) == Approx(constant).epsilon(1e-12));
+  // Straight between its entries, the formula is the table; it turns round where it repeats.
+  const double swing = end_with({{"file", "swing.csv"}, {"value", "V"}, {"period", 0.2}});
+  CHECK(end_with({{"formula", "0.05+abs(0.1-abs(t-0.1))"}, {"every", 0.1}, {"period", 0.2}}) ==
+        Approx(swing).epsilon(1e-12));
+  CHECK(std::abs(swing - constant) > 1e-5);
+}
+
+TEST_CASE("each fault of a surface's speed is told with its place", "[friction]") {
+  Studies studies;
+  studies.write("belt.csv", "t,V\n0,0.08\n0.1,0.08\n");
+  const auto fault = [&](const Json& speed) {
+    Json study = moved_by("/scene/stops", Json::parse(R"json([{"name": "belt", "at": {"x": 0}, "normal_force": 20,
+                                                          "friction": 0.1, "tangent": {}}])json"));
+    study["scene"].erase("motions");
+    study["scene"].erase("frame");
+    study["scene"]["stops"][0]["tangent"]["speed"] = speed;
+    return studies.refusal(study);
+  };
+  CHECK_THAT(fault({{"file", "belt.csv"}, {"value", "V"}}),
+             Contains("/scene/stops/0/tangent/speed/after: belt.csv ends at 0.1 s"));
+  CHECK_THAT(fault({{"file", "belt.csv"}, {"value", "W"}}), Contains("/scene/stops/0/tangent/speed"));
+  CHECK_THAT(fault({{"fil", "belt.csv"}}), Contains("/scene/stops/0/tangent/speed"));
+  CHECK_THAT(fault("fast"), Contains("/scene/stops/0/tangent/speed: expected a number"));
+}
+
 TEST_CASE("without motions, random loads and frames nothing of a study changes") {
   Studies studies;
   const Json resolved = studies.study(with_force(1)).resolved;

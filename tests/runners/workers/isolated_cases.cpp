@@ -273,6 +273,33 @@ TEST_CASE("workers: one that another program kills costs nothing but time") {
   }
 }
 
+TEST_CASE("workers: a data file that changes under way ends the run, named; put back, the cases are those they were") {
+  const ScratchFolder scratch;
+  const std::string table = "t,F\n0,0\n0.1,5\n0.2,5\n";
+  write_text(scratch / "force.csv", table);
+  const Json study = Json::parse(R"({
+    "name": "pushed", "kind": "trajectory",
+    "scene": {"structure": {"type": "oscillator", "mass": 2, "stiffness": 100}, "stops": {"lower": -0.01},
+              "load": [{"force": {"file": "force.csv", "value": "F", "factor": -1, "after": "hold"}}]},
+    "methods": {"mass": "consistent", "contact": {"name": "stumbles", "how": "linger", "beyond": 0}, "time": "newmark"},
+    "step": [1e-3, 5e-4, 2.5e-4, 2e-4], "duration": 0.4, "samples": 20})");
+  REQUIRE(run(scratch, study, "here", std::string("--inline") + lingering::plugin).code == 0);
+  const lingering::Held held;
+  Running running(scratch, study, "out");
+  REQUIRE(lingering::comes_true([&] { return running.ended() || lingering::marches(scratch / "out"); }));
+  write_text(scratch / "force.csv", table + "0.3,6\n");
+  const std::vector<pid_t> children = running.children();
+  REQUIRE_FALSE(children.empty());
+  CHECK(::kill(children.front(), SIGKILL) == 0);
+  held.let_go();
+  CHECK(running.finish() == 5);
+  CHECK_THAT(read_text(scratch / "told"), Contains("force.csv has changed since the run began"));
+  for (const auto& row : rows_of(scratch / "out/cases.csv")) CHECK(row.at("status") == "done");
+  write_text(scratch / "force.csv", table);
+  REQUIRE(run(scratch, study, "out", std::string("--isolate") + lingering::plugin).code == 0);
+  check_same(scratch / "here", scratch / "out");
+}
+
 TEST_CASE("workers: a scheduler's warning reaches them as well, from their first moment on, and ends none of them") {
   const int signal = GENERATE(SIGUSR1, SIGTERM, SIGINT, SIGHUP);
   CAPTURE(signal);

@@ -90,6 +90,21 @@ TEST_CASE("an acceleration in straight pieces is integrated exactly, from any st
   CHECK(motion.acceleration(1) == 0);
 }
 
+TEST_CASE("a speed in straight pieces or steps is integrated exactly, from its first instant on") {
+  TimeTable table;
+  table.times = {1, 2, 4};
+  table.values = {4, 6, 2};
+  table.before = table.after = TimeTable::Beyond::hold;
+  const PiecewiseCubic way = PiecewiseCubic::interpolate(table).integral();
+  for (const auto& [t, expected] :
+       {std::pair(0.5, -2.0), {1.0, 0.0}, {2.0, 5.0}, {3.0, 10.0}, {4.0, 13.0}, {6.0, 17.0}})
+    CHECK_THAT(way.value(t), WithinAbs(expected, 1e-14));
+  for (const double t : {0.5, 1.5, 3.0, 5.0})
+    CHECK_THAT(way.rate(t), WithinAbs(PiecewiseCubic::interpolate(table).value(t), 1e-14));
+  table.between = TimeTable::Between::step;
+  CHECK_THAT(PiecewiseCubic::interpolate(table).integral().value(3), WithinAbs(10, 1e-14));
+}
+
 TEST_CASE("a table that begins before t = 0 has the asked state at t = 0") {
   TimeTable table;
   table.times = {-1, 1};
