@@ -33,7 +33,7 @@ void Marcher::connect_efforts() {
     for (std::ptrdiff_t k = 1; k < weights(i); ++k) {
       const auto [stage, ago] = source(i, k);
       if (!stage->delassus) continue;
-      while (stage->effort.size() <= ago) stage->effort.emplace_back(lower_.rows(), program_.width);
+      while (stage->effort.size() <= ago) stage->effort.emplace_back(stage->effort[0].rows(), program_.width);
     }
   }
   for (std::ptrdiff_t i = 0; i < stages; ++i) {

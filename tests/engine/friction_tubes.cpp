@@ -216,6 +216,33 @@ TEST_CASE("friction: lanes with coefficients of their own have the bits of a lan
   CHECK(ends.size() == lanes);
 }
 
+TEST_CASE("friction: at many stops, with a scheme that weighs efforts of steps before, the balance closes",
+          "[friction]") {
+  constexpr int stops = 24;
+  SceneSpec scene = rubbing_tube();
+  std::get<BeamSpec>(scene.structure).planes = 2;
+  for (int i = 1; i <= stops; ++i) {
+    Place at = beam_at(1.2 * i / stops);
+    at.component = "uy";
+    NamedStop stop{.name = fmt::format("s{}", i), .at = at, .to = {}, .lower = -1e-5 * i, .upper = {}};
+    stop.tangent = TangentSpec{.slope_radius = 0, .direction = {}, .component = "uz", .speed = 0};
+    stop.friction = FrictionSpec{0.3, 0.3};
+    scene.stops.named.push_back(stop);
+  }
+  LoadTerm along = pushes(1.2, "2.6*cos(14*pi*t)");
+  along.towards.component = "uz";
+  scene.load.terms = {pushes(1.2, "-6+0.8*cos(14*pi*t)"), along};
+  const Choice quarter{"newmark-dumont-paoli", {{"beta", 0.25}}};
+  for (const Choice& contact : {Choice{"signorini"}, spring_of_a_stop}) {
+    INFO(contact.name);
+    Marcher made = marcher(scene, stops, {{"consistent"}, contact, quarter}, 2.5e-4);
+    const EnergyAudit audit = audited(made, 0.1);
+    REQUIRE(made.status(0).running);
+    CHECK(-audit.totals(0).work_of_friction > 1e-6);
+    CHECK(std::abs(audit.totals(0).balance_residual()) <= 1e-10);
+  }
+}
+
 TEST_CASE("friction: the order of the stops does not matter", "[friction]") {
   const auto motion = [](const SceneSpec& scene, int elements) {
     return swept(scene, elements, {{"consistent"}, spring_of_a_stop, moreau}, 2.5e-4, 0.25, 4);
