@@ -36,12 +36,12 @@ std::vector<Field> table_fields(const char* unit, std::vector<std::string> betwe
 // A formula in t, sampled: motions need what belongs together of displacement, velocity and acceleration.
 ObjectForm sampled(const char* unit) {
   ObjectForm keys;
-  keys.fields = {single(formula("formula", unit, "t", false, std::nullopt, "In t; taken at the instants.")),
+  keys.fields = {single(formula("formula", unit, "t", false, std::nullopt, "In t, at the instants.")),
                  single(real("every", "s", positive, std::nullopt, "Between instants; of a period, at most.")),
                  quiet(single(real("until", "s", positive, 0.0, "The last instant; none of what repeats."))),
                  word("after", {"error", "zero", "hold"}, "error", "After it."),
-                 period_key("After which the formula repeats."),
-                 quiet(single(real("pulsation", "rad/s", positive, 0.0, "2π over the period, in its place.")))};
+                 period_key("After which it repeats."),
+                 quiet(single(real("pulsation", "rad/s", positive, 0.0, "2π over the period.")))};
   return keys;
 }
 

@@ -186,7 +186,7 @@ std::vector<Field> observed_of_stops() {
       of_form(Field::Form::text, "component", std::nullopt, "Component along it, at the places of the stop.")};
   ObjectForm tangent;
   tangent.fields = {
-      quiet(real("speed", "m/s", any, 0.0, "Speed of the surface along it, where it rubs; or its history.")
+      quiet(real("speed", "m/s", any, 0.0, "Speed of the surface; or its history.")
                 .as("speed of the surface", "the speed of the surface"))};
   tangent.fields.front().given.push_back(speed_history());
   tangent.ways = {radius, direction, component, ObjectForm()};

@@ -167,7 +167,7 @@ TEST_CASE("an accelerogram moves a structure alike in each form, and the case sa
   CHECK_THAT(refused("d.csv", 2), Contains("d.csv: the column t [ms] is in ms; expected s"));
 }
 
-TEST_CASE("a surface goes by a number, a table of it, or its formula; a period leaves it a mean", "[friction]") {
+TEST_CASE("a surface goes by a number, a table of it, or its formula, and a period leaves it a mean", "[friction]") {
   Studies studies;
   studies.write("belt.csv", "t,V\n0,0.08\n1,0.08\n");
   studies.write("swing.csv", "t,V\n0,0.05\n0.1,0.15\n0.2,0.05\n");

@@ -273,7 +273,7 @@ TEST_CASE("workers: one that another program kills costs nothing but time") {
   }
 }
 
-TEST_CASE("workers: a data file that changes under way ends the run, named; put back, the cases are those they were") {
+TEST_CASE("workers: a data file that changes under way ends the run and is named, put back it costs nothing") {
   const ScratchFolder scratch;
   const std::string table = "t,F\n0,0\n0.1,5\n0.2,5\n";
   write_text(scratch / "force.csv", table);
