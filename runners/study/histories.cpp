@@ -71,13 +71,6 @@ ObjectForm start_form() {
   return keys;
 }
 
-// V(t) of a surface, integrated exactly.
-std::vector<ObjectForm> speed_ways() {
-  ObjectForm table;
-  table.fields = table_fields("m/s", {"linear", "step"}, {"error", "zero", "hold"});
-  return {std::move(table), sampled("m/s")};
-}
-
 TimeTable::Beyond beyond(const std::string& word) {
   if (word == "zero") return TimeTable::Beyond::zero;
   return word == "hold" ? TimeTable::Beyond::hold : TimeTable::Beyond::error;
@@ -217,8 +210,9 @@ ObjectForm stop_motion_form() {
 }
 
 ObjectForm speed_history() {
-  ObjectForm either;
-  either.ways = speed_ways();
+  ObjectForm table, either;
+  table.fields = table_fields("m/s", {"linear", "step"}, {"error", "zero", "hold"});
+  either.ways = {std::move(table), sampled("m/s")};
   return either;
 }
 

@@ -1,5 +1,5 @@
-// What friction costs. A tube in two planes rubs along uz at two springs, as in tests/engine/friction_tubes.cpp; a beam
-// rubs at 24 points. Microseconds per step beside the same scene without friction, and with stops out of reach. Medians
+// What friction costs. A tube in two planes rubs along uz at two stops, at the places of those in
+// tests/engine/friction_tubes.cpp, or at 24. Microseconds per step beside the same scene without friction, and with stops out of reach. Medians
 // of interleaved rounds, with their range.
 //
 //     bench_friction [--rounds N]
