@@ -1,6 +1,6 @@
 // What friction costs. A tube in two planes rubs along uz at two stops, at the places of those in
-// tests/engine/friction_tubes.cpp, or at 24. Microseconds per step beside the same scene without friction, and with stops out of reach. Medians
-// of interleaved rounds, with their range.
+// tests/engine/friction_tubes.cpp, or at 24. Microseconds per step beside the same scene without friction, and with
+// stops out of reach. Medians of interleaved rounds, with their range.
 //
 //     bench_friction [--rounds N]
 #include <fmt/format.h>
