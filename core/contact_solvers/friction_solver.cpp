@@ -15,6 +15,11 @@ std::size_t place(int i) {
   return static_cast<std::size_t>(i);
 }
 
+// Of one or two numbers.
+double norm(const double* x, int count) {
+  return count == 1 ? std::abs(x[0]) : std::hypot(x[0], x[1]);
+}
+
 }  // namespace
 
 DiscEffort disc_effort(const std::array<double, 3>& matrix, const std::array<double, 2>& free, double bound,
@@ -68,6 +73,7 @@ void FrictionSolver::prepare(int points, int rows) {
   right_.resize(place(rows));
   factor_.resize(place(rows) * place(rows));
   bound_.resize(place(points));
+  trace_.resize(place(points));
   kept_.resize(place(rows));
   ways_.reserve(place(rows));
 }
@@ -80,12 +86,6 @@ void FrictionSolver::measure(const FrictionProblem& problem) {
     for (int j = 0; j < rows; ++j) sum += problem.at(i, j) * effort_[place(j)];
     rate_[place(i)] = sum;
   }
-}
-
-double FrictionSolver::weight(const FrictionProblem& problem, int point) const {
-  double trace = 0;
-  for (int i = problem.first_row[point]; i < problem.first_row[point + 1]; ++i) trace += problem.at(i, i);
-  return trace;
 }
 
 // Each point against the others as they are; by how much the largest effort changed.
@@ -122,18 +122,16 @@ double FrictionSolver::sweep(const FrictionProblem& problem) {
   return most;
 }
 
-// The natural map, N.
+// By the natural map, N.
 double FrictionSolver::residual(const FrictionProblem& problem) const {
   double most = 0;
   for (int point = 0; point < problem.points; ++point) {
     const int first = problem.first_row[point], count = problem.first_row[point + 1] - first;
-    const double s = bound_[place(point)], trace = weight(problem, point);
-    double moved[2] = {0, 0}, size = 0;
-    for (int k = 0; k < count; ++k) {
+    const double s = bound_[place(point)], trace = trace_[place(point)];
+    double moved[2] = {0, 0};
+    for (int k = 0; k < count; ++k)
       moved[k] = effort_[place(first + k)] - (trace > 0 ? rate_[place(first + k)] / trace : 0.0);
-      size = std::hypot(size, moved[k]);
-    }
-    const double scale = size > s ? s / size : 1.0;
+    const double size = norm(moved, count), scale = size > s ? s / size : 1.0;
     for (int k = 0; k < count; ++k) most = std::max(most, std::abs(effort_[place(first + k)] - scale * moved[k]));
   }
   return most;
@@ -144,8 +142,8 @@ double FrictionSolver::residual(const FrictionProblem& problem) const {
 //
 //     Zᵀ(A + Λ)Z (δp, τ) = −Zᵀu,     Λ = |u|/s of points on the edge
 //
-// Cut to the bounds, and halved until the residual does not grow.
-void FrictionSolver::move_together(const FrictionProblem& problem) {
+// Cut to the bounds, and halved until the residual does not grow; what is left of it.
+double FrictionSolver::move_together(const FrictionProblem& problem, double before) {
   ways_.clear();
   for (int point = 0; point < problem.points; ++point) {
     const int first = problem.first_row[point], count = problem.first_row[point + 1] - first;
@@ -185,7 +183,6 @@ void FrictionSolver::move_together(const FrictionProblem& problem) {
     right_[place(i)] = L(i, i) != 0 ? right_[place(i)] / L(i, i) : 0.0;
     for (int l = i + 1; l < size; ++l) right_[place(i)] -= L(l, i) * right_[place(l)];
   }
-  const double before = residual(problem);
   std::copy(effort_.begin(), effort_.end(), kept_.begin());
   double share = 1;
   for (int halving = 0; halving < most_cuts; ++halving, share *= 0.5) {
@@ -195,17 +192,16 @@ void FrictionSolver::move_together(const FrictionProblem& problem) {
     }
     for (int point = 0; point < problem.points; ++point) put_within(problem, point);
     measure(problem);
-    if (residual(problem) <= before) return;
+    if (const double after = residual(problem); after <= before) return after;
     std::copy(kept_.begin(), kept_.end(), effort_.begin());
   }
   measure(problem);
+  return residual(problem);
 }
 
 double FrictionSolver::size_of(const FrictionProblem& problem, int point) const {
-  double size = 0;
-  for (int i = problem.first_row[point]; i < problem.first_row[point + 1]; ++i)
-    size = std::hypot(size, effort_[place(i)]);
-  return size;
+  const int first = problem.first_row[point];
+  return norm(effort_.data() + first, problem.first_row[point + 1] - first);
 }
 
 void FrictionSolver::put_within(const FrictionProblem& problem, int point) {
@@ -214,32 +210,37 @@ void FrictionSolver::put_within(const FrictionProblem& problem, int point) {
   for (int i = problem.first_row[point]; i < problem.first_row[point + 1]; ++i) effort_[place(i)] *= s / size;
 }
 
-bool FrictionSolver::settle(const FrictionProblem& problem, int& sweeps) {
+bool FrictionSolver::settle(const FrictionProblem& problem, int& sweeps, double& left) {
   double largest = 0;
   for (int point = 0; point < problem.points; ++point) largest = std::max(largest, bound_[place(point)]);
   for (; sweeps < most_sweeps; ++sweeps) {
     const double change = sweep(problem);
-    if (problem.points == 1 || change <= exact * largest) return true;
-    move_together(problem);
-    if (residual(problem) <= exact * largest) return true;
+    left = residual(problem);
+    if (problem.points == 1 || change <= exact * largest || left <= exact * largest) return true;
+    left = move_together(problem, left);
+    if (left <= exact * largest) return true;
   }
-  return residual(problem) <= accepted * largest;
+  return left <= accepted * largest;
 }
 
 LaneOutcome FrictionSolver::solve(FrictionProblem& problem) {
   LaneOutcome outcome;
-  double largest = 0;
+  double largest = 0, left = 0;
   for (int point = 0; point < problem.points; ++point) {
     double& s = bound_[place(point)];
     s = problem.bound_static ? std::max(problem.bound[point], problem.bound_static[point]) : problem.bound[point];
     largest = std::max(largest, s);
-    for (int i = problem.first_row[point]; i < problem.first_row[point + 1]; ++i) effort_[place(i)] = problem.effort[i];
+    trace_[place(point)] = 0;
+    for (int i = problem.first_row[point]; i < problem.first_row[point + 1]; ++i) {
+      trace_[place(point)] += problem.at(i, i);
+      effort_[place(i)] = problem.effort[i];
+    }
     put_within(problem, point);
   }
   measure(problem);
   // What gives way at the static bound slides at the other one; no point goes back, so that this ends.
   for (bool again = true; again;) {
-    outcome.converged = settle(problem, outcome.iterations);
+    outcome.converged = settle(problem, outcome.iterations, left);
     again = false;
     for (int point = 0; point < problem.points; ++point) {
       double& s = bound_[place(point)];
@@ -250,17 +251,14 @@ LaneOutcome FrictionSolver::solve(FrictionProblem& problem) {
     }
     if (again) measure(problem);
   }
-  outcome.residual = largest > 0 ? residual(problem) / largest : 0.0;
+  outcome.residual = largest > 0 ? left / largest : 0.0;
   for (int point = 0; point < problem.points; ++point) {
     const double s = bound_[place(point)];
     const bool sticks = size_of(problem, point) < s * (1 - accepted);
-    double slid = 0;
-    for (int i = problem.first_row[point]; i < problem.first_row[point + 1]; ++i) {
-      slid = std::hypot(slid, rate_[place(i)]);
-      problem.effort[i] = effort_[place(i)];
-    }
+    const int first = problem.first_row[point], end = problem.first_row[point + 1];
+    for (int i = first; i < end; ++i) problem.effort[i] = effort_[place(i)];
     problem.sticks[point] = sticks;
-    problem.slid[point] = sticks ? 0.0 : slid;
+    problem.slid[point] = sticks ? 0.0 : norm(rate_.data() + first, end - first);
   }
   return outcome;
 }

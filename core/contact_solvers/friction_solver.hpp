@@ -36,18 +36,17 @@ class FrictionSolver {
   void measure(const FrictionProblem& problem);
   double sweep(const FrictionProblem& problem);
   double residual(const FrictionProblem& problem) const;
-  void move_together(const FrictionProblem& problem);
+  double move_together(const FrictionProblem& problem, double before);
   double size_of(const FrictionProblem& problem, int point) const;
   void put_within(const FrictionProblem& problem, int point);
-  bool settle(const FrictionProblem& problem, int& sweeps);
-  double weight(const FrictionProblem& problem, int point) const;
+  bool settle(const FrictionProblem& problem, int& sweeps, double& left);
 
   struct Way {
     int row, count;  // the first of its rows, and how many
     std::array<double, 2> along;
     double stiff;  // Λ
   };
-  std::vector<double> effort_, rate_, bound_, factor_, right_, kept_;
+  std::vector<double> effort_, rate_, bound_, trace_, factor_, right_, kept_;
   std::vector<Way> ways_;
 };
 

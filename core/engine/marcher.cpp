@@ -140,6 +140,9 @@ std::unique_ptr<StageState> Marcher::make_state(StageProgram& stage, const Stage
   if (program_.friction) {
     state->end_rate = Block(model.rubbed().rows(), T);
     state->end_rate_weights = with_z(stage.facts.end_rate.rate);
+    for (std::size_t j = 0; j < state->end_rate_weights.size(); ++j)
+      if (state->end_rate_weights[j] != 0) state->end_rate_of.push_back(j);
+    std::erase(state->end_rate_weights, 0.0);
   }
   state->measure_weights = with_z(stage.measure);
   if (program_.tangents > 0) state->tangents.reserve(points);

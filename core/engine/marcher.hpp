@@ -263,7 +263,7 @@ class Marcher {
   void find_pressed(const StageProgram& program, const StageState& state, int lane);
   void gather_friction(const StageProgram& program, StageState& state, int lane, bool first);
   LaneOutcome find_friction(const StageProgram& program, StageState& state, int lane, bool first);
-  double moved_by_friction(StageState& state, const std::vector<double>& efforts, int point);
+  void moved_by_friction(StageState& state, const std::vector<double>& efforts);
   bool friction_moves_normals(StageState& state, double reach, int lane);
   static DelassusColumns& columns_of(StageState& state);
 

@@ -29,13 +29,8 @@ std::size_t at(int i) {
 
 }  // namespace
 
-double Tangent::of(const double* values, std::ptrdiff_t stride) const {
-  double sum = share[0] * values[0];
-  for (int k = 1; k < count; ++k) sum += share[at(k)] * values[k * stride];
-  return sum;
-}
-
 double Tangent::effort(const double* efforts, std::ptrdiff_t stride) const {
+  if (count == 1) return efforts[0] / share[0];
   double squares = 0;
   for (int k = 0; k < count; ++k) squares += share[at(k)] * share[at(k)];
   return of(efforts, stride) / squares;
@@ -70,6 +65,7 @@ StageFriction::StageFriction(const Program& program) {
   for (auto* numbers : {&normals, &sliding, &held, &slides}) numbers->resize(at(count));
   holds.resize(at(count));
   measured.resize(at(problem.points()));
+  moved.resize(at(problem.points()));
   rate.resize(at(problem.points()));
 }
 
@@ -116,9 +112,12 @@ void StageFriction::keep(int lane) {
 void Marcher::measure_end_rates(const StageProgram& program, StageState& state, const double* z) {
   const EndRate& end = program.facts.end_rate;
   std::array<const double*, most_slots + 1> slots{};
-  std::copy(slot_pointers_.begin(), slot_pointers_.end(), slots.begin());
-  slots[at(slot_count())] = z;
-  measure_rows(program_.model->rubbed(), slot_count() + 1, slots.data(), state.end_rate_weights.data(), nullptr,
+  const int terms = static_cast<int>(state.end_rate_of.size());
+  for (int k = 0; k < terms; ++k) {
+    const std::size_t j = state.end_rate_of[at(k)];
+    slots[at(k)] = j == at(slot_count()) ? z : slot_pointers_[j];
+  }
+  measure_rows(program_.model->rubbed(), terms, slots.data(), state.end_rate_weights.data(), nullptr,
                state.end_rate.data());
   for (int row = 0; row < state.end_rate.rows(); ++row)
     for (int lane = 0; lane < lanes(); ++lane) {
@@ -262,23 +261,29 @@ LaneOutcome Marcher::find_friction(const StageProgram& program, StageState& stat
   return outcome;
 }
 
-// What efforts of friction move the measure of a point by, over c.
-double Marcher::moved_by_friction(StageState& state, const std::vector<double>& efforts, int point) {
-  double sum = 0;
-  for (int row = 0; row < static_cast<int>(efforts.size()); ++row)
-    if (efforts[at(row)] != 0) sum += efforts[at(row)] * columns_of(state).column(lower_.rows() + row)[point];
-  return sum;
+// What efforts of friction move the measures of all points by, over c.
+void Marcher::moved_by_friction(StageState& state, const std::vector<double>& efforts) {
+  std::vector<double>& moved = rubbing_->moved;
+  std::fill(moved.begin(), moved.end(), 0.0);
+  DelassusColumns& W = columns_of(state);
+  for (std::size_t row = 0; row < efforts.size(); ++row) {
+    if (efforts[row] == 0) continue;
+    const double* column = W.column(lower_.rows() + static_cast<int>(row));
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += efforts[row] * column[i];
+  }
 }
 
 // Whether what was found moves what the law reads by more than round-off of what the normal efforts do.
 bool Marcher::friction_moves_normals(StageState& state, double reach, int lane) {
   if (reach == 0) return false;
+  moved_by_friction(state, rubbing_->found);
+  DelassusColumns& W = columns_of(state);
   double own = 0, most = 0;
   for (int i = 0; i < lower_.rows(); ++i) {
     if (lower_.at(i, lane) == -infinity && upper_.at(i, lane) == infinity) continue;
-    most = std::max(most, std::abs(moved_by_friction(state, rubbing_->found, i)));
+    most = std::max(most, std::abs(rubbing_->moved[at(i)]));
     const double p = state.effort[0].at(i, lane);
-    if (p != 0) own = std::max(own, std::abs(p * columns_of(state).column(i)[i]));
+    if (p != 0) own = std::max(own, std::abs(p * W.column(i)[i]));
   }
   return most > negligible * own;
 }
@@ -331,8 +336,9 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
     }
     if (++turn > most_turns) break;
     rub.give(turn > 1 && turn % plain_every != 0 && change.along > 0 ? change.down / change.along : 0.0);
+    moved_by_friction(state, rub.given);
     for (int i = 0; i < points; ++i) {
-      const double moved = moved_by_friction(state, rub.given, i);
+      const double moved = rub.moved[at(i)];
       state.free.at(i, lane) = rub.measured[at(i)] + reach * moved;
       if (state.rate.rows() > 0) state.rate.at(i, lane) = rub.rate[at(i)] + rate_reach * moved;
     }

@@ -13,7 +13,11 @@ struct Tangent {
   std::array<double, 3> share{1, 0, 0};
 
   /// Of rows at `values`, `stride` apart.
-  double of(const double* values, std::ptrdiff_t stride = 1) const;
+  double of(const double* values, std::ptrdiff_t stride = 1) const {
+    double sum = share[0] * values[0];
+    for (int k = 1; k < count; ++k) sum += share[static_cast<std::size_t>(k)] * values[k * stride];
+    return sum;
+  }
   /// The effort along it of efforts of its rows.
   double effort(const double* efforts, std::ptrdiff_t stride = 1) const;
 };
@@ -60,6 +64,7 @@ struct StageFriction {
   // Of all rows: what the normal efforts were found with, what friction found then, and the same of the turn before.
   std::vector<double> given, found, found_before, off_before;
   std::vector<double> measured, rate, memory;  ///< of the law before friction
+  std::vector<double> moved;                   ///< what efforts of friction move each measure by, over c
 };
 
 }  // namespace ricochet

@@ -26,19 +26,20 @@ struct StageState {
   Block w;                                ///< that unknown, rows × T; zero where nothing jumped
   bool jumped = false;                    ///< whether something did, in some lane
   Block free, weighted, rate, before, gap, gate_lower, gate_upper, approach;
-  std::vector<double> rebound;      ///< of a gate, e of each point's stop
-  Block fastest;                    ///< largest speed seen at a closed point, per lane
-  std::uint32_t contact_lanes = 0;  ///< lanes with a non-zero effort
-  std::uint32_t closed_lanes = 0;   ///< lanes with a closed gate
-  std::uint32_t touched_lanes = 0;  ///< lanes that the law looked at in this stage
-  std::vector<double> update;       ///< slots × (slots + 1)
-  std::vector<double> update_w;     ///< of each slot, the weight of w
-  bool increments = false;          ///< whether the update is x_1 ← x_1 + z, x_0 ← x_0 + x_1
-  std::optional<PointTest> test;    ///< where the operator measures what the law reads
-  SquareSum* sum = nullptr;         ///< what the operator adds up for an observer
-  StageView view;                   ///< what an observer is shown
+  std::vector<double> rebound;           ///< of a gate, e of each point's stop
+  Block fastest;                         ///< largest speed seen at a closed point, per lane
+  std::uint32_t contact_lanes = 0;       ///< lanes with a non-zero effort
+  std::uint32_t closed_lanes = 0;        ///< lanes with a closed gate
+  std::uint32_t touched_lanes = 0;       ///< lanes that the law looked at in this stage
+  std::vector<double> update;            ///< slots × (slots + 1)
+  std::vector<double> update_w;          ///< of each slot, the weight of w
+  bool increments = false;               ///< whether the update is x_1 ← x_1 + z, x_0 ← x_0 + x_1
+  std::optional<PointTest> test;         ///< where the operator measures what the law reads
+  SquareSum* sum = nullptr;              ///< what the operator adds up for an observer
+  StageView view;                        ///< what an observer is shown
   Block end_rate;                        ///< u° of rows that rub, rows × T
-  std::vector<double> end_rate_weights;  ///< over the slots and z
+  std::vector<double> end_rate_weights;  ///< over those of the slots and z that have one
+  std::vector<std::size_t> end_rate_of;  ///< which these are
   std::vector<double> measure_weights, rate_weights, before_weights, gap_weights, approach_weights;
   std::vector<int> contact_age;  ///< steps of contact so far, points × T; only where tangents wait
   ActiveSystem tangents;         ///< of the lane whose tangents are being corrected

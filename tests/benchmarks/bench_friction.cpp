@@ -1,6 +1,7 @@
 // What friction costs. A tube in two planes rubs along uz at two stops, at the places of those in
 // tests/engine/friction_tubes.cpp, or at 24. Microseconds per step beside the same scene without friction, and with
-// stops out of reach. Medians of interleaved rounds, with their range.
+// stops out of reach: the march alone, and as a trajectory has it, with audit, contacts and wear. Medians of
+// interleaved rounds, with their range.
 //
 //     bench_friction [--rounds N]
 #include <fmt/format.h>
@@ -9,6 +10,10 @@
 #include <cstring>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/loader/catalogue.hpp>
+#include <ricochet/measure/contact/friction_watch.hpp>
+#include <ricochet/measure/contact/impact_recorder.hpp>
+#include <ricochet/measure/contact/stop_contacts.hpp>
+#include <ricochet/measure/energy/energy_audit.hpp>
 #include <ricochet/measure/statistics/quantiles.hpp>
 
 #include "tests/benchmarks/reference_beam.hpp"
@@ -26,7 +31,7 @@ struct Case {
   int stops = 2;
   bool rubs = false, reached = true;
   int steps = 0;
-  std::vector<double> microseconds = {};
+  std::vector<double> alone = {}, watched = {};  // µs per step
   bool ran = true;
 };
 
@@ -93,18 +98,31 @@ void measure(const Registry& registry, Case& one) {
   Marcher tube = made(registry, one);
   tube.start();
   tube.march(one.steps / 4);
-  const double begin = thread_nanoseconds();
+  double begin = thread_nanoseconds();
   tube.march(one.steps);
-  one.microseconds.push_back(1e-3 * (thread_nanoseconds() - begin) / one.steps);
-  one.ran = tube.status(0).running;
+  one.alone.push_back(1e-3 * (thread_nanoseconds() - begin) / one.steps);
+  Marcher other = made(registry, one);
+  EnergyAudit audit(other, SamplingMode::seldom);
+  FrictionWatch wear(other, audit, {});
+  ImpactRecorder recorder(other);
+  const StopContacts contacts(other, recorder);
+  Observers observers{&audit};
+  if (wear.any()) observers.add(&wear);
+  observers.add(&recorder);
+  other.start(observers);
+  other.march(one.steps / 4, observers);
+  begin = thread_nanoseconds();
+  other.march(one.steps, observers);
+  one.watched.push_back(1e-3 * (thread_nanoseconds() - begin) / one.steps);
+  one.ran &= tube.status(0).running && other.status(0).running;
 }
 
-std::string ratio(const Case& one, const Case& other) {
+std::string ratio(const std::vector<double>& rubbing, const std::vector<double>& plain) {
   std::vector<double> ratios;
-  for (std::size_t k = 0; k < one.microseconds.size(); ++k)
-    ratios.push_back(one.microseconds[k] / other.microseconds[k]);
+  for (std::size_t k = 0; k < rubbing.size(); ++k) ratios.push_back(rubbing[k] / plain[k]);
   const auto [low, high] = std::minmax_element(ratios.begin(), ratios.end());
-  return fmt::format("{:.2f} ({:.2f} to {:.2f})", median(ratios), *low, *high);
+  return fmt::format("{:.3f} | {:.3f} | {:.2f} ({:.2f} to {:.2f})", median(plain), median(rubbing), median(ratios),
+                     *low, *high);
 }
 
 }  // namespace
@@ -127,14 +145,16 @@ int main(int argc, char** argv) {
                            stops == 2 ? 20000 : 4000});
   for (int round = 0; round < rounds; ++round)
     for (Case& one : cases) measure(registry, one);
-  fmt::print("h = 6.25e-5 s, one lane, every step, no audit; {} rounds, medians; µs per step\n\n", rounds);
+  fmt::print("h = 6.25e-5 s, one lane, every step; {} rounds, medians; µs per step\n\n", rounds);
   fmt::print(
-      "| scene | law, scheme | stops | without friction | with it | ratio (range) |\n|---|---|---|---|---|---|\n");
+      "| scene | law, scheme | stops | watched by | without friction | with it | ratio (range) |\n"
+      "|---|---|---|---|---|---|---|\n");
   for (std::size_t k = 0; k + 1 < cases.size(); k += 2) {
     const Case &plain = cases[k], &rubbing = cases[k + 1];
-    fmt::print("| {} | {}, {} | {} | {:.3f} | {:.3f} | {} |\n", plain.scene, plain.law, plain.scheme,
-               plain.reached ? "pressed" : "out of reach", median(plain.microseconds), median(rubbing.microseconds),
-               plain.ran && rubbing.ran ? ratio(rubbing, plain) : "one of both ended");
+    for (const auto& [watch, times] : {std::pair{"nothing", &Case::alone}, {"audit, contacts, wear", &Case::watched}})
+      fmt::print("| {} | {}, {} | {} | {} | {} |\n", plain.scene, plain.law, plain.scheme,
+                 plain.reached ? "pressed" : "out of reach", watch,
+                 plain.ran && rubbing.ran ? ratio(rubbing.*times, plain.*times) : "| | one of both ended");
   }
   return 0;
 }
