@@ -20,7 +20,8 @@ void take(const Number* from, Eigen::Index count, Fingerprint& print) {
     take(word, print);
   }
   word = 0;
-  std::memcpy(&word, at, bytes);
+  // A matrix without entries has no array of them.
+  if (bytes > 0) std::memcpy(&word, at, bytes);
   take(word, print);
 }
 
