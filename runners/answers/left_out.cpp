@@ -27,7 +27,7 @@ namespace {
 std::optional<Sentence> say_unmoved(const Compared& study) {
   std::size_t still = 0;
   for (const CaseRecord& record : study.results().cases) {
-    if (record.status != "done") continue;
+    if (record.status != Status::done) continue;
     const auto zero = [&](const char* name) { return measure(record, name).value_or(0) == 0; };
     const bool known = measure(record, "largest_tip_displacement") && measure(record, "energy_start");
     if (!known || !zero("largest_tip_displacement") || !zero("energy_start") || !zero("work_of_loads"))
@@ -52,7 +52,7 @@ std::optional<Sentence> say_untouched(const Compared& study) {
   std::string law;
   for (const CaseRecord& record : study.results().cases) {
     const auto own = measure(record, "smallest_gap");
-    if (record.status != "done" || !own) continue;
+    if (record.status != Status::done || !own) continue;
     const auto instants = measure(record, "contact_instants"), tip = measure(record, "largest_tip_displacement");
     if (!instants || *instants > 0 || !tip) return std::nullopt;
     // Of the case that comes nearest.

@@ -84,7 +84,7 @@ MeasureLimits limits_of(const Compared& study, const std::string& name, bool con
     method.cases = members;
     std::vector<Valued> coarser;
     for (const CaseRecord* record : members) {
-      if (record->status != "done") continue;
+      if (record->status != Status::done) continue;
       const auto value = scaled_value(out.words, *record);
       if (!value || !std::isfinite(*value)) continue;
       if (!study.on_finest_mesh(*record)) {
@@ -146,9 +146,10 @@ bool keeps_energy(const StudyResults& results, const Cases& cases_of_study) {
   // A scheme that declares no work form leaves it open: those that do tell it for the scene that they share.
   std::vector<std::string> scene;
   for (const std::string& column : results.columns)
-    if (const std::string role = axis_role(column); !is_method_role(role) && role != "step" && !is_refinement(role) && role != residual_axis)
+    if (const std::string role = axis_role(column);
+        !is_method_role(role) && role != "step" && !is_refinement(role) && role != residual_axis)
       scene.push_back(column);
-  for (const Cases& cases : groups_of(with_status(cases_of_study, "done"), scene)) {
+  for (const Cases& cases : groups_of(with_status(cases_of_study, Status::done), scene)) {
     bool told = false;
     for (const CaseRecord* record : cases)
       if (const auto damping = measure(*record, "work_of_damping")) {

@@ -103,7 +103,7 @@ Sentence told_of(const Compared& study, const Listed& methods, const SetNames& n
 std::vector<Doubt> doubts_of(const StudyResults& results) {
   InOrderMet<std::string, Doubt> kinds;
   for (const CaseRecord& record : results.cases) {
-    if (record.partial || record.status != "done") continue;
+    if (record.partial || record.status != Status::done) continue;
     for (const Said& doubt : record.reasons) {
       Doubt& one = kinds[doubt.without_numbers()];
       if (one.cases.empty()) one.text = doubt.text;

@@ -39,7 +39,7 @@ std::vector<std::string> measures_of_stops(const StudyResults& results) {
   std::vector<std::string> names;
   std::set<std::string> seen;
   for (const CaseRecord& record : results.cases)
-    if (record.status == "done")
+    if (record.status == Status::done)
       for (const auto& [name, value] : record.measures)
         if (measure_of_stop(name) && seen.insert(name).second) names.push_back(name);
   return names;
@@ -99,13 +99,13 @@ std::string interval_text(const Compared& study, const MeasureLimits& limits, co
   if (!margin)
     return fmt::format("{}: {}; what the step leaves open is not known.", name,
                        range_text(words, spread.least, spread.largest));
-  std::string out =
-      fmt::format("{}: {}", name, range_text(words, spread.low(*margin), spread.largest + *margin));
+  std::string out = fmt::format("{}: {}", name, range_text(words, spread.low(*margin), spread.largest + *margin));
   // What is below it is round-off, or nothing beside the interval.
   const double floor = std::max(1e-9 * spread.scale(), 1e-3 * *margin);
   MeasureWords bare = words;
   bare.unit.clear();
-  if (spread.methods > 1 && spread.size() > floor) out += "; methods differ by " + uncertainty_text(bare, spread.size());
+  if (spread.methods > 1 && spread.size() > floor)
+    out += "; methods differ by " + uncertainty_text(bare, spread.size());
   std::string left;
   const auto add = [&](const char* what, const std::optional<double>& by) {
     if (!by || !(*by > floor)) return;

@@ -27,7 +27,7 @@ bool same_level(const Json& asked, const Json& own) {
 }
 
 std::string ending_key(const CaseRecord& record) {
-  std::string key = record.partial ? "still running" : record.status;
+  std::string key = record.partial ? "still running" : word(record.status);
   for (const Said& one : record.reasons) key += one.without_numbers();
   return key;
 }
@@ -126,7 +126,7 @@ std::vector<std::string> Evidence::columns_of(const std::string& choice) const {
 bool Evidence::has_shares(const std::string& name, const Cases& cases) const {
   const answers::MeasureWords words = answers::measure_words(name);
   return words.scale == "energy_brought_in" && std::all_of(cases.begin(), cases.end(), [&](const CaseRecord* record) {
-           return record->status != "done" || !measure(*record, name) || answers::scaled_value(words, *record);
+           return record->status != Status::done || !measure(*record, name) || answers::scaled_value(words, *record);
          });
 }
 
@@ -169,9 +169,9 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
   for (auto& [key, point] : std::move(groups).list()) {
     double largest = 0;
     for (const CaseRecord* record : point.cases) {
-      const auto value = record->status != "done" ? std::nullopt
-                         : shares                 ? answers::scaled_value(words, *record)
-                                                  : measure(*record, measure_of_all);
+      const auto value = record->status != Status::done ? std::nullopt
+                         : shares                       ? answers::scaled_value(words, *record)
+                                                        : measure(*record, measure_of_all);
       if (!value || !std::isfinite(*value)) continue;
       point.behind.push_back(record);
       if (!mesh_chosen && !study_.on_finest_mesh(*record)) continue;
@@ -217,17 +217,17 @@ LeftOut Evidence::left_out(const std::string& name, const Cases& cases) const {
   InOrderMet<std::string, LeftOut::Reason> groups;  // reasons that differ in numbers alone are one
   LeftOut out;
   for (const CaseRecord* record : cases) {
-    if (record->status == "done" && measure(*record, name)) continue;
+    if (record->status == Status::done && measure(*record, name)) continue;
     ++out.count;
     std::string why, key;
     if (record->partial) {
       why = key = "still running";
-    } else if (record->status == "done") {
+    } else if (record->status == Status::done) {
       const std::string reason = answers::why_without(name, *record);
       why = key = "without a value" + (reason.empty() ? "" : ": " + reason);
     } else {
       const std::string reason = record->reason();
-      why = record->excluded || reason.empty() ? reason : record->status + ": " + reason;
+      why = record->excluded || reason.empty() ? reason : word(record->status) + (": " + reason);
       key = ending_key(*record);
     }
     LeftOut::Reason& group = groups[key];

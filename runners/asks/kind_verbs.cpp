@@ -91,10 +91,10 @@ void leave_out(Answered& out, const Cases& left) {
   for (const CaseRecord* one : left) {
     LeftOut::Reason& group = groups[ending_key(*one)];
     if (group.count++ > 0) continue;
-    const bool done = one->status == "done";
-    group.text = (one->partial ? "still running"
-                  : done       ? "without a result"
-                               : one->status) +
+    const bool done = one->status == Status::done;
+    group.text = std::string(one->partial ? "still running"
+                             : done       ? "without a result"
+                                          : word(one->status)) +
                  (done || one->reason().empty() ? "" : ": " + one->reason());
   }
   LeftOut all;

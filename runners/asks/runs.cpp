@@ -13,6 +13,7 @@ namespace {
 
 struct Ending {
   std::string status, reason;
+  bool done = false;
   std::vector<const CaseRecord*> cases;
 };
 
@@ -20,10 +21,10 @@ struct Ending {
 std::vector<Ending> endings(const Cases& cases) {
   InOrderMet<std::string, Ending> out;
   for (const CaseRecord* record : cases) {
-    const std::string status = record->partial ? "running" : record->status;
-    const bool done = status == "done";
+    const std::string status = record->partial ? "running" : word(record->status);
+    const bool done = !record->partial && record->status == Status::done;
     Ending& ending = out[done ? status : ending_key(*record)];
-    if (ending.cases.empty()) ending = {status, done ? "" : record->reason(), {}};
+    if (ending.cases.empty()) ending = {status, done ? "" : record->reason(), done, {}};
     ending.cases.push_back(record);
   }
   std::vector<Ending> list;
@@ -46,7 +47,7 @@ Answered answer_runs(const Ask& ask, const Evidence& evidence) {
     row.reason = one.reason;
     row.cases = one.cases.size();
     out.rows.push_back(std::move(row));
-    if (one.status == "done")
+    if (one.done)
       done += one.cases.size();
     else {
       others.push_back(fmt::format("{} {} ({})", one.cases.size(), one.status, short_reason(one.reason)));

@@ -89,9 +89,9 @@ int print_again(const OpenCase& open, const StoredStudy& stored, const StudyCase
   const CaseRecord again = march_again(open.folder, *open.kind, stored, study_case, stop);
   out << fmt::format("case {} of {} ({})\n", open.record.id, open.results.name, open.results.kind)
       << parameters_text(open.record) << "\n"
-      << again.status << (again.reasons.empty() ? "" : ": " + again.reason())
+      << word(again.status) << (again.reasons.empty() ? "" : ": " + again.reason())
       << (again.steps > 0 ? fmt::format(", {} steps", again.steps) : "");
-  if (const std::string outcome = again.status == "done" ? open.kind->outcome(again) : ""; !outcome.empty())
+  if (const std::string outcome = again.status == Status::done ? open.kind->outcome(again) : ""; !outcome.empty())
     out << ": " << outcome;
   out << "\n";
   if (!again.measures.empty()) out << "\n" << measures_text(again);
@@ -110,10 +110,10 @@ int print_curve(const OpenCase& open, const StoredStudy& stored, StudyCase study
   study_case.samples = samples;
   const CaseRecord again = open.kind->march(study_case, stored.registry, stop);
   if (again.curve.columns.empty() || again.curve.columns.front().empty())
-    throw PointRefused(fmt::format("this case leaves no curve: it is {}{}", again.status,
+    throw PointRefused(fmt::format("this case leaves no curve: it is {}{}", word(again.status),
                                    again.reasons.empty() ? "" : ", " + again.reason()));
   out << curve_csv(again.curve);
-  std::cerr << again.status << (again.reasons.empty() ? "" : ": " + again.reason())
+  std::cerr << word(again.status) << (again.reasons.empty() ? "" : ": " + again.reason())
             << (samples > again.steps ? fmt::format("; it takes {} steps, and has no more samples", again.steps) : "")
             << "\n";
   return exit_done;
@@ -130,7 +130,7 @@ int keep_snapshots(const OpenCase& open, const StoredStudy& stored, StudyCase st
   const CaseRecord again = open.kind->march(study_case, stored.registry, stop);
   const NumberTable* table = find_table(again.numbers, snapshots_name);
   if (!table)
-    throw PointRefused(fmt::format("this case leaves no snapshots: it is {}{}", again.status,
+    throw PointRefused(fmt::format("this case leaves no snapshots: it is {}{}", word(again.status),
                                    again.reasons.empty() ? "" : ", " + again.reason()));
   keep_numbers(open.folder, open.record.id, *table);
   const Snapshots kept = snapshots_of(*table).value();

@@ -48,7 +48,7 @@ std::size_t cases_asked(const std::string& text, std::size_t all) {
 std::vector<const CaseRecord*> cases_that_march(const StudyResults& results) {
   std::vector<const CaseRecord*> found;
   for (const CaseRecord& record : results.cases)
-    if (record.status != "refused" && !record.partial && !is_reference(record)) found.push_back(&record);
+    if (record.status != Status::refused && !record.partial && !is_reference(record)) found.push_back(&record);
   return found;
 }
 

@@ -92,7 +92,7 @@ CaseRecord run_guarded(const CaseRunner& cases, const StudyCase& study_case, con
   CaseRecord record;
   const auto fail = [&](Said reason) {
     record = CaseRecord{};
-    record.status = "failed";
+    record.status = Status::failed;
     record.reasons = {std::move(reason)};
   };
   try {

@@ -19,7 +19,7 @@ namespace ricochet {
 nlohmann::ordered_json single_study(const StudyResults& results, const CaseRecord& record) {
   nlohmann::ordered_json study = minimal_study(results, record);
   study["kind"] = results.kind;
-  if (record.status == "done")
+  if (record.status == Status::done)
     study["question"] = fmt::format("The case {} of {} alone. {}", record.id, results.name, results.question);
   if (study["step"].is_null()) study.erase("step");
   for (const auto& [name, value] : record.axes) {

@@ -225,7 +225,7 @@ CaseRecord begin_record(const StudyCase& study_case, const Prepared& prepared) {
     if (!prepared.program->every_step_because.empty())
       record.notes.push_back("every step is marched: " + prepared.program->every_step_because);
   } else {
-    record.status = "refused";
+    record.status = Status::refused;
     record.reasons = {prepared.refusal};
   }
   return record;
@@ -234,12 +234,12 @@ CaseRecord begin_record(const StudyCase& study_case, const Prepared& prepared) {
 void record_early_end(CaseRecord& record, const Marcher& marcher, long long steps, double budget) {
   const LaneStatus& status = marcher.status(0);
   if (status.running) {
-    record.status = "failed";
+    record.status = Status::failed;
     record.reasons = {said("the budget of {:g} s was spent at step {} of {}, t = {:.6g} s", budget, marcher.step(),
                            steps, marcher.time())};
     return;
   }
-  record.status = status.end.failed() ? "failed" : "diverged";
+  record.status = status.end.failed() ? Status::failed : Status::diverged;
   record.reasons = {said("step {}, t = {:.6g} s: {}", status.step, status.time, told(status.end))};
   record.steps = status.step;
 }
@@ -247,7 +247,7 @@ void record_early_end(CaseRecord& record, const Marcher& marcher, long long step
 void add_doubts(CaseRecord& record, const std::vector<Said>& doubts) {
   for (const Said& doubt : doubts) {
     if (doubt.empty()) continue;
-    if (record.status == "done")
+    if (record.status == Status::done)
       record.reasons.push_back(doubt);
     else
       record.notes.push_back(doubt.text);

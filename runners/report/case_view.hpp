@@ -78,7 +78,7 @@ class CaseView {
   const CaseRecord* find(std::string_view id) const;
   /// All cases, and those with a status.
   Cases all() const { return all_cases(results_); }
-  Cases with_status(const std::string& status) const { return ricochet::with_status(all(), status); }
+  Cases with_status(Status status) const { return ricochet::with_status(all(), status); }
 
   /// What sets some of these cases apart from all: "all 24 cases", "12 of 24 cases (mass singular)".
   std::string describe(const Cases& cases) const;

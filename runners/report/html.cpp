@@ -117,11 +117,11 @@ std::string share_text(double share, std::optional<double> low, std::optional<do
   return share_text(share) + (low && high ? fmt::format(" ({} to {})", share_text(*low), share_text(*high)) : "");
 }
 
-std::string status_mark(const std::string& status) {
-  if (status == "done") return "✓";
-  if (status == "refused") return "⊘";
-  if (status == "diverged") return "✕";
-  if (status == "failed") return "!";
+std::string status_mark(Status status) {
+  if (status == Status::done) return "✓";
+  if (status == Status::refused) return "⊘";
+  if (status == Status::diverged) return "✕";
+  if (status == Status::failed) return "!";
   return "?";
 }
 

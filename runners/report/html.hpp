@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "runners/store/status.hpp"
+
 namespace ricochet::report {
 
 /// What a template is filled with: texts, truth values, lists and objects of these.
@@ -39,7 +41,7 @@ std::string share_text(double share);
 std::string share_text(double share, std::optional<double> low, std::optional<double> high);
 
 /// Legend symbol of a status: ✓ done, ⊘ refused, ✕ diverged, ! failed; a question mark for an unknown one.
-std::string status_mark(const std::string& status);
+std::string status_mark(Status status);
 
 /// The name of a column as words: "energy_end" → "energy end", "peak_force[plate]" → "peak force at plate".
 std::string in_words(std::string name);

@@ -114,12 +114,12 @@ std::string effects_sentence(const MeasureShares& measure) {
 std::string effects_caveats(const CaseView& view, const MeasureShares& measure) {
   std::string out, statuses;
   size_t without = 0;
-  for (const char* status : {"refused", "diverged", "failed", "done"}) {
+  for (const Status status : {Status::refused, Status::diverged, Status::failed, Status::done}) {
     size_t count = 0;
     for (const CaseRecord* record : view.with_status(status))
       count += !ricochet::measure(*record, measure.name).has_value();
     without += count;
-    if (count) statuses += fmt::format("{}{} {}", statuses.empty() ? "" : ", ", count, status);
+    if (count) statuses += fmt::format("{}{} {}", statuses.empty() ? "" : ", ", count, word(status));
   }
   const auto single = [&](const MeasureShare& share) {
     return share.share == 0 && share.order == 1 && !view.varies(share.factor);

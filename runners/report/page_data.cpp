@@ -87,7 +87,7 @@ PageJson cases_json(const CaseView& view) {
   for (size_t c = 0; c < all.size(); ++c) {
     const CaseRecord& record = *all[c];
     out["id"].push_back(record.id);
-    out["status"].push_back(record.status);
+    out["status"].push_back(word(record.status));
     out["reason"].push_back(record.reason());
     out["partial"].push_back(record.partial);
     out["steps"].push_back(record.steps);
@@ -200,7 +200,7 @@ std::set<std::size_t> chosen(const std::vector<CaseGroup>& groups, const std::st
   std::vector<std::pair<double, std::size_t>> known;
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (const CaseRecord* record : groups[g].cases)
-      if (const auto value = ricochet::measure(*record, name); value && record->status == "done")
+      if (const auto value = ricochet::measure(*record, name); value && record->status == Status::done)
         known.emplace_back(*value, g);
   std::sort(known.begin(), known.end());
   std::set<std::size_t> out;

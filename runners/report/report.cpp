@@ -86,7 +86,7 @@ std::string script(const std::string& attributes, const std::string& content) {
 std::string answer_html(const CaseView& view, const KindPage& kind) {
   if (view.results().cases.empty()) return "<p>No case has run yet.</p>\n";
   const std::string answer = asked_html(kind.asked);
-  if (answer.empty() && view.with_status("done").empty())
+  if (answer.empty() && view.with_status(Status::done).empty())
     return "<p>No case has finished with a result; the table below says why.</p>\n";
   return answer;
 }
@@ -151,7 +151,7 @@ Ids chosen(const StudyResults& results) {
   std::sort(by_lot.begin(), by_lot.end(), [](const CaseRecord* a, const CaseRecord* b) { return a->id < b->id; });
   std::size_t bad = 0;
   for (const CaseRecord* record : by_lot)
-    if (record->status != "done" && bad < most_shown_cases / 4) bad += ids.insert(record->id).second;
+    if (record->status != Status::done && bad < most_shown_cases / 4) bad += ids.insert(record->id).second;
   for (const CaseRecord* record : by_lot)
     if (ids.size() < most_shown_cases) ids.insert(record->id);
   return ids;

@@ -22,9 +22,9 @@ std::vector<std::string> answer_lines(const StudyResults& results) {
   return lines;
 }
 
-std::vector<std::pair<std::string, size_t>> status_counts(const StudyResults& results) {
-  std::vector<std::pair<std::string, size_t>> counts;
-  for (const char* status : {"done", "refused", "diverged", "failed"})
+std::vector<std::pair<Status, size_t>> status_counts(const StudyResults& results) {
+  std::vector<std::pair<Status, size_t>> counts;
+  for (const Status status : statuses)
     if (const size_t count = with_status(all_cases(results), status).size()) counts.emplace_back(status, count);
   return counts;
 }
@@ -32,7 +32,7 @@ std::vector<std::pair<std::string, size_t>> status_counts(const StudyResults& re
 std::string statuses_text(const StudyResults& results) {
   std::string text;
   for (const auto& [status, count] : status_counts(results))
-    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + status;
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + word(status);
   return text;
 }
 
@@ -92,7 +92,7 @@ std::string ran_text(const StudyResults& results, const std::string& role) {
   InOrderMet<std::string, InOrderMet<std::string, InOrderMet<std::string, bool>>> methods;
   for (const CaseRecord& record : results.cases) {
     const std::string name = CaseView::text(record, role);
-    if (record.status == "refused" || name.empty()) continue;
+    if (record.status == Status::refused || name.empty()) continue;
     auto& parameters = methods[name];
     for (const std::string& column : own)
       if (const std::string value = CaseView::text(record, column); !value.empty())
@@ -262,8 +262,8 @@ Fill study_fill(const IndexEntry& entry) {
     out.set("more", count_text(all.size() - most_index_lines, "more line", "more lines") + " in the report");
   for (const auto& [status, count] : status_counts(results)) {
     Fill one;
-    one.set("status", status);
-    one.set("text", status_mark(status) + " " + std::to_string(count) + " " + status);
+    one.set("status", word(status));
+    one.set("text", status_mark(status) + " " + std::to_string(count) + " " + word(status));
     statuses << one;
   }
   if (const auto missing = results.expected_cases - static_cast<int>(results.cases.size()); missing > 0) {

@@ -13,7 +13,7 @@ namespace ricochet::report {
 std::vector<std::string> answer_lines(const StudyResults& results);
 
 /// How many cases ended so: done, refused, diverged, failed, in this order; none that no case has.
-std::vector<std::pair<std::string, size_t>> status_counts(const StudyResults& results);
+std::vector<std::pair<Status, size_t>> status_counts(const StudyResults& results);
 
 /// "20 done, 4 refused".
 std::string statuses_text(const StudyResults& results);

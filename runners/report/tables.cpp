@@ -83,20 +83,20 @@ CaseColumn measure_cells(const std::string& name) {
 /// Which case it is, what became of it, what sets it apart, what it measured; last what a first look leaves out.
 std::vector<CaseColumn> case_columns(const CaseView& view, const std::vector<std::string>& measures, bool files) {
   const auto worked = [](const CaseRecord& record, double value) {
-    return record.status == "refused" ? CaseCell{"", ""} : number_cell(value, 5);
+    return record.status == Status::refused ? CaseCell{"", ""} : number_cell(value, 5);
   };
-  std::vector<CaseColumn> out = {
-      {"case", "case",
-       files ? "Identity of the case: its row in cases.csv and its file in curves/"
-             : "Identity of the case: its row in cases.csv",
-       "text", false,
-       [&view](const CaseRecord& record) {
-         return CaseCell{record.id, "text", view.colour(record)};
-       }},
-      {"status", "status", "done, refused (does not apply), diverged or failed", "text", false,
-       [](const CaseRecord& record) {
-         return CaseCell{status_mark(record.status) + " " + record.status, "status " + record.status};
-       }}};
+  std::vector<CaseColumn> out = {{"case", "case",
+                                  files ? "Identity of the case: its row in cases.csv and its file in curves/"
+                                        : "Identity of the case: its row in cases.csv",
+                                  "text", false,
+                                  [&view](const CaseRecord& record) {
+                                    return CaseCell{record.id, "text", view.colour(record)};
+                                  }},
+                                 {"status", "status", "done, refused (does not apply), diverged or failed", "text",
+                                  false, [](const CaseRecord& record) {
+                                    return CaseCell{status_mark(record.status) + " " + word(record.status),
+                                                    std::string("status ") + word(record.status)};
+                                  }}};
   for (const std::string& column : view.results().columns) out.push_back(axis_column(view, column));
   const Cases all = view.all();
   if (std::any_of(all.begin(), all.end(), [](const CaseRecord* record) { return !record->reasons.empty(); }))
@@ -105,7 +105,7 @@ std::vector<CaseColumn> case_columns(const CaseView& view, const std::vector<std
                    }});
   for (const std::string& name : measures) out.push_back(measure_cells(name));
   out.push_back({"steps", "steps", "Number of time steps marched", "number", false, [](const CaseRecord& record) {
-                   return CaseCell{record.status == "refused" ? "" : std::to_string(record.steps), ""};
+                   return CaseCell{record.status == Status::refused ? "" : std::to_string(record.steps), ""};
                  }});
   out.push_back({"run_seconds", "run (s)", "Time of marching", "number", false,
                  [worked](const CaseRecord& record) { return worked(record, record.run_seconds); }});
@@ -133,7 +133,7 @@ std::string off_paper(const CaseView& view, const std::vector<CaseColumn>& colum
 
 /// A condition that is true of something here, to show how one is written.
 std::string filter_example(const CaseView& view, const std::vector<std::string>& measures) {
-  if (!view.with_status("refused").empty()) return "words, or status = refused";
+  if (!view.with_status(Status::refused).empty()) return "words, or status = refused";
   return measures.empty() ? "words, or status = done" : fmt::format("words, or {} > 0", measures.front());
 }
 
@@ -146,16 +146,34 @@ std::vector<std::pair<Entry, Cases>> grouped(const CaseView& view, List list) {
   return std::move(out).list();
 }
 
+/// What the measures mean; none where none is known.
+std::optional<Fill> glossary_of(const std::vector<std::string>& measures) {
+  Fill entries{Fill::type::list};
+  bool any = false;
+  for (const std::string& name : measures)
+    if (const MeasureInfo* info = measure_info(name)) {
+      Fill entry;
+      entry.set("name", with_unit({in_words(name), info->unit}));
+      entry.set("text", info->text);
+      entries << entry;
+      any = true;
+    }
+  if (!any) return std::nullopt;
+  Fill glossary;
+  glossary.set("entries", entries);
+  return glossary;
+}
+
 }  // namespace
 
 std::string case_table_html(const CaseView& view, const StudyResults& all) {
   const StudyResults& results = view.results();
   if (results.cases.empty()) return "<p>No case has run yet.</p>\n";
   const std::vector<std::string> measures = measures_present(view);
-  Fill with, statuses{Fill::type::list}, entries{Fill::type::list};
+  Fill with, statuses{Fill::type::list};
   for (const auto& [status, count] : status_counts(results)) {
     Fill one;
-    one.set("status", status);
+    one.set("status", word(status));
     one.set("mark", status_mark(status));
     one.set("count", std::to_string(count));
     statuses << one;
@@ -176,8 +194,8 @@ std::string case_table_html(const CaseView& view, const StudyResults& all) {
   if (const std::string left = off_paper(view, columns); !left.empty()) with.set("off_paper", left);
   std::string rows;
   for (const CaseRecord& record : results.cases) {
-    rows += fmt::format("<tr data-status=\"{}\" data-case=\"{}\" tabindex=\"0\">", escape(record.status),
-                        escape(record.id));
+    rows +=
+        fmt::format("<tr data-status=\"{}\" data-case=\"{}\" tabindex=\"0\">", word(record.status), escape(record.id));
     for (const CaseColumn& one : columns) {
       CaseCell cell = one.cell(record);
       if (one.extra) cell.classes += cell.classes.empty() ? "extra" : " extra";
@@ -195,20 +213,7 @@ std::string case_table_html(const CaseView& view, const StudyResults& all) {
   if (results.cases.size() > most_full_rows) with.set("later", Fill::type::bool_true);
   const std::vector<std::string> constants = view.constants();
   if (!constants.empty()) with.set("constants", fmt::format("{}", fmt::join(constants, " · ")));
-  bool any = false;
-  for (const std::string& name : measures)
-    if (const MeasureInfo* info = measure_info(name)) {
-      Fill entry;
-      entry.set("name", with_unit({in_words(name), info->unit}));
-      entry.set("text", info->text);
-      entries << entry;
-      any = true;
-    }
-  if (any) {
-    Fill glossary;
-    glossary.set("entries", entries);
-    with.set("glossary", glossary);
-  }
+  if (const auto glossary = glossary_of(measures)) with.set("glossary", *glossary);
   return filled("cases", with);
 }
 
@@ -234,7 +239,7 @@ std::string notes_html(const CaseView& view) {
       view, [](const CaseRecord& r) -> const auto& { return r.notes; });
   bool any = !groups.empty();
   for (const ReasonRow& row : reasons_type().read(view.results().derived)) {
-    if (row.status != "done") continue;
+    if (row.status != word(Status::done)) continue;
     Fill one;
     one.set("note", row.reason);
     one.set("cases", row.cases == 1

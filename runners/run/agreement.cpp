@@ -176,7 +176,7 @@ Agreement AgreementOf::operator()(const CaseRecord& stored, const CaseRecord& ag
   const RoundOff round_off(again);
   auto [wrong, within_u, largest] = measures(stored, again, round_off);
   if (stored.status != again.status)
-    wrong.insert(wrong.begin(), fmt::format("it is {}, stored as {}", again.status, stored.status));
+    wrong.insert(wrong.begin(), fmt::format("it is {}, stored as {}", word(again.status), word(stored.status)));
   if (wrong.empty() && within_u > 0) {
     said = fmt::format("equal within u: {} measure{} beyond six digits, the largest difference is {:.2g} u", within_u,
                        within_u == 1 ? "" : "s", largest);

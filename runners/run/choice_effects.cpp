@@ -28,7 +28,7 @@ MeasureSpread spread_of(const StudyResults& results, const std::string& name) {
   MeasureSpread spread;
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const CaseRecord& record : results.cases) {
-    const auto value = record.status == "done" ? measure(record, name) : std::nullopt;
+    const auto value = record.status == Status::done ? measure(record, name) : std::nullopt;
     if (!value) continue;
     low = std::min(low, *value);
     high = std::max(high, *value);
@@ -59,7 +59,7 @@ bool absent_by_level(const StudyResults& results, const std::vector<Factor>& fac
   for (const Factor& factor : factors) {
     std::vector<int> done(factor.levels.size(), 0), present(factor.levels.size(), 0);
     for (std::size_t c = 0; c < values.size(); ++c) {
-      done[factor.level[c]] += results.cases[c].status == "done" ? 1 : 0;
+      done[factor.level[c]] += results.cases[c].status == Status::done ? 1 : 0;
       present[factor.level[c]] += values[c] ? 1 : 0;
     }
     for (std::size_t l = 0; l < done.size(); ++l)
@@ -105,7 +105,7 @@ Table effects_table(const StudyResults& results) {
   for (const std::string& name : measures) {
     std::vector<std::optional<double>> values;
     for (const CaseRecord& record : results.cases)
-      values.push_back(record.status == "done" ? measure(record, name) : std::nullopt);
+      values.push_back(record.status == Status::done ? measure(record, name) : std::nullopt);
     if (absent_by_level(results, factors, values) || !beyond_round_off(results, name)) continue;
     const Effects effects = effects_of(factors, values);
     for (const EffectShare& share : effects.shares)

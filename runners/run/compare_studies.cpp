@@ -110,7 +110,7 @@ std::vector<MeasureChange> measure_changes(const std::vector<CasePair>& pairs) {
     const MeasureInfo* info = measure_info(name);
     if (info && info->of == MeasureInfo::Of::computation) continue;
     for (const CasePair& pair : pairs)
-      if (pair.a->status == "done" && pair.b->status == "done") {
+      if (pair.a->status == Status::done && pair.b->status == Status::done) {
         const MeasureChange change = measure_change(name, pair);
         if (change.a || change.b) out.push_back(change);
       }
@@ -144,7 +144,7 @@ void add_table_changes(const CasePair& pair, const std::vector<AnyTable>& a, con
 std::vector<TableChange> table_changes(const std::vector<CasePair>& pairs) {
   std::vector<TableChange> out;
   for (const CasePair& pair : pairs) {
-    if (pair.a->status != "done" || pair.b->status != "done") continue;
+    if (pair.a->status != Status::done || pair.b->status != Status::done) continue;
     add_table_changes(pair, pair.a->tables, pair.b->tables, out);
     add_table_changes(pair, pair.a->numbers, pair.b->numbers, out);
   }

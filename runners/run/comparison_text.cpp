@@ -43,7 +43,7 @@ std::string changed_text(const std::vector<ChangedText>& changes, std::size_t mo
 }
 
 std::string shown_status(const CaseRecord& record) {
-  return record.partial ? "under way" : record.status;
+  return record.partial ? "under way" : word(record.status);
 }
 
 std::string cases_text(const StudyComparison& found, const StudyResults& a, const StudyResults& b) {

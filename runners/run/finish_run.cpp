@@ -14,8 +14,8 @@
 #include "runners/report/html.hpp"
 #include "runners/report/summary_page.hpp"
 #include "runners/run/asked_text.hpp"
-#include "runners/run/exit_code.hpp"
 #include "runners/run/choice_effects.hpp"
+#include "runners/run/exit_code.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/checksums.hpp"
@@ -90,10 +90,10 @@ AnalysedResults::AnalysedResults(StudyResults results)
 Table reasons_table(const StudyResults& results) {
   std::vector<std::pair<std::pair<std::string, std::string>, Cases>> groups;  // by status and reason
   for (const answers::Doubt& doubt : answers::doubts_of(results))
-    groups.emplace_back(std::pair(std::string("done"), doubt.text), doubt.cases);
+    groups.emplace_back(std::pair(std::string(word(Status::done)), doubt.text), doubt.cases);
   for (const CaseRecord& record : results.cases)
-    if (!record.partial && record.status != "done")
-      in_order_met(groups, std::pair(record.status, record.reason())).push_back(&record);
+    if (!record.partial && record.status != Status::done)
+      in_order_met(groups, std::pair(std::string(word(record.status)), record.reason())).push_back(&record);
   const auto first = [&](const auto& group) { return group.second.front(); };
   std::stable_sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) { return first(a) < first(b); });
   std::vector<ReasonRow> rows;
@@ -113,7 +113,7 @@ std::unique_ptr<const AnalysedResults> write_folder(Store& store, const std::fil
 int tell_results(std::FILE* out, const AnalysedResults& results, const std::filesystem::path& folder,
                  const std::string& how, bool table) {
   const bool nothing = std::all_of(results.cases.begin(), results.cases.end(),
-                                   [](const CaseRecord& one) { return one.status == "refused"; });
+                                   [](const CaseRecord& one) { return one.status == Status::refused; });
   const std::string answer = asked_text(results);
   const int code = nothing ? exit_some_failed : results_exit_code(results);
   say(out, fmt::format("{}{}\n{} ({})\nreport: {}\n", table ? case_table(results) + "\n" : "", answer,
@@ -189,7 +189,7 @@ std::vector<std::string> observed_measures(const StudyResults& results) {
   if (names.empty() && kind) names = kind->observed(results);
   std::erase_if(names, [&](const std::string& name) {
     return std::none_of(results.cases.begin(), results.cases.end(),
-                        [&](const CaseRecord& one) { return one.status == "done" && measure(one, name); });
+                        [&](const CaseRecord& one) { return one.status == Status::done && measure(one, name); });
   });
   return names;
 }
@@ -232,7 +232,7 @@ std::map<std::string, int> contradictions(const StudyResults& results) {
   return found;
 }
 
-int count(const StudyResults& results, const char* status) {
+int count(const StudyResults& results, Status status) {
   return static_cast<int>(std::count_if(results.cases.begin(), results.cases.end(), [&](const CaseRecord& record) {
     return !record.partial && record.status == status;
   }));
@@ -243,14 +243,14 @@ int count(const StudyResults& results, const char* status) {
 std::string outcome_text(const CaseRecord& record, const std::string& kind) {
   const std::string reason = record.reason();
   if (record.partial) return reason;
-  if (record.status == "done") {
+  if (record.status == Status::done) {
     const Kind* known = find_kind(kind);
     const std::string own = known ? known->outcome(record) : "";
     std::string text = own.empty() ? "done" : "done: " + own;
     if (!reason.empty()) text += (own.empty() ? ": " : "; ") + reason;
     return text;
   }
-  return reason.empty() ? record.status : fmt::format("{}: {}", record.status, reason);
+  return reason.empty() ? word(record.status) : fmt::format("{}: {}", word(record.status), reason);
 }
 
 std::string case_table(const StudyResults& results) {
@@ -278,7 +278,7 @@ std::string case_table(const StudyResults& results) {
 std::string totals_text(const StudyResults& results) {
   std::vector<std::string> parts;
   for (const auto& [status, number] : report::status_counts(results))
-    parts.push_back(fmt::format("{} {}", number, status));
+    parts.push_back(fmt::format("{} {}", number, word(status)));
   if (const auto number = std::count_if(results.cases.begin(), results.cases.end(),
                                         [](const CaseRecord& record) { return record.partial; }))
     parts.push_back(fmt::format("{} under way", number));
@@ -293,7 +293,8 @@ std::string totals_text(const StudyResults& results) {
 }
 
 int results_exit_code(const StudyResults& results) {
-  const bool wrong = !contradictions(results).empty() || count(results, "diverged") + count(results, "failed") > 0;
+  const bool wrong =
+      !contradictions(results).empty() || count(results, Status::diverged) + count(results, Status::failed) > 0;
   return wrong ? exit_some_failed : exit_done;
 }
 

@@ -129,7 +129,7 @@ class FolderMerge {
     for (const StoreReader::Finished& one : source.finished) {
       const auto expected = fingerprints_.find(one.id);
       if (expected == fingerprints_.end() || expected->second != one.fingerprint) refuse_program(source, one.id);
-      if (one.status != "refused" && !one.arithmetic.empty()) check_arithmetic(source, one);
+      if (!one.refused && !one.arithmetic.empty()) check_arithmetic(source, one);
       const auto [holder, first] = holders_.emplace(one.id, &source);
       if (first) continue;
       StoreReader& other = others.try_emplace(holder->second, holder->second->folder).first->second;
@@ -276,7 +276,7 @@ void compare_measures(const CaseRecord& stored, const CaseRecord& again, Compari
 Comparison compare(const CaseRecord& stored, const CaseRecord& again) {
   Comparison out;
   if (stored.status != again.status)
-    out.differences.push_back(fmt::format("it is {}, stored as {}", again.status, stored.status));
+    out.differences.push_back(fmt::format("it is {}, stored as {}", word(again.status), word(stored.status)));
   if (stored.steps != again.steps)
     out.differences.push_back(fmt::format("it takes {} steps, stored are {}", again.steps, stored.steps));
   compare_measures(stored, again, out);

@@ -136,7 +136,7 @@ std::vector<CaseRecord> time_cases(const StudyRunner& runner, const Study& study
   for (const StudyCase& one : study.cases) cases[one.id] = &one;
   std::vector<CaseRecord> records;
   for (const CaseRecord& record : results.cases)
-    if (record.status == "done" && !timed(record) && cases.count(record.id)) records.push_back(record);
+    if (record.status == Status::done && !timed(record) && cases.count(record.id)) records.push_back(record);
   if (records.empty()) return {};
   double expected = 0;
   for (const CaseRecord& record : records) expected += record.run_seconds;

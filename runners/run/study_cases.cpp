@@ -54,7 +54,7 @@ CaseRecord excluded_record(const StudyCase& study_case) {
   CaseRecord record;
   record.id = study_case.id;
   record.axes = study_case.axes;
-  record.status = "refused";
+  record.status = Status::refused;
   record.reasons = {*study_case.excluded};
   record.excluded = true;
   return record;

@@ -95,7 +95,7 @@ class FolderRun {
 
   void note_failure(const CaseRecord& record) {
     const std::lock_guard guard(failed_mutex_);
-    if (record.status == "failed") failed_.insert(record.id);
+    if (record.status == Status::failed) failed_.insert(record.id);
   }
 
   /// What the last run left: a case that was under way when it was killed runs again.
@@ -208,7 +208,7 @@ class FolderRun {
       progress.started(ids.front(), cases.front().predicted_seconds);
     };
     events.finished = [&](const CaseRecord& record, const PendingCase* next) {
-      if (record.status == "failed" && record.reason().find(changed_since) != std::string::npos)
+      if (record.status == Status::failed && record.reason().find(changed_since) != std::string::npos)
         throw StoreError(
             fmt::format("{}. This case is not kept, those that finished are. Put the file back, or keep it, "
                         "and run again",
@@ -243,7 +243,7 @@ class FolderRun {
     const double seconds = seconds_since(begin_);
     // As `plan` counts them: what is refused does not run.
     const auto ran = std::count_if(results->cases.begin(), results->cases.end(), [this](const CaseRecord& one) {
-      return fresh_.count(one.id) != 0 && one.status != "refused";
+      return fresh_.count(one.id) != 0 && one.status != Status::refused;
     });
     return tell_results(runner_.out, *results, folder_,
                         fmt::format("{} run now in {}, {} kept", ran, duration_text(seconds), kept_.size()), table_);

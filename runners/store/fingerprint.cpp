@@ -103,7 +103,7 @@ std::string without_place(const std::string& name, const std::string& value) {
 void tell_arithmetics(StudyResults& results) {
   std::map<std::string, int> met;
   for (const CaseRecord& record : results.cases)
-    if (!record.arithmetic.empty() && !record.partial && record.status != "refused") ++met[record.arithmetic];
+    if (!record.arithmetic.empty() && !record.partial && record.status != Status::refused) ++met[record.arithmetic];
   if (met.empty()) return;
   auto& entries = results.environment.entries;
   std::erase_if(entries, [](const auto& entry) { return entry.first.starts_with(kArithmetic); });

@@ -119,10 +119,13 @@ void read_study(SQLite::Database& database, StudyResults& results) {
 constexpr const char* kStoredCase =
     "id, status, reason, steps, setup_seconds, run_seconds, operator, fingerprint, arithmetic";
 
-CaseRecord case_of(SQLite::Statement& row) {
+// Null for a case of another id or status than a case can have: what is damaged.
+std::optional<CaseRecord> case_of(SQLite::Statement& row) {
+  const auto status = status_of_word(row.getColumn(1).getString());
   CaseRecord record;
   record.id = row.getColumn(0).getString();
-  record.status = row.getColumn(1).getString();
+  if (!status || !is_case_id(record.id)) return std::nullopt;
+  record.status = *status;
   if (std::string reason = text_in(row.getColumn(2)); !reason.empty()) record.reasons = {std::move(reason)};
   record.steps = row.getColumn(3).getInt64();
   record.setup_seconds = row.getColumn(4).getDouble();
@@ -276,15 +279,15 @@ StudyResults read_tables(SQLite::Database& database, bool compared) {
   if (!compared) results.damage.merge(find_damage(database));
   try {
     SQLite::Statement rows(database, fmt::format("SELECT {} FROM cases ORDER BY position", kStoredCase));
-    while (rows.executeStep()) results.cases.push_back(case_of(rows));
+    while (rows.executeStep())
+      if (auto record = case_of(rows))
+        results.cases.push_back(std::move(*record));
+      else
+        results.damage.cases.insert(rows.getColumn(0).getString());
   } catch (const SQLite::Exception&) {
     results.damage.pages = true;
   }
   const auto left_out = [&](const CaseRecord& record) { return results.damage.cases.contains(record.id); };
-  constexpr std::array known = {"done", "refused", "diverged", "failed"};
-  for (const CaseRecord& record : results.cases)
-    if (!is_case_id(record.id) || std::find(known.begin(), known.end(), record.status) == known.end())
-      results.damage.cases.insert(record.id);
   std::erase_if(results.cases, left_out);
   const auto later = std::make_shared<StoredSeries>(database.getFilename());
   ReadCases cases;
@@ -319,12 +322,14 @@ std::optional<CaseRecord> read_case(SQLite::Database& database, const std::strin
   row.bind(1, id);
   row.bind(2, former_id(id));
   if (!row.executeStep()) return std::nullopt;
-  CaseRecord record = case_of(row);
+  std::optional<CaseRecord> found = case_of(row);
+  if (!found) throw StoreError(damage_text(database.getFilename(), {.cases = {row.getColumn(0).getString()}}));
+  CaseRecord& record = *found;
   ReadCases only{{{record.id, &record}}};
   read_rows(database, only, nullptr);
   if (!only.damaged.empty()) throw StoreError(damage_text(database.getFilename(), {.cases = only.damaged}));
   record.id = id_of_today(record.id);
-  return record;
+  return found;
 }
 
 std::string find_motion(SQLite::Database& database, const std::string& whole_key) {

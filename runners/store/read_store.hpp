@@ -53,7 +53,9 @@ class StoreReader {
   StudyResults head() const;
   /// A case that is finished, and what tells whether it is still that of the study.
   struct Finished {
-    std::string id, fingerprint, status, arithmetic;
+    std::string id, fingerprint;
+    bool refused = false;
+    std::string arithmetic;
   };
   /// In the study's order; what is damaged is left out.
   std::vector<Finished> finished() const;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "runners/store/status.hpp"
 #include "runners/study/study.hpp"
 #include "runners/table/number_table.hpp"
 #include "runners/table/table.hpp"
@@ -24,7 +25,7 @@ struct Curve {
 struct CaseRecord {
   std::string id;
   std::vector<std::pair<std::string, nlohmann::ordered_json>> axes;
-  std::string status;  ///< done, refused, diverged, failed
+  Status status = Status::failed;
   /// Why it is not done, one; of a done one what makes its figures doubtful, none where nothing does.
   std::vector<Said> reasons;
   bool excluded = false;  ///< by the study itself, which says why

@@ -19,7 +19,7 @@ std::string CaseRecord::reason() const {
 }
 
 bool went_wrong(const CaseRecord& record) {
-  return record.status == "diverged" || record.status == "failed";
+  return record.status == Status::diverged || record.status == Status::failed;
 }
 
 std::optional<double> measure(const CaseRecord& record, const std::string& name) {
@@ -67,7 +67,7 @@ Cases all_cases(const StudyResults& results) {
   return all;
 }
 
-Cases with_status(const Cases& cases, const std::string& status) {
+Cases with_status(const Cases& cases, Status status) {
   Cases found = cases;
   std::erase_if(found, [&](const CaseRecord* record) { return record->status != status; });
   return found;
@@ -231,7 +231,7 @@ Table cases_table(const StudyResults& results) {
   table.columns = joined(std::move(table.columns), measures);
   for (const CaseRecord& record : results.cases) {
     Row row = place_of(results, record);
-    row.insert(row.end(), {record.partial ? std::string("partial") : record.status, record.reason(), record.steps,
+    row.insert(row.end(), {record.partial ? "partial" : word(record.status), record.reason(), record.steps,
                            record.setup_seconds, record.run_seconds});
     for (const Column& column : measures) row.emplace_back(measure(record, column.name));
     table.rows.push_back(std::move(row));

@@ -33,7 +33,7 @@ std::string key_of(const Row& row);
 using Cases = std::vector<const CaseRecord*>;
 std::vector<Cases> groups_of(const Cases& cases, const std::vector<std::string>& columns);
 Cases all_cases(const StudyResults& results);
-Cases with_status(const Cases& cases, const std::string& status);
+Cases with_status(const Cases& cases, Status status);
 
 /// What the axes of these names mean: as the run described them, else as the study format does.
 std::vector<Column> axis_columns(const StudyResults& results, const std::vector<std::string>& names);

@@ -244,7 +244,7 @@ void Store::save_one(const CaseRecord& record, bool partial) {
   SQLite::Statement& add = prepared_->of("INSERT INTO cases VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const auto& [fingerprint, case_position] = expected->second;
   // No case has the fingerprint "": what is partial is never taken for finished.
-  insert(add, record.id, case_position, partial ? std::string() : fingerprint, record.status, record.reason(),
+  insert(add, record.id, case_position, partial ? std::string() : fingerprint, word(record.status), record.reason(),
          static_cast<std::int64_t>(record.steps), record.setup_seconds, record.run_seconds, record.operator_name,
          record.arithmetic.empty() ? arithmetic_ : record.arithmetic);
 
@@ -277,7 +277,14 @@ void Store::save_one(const CaseRecord& record, bool partial) {
   SQLite::Statement& note = prepared_->of("INSERT INTO notes VALUES(?, ?, ?)");
   for (const std::string& text : notes) insert(note, record.id, position++, text);
 
-  position = 0;
+  save_tables(record);
+  save_curve(record);
+  save_numbers(record);
+  seal_case(*prepared_, "", record.id);
+}
+
+void Store::save_tables(const CaseRecord& record) {
+  int position = 0;
   SQLite::Statement& table = prepared_->of("INSERT INTO case_tables VALUES(?, ?, ?, ?)");
   for (const Table& one : record.tables) {
     Json columns = Json::array();
@@ -294,7 +301,9 @@ void Store::save_one(const CaseRecord& record, bool partial) {
       insert(table, record.id, position++, one.name, text_of(content));
     }
   }
+}
 
+void Store::save_curve(const CaseRecord& record) {
   SQLite::Statement& curve = prepared_->of("INSERT INTO curves VALUES(?, ?, ?, ?)");
   for (std::size_t i = 0; i < record.curve.columns.size(); ++i) {
     curve.reset();
@@ -305,8 +314,6 @@ void Store::save_one(const CaseRecord& record, bool partial) {
     bind_series(curve, 4, samples.data(), samples.size());
     curve.exec();
   }
-  save_numbers(record);
-  seal_case(*prepared_, "", record.id);
 }
 
 void Store::save_numbers(const CaseRecord& record) {

@@ -172,6 +172,8 @@ class Store {
   void write_alone(const std::function<void()>& rows);
   void note_begin(const std::string& id, Stage stage);
   void save_one(const CaseRecord& record, bool partial);
+  void save_tables(const CaseRecord& record);
+  void save_curve(const CaseRecord& record);
   void save_numbers(const CaseRecord& record);
 
   std::filesystem::path file_;

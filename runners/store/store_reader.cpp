@@ -38,7 +38,8 @@ std::vector<StoreReader::Finished> StoreReader::finished() const {
     while (rows.executeStep()) {
       const std::string id = rows.getColumn(0).getString();
       if (damage().cases.contains(id) || !is_case_id(id)) continue;
-      found.push_back({id_of_today(id), rows.getColumn(1).getString(), rows.getColumn(2).getString(),
+      found.push_back({id_of_today(id), rows.getColumn(1).getString(),
+                       status_of_word(rows.getColumn(2).getString()) == Status::refused,
                        rows.getColumn(3).getString()});
     }
   });

@@ -63,7 +63,7 @@ class HalfLives final : public Kind {
       CaseRecord record;
       record.id = study_case.id;
       record.axes = study_case.axes;
-      record.status = "done";
+      record.status = Status::done;
       Table table{"half_lives",
                   "When the amplitude has fallen to each share.",
                   {{"share", "1", "Share of the first amplitude."}, {"after", "s", "Time after which it is reached."}},

@@ -46,21 +46,20 @@ using report::failed_group, report::regime_groups, report::undecided_group;
 constexpr std::size_t no_start_group = regime_groups.size();
 
 std::size_t group_of(const CellRow& cell) {
-  const std::string status = cell.status.value_or("");
-  if (status == no_start) return no_start_group;
-  if (status == "failed" || status == "refused" || status == "diverged") return failed_group;
+  if (cell.status == no_start) return no_start_group;
+  if (status_of_word(cell.status.value_or("")).value_or(Status::done) != Status::done) return failed_group;
   return report::regime_group(cell.regime, cell.period);
 }
 
 ReadCell read_cell(const CellRow& row) {
-  const std::string status = row.status.value_or("done");
+  const std::string status = row.status.value_or(word(Status::done));
   return {.x = row.x.value_or(NAN),
           .y = row.y.value_or(NAN),
           .motion = dynamics::motion_of(row.regime, row.period, status),
           .period = row.period.value_or(0),
           .end = row.attractor.value_or(0) - 1,
           .group = static_cast<std::uint8_t>(group_of(row)),
-          .done = status == "done",
+          .done = status_of_word(status) == Status::done,
           .filled = !row.marched.value_or(true)};
 }
 

@@ -118,7 +118,7 @@ std::vector<SectionPoint> stored_section(const CaseRecord& record, std::size_t r
 }
 
 std::string text_of(const CellEnd& end) {
-  if (end.status != "done") return end.status + ": " + end.reason;
+  if (end.status != Status::done) return (end.no_start ? no_start : word(end.status)) + (": " + end.reason);
   return text(end.motion);
 }
 
@@ -159,7 +159,7 @@ int march_cell_again(const StudyResults& results, const PointRequest& asked, std
   }
   std::cerr << "\n";
   constexpr int some_failed = 3;
-  return end.status == "done" ? 0 : some_failed;
+  return end.status == Status::done ? 0 : some_failed;
 }
 
 }  // namespace ricochet

@@ -70,14 +70,14 @@ CellScenes::Prepared CellScenes::prepare(std::size_t column, std::size_t row) {
 
 namespace {
 
-constexpr const char* ends_mark = "ends of cells 4";
+constexpr const char* ends_mark = "ends of cells 5";
 
 }  // namespace
 
 template <class Archive>
 void serialize(Archive& archive, CellEnd& end) {
-  auto& [motion, period, periods, status, reason, lost, section, displacements] = end;
-  archive(motion, period, periods, status, reason, lost, section, displacements);
+  auto& [motion, period, periods, status, reason, without, lost, section, displacements] = end;
+  archive(motion, period, periods, status, reason, without, lost, section, displacements);
 }
 
 CellEnd cell_end(const Orbit& orbit) {
@@ -95,15 +95,14 @@ CellEnd cell_end(const Orbit& orbit) {
 
 CellEnd refused_end(const std::string& sentence) {
   CellEnd end;
-  end.status = "refused";
+  end.status = Status::refused;
   end.reason = sentence;
   return end;
 }
 
 CellEnd no_start_end(const std::string& sentence) {
-  CellEnd end;
-  end.status = no_start;
-  end.reason = sentence;
+  CellEnd end = refused_end(sentence);
+  end.no_start = true;
   return end;
 }
 
@@ -144,7 +143,7 @@ CellEnd march_cell(const StudyCase& study_case, const Registry& registry, CellPl
   Orbit ended = orbit;
   keep_end(ended, options.section);
   const CellEnd end = cell_end(ended);
-  if (end.status == "done") march_on(scenes, scheduler.task(number).scene, orbit, options.section, count, use);
+  if (end.status == Status::done) march_on(scenes, scheduler.task(number).scene, orbit, options.section, count, use);
   return end;
 }
 

@@ -47,9 +47,11 @@ class CellScenes {
 /// What the orbit of one cell of a grid ended in.
 struct CellEnd {
   MotionClass motion{Regime::failed};
-  int period = 0;                     ///< of what repeats, be it without contact; 0: nothing does
-  long long periods = 0;              ///< marched, transient and kept
-  std::string status, reason;         ///< done, refused, no start, diverged, failed
+  int period = 0;         ///< of what repeats, be it without contact; 0: nothing does
+  long long periods = 0;  ///< marched, transient and kept
+  Status status = Status::failed;
+  std::string reason;
+  bool no_start = false;              ///< it begins beyond a stop: no motion begins there, so it has no end
   bool lost = false;                  ///< the processes that marched it ended
   std::vector<SectionPoint> section;  ///< strobed: one period of what repeats, else the last points
   std::vector<double> displacements;  ///< of the same strobes, without the sawtooth of single steps
@@ -59,7 +61,7 @@ struct CellEnd {
 CellEnd cell_end(const Orbit& orbit);
 CellEnd refused_end(const std::string& sentence);
 
-/// The class and the status of a cell that begins beyond a stop: no motion begins there, so it has no end.
+/// The class and the status of a cell without a start, as tables say them.
 inline constexpr const char* no_start = "no start";
 CellEnd no_start_end(const std::string& sentence);
 

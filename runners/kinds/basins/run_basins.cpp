@@ -148,7 +148,7 @@ class BasinsRun {
 
   CellEnd unmarched() const {
     CellEnd end;
-    end.status = "failed";
+    end.status = Status::failed;
     end.reason = fmt::format("the budget of {:g} s was spent before", budget_of(case_));
     return end;
   }
@@ -186,7 +186,7 @@ class BasinsRun {
   // Whether two marched cells end alike. What is not decided is alike by its status.
   bool alike(std::size_t cell, std::size_t other) const {
     const CellEnd &a = ends_[cell], &b = ends_[other];
-    if (!(a.motion == b.motion) || a.status != b.status) return false;
+    if (!(a.motion == b.motion) || a.status != b.status || a.no_start != b.no_start) return false;
     if (!a.motion.decided()) return true;
     if (one_scene_) return end_of_[cell] == end_of_[other];
     return relative_distance(sections_.at(cell), sections_.at(other), kAlongParameter) <= 1;
@@ -217,18 +217,18 @@ class BasinsRun {
       const double x = scenes_.axes()[0].values[cell % columns_], y = scenes_.axes()[1].values[cell / columns_];
       if (sources[cell] == sources.size()) {
         if (complete)
-          cells.rows.push_back(
-              type.rows.row({"", x, y, text(Regime::failed), {}, {}, false, {}, "failed", unmarched().reason}));
+          cells.rows.push_back(type.rows.row(
+              {"", x, y, text(Regime::failed), {}, {}, false, {}, word(Status::failed), unmarched().reason}));
         continue;
       }
       const CellEnd& end = ends_[sources[cell]];
       const int told = end_of_[sources[cell]];
-      CellRow row{"", x, y, end.status == no_start ? no_start : text(end.motion.regime)};
+      CellRow row{"", x, y, end.no_start ? no_start : text(end.motion.regime)};
       if (end.period > 0) row.period = end.period;
       if (told >= 0) row.attractor = told + 1;
       row.marched = sources[cell] == cell;
       row.source = row_of[sources[cell]];
-      row.status = end.status;
+      row.status = end.no_start ? no_start : word(end.status);
       row.reason = end.reason;
       cells.rows.push_back(type.rows.row(row));
       for (std::size_t i = 0; i < end.section.size(); ++i) {
@@ -246,7 +246,7 @@ class BasinsRun {
     if (!context_.checkpoints.show || ends_.size() > most_shown || !pace_.due()) return;
     CaseRecord partial = record_;
     write_tables(partial, false);
-    partial.status = "done";
+    partial.status = Status::done;
     std::size_t known = 0;
     for (std::size_t cell = 0; cell < ends_.size(); ++cell) known += refinement_.marched(cell);
     partial.reasons = {said("under way: {} cells marched", known)};
@@ -258,20 +258,20 @@ class BasinsRun {
     std::size_t marched = 0, complete = 0, refused = 0, lost = 0, starts = ends_.size();
     const CellEnd *bad = nullptr, *beyond = nullptr;
     for (const std::size_t source : refinement_.sources())
-      if (source < ends_.size() && ends_[source].status == no_start) {
+      if (source < ends_.size() && ends_[source].no_start) {
         beyond = &ends_[source];
         --starts;
       }
     for (std::size_t cell = 0; cell < ends_.size(); ++cell) {
       if (!refinement_.marched(cell)) continue;
       const CellEnd& end = ends_[cell];
-      if (end.status == no_start) continue;
+      if (end.no_start) continue;
       record_.steps += end.periods * section_.steps_per_period;
-      refused += end.status == "refused";
-      marched += end.status != "refused";
-      complete += end.status == "done";
+      refused += end.status == Status::refused;
+      marched += end.status != Status::refused;
+      complete += end.status == Status::done;
       lost += end.lost;
-      if (end.status != "done" && !bad) bad = &end;
+      if (end.status != Status::done && !bad) bad = &end;
     }
     put_measure(record_, "orbits", static_cast<double>(complete));
     if (beyond) put_measure(record_, "starts", static_cast<double>(starts));
@@ -283,9 +283,9 @@ class BasinsRun {
       record_.notes.push_back(fmt::format(
           "{} of {} cells were marched, {} filled from a marched one of their basin: only boundaries are refined",
           marched + refused, starts, starts - marched - refused));
-    record_.status = complete > 0 ? "done" : (marched == 0 ? "refused" : "diverged");
+    record_.status = complete > 0 ? Status::done : (marched == 0 ? Status::refused : Status::diverged);
     if (over_budget_) {
-      record_.status = "failed";
+      record_.status = Status::failed;
       record_.reasons = {
           said("the budget of {:g} s was spent: {} of {} cells are known", budget_of(case_), complete, ends_.size())};
     } else if (complete == 0) {

@@ -141,7 +141,7 @@ class BifurcationRun {
   }
 
   CaseRecord refused() {
-    record_.status = "refused";
+    record_.status = Status::refused;
     record_.reasons = {"no value of the parameter can be marched"};
     for (const Value& value : known_)
       for (const int scene : {value.rest, value.state})
@@ -243,7 +243,7 @@ class BifurcationRun {
     std::vector<OrbitView> all = views();
     classify_all(all);
     write_tables(partial, all);
-    partial.status = "done";
+    partial.status = Status::done;
     partial.reasons = {said("under way: {} of {} orbits", all.size(), scheduler_->count())};
     pace_.take([&] { context_.checkpoints.show(partial); });
   }
@@ -329,17 +329,16 @@ class BifurcationRun {
       put_measure(record_, "lane_steps_per_second",
                   static_cast<double>(scheduler_->lane_periods() * section_.steps_per_period) /
                       std::max(1e-9, scheduler_->seconds()));
-    record_.status = marched > 0 ? "done" : "diverged";
+    record_.status = marched > 0 ? Status::done : Status::diverged;
     if (scheduler_->over_budget()) {
-      record_.status = "failed";
+      record_.status = Status::failed;
       record_.reasons = {said("the budget of {:g} s was spent: {} of {} orbits are complete", budget_of(case_), marched,
                               scheduler_->count())};
     } else if (marched == 0) {
       for (const OrbitView& view : all)
         if (view.orbit)
-          record_.reasons = {said("no orbit was completed; {}", view.orbit->end_words.empty()
-                                                                    ? told(view.orbit->end)
-                                                                    : Said(view.orbit->end_words))};
+          record_.reasons = {said("no orbit was completed; {}",
+                                  view.orbit->end_words.empty() ? told(view.orbit->end) : Said(view.orbit->end_words))};
     } else if (bad > 0) {
       record_.notes.push_back(
           fmt::format("{} of {} orbits were refused or stopped; their rows say why", bad, all.size()));

@@ -79,7 +79,7 @@ class CheapestAsk {
   /// The error over what a motion at rest would err by, its floor at least.
   std::optional<double> share(const CaseRecord& record) const {
     const auto value = measure(record, "error." + error_), size = measure(record, "size." + error_);
-    if (record.status != "done" || !value || !size || !(*size > 0)) return std::nullopt;
+    if (record.status != Status::done || !value || !size || !(*size > 0)) return std::nullopt;
     return std::max(*value, measure(record, "floor." + error_).value_or(0)) / *size;
   }
   double floor_share(const CaseRecord& record) const {
@@ -102,7 +102,7 @@ class CheapestAsk {
       bool stays = true;
       for (const CaseRecord* finer : out.cases) {
         // What is refused was never to be run.
-        if (!as_fine(*finer, *one) || finer->status == "refused") continue;
+        if (!as_fine(*finer, *one) || finer->status == Status::refused) continue;
         const auto there = share(*finer);
         unknown = unknown || !there;
         by_chance = by_chance || (there && *there > within_);

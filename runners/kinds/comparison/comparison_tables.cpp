@@ -138,6 +138,58 @@ TableType<OrderRow> orders_type() {
   return {"orders", "The order with which one kind of error of one method falls as one quantity is refined.", rows};
 }
 
+namespace {
+
+/// By method, the finest of the other quantity. One order per method: steps on the finest mesh, meshes at the smallest
+/// step.
+std::map<std::string, double> finest_of(const StudyResults& results, const std::vector<std::string>& methods,
+                                        const std::string& other) {
+  std::map<std::string, double> finest;
+  for (const CaseRecord& record : results.cases) {
+    const double size = size_of(record, other);
+    const auto [found, fresh] = finest.emplace(key_of(axes_of(record, methods)), size);
+    if (!fresh) found->second = std::min(found->second, size);
+  }
+  return finest;
+}
+
+/// Of cases that differ in `refined` alone, and one kind of error; none where no case has it.
+std::optional<OrderRow> order_row(const StudyResults& results, const Cases& group, const std::string& refined,
+                                  const std::string& other, const std::string& error) {
+  std::vector<OrderPoint> points;
+  const CaseRecord* finest = nullptr;
+  for (const CaseRecord* record : group)
+    if (const auto value = measure(*record, "error." + error)) {
+      points.push_back({size_of(*record, refined), *value, measure(*record, "floor." + error).value_or(0)});
+      if (!finest || size_of(*record, refined) < size_of(*finest, refined)) finest = record;
+    }
+  if (!finest) return std::nullopt;
+  OrderQuestion question;
+  // A declared order is one in h; the two ends of an interval of time are no norm of the motion.
+  if (refined == "step") question.declared = measure(*finest, "declared_order");
+  question.refined = refined == "step" ? "step" : "element length";
+  question.other_error = other_error(results, *finest, other, "error." + error);
+  question.other = refined == "step" ? "the mesh" : "the step";
+  // One mesh against a motion without a mesh (or one step): nothing tells how large its error is.
+  question.other_unknown = single_valued(results, other) && meshed(results) &&
+                           (refined == "elements" || measure(*finest, "reference_of_mesh") != 1.0);
+  const OrderFit fit = fit_order(points, question);
+  OrderRow told{.id = finest->id, .refined = refined, .error = error, .declared = question.declared};
+  if (!fit.saturated) {
+    told.order = fit.order;
+    told.low = fit.low;
+    told.high = fit.high;
+  } else {
+    told.saturates_at = saturates_at(question, measure(*finest, "reference_of_law") != 0.0);
+  }
+  told.verdict = verdict_word(fit.verdict);
+  told.reason =
+      fit.reason + (fit.gci ? fmt::format("; grid convergence index of the finest point used: {:.2g}", *fit.gci) : "");
+  return told;
+}
+
+}  // namespace
+
 Table orders_table(const StudyResults& results) {
   const TableType<OrderRow> type = orders_type();
   Table table{type.name, type.text, {}, {}};
@@ -146,59 +198,24 @@ Table orders_table(const StudyResults& results) {
                     "quantity alone."}};
   table.columns = joined(std::move(table.columns), axis_columns(results, without(results.columns, "step")));
   table.columns = joined(std::move(table.columns), type.rows.columns());
+  const std::vector<std::string> methods = without(without(results.columns, "step"), "elements");
   for (const std::string refined : {"step", "elements"}) {
     const std::string other = refined == "step" ? "elements" : "step";
     std::set<double> sizes;
     for (const CaseRecord& record : results.cases) sizes.insert(size_of(record, refined));
     if (sizes.size() < 2) continue;
-    // One order per method: steps on the finest mesh, meshes at the smallest step.
-    std::map<std::string, double> finest_other;
-    const std::vector<std::string> methods = without(without(results.columns, "step"), "elements");
-    for (const CaseRecord& record : results.cases) {
-      const double size = size_of(record, other);
-      const auto [found, fresh] = finest_other.emplace(key_of(axes_of(record, methods)), size);
-      if (!fresh) found->second = std::min(found->second, size);
-    }
+    const std::map<std::string, double> finest = finest_of(results, methods, other);
     for (const Cases& group : groups_of(all_cases(results), without(results.columns, refined))) {
       const CaseRecord& first = *group.front();
-      const bool fine = size_of(first, other) == finest_other.at(key_of(axes_of(first, methods)));
+      const bool fine = size_of(first, other) == finest.at(key_of(axes_of(first, methods)));
       if (refined == "elements" && !fine) continue;
       for (const std::string& name : errors_of(results)) {
-        std::vector<OrderPoint> points;
-        const CaseRecord* finest = nullptr;
-        for (const CaseRecord* record : group)
-          if (const auto value = measure(*record, "error." + name)) {
-            points.push_back({size_of(*record, refined), *value, measure(*record, "floor." + name).value_or(0)});
-            if (!finest || size_of(*record, refined) < size_of(*finest, refined)) finest = record;
-          }
-        if (!finest) continue;
-        OrderQuestion question;
-        // A declared order is one in h; the two ends of an interval of time are no norm of the motion.
-        if (refined == "step") question.declared = measure(*finest, "declared_order");
-        question.refined = refined == "step" ? "step" : "element length";
-        question.other_error = other_error(results, *finest, other, "error." + name);
-        question.other = refined == "step" ? "the mesh" : "the step";
-        // One mesh against a motion without a mesh (or one step): nothing tells how large its error is.
-        question.other_unknown = single_valued(results, other) && meshed(results) &&
-                                 (refined == "elements" || measure(*finest, "reference_of_mesh") != 1.0);
-        const OrderFit fit = fit_order(points, question);
-        const bool of_law = measure(*finest, "reference_of_law") != 0.0;
-        Row row = {finest->id};
+        const auto told = order_row(results, group, refined, other, name);
+        if (!told) continue;
+        Row row = {told->id};
         for (const std::string& column : without(results.columns, "step"))
           row.push_back(column == refined ? Cell() : axis(first, column));
-        const std::string gci =
-            fit.gci ? fmt::format("; grid convergence index of the finest point used: {:.2g}", *fit.gci) : "";
-        OrderRow told{.id = finest->id, .refined = refined, .error = name, .declared = question.declared};
-        if (!fit.saturated) {
-          told.order = fit.order;
-          told.low = fit.low;
-          told.high = fit.high;
-        } else {
-          told.saturates_at = saturates_at(question, of_law);
-        }
-        told.verdict = verdict_word(fit.verdict);
-        told.reason = fit.reason + gci;
-        add_row(table, std::move(row), type.rows.row(told));
+        add_row(table, std::move(row), type.rows.row(*told));
       }
     }
   }
@@ -230,10 +247,10 @@ Table work_precision_table(const StudyResults& results) {
     for (const std::string& name : errors_of(results)) {
       Row place = place_of(record, methods);
       place.push_back(axis(record, "step"));
-      add_row(
-          table, std::move(place),
-          type.rows.row({record.id, name, measure(record, "error." + name), measure(record, "timed_seconds"),
-                         measure(record, "timed_low"), measure(record, "timed_high"), record.steps, record.status}));
+      add_row(table, std::move(place),
+              type.rows.row({record.id, name, measure(record, "error." + name), measure(record, "timed_seconds"),
+                             measure(record, "timed_low"), measure(record, "timed_high"), record.steps,
+                             word(record.status)}));
     }
   return table;
 }
@@ -257,7 +274,7 @@ std::vector<std::string> columns_that(const StudyResults& results, Wanted wanted
 
 std::optional<TimedError> timed_error(const CaseRecord& record, const std::string& error) {
   const auto value = measure(record, "error." + error), seconds = measure(record, "timed_seconds");
-  if (record.status != "done" || !value || !seconds || !(*value > 0) || !(*seconds > 0)) return std::nullopt;
+  if (record.status != Status::done || !value || !seconds || !(*value > 0) || !(*seconds > 0)) return std::nullopt;
   return TimedError{&record,
                     std::max(*value, measure(record, "floor." + error).value_or(0)),
                     measure(record, "size." + error).value_or(0),

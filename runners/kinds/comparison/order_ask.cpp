@@ -100,7 +100,7 @@ class OrderAsk {
     out.passes = verdicts.empty() ? asks::Verdict::open : asks::all_of(verdicts);
     out.verdict = words.empty() ? "open" : words.size() == 1 ? *words.begin() : "in part";
     if (std::any_of(cases_.begin(), cases_.end(), [](const CaseRecord* one) {
-          return one->status == "done" && measure(*one, "reference_of_mesh").value_or(0) > 0;
+          return one->status == Status::done && measure(*one, "reference_of_mesh").value_or(0) > 0;
         }))
       out.aside.emplace_back("Errors are against the same mesh and mass: the error of the mesh is not in them.");
     if (!refined.empty()) {

@@ -30,7 +30,7 @@ std::vector<MethodRun> runs_of(const Compared& study, const Cases& all, const st
   for (const auto& [key, cases] : methods.list()) {
     std::optional<double> finest_other;
     for (const CaseRecord* record : cases)
-      if (record->status == "done" && measure(*record, "error." + error))
+      if (record->status == Status::done && measure(*record, "error." + error))
         finest_other = std::min(finest_other.value_or(other(*record)), other(*record));
     MethodRun one;
     std::vector<SizedValue> errors;
@@ -38,7 +38,7 @@ std::vector<MethodRun> runs_of(const Compared& study, const Cases& all, const st
     for (const CaseRecord* record : cases) {
       const auto value = measure(*record, "error." + error);
       const auto at = size(*record);
-      if (record->status != "done" || !value || !at || other(*record) != *finest_other) continue;
+      if (record->status != Status::done || !value || !at || other(*record) != *finest_other) continue;
       errors.push_back({*at, *value});
       floor = std::max(floor, measure(*record, "floor." + error).value_or(0));
       if (!one.finest || *at < *size(*one.finest)) one.finest = record;

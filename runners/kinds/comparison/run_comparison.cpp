@@ -82,7 +82,7 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
 
   const ReferenceSet set = references.of(study_case, stop);
   if (set.applicable.empty()) {
-    record.status = "refused";
+    record.status = Status::refused;
     Said reason = "no reference applies: ";
     for (const Said& refusal : set.refusals) reason += (&refusal == &set.refusals.front() ? "" : "; ") + refusal;
     record.reasons = {reason};
@@ -114,7 +114,7 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   add_contact(record, contacts, marcher);
   put_measure(record, "active_set_changes", static_cast<double>(sampler.contact().changes()));
   if (whole) {
-    record.status = "done";
+    record.status = Status::done;
     if (events.empty())
       put_measure(record, "declared_order", facts.order);
     else if (rigid && point_mass && facts.contact_order)

@@ -285,7 +285,7 @@ void BranchResults::put(CaseRecord& record, const ContinuationPlan& plan, long l
     record.reasons = {said("the budget of {:g} s was spent", *spent)};
   else if (!missing_.empty())
     record.reasons = {missing_};
-  record.status = record.reasons.empty() ? "done" : "failed";
+  record.status = record.reasons.empty() ? Status::done : Status::failed;
 }
 
 }  // namespace ricochet

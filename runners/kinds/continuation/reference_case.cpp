@@ -249,7 +249,7 @@ CaseRecord run_reference(const StudyCase& study_case, const Registry& registry, 
     CaseRecord record;
     record.id = study_case.id;
     record.axes = study_case.axes;
-    record.status = "refused";
+    record.status = Status::refused;
     record.reasons = {refusal.sentence};
     return record;
   }

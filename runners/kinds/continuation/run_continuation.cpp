@@ -341,7 +341,7 @@ CaseRecord run_continuation(const StudyCase& study_case, const Registry& registr
   const ContinuationPlan plan = continuation_plan(study_case.settings);
   ContinuedMap continued(study_case, registry, plan);
   if (!continued.refusal().empty()) {
-    record.status = "refused";
+    record.status = Status::refused;
     record.reasons = {continued.refusal()};
     return record;
   }

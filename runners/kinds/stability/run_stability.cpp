@@ -96,7 +96,7 @@ class StabilityRun {
       }
     }
     record_.run_seconds = thread_seconds() - begin_ - record_.setup_seconds;
-    record_.status = "done";
+    record_.status = Status::done;
     tabulate(sides, observe);
     measure(sides);
     compare_declared(sides.front());
@@ -127,7 +127,7 @@ class StabilityRun {
   }
 
   CaseRecord refused(const Said& sentence) {
-    record_.status = "refused";
+    record_.status = Status::refused;
     record_.reasons = {sentence};
     std::vector<StabilityRow> rows;
     for (const double h : steps_) rows.push_back({h, false, {}, "", {}, {}, "refused", sentence.text});

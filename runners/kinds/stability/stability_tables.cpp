@@ -286,7 +286,7 @@ Cases counted_open(const StudyResults& results) {
   std::erase_if(open, [](const CaseRecord* record) { return !step_range(*record, false); });
   for (const Cases& group : groups_of(open, others)) {
     const auto done =
-        std::find_if(group.begin(), group.end(), [](const CaseRecord* record) { return record->status == "done"; });
+        std::find_if(group.begin(), group.end(), [](const CaseRecord* record) { return record->status == Status::done; });
     out.push_back(done == group.end() ? group.front() : *done);
   }
   return out;

@@ -44,15 +44,12 @@ bool by_the_stop(double open, double closed) {
 class StepsAsk {
  public:
   StepsAsk(const asks::Ask& ask, const asks::Evidence& evidence, const std::vector<LimitRow>& rows)
-      : evidence_(evidence),
-        study_(evidence.study()),
-        cases_(evidence.cases(ask)),
-        columns_(evidence.varying(cases_)) {
+      : evidence_(evidence), study_(evidence.study()), cases_(evidence.cases(ask)), columns_(evidence.varying(cases_)) {
     std::map<std::string, StepLimit> by_id;
     for (const LimitRow& row : rows) (row.closed ? by_id[row.id].closed : by_id[row.id].open) = row;
     for (const CaseRecord* one : cases_)
       if (const auto found = by_id.find(one->id);
-          found != by_id.end() && one->status == "done" && !found->second.open.id.empty()) {
+          found != by_id.end() && one->status == Status::done && !found->second.open.id.empty()) {
         StepLimit limit = found->second;
         limit.record = one;
         judge(limit);

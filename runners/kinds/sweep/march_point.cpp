@@ -102,7 +102,7 @@ constexpr double same_value = 1e-9;  // relative
 
 const Table& stored_table(const CaseRecord& record, const std::string& name) {
   if (const Table* table = find_table(record.tables, name)) return *table;
-  throw PointRefused(fmt::format("the case {} has no {}: it is {}{}", record.id, name, record.status,
+  throw PointRefused(fmt::format("the case {} has no {}: it is {}{}", record.id, name, word(record.status),
                                  record.reasons.empty() ? "" : ", " + record.reason()));
 }
 

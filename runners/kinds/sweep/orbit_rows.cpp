@@ -36,7 +36,9 @@ OrbitRow orbit_row(const OrbitView& view, const std::string& start, const Sectio
   if (view.exponents.twin) row.exponent_twin = view.exponents.twin->value;
   row.marginal = view.marginal;
   if (view.viscosity) row.alpha_equivalent = view.viscosity->numerical;
-  std::tie(row.status, row.reason) = status_of(view);
+  const auto [status, reason] = status_of(view);
+  row.status = word(status);
+  row.reason = reason;
   if (!view.complete()) return row;
   const Orbit& orbit = *view.orbit;
   const RegimeVerdict& verdict = view.judged.verdict;
@@ -97,13 +99,13 @@ std::vector<std::pair<std::size_t, std::size_t>> class_changes(const std::vector
   return changes;
 }
 
-std::pair<std::string, std::string> status_of(const OrbitView& view) {
-  return view.orbit ? status_of(*view.orbit) : std::pair(std::string("refused"), view.refusal);
+std::pair<Status, std::string> status_of(const OrbitView& view) {
+  return view.orbit ? status_of(*view.orbit) : std::pair(Status::refused, view.refusal);
 }
 
-std::pair<std::string, std::string> status_of(const Orbit& orbit) {
-  if (orbit.stage != Orbit::Stage::stopped) return {"done", ""};
-  return {orbit.end.failed() ? "failed" : "diverged",
+std::pair<Status, std::string> status_of(const Orbit& orbit) {
+  if (orbit.stage != Orbit::Stage::stopped) return {Status::done, ""};
+  return {orbit.end.failed() ? Status::failed : Status::diverged,
           fmt::format("period {}: {}", orbit.stopped_period, end_text(orbit))};
 }
 

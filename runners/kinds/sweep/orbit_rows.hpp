@@ -41,8 +41,8 @@ std::optional<EquivalentViscosity> numerical_viscosity(const ForcedScenes& scene
 void judge(OrbitView& view, const SectionPlan& plan);
 
 /// Status (done, refused, diverged, failed) and reason of a value, as of a case.
-std::pair<std::string, std::string> status_of(const OrbitView& view);
-std::pair<std::string, std::string> status_of(const Orbit& orbit);
+std::pair<Status, std::string> status_of(const OrbitView& view);
+std::pair<Status, std::string> status_of(const Orbit& orbit);
 
 /// Neighbours in a row of motions that are of different classes, those that are not known passed over.
 std::vector<std::pair<std::size_t, std::size_t>> class_changes(const std::vector<std::optional<MotionClass>>& row);

@@ -31,7 +31,7 @@ void read_runs(StudyDiagram& study, DiagramSource& source, DiagramCase& owner) {
     DiagramRun run;
     run.parameter = orbit.parameter;
     run.start = start_in(study.diagram.starts, orbit.start);
-    run.status = orbit.status.empty() ? "done" : orbit.status;
+    run.status = orbit.status.empty() ? word(Status::done) : orbit.status;
     run.settled = orbit.done();
     run.motion = motion_of(orbit.regime, orbit.period, run.status);
     if (orbit.period && *orbit.period >= 1) run.period = *orbit.period;
@@ -185,7 +185,7 @@ std::optional<double> viscosity_of(const StudyResults& results, const CaseRecord
 }
 
 MotionClass motion_of(const std::string& regime, std::optional<double> period, const std::string& status) {
-  if (status != "done") return {Regime::failed};
+  if (status != word(Status::done)) return {Regime::failed};
   return motion_class(regime, period).value_or(MotionClass{});
 }
 

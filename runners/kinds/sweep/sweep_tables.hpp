@@ -43,7 +43,7 @@ struct OrbitRow {
   std::optional<bool> settled, chatter;
   std::optional<double> sticking;
   std::string evidence, status, reason;
-  bool done() const { return status.empty() || status == "done"; }
+  bool done() const { return status.empty() || status == word(Status::done); }
   /// The motion, or why there is none: "refused".
   std::string motion_text() const { return done() ? regime_text(regime, period) : status; }
   std::optional<double> largest_exponent() const { return exponents.empty() ? std::nullopt : exponents.front().value; }

@@ -142,7 +142,7 @@ void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher
   const bool named = !problem.stops.empty();
   if (named) stops.columns.push_back(stop_column);
   // Means over a window that was not reached are none.
-  const StopWatches ended = record.status == "done" ? watches : StopWatches{};
+  const StopWatches ended = record.status == Status::done ? watches : StopWatches{};
   StopReading known;
   for (int point = 0; point < list.count(); ++point) {
     const StopReading one = stop_reading(contacts, ended, point);

@@ -16,7 +16,7 @@ std::optional<double> of_brought_in(const CaseRecord& record, const char* name) 
 }
 
 Cases done_cases(const StudyResults& results) {
-  return with_status(all_cases(results), "done");
+  return with_status(all_cases(results), Status::done);
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ Table energy_ledger_table(const StudyResults& results) {
        {"closes", "",
         "exact: the residual is below 1e-8 of the energy brought in; otherwise not exact. Not known: the scheme "
         "declares no work form, so that works and residual are empty."}});
-  for (const CaseRecord* record : with_status(all_cases(results), "done")) {
+  for (const CaseRecord* record : with_status(all_cases(results), Status::done)) {
     const auto of = [&](const char* name) { return measure(*record, name); };
     const auto start = of("energy_start"), end = of("energy_end");
     if (!start || !end) continue;

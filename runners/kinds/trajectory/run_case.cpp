@@ -357,7 +357,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   record.steps = marcher.step();
   record.curve = sampler.finish();
   if (marcher.status(0).running && marcher.step() >= prepared.steps)
-    record.status = "done";
+    record.status = Status::done;
   else
     record_early_end(record, marcher, prepared.steps, budget);
   tangents.finish(marcher);

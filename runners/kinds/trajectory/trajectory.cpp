@@ -374,7 +374,6 @@ KindPointer trajectory_kind() {
 
 namespace {
 
-
 // "support.amplitude" → "/support/amplitude".
 Json::json_pointer scene_pointer(std::string column) {
   std::replace(column.begin(), column.end(), '.', '/');
@@ -408,14 +407,14 @@ Json minimal_study(const StudyResults& results, const CaseRecord& record) {
     for (const Json& method : results.study.at(times))
       if (method.is_object() && method.contains("plan") && method.at("name") == methods["time"].value("name", ""))
         methods["time"]["plan"] = method.at("plan");
-  Json study = {
-      {"name", fmt::format("{}-{}", results.name, record.id)},
-      {"question", fmt::format("Why did this case of {} end as {}? {}", results.name, record.status, record.reason())},
-      {"kind", "trajectory"},
-      {"scene", scene},
-      {"mesh", mesh},
-      {"methods", methods},
-      {"step", step}};
+  Json study = {{"name", fmt::format("{}-{}", results.name, record.id)},
+                {"question", fmt::format("Why did this case of {} end as {}? {}", results.name, word(record.status),
+                                         record.reason())},
+                {"kind", "trajectory"},
+                {"scene", scene},
+                {"mesh", mesh},
+                {"methods", methods},
+                {"step", step}};
   for (const char* key : {"duration", "samples", "window", "snapshots", "outputs", "budget"})
     if (const auto found = results.study.find(key); found != results.study.end() && !found->is_null())
       study[key] = *found;

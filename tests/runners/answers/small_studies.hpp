@@ -29,7 +29,7 @@ inline StudyResults full_factorial(const std::vector<Choice>& choices, const std
     for (const double step : steps) {
       CaseRecord& record = results.cases.emplace_back();
       record.id = "c" + std::to_string(results.cases.size());
-      record.status = "done";
+      record.status = Status::done;
       record.steps = 1000;
       for (std::size_t k = 0; k < choices.size(); ++k)
         record.axes.emplace_back(choices[k].column, choices[k].levels[at[k]]);

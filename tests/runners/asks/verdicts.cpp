@@ -198,7 +198,7 @@ TEST_CASE("asks: a method without any value is neither always nor never") {
     for (auto& [column, value] : record.axes)
       if (column == "stops.upper") value = std::stod(value.get<std::string>());
     if (record.axes[0].second != "m1") continue;
-    record.status = "refused";
+    record.status = Status::refused;
     record.reasons = {"no"};
     record.measures.clear();
   }
@@ -327,7 +327,7 @@ TEST_CASE("asks: a case that is missing is counted and its reason said") {
     const Made made = random_methods(random, 3);
     StudyResults results = made.results();
     const std::size_t which = random() % results.cases.size();
-    results.cases[which].status = "diverged";
+    results.cases[which].status = Status::diverged;
     results.cases[which].reasons = {"step 3 is too large"};
     results.cases[which].measures.clear();
     for (const Json& ask : std::vector<Json>{{{"value", "impulse"}},
@@ -450,7 +450,7 @@ TEST_CASE("asks: cases that end alike but for their numbers are one line, and ma
   for (CaseRecord& record : results.cases) {
     if (record.axes[0].second == "a") continue;
     end.value *= 7;
-    record.status = "diverged";
+    record.status = Status::diverged;
     record.reasons = {said("step {}, t = {} s: {}", static_cast<int>(end.value), end.value, told(end))};
   }
   CHECK(asides() ==
@@ -458,7 +458,7 @@ TEST_CASE("asks: cases that end alike but for their numbers are one line, and ma
   for (CaseRecord& record : results.cases) {
     const std::string mass = record.axes[0].second.get<std::string>();
     if (mass == "a" || mass == "b") continue;
-    record.status = "refused";
+    record.status = Status::refused;
     record.reasons = {Said(mass + " does not apply")};
   }
   // Four each; the first two are told, in the order of the study.

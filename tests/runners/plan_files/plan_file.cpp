@@ -111,7 +111,7 @@ TEST_CASE("a resolved study holds its plans: it is read anywhere, and its cases 
   CaseRecord record;
   record.id = first.study.cases.front().id;
   record.axes = first.study.cases.front().axes;
-  record.status = "failed";
+  record.status = Status::failed;
   const Reading alone(minimal_study(results, record), elsewhere.path());
   REQUIRE(alone.study.cases.size() == 1);
   CHECK(alone.study.cases.front().time.name == "mine");

@@ -169,7 +169,7 @@ TEST_CASE("nothing is written of cases that left nothing", "[report]") {
   for (CaseRecord& record : results.cases) {
     record.tables.clear();
     record.numbers.clear();
-    record.status = "failed";
+    record.status = Status::failed;
     record.reasons = {"it went wrong"};
   }
   results.derived.clear();

@@ -49,7 +49,7 @@ TEST_CASE("rows are found by the axes of a case", "[report]") {
     const auto order = orders.find(record, {"elements", "energy"}, {"elements"});
     for (size_t axis = 0; order && axis < orders.axes().size(); ++axis)
       if (orders.axes()[axis] == "elements") CHECK(orders.axis_text(*order, axis).empty());
-    CHECK(order.has_value() == (record.status != "refused"));
+    CHECK(order.has_value() == (record.status != Status::refused));
   }
   CHECK(AxisRows<ErrorRow>(StudyResults{}, errors_type()).empty());
 }

@@ -64,23 +64,23 @@ inline StudyResults comparison(const std::vector<double>& steps = {1e-3, 5e-4, 2
         for (size_t c = 0; c < row.size(); ++c)
           if (!row[c].is_nothing()) record.axes.emplace_back(out.columns[c], json_of(row[c]));
         record.id = "case" + std::to_string(out.cases.size());
-        record.status = "done";
+        record.status = Status::done;
         record.steps = std::llround(0.5 / step);
         if (refused) {
-          record.status = "refused";
+          record.status = Status::refused;
           record.reasons = {"this law needs a regular mass"};
         } else if (scheme.time == "moreau-jean" && step > 9e-4) {
-          record.status = "diverged";
+          record.status = Status::diverged;
           record.reasons = {"step 12, t = 0.012 s: the energy passed the bound"};
         }
         const double seconds = scheme.microseconds * 1e-6 * static_cast<double>(record.steps) * noise(random);
-        if (record.status == "done") record.run_seconds = seconds;
+        if (record.status == Status::done) record.run_seconds = seconds;
         for (size_t k = 0; k < kinds.size(); ++k) {
           const double value =
               (k == 1 ? 40 : 1) * noise(random) *
               (scheme.constant * std::pow(step / steps[0], scheme.order) + 1e-2 / (elements * elements));
           Row worked = row;
-          const bool has = record.status == "done" && !(kinds[k] == "impact-times" && step > 9e-4);
+          const bool has = record.status == Status::done && !(kinds[k] == "impact-times" && step > 9e-4);
           if (has) {
             Row error = row;
             error.insert(error.end(), {kinds[k], value, k == 2 ? 1e-18 : (k == 1 ? 40 : 1) * 3e-5});
@@ -88,13 +88,13 @@ inline StudyResults comparison(const std::vector<double>& steps = {1e-3, 5e-4, 2
             record.measures.emplace_back("error." + kinds[k], value);
             record.measures.emplace_back("floor." + kinds[k], k == 2 ? 1e-18 : (k == 1 ? 40 : 1) * 3e-5);
           }
-          const bool done = record.status == "done";
+          const bool done = record.status == Status::done;
           worked.insert(worked.end(), {kinds[k], has ? Cell(value) : Cell(), done ? Cell(seconds) : Cell(),
                                        done ? Cell(0.93 * seconds) : Cell(), done ? Cell(1.2 * seconds) : Cell(),
-                                       record.steps, record.status});
+                                       record.steps, word(record.status)});
           work.rows.push_back(std::move(worked));
         }
-        if (record.status == "done")
+        if (record.status == Status::done)
           record.measures.insert(
               record.measures.end(),
               {{"timed_seconds", seconds}, {"timed_low", 0.93 * seconds}, {"timed_high", 1.2 * seconds}});

@@ -100,7 +100,7 @@ TEST_CASE("nothing that a study says can leave its place in the page", "[report]
     record.id += attack;
     record.notes.push_back(attack);
     record.left_out.emplace_back(attack, attack);
-    if (record.status != "done") record.reasons = {attack};
+    if (record.status != Status::done) record.reasons = {attack};
   }
   const std::string page = synthetic::rendered(results);
   CHECK(!page_contains(page, "<script>alert"));
@@ -131,7 +131,7 @@ TEST_CASE("results without a single curve or measure make a page", "[report]") {
   for (CaseRecord& record : results.cases) {
     record.curve = {};
     record.measures.clear();
-    record.status = "failed";
+    record.status = Status::failed;
     record.reasons = {"it went wrong"};
   }
   results.derived.clear();
@@ -166,7 +166,7 @@ StudyResults many(int count, int bad) {
     CaseRecord record;
     record.id = std::to_string(1000003LL * i % 999983);  // in no order
     record.axes = {{"mass", i == count - 1 ? "lumped" : "consistent"}, {"stops.upper", 0.001 * (i % 100)}};
-    record.status = i % bad == 0 ? "diverged" : "done";
+    record.status = i % bad == 0 ? Status::diverged : Status::done;
     table.rows.push_back({record.id, 1.0 * i});
     results.cases.push_back(std::move(record));
   }
@@ -193,7 +193,7 @@ TEST_CASE("shown cases: of more some, each value of an axis, what is not done, a
     std::size_t diverged = 0;
     for (const CaseRecord& record : shown->cases) {
       ids.insert(record.id);
-      diverged += record.status == "diverged";
+      diverged += record.status == Status::diverged;
       masses.insert(CaseView::text(record, "mass"));
       stops.insert(CaseView::text(record, "stops.upper"));
     }

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "runners/kinds/trajectory/energy_tables.hpp"
 #include "runners/asks/default_asks.hpp"
+#include "runners/kinds/trajectory/energy_tables.hpp"
 #include "runners/run/finish_run.hpp"
 #include "runners/store/record.hpp"
 
@@ -38,14 +38,14 @@ inline CaseRecord make_case(const std::string& mass, const std::string& velocity
   record.axes.emplace_back("step", step);
   record.id = mass + velocity + time + std::to_string(beta) + std::to_string(extra) + std::to_string(-std::log10(step));
   record.operator_name = "band";
-  record.status = "done";
+  record.status = Status::done;
   record.left_out = {{"damping matrix", "no damping is given"}, {"load assembly", "no load and no support motion"}};
   if (mass == "singular" && velocity == "P0")
     record.left_out.emplace_back("factored mass", "P0 velocities give a band");
   const double duration = 0.5, start = 3.612908;
   record.steps = std::llround(duration / step);
   if (time == "newmark" && mass == "singular") {
-    record.status = "refused";
+    record.status = Status::refused;
     record.reasons = {"the implicit step is singular on the kernel of this mass <M>: use beta ≥ 1/4 & gamma ≥ 1/2"};
     record.steps = 0;
     return record;
@@ -74,7 +74,7 @@ inline CaseRecord make_case(const std::string& mass, const std::string& velocity
     for (size_t c = 0; c < curve.columns.size(); ++c) curve.columns[c].push_back(row[c]);
   }
   if (diverges) {
-    record.status = "diverged";
+    record.status = Status::diverged;
     record.reasons = {"the energy passed 1e9 J at step 77: \"no bound\" holds"};
     return record;
   }

@@ -52,7 +52,7 @@ inline CaseRecord dynamics_case(const std::string& time, double beta, const Dyna
   record.id = time.substr(0, 3) + std::to_string(static_cast<int>(100 * beta));
   record.axes = {{"mass", "full"},    {"contact", "rigid"}, {"time", time},
                  {"time.beta", beta}, {"elements", 20},     {"steps_per_period", 2000}};
-  record.status = "done";
+  record.status = Status::done;
   record.steps = 1200000;
   Table values = values_head(1), changes = bifurcations_head();
   NumberTable points = points_type().head(), portraits = portraits_type().head();
@@ -221,7 +221,7 @@ inline StudyResults basins(int count = 40, double shift = 0.2) {
   for (const std::string mass : {"full", "poor"}) {
     CaseRecord record;
     record.id = mass;
-    record.status = "done";
+    record.status = Status::done;
     record.axes = {{"mass", mass}, {"elements", 10}};
     std::vector<CellRow> cells;
     NumberTable points = cell_points_type().head();

@@ -52,7 +52,7 @@ inline CaseRecord points_case(const std::string& mass, double stiffness, int ele
   record.axes.emplace_back("steps_per_period", steps);
   record.id = mass + std::to_string(static_cast<long long>(stiffness)) + "-" + std::to_string(elements) + "-" +
               std::to_string(steps);
-  record.status = "done";
+  record.status = Status::done;
   const double h2 = 1.0 / steps / steps, compliance = stiffness > 0 ? 1 / stiffness : 0;
   const bool folds = !(mass == "rough" && elements == 10);
   const double method = (mass == "rough" ? 4 : 0) + (stiffness > 0 ? std::log10(stiffness) - 3 : 0);
@@ -170,7 +170,7 @@ inline StudyResults points(const std::vector<int>& steps = {2000, 4000, 8000}, c
   CaseRecord refused = out.cases.front();
   refused.id = "refused";
   refused.axes[0].second = "none at all";
-  refused.status = "refused";
+  refused.status = Status::refused;
   refused.reasons = {"nothing to follow"};
   refused.tables.clear();
   out.cases.push_back(std::move(refused));

@@ -19,7 +19,7 @@ inline CaseRecord stability_case(const std::string& mass, double stiffness, doub
                  {"time", "three-level"},
                  {"elements", 10}};
   record.id = mass + std::to_string(stiffness);
-  record.status = "done";
+  record.status = Status::done;
   Table table = stability_type().head();
   Table observed{"stability_observed", "", named_columns({"step", "closed", "behaviour"}), {}};
   const auto limit = [](double h) { return h > 0 ? Cell(h) : Cell(); };
@@ -55,7 +55,7 @@ inline StudyResults stability() {
                   {"time", "three-level"},
                   {"elements", 10}};
   refused.id = "refused";
-  refused.status = "refused";
+  refused.status = Status::refused;
   refused.reasons = {"nothing to march"};
   Table table = stability_type().head();
   table.rows.push_back({1e-6, false, nullptr, "", nullptr, nullptr, "refused", refused.reason()});

@@ -24,7 +24,7 @@ StudyResults study(const std::function<double(int mass, int law, double step)>& 
       for (const double step : steps) {
         CaseRecord& record = results.cases.emplace_back();
         record.id = "0" + std::to_string(results.cases.size());
-        record.status = "done";
+        record.status = Status::done;
         record.steps = 1000;
         record.axes = {{"mass", mass ? "heavy" : "light"},
                        {"contact", law == 0   ? "hard"

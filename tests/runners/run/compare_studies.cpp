@@ -24,7 +24,7 @@ StudyResults study(const std::string& beginning = "a") {
     for (const double step : {1e-3, 1e-4}) {
       CaseRecord& record = results.cases.emplace_back();
       record.id = beginning + std::to_string(results.cases.size());
-      record.status = "done";
+      record.status = Status::done;
       record.steps = 1000;
       record.axes = {{"mass", mass}, {"step", step}};
       record.measures = {{"energy_brought_in", 4.0}, {"dissipated_at_contact", 1.0}, {"microseconds_per_step", 1.0}};
@@ -133,7 +133,7 @@ TEST_CASE("A number moves within the round-off of its integration, or beyond it,
 TEST_CASE("Cases go together by their ids, else by their parameters, and never two to one") {
   const StudyResults a = study("a");
   StudyResults b = study("b");
-  b.cases[1].status = "diverged";
+  b.cases[1].status = Status::diverged;
   b.cases[1].reasons = {"the energy grew"};
   b.cases.pop_back();
   StudyComparison found = compare_studies(a, b);

@@ -35,7 +35,7 @@ inline ricochet::Study fake_study(int count) {
 
 inline ricochet::CaseRecord fake_result(const ricochet::StudyCase& one) {
   ricochet::CaseRecord record;
-  record.status = "done";
+  record.status = ricochet::Status::done;
   record.steps = std::lround(one.duration / one.step);
   record.measures = {{"energy_start", 2.0}, {"energy_end", 2.0 - one.step}, {"impacts", 3}};
   record.left_out = {{"load", "the load is 0"}};

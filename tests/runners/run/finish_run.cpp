@@ -7,19 +7,19 @@ using namespace ricochet;
 
 TEST_CASE("reasons: each once, with its cases, nothing is said of what is done without a doubt or under way") {
   StudyResults results;
-  const auto add = [&](const char* id, const char* status, const char* reason) -> CaseRecord& {
+  const auto add = [&](const char* id, Status status, const char* reason) -> CaseRecord& {
     CaseRecord& record = results.cases.emplace_back();
     record.id = id;
     record.status = status;
     if (*reason) record.reasons = {reason};
     return record;
   };
-  add("a", "done", "");
+  add("a", Status::done, "");
   CHECK(reasons_table(results).rows.empty());
-  add("b", "refused", "no stops");
-  add("c", "failed", "no stops");
-  add("d", "refused", "no stops");
-  add("e", "failed", "under way").partial = true;
+  add("b", Status::refused, "no stops");
+  add("c", Status::failed, "no stops");
+  add("d", Status::refused, "no stops");
+  add("e", Status::failed, "under way").partial = true;
   const Table table = reasons_table(results);
   REQUIRE(table.rows.size() == 2);
   CHECK(table.rows[0] == Row{"refused", "no stops", 2, "b"});
@@ -31,7 +31,7 @@ TEST_CASE("reasons: doubts of one kind are one, whatever their numbers") {
   const auto add = [&](const char* id, std::vector<Said> doubts) {
     CaseRecord& record = results.cases.emplace_back();
     record.id = id;
-    record.status = "done";
+    record.status = Status::done;
     record.reasons = std::move(doubts);
   };
   const auto jumps = [](const char* times) {
@@ -51,7 +51,7 @@ namespace {
 
 CaseRecord done(double start, double end, double impacts) {
   CaseRecord record;
-  record.status = "done";
+  record.status = Status::done;
   record.measures = {{"energy_start", start},
                      {"energy_end", end},
                      {"energy_brought_in", start},
@@ -61,7 +61,7 @@ CaseRecord done(double start, double end, double impacts) {
   return record;
 }
 
-CaseRecord ended(const char* status, const char* reason) {
+CaseRecord ended(Status status, const char* reason) {
   CaseRecord record;
   record.status = status;
   record.reasons = {reason};
@@ -82,15 +82,15 @@ TEST_CASE("summary: outcomes in words") {
   driven.measures[2].second = 5;
   CHECK(outcome_text(driven, "trajectory") ==
         "done: energy 0 J → 2 J, 5 J brought in by loads, 3 impacts, 0.421 µs/step");
-  CHECK(outcome_text(ended("done", ""), "trajectory") == "done");
-  CHECK(outcome_text(ended("refused", "β = 0 leaves S singular"), "trajectory") == "refused: β = 0 leaves S singular");
-  CHECK(outcome_text(ended("diverged", "at t = 0.1 s"), "trajectory") == "diverged: at t = 0.1 s");
+  CHECK(outcome_text(ended(Status::done, ""), "trajectory") == "done");
+  CHECK(outcome_text(ended(Status::refused, "β = 0 leaves S singular"), "trajectory") == "refused: β = 0 leaves S singular");
+  CHECK(outcome_text(ended(Status::diverged, "at t = 0.1 s"), "trajectory") == "diverged: at t = 0.1 s");
 }
 
 TEST_CASE("summary: only the axes that vary are shown, aligned whatever the alphabet") {
   StudyResults results;
   results.columns = {"mass", "contact", "step"};
-  results.cases = {ended("done", ""), ended("refused", "no")};
+  results.cases = {ended(Status::done, ""), ended(Status::refused, "no")};
   results.cases[0].axes = {{"mass", "µµ"}, {"contact", "none"}, {"step", 1e-5}};
   results.cases[1].axes = {{"mass", "singular"}, {"contact", "none"}, {"step", 0.25}};
   CHECK(case_table(results) ==
@@ -102,7 +102,7 @@ TEST_CASE("summary: only the axes that vary are shown, aligned whatever the alph
 TEST_CASE("summary: a study without axes names its case") {
   StudyResults results;
   results.columns = {"mass"};
-  results.cases = {ended("done", "")};
+  results.cases = {ended(Status::done, "")};
   results.cases[0].id = "c0123456789";
   results.cases[0].axes = {{"mass", "lumped"}};
   CHECK(case_table(results) == "case         outcome\nc0123456789  done\n");
@@ -111,7 +111,7 @@ TEST_CASE("summary: a study without axes names its case") {
 TEST_CASE("summary: a stability case whose march contradicts its spectrum is said, counted and no success") {
   StudyResults results;
   results.kind = "stability";
-  CaseRecord record = ended("done", "");
+  CaseRecord record = ended(Status::done, "");
   record.measures = {{"largest_radius", 1.0}};
   record.tables = {{"stability_observed",
                     "",
@@ -134,12 +134,12 @@ TEST_CASE("summary: a stability case whose march contradicts its spectrum is sai
 TEST_CASE("summary: totals and exit code") {
   StudyResults results;
   results.expected_cases = 3;
-  results.cases = {ended("done", ""), ended("refused", "x"), ended("refused", "y")};
+  results.cases = {ended(Status::done, ""), ended(Status::refused, "x"), ended(Status::refused, "y")};
   CHECK(totals_text(results) == "3 cases: 1 done, 2 refused");
   CHECK(results_exit_code(results) == 0);
-  results.cases[1].status = "diverged";
+  results.cases[1].status = Status::diverged;
   CHECK(results_exit_code(results) == 3);
-  results.cases[1].status = "failed";
+  results.cases[1].status = Status::failed;
   CHECK(results_exit_code(results) == 3);
   results.cases.pop_back();
   CHECK(totals_text(results) == "2 cases: 1 done, 1 failed; 1 not run yet");

@@ -9,7 +9,7 @@ namespace {
 CaseRecord case_of(const char* id, const char* mass, const char* scheme, double beta, double impacts) {
   CaseRecord record;
   record.id = id;
-  record.status = "done";
+  record.status = Status::done;
   record.axes = {{"mass", mass}, {"time", scheme}, {"time.beta", beta}, {"time.start", "second"}, {"step", 1e-3}};
   record.measures = {{"impacts", impacts}};
   record.steps = 1000;

@@ -21,7 +21,7 @@ StudyResults results_with_points() {
   CaseRecord record;
   record.id = "c0123456789";
   record.axes = {{"mass", "singular"}};
-  record.status = "done";
+  record.status = Status::done;
   record.numbers = {
       {"points", named_columns({"parameter", "start"}), {{0.07, 0.08}, {0, 1}}, {{"start", {"rest", "up"}}}},
       {"portraits", named_columns({"time"}), {{0.5}}, {}, false}};
@@ -107,7 +107,7 @@ TEST_CASE("outputs: a sweep that went wrong leaves a study of that case alone, w
     CaseRecord record;
     record.id = one.id;
     record.axes = one.axes;
-    record.status = "diverged";
+    record.status = Status::diverged;
     results.cases.push_back(record);
   }
   REQUIRE(results.cases.size() > 1);
@@ -135,7 +135,7 @@ StudyResults results_with_curves(std::size_t count) {
     std::snprintf(id, sizeof id, "c%010zx", i);
     record.id = id;
     record.axes = {{"step", static_cast<double>(i)}};
-    record.status = "done";
+    record.status = Status::done;
     record.curve = {{"t", "energy"}, {{0, 0.5}, {1.0 / 3, static_cast<double>(i)}}};
     if (i + 2 == count) record.curve = {{"t", "force"}, {{0, 0.5}, {7, 8}}};
     results.cases.push_back(std::move(record));

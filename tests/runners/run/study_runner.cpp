@@ -38,7 +38,7 @@ TEST_CASE("run: what was finished is not run again, whatever its status, until -
   run.runner.cases.run = [&](const StudyCase& one, const std::atomic<bool>&) {
     ++run.runs;
     CaseRecord record = fake_result(one);
-    record.status = one.mass.name == "odd" ? "diverged" : "done";
+    record.status = one.mass.name == "odd" ? Status::diverged : Status::done;
     return record;
   };
   const RunOptions options{scratch / "out", 2, false};
@@ -172,7 +172,7 @@ TEST_CASE("run: excluded cases are rows with their reason, and nothing runs for 
   CHECK(run(study, options) == 0);
   CHECK(run.runs == 2);
   const CaseRecord record = read_store(options.out).cases[1];
-  CHECK(record.status == "refused");
+  CHECK(record.status == Status::refused);
   CHECK(record.reason() == "excluded: an hour each");
   CHECK(record.axes == study.cases[1].axes);
 }
@@ -194,8 +194,8 @@ TEST_CASE("run: what a case throws is its row, and the others go on") {
   CHECK(cases[0].reason() == "at /scene/stops/lower: the stops cross at x = 0.3");
   CHECK(cases[1].reason() == "out of luck");
   CHECK(cases[2].reason() == "not enough memory");
-  for (int i = 0; i < 4; ++i) CHECK(cases[static_cast<std::size_t>(i)].status == "failed");
-  CHECK(cases[4].status == "done");
+  for (int i = 0; i < 4; ++i) CHECK(cases[static_cast<std::size_t>(i)].status == Status::failed);
+  CHECK(cases[4].status == Status::done);
   CHECK_THAT(run.summary, Contains("1 done, 4 failed") && Contains("exit code 3"));
 }
 
@@ -259,7 +259,7 @@ TEST_CASE("run: cases on several threads show what they have so far, and none fa
   const StudyResults results = read_store(scratch / "out");
   REQUIRE(results.cases.size() == 12);
   for (const CaseRecord& record : results.cases) {
-    CHECK(record.status == "done");
+    CHECK(record.status == Status::done);
     CHECK_FALSE(record.partial);
   }
 }

@@ -89,7 +89,7 @@ TEST_CASE("fingerprint: the content hash is the SHA-1 of a version 5 UUID") {
 TEST_CASE("arithmetics: a case keeps that of the run that computed it, also aside and when it is saved again") {
   const ScratchFolder folder;
   StudyResults results = sample_results();
-  results.cases[1].status = "done";
+  results.cases[1].status = Status::done;
   const std::vector<ExpectedCase> both = {{results.cases[0].id, "f1"}, {results.cases[1].id, "f2"}};
   {
     Store store(folder.path(), false);

@@ -29,7 +29,7 @@ TEST_CASE("store reader: a case read alone is saved again as the same rows, and 
   const auto finished = reader.finished();
   REQUIRE(finished.size() == 2);
   CHECK(finished[0].fingerprint == "f1");
-  CHECK(finished[1].status == "refused");
+  CHECK(finished[1].refused);
   CHECK(finished[0].arithmetic == "aaaa");
   CHECK(reader.motion_keys("aaaa") == std::vector<std::string>{"key"});
   CHECK(reader.motion_keys("bbbb").empty());

@@ -126,7 +126,7 @@ TEST_CASE("store: what an edit no longer asks for is set aside, and comes back w
 TEST_CASE("store: failed cases are kept aside, refused and unfinished ones are not") {
   const ScratchFolder folder;
   StudyResults results = sample_results();
-  results.cases[1].status = "failed";
+  results.cases[1].status = Status::failed;
   Store store(folder.path(), false);
   store.begin(results, kExpected);
   store.save_partial(results.cases[0]);

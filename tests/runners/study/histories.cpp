@@ -67,7 +67,7 @@ TEST_CASE("a table pushes as the formula that it samples, and its factor and col
   const Json table = {{"file", "force.csv"}, {"value", "F"}, {"factor", 2}, {"after", "hold"}};
   const CaseRecord by_table = studies.of(with_force(table)).front();
   const CaseRecord by_formula = studies.of(with_force("2*(t < 0.1 ? 50*t : 5)")).front();
-  REQUIRE(by_table.status == "done");
+  REQUIRE(by_table.status == Status::done);
   const double tip = end_of(by_table, "tip_displacement");
   CHECK(tip != 0);
   CHECK(tip == Approx(end_of(by_formula, "tip_displacement")).epsilon(1e-12));
@@ -98,7 +98,7 @@ TEST_CASE("random loads: a seed is an axis, and each seed is another load") {
   REQUIRE(records.size() == 3);
   std::set<double> ends;
   for (std::size_t i = 0; i < 3; ++i) {
-    REQUIRE(records[i].status == "done");
+    REQUIRE(records[i].status == Status::done);
     ends.insert(end_of(records[i], "tip_displacement"));
     CHECK(end_of(records[i], "tip_displacement") == end_of(again[i], "tip_displacement"));
   }
@@ -141,7 +141,7 @@ TEST_CASE("an accelerogram moves a structure alike in each form, and the case sa
     const Json study = moved_by("/scene/motions/0/acceleration",
                                 {{"file", file}, {"value", "a"}, {"factor", factor}, {"after", "zero"}});
     const CaseRecord record = studies.of(study).front();
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     std::string notes;
     for (const std::string& note : record.notes)
       if (note.starts_with(file)) notes += note + "\n";
@@ -346,7 +346,7 @@ TEST_CASE("two masses that meet, shaken against each other") {
     "methods": {"mass": "consistent", "contact": {"name": "penalty", "stiffness": 2.88e7}, "time": "newmark"},
     "step": 1e-5, "duration": 0.4, "samples": 8})json");
   const CaseRecord record = studies.of(study).front();
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   // Converged to some 1e-8 m at this step; the printed ones are 3e-6 from these.
   CHECK(value_at(record, "tip_displacement", 0.05) == Approx(-3.5801e-4).margin(2e-7));
   CHECK(value_at(record, "tip_displacement", 0.25) == Approx(-1.8873e-4).margin(2e-7));
@@ -368,7 +368,7 @@ TEST_CASE("the film of given matrices has the first support as its clamp, where 
     "methods": {"mass": "consistent", "contact": "signorini", "time": "newmark"},
     "step": 1e-4, "duration": 0.1, "samples": 10, "snapshots": 8})json"))
                                 .front();
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const NumberTable* table = find_table(record.numbers, snapshots_name);
   REQUIRE(table);
   const Snapshots shots = snapshots_of(*table).value();

@@ -32,7 +32,7 @@ CaseRecord scripted_row(const std::string& id) {
   std::map<std::string, std::string> parts;
   for (int i = 0; i < at_one_time; ++i) parts[first_block(id, i)] = marched(first_block(id, i));
   CaseRecord row;
-  row.status = "done";
+  row.status = Status::done;
   row.notes = {shared_content, marched(last_block(id, parts))};
   row.measures = {{"impacts", static_cast<double>(id.back())}};
   return row;
@@ -134,14 +134,14 @@ void ScriptedWorker::hear_block(const Message& message) {
   if (status.what == BlockStatus::What::lost && lost_.insert(order).second) return begin_block(order);
   CaseAnswer answer;
   if (status.what != BlockStatus::What::done) {
-    answer.record.status = "failed";
+    answer.record.status = Status::failed;
     answer.record.reasons = {"block " + order + ": " + status.content};
   } else {
     parts_[order] = status.content;
     if (parts_.size() < at_one_time) return;
     if (parts_.size() == at_one_time) return begin_block(last_block(id_, parts_));
     if (ends_ == Ends::at_its_end) return end_with("signal 6 (abort)");
-    answer.record.status = "done";
+    answer.record.status = Status::done;
     answer.record.notes = {shared_content, status.content};
     answer.record.measures = {{"impacts", static_cast<double>(id_.back())}};
     CaseRecord shown = answer.record;

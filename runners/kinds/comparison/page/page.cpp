@@ -109,7 +109,7 @@ Table order_lines(const CaseView& view) {
           if (!row) row = orders.find(*record, {refined, error}, {refined});
           const auto found = errors.find(*record, {error});
           const auto x = CaseView::number(*record, refined), value = found ? errors[*found].value : x;
-          if (found && x && value && record->status == "done")
+          if (found && x && value && record->status == Status::done)
             points.push_back({*x, *value, errors[*found].floor.value_or(0)});
         }
         const auto order = row ? orders[*row].order : std::nullopt;

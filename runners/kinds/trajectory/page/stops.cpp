@@ -67,7 +67,7 @@ void widen_band(Band& band, const std::vector<double>& finest, const std::vector
 
 std::vector<Cases> methods_from_finest(const answers::Compared& study) {
   InOrderMet<std::string, Cases> groups;
-  for (const CaseRecord* record : with_status(all_cases(study.results()), "done"))
+  for (const CaseRecord* record : with_status(all_cases(study.results()), Status::done))
     groups[study.key(*record)].push_back(record);
   std::vector<Cases> out;
   for (auto& [key, cases] : std::move(groups).list()) {

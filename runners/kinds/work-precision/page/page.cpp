@@ -37,7 +37,7 @@ std::vector<std::string> scene_columns(const CaseView& view) {
 
 std::optional<WorkPoint> WorkPrecision::point(const CaseRecord& record, const std::string& error) const {
   const auto found = rows_.find(record, {error});
-  if (!found || record.status != "done") return std::nullopt;
+  if (!found || record.status != Status::done) return std::nullopt;
   const WorkRow& row = rows_[*found];
   const auto value = row.value, seconds = row.run_seconds;
   if (!value || !seconds || !(*value > 0) || !(*seconds > 0)) return std::nullopt;
@@ -183,7 +183,7 @@ Table work_points(const CaseView& view) {
         const auto p = work.point(*record, error);
         if (!p) {
           const Cell none;
-          const std::string why = record->status == "done" ? work.why_none(*record, error) : record->status;
+          const std::string why = record->status == Status::done ? work.why_none(*record, error) : word(record->status);
           out.rows.push_back({record->id, error, none, none, none, none, none, none, none, false, false, false, why});
           continue;
         }

@@ -36,7 +36,7 @@ Grids study_of(const std::vector<std::vector<GridCell>>& grids) {
   for (std::size_t c = 0; c < grids.size(); ++c) {
     CaseRecord& record = out.results.cases.emplace_back();
     record.id = "c" + std::to_string(c);
-    record.status = "done";
+    record.status = Status::done;
     record.axes = {{"time.restitution", 0.1 * static_cast<double>(c + 1)}};
     BasinGrid grid;
     grid.columns = grids[c].size();

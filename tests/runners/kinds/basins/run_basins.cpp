@@ -65,7 +65,7 @@ std::vector<Cell> cells(const CaseRecord& record, const std::string& name) {
 }
 
 std::string bytes_of(const CaseRecord& record) {
-  std::string text = record.status + std::to_string(record.steps);
+  std::string text = word(record.status) + std::to_string(record.steps);
   for (const Row& row : record.tables.front().rows)
     for (const Cell& cell : row) text += csv_cell(cell);
   for (const auto& numbers : record.numbers.front().values)
@@ -77,7 +77,7 @@ std::string bytes_of(const CaseRecord& record) {
 
 TEST_CASE("Every cell of a grid has its row and its section") {
   const CaseRecord record = run(grid_study(5, 4, false));
-  CHECK(record.status == "done");
+  CHECK(record.status == Status::done);
   const auto x = cells(record, "x"), y = cells(record, "y"), marched = cells(record, "marched"),
              source = cells(record, "source"), period = cells(record, "period"), status = cells(record, "status");
   REQUIRE(x.size() == 20);
@@ -143,7 +143,7 @@ TEST_CASE("Cells behind a stop are no starts, and are counted apart") {
   study["axes"][0]["to"] = 0.5;
   const CaseRecord record = run(study);
   const auto status = cells(record, "status"), reason = cells(record, "reason"), regime = cells(record, "class");
-  CHECK(record.status == "done");
+  CHECK(record.status == Status::done);
   CHECK(measure(record, "orbits") == 9.0);
   CHECK(measure(record, "starts") == 9.0);
   for (std::size_t cell = 0; cell < status.size(); ++cell) {
@@ -250,7 +250,7 @@ TEST_CASE("A budget that is spent leaves rows that say so") {
   Json study = grid_study(25, 25, false);
   study["budget"] = 1e-6;
   const CaseRecord record = run(study);
-  CHECK(record.status == "failed");
+  CHECK(record.status == Status::failed);
   const auto status = cells(record, "status");
   CHECK(status.size() == 625);
   CHECK(std::count(status.begin(), status.end(), Cell("failed")) > 0);

@@ -38,7 +38,7 @@ Json ball(double restitution, std::vector<double> ratios, double begins, const c
 }
 
 std::string first_class(const CaseRecord& record) {
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   return of_values(record, "class").front().text();
 }
 

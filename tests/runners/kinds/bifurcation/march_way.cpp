@@ -11,8 +11,8 @@ TEST_CASE("bifurcation: orbits that leave out steps land where those that march 
   const CaseRecord every = run_sweep(text);
   text["march"] = "flights";
   const CaseRecord flown = run_sweep(text);
-  REQUIRE(every.status == "done");
-  REQUIRE(flown.status == "done");
+  REQUIRE(every.status == Status::done);
+  REQUIRE(flown.status == Status::done);
   CHECK(flown.operator_name == "modal");
   for (const char* column : {"tip_displacement", "tip_velocity", "opposite_displacement"}) {
     const std::vector<double>&a = column_of(numbers_of(every, "points"), column),
@@ -43,7 +43,7 @@ TEST_CASE("bifurcation: extrema of the tip are found in steps that are left out"
   const CaseRecord every = run_sweep(text);
   text["march"] = "flights";
   const CaseRecord flown = run_sweep(text);
-  REQUIRE(flown.status == "done");
+  REQUIRE(flown.status == Status::done);
   CHECK(flown.operator_name == "modal");
   for (const char* column : {"tip_displacement", "tip_velocity"}) {
     const std::vector<double>&a = column_of(numbers_of(every, "points"), column),

@@ -18,7 +18,7 @@ TEST_CASE("bifurcation: impacts say the name of their stop, where stops have nam
   text["scene"]["stops"] = Json::parse(R"([{"name": "middle", "at": {"x": 0.75}, "lower": -0.05, "upper": 0.05},
                                            {"name": "end", "at": {"x": 1.501}, "lower": -0.1, "upper": 0.1}])");
   const CaseRecord record = run_sweep(text);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const NumberTable& impacts = numbers_of(record, "impacts");
   CHECK(impacts.columns.back().name == "stop");
   REQUIRE(impacts.words_of("stop"));
@@ -50,7 +50,7 @@ TEST_CASE("bifurcation: a mass given by its matrices is the oscillator, whose ba
     const Study study = parse_study(text.dump(1), catalogue, registry, folder.path());
     const std::atomic<bool> stop = false;
     const CaseRecord record = run_bifurcation(study.cases.front(), registry, {}, stop);
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     return column_of(numbers_of(record, "impacts"), "speed");
   };
   const std::vector<double> a = speeds(oscillator), b = speeds(given);

@@ -30,7 +30,7 @@ std::string tables_of(CaseRecord record) {
 TEST_CASE("bifurcation: neither workers nor the number of exponents asked for change an orbit") {
   Json text = beam_sweep({0.05, 0.08, 0.086, 0.09});
   const CaseRecord one = run_sweep(text), three = run_sweep(text, 3);
-  REQUIRE(one.status == "done");
+  REQUIRE(one.status == Status::done);
   CHECK(bits_of(one) == bits_of(three));
   text["exponents"] = 2;
   const CaseRecord measured = run_sweep(text, 2);
@@ -51,10 +51,10 @@ TEST_CASE("bifurcation: a start beyond a stop is for the laws that push it back,
   for (const StudyCase& one : opened.study.cases) {
     const CaseRecord record = run_bifurcation(one, *opened.registry, {}, stop);
     INFO(record.reason());
-    CHECK(record.status == (one.contact.name == "penalty" ? "done" : "refused"));
-    if (record.status == "refused")
+    CHECK(record.status == (one.contact.name == "penalty" ? Status::done : Status::refused));
+    if (record.status == Status::refused)
       CHECK_THAT(record.reason(), Catch::Matchers::Contains("beyond the lower stop at 0.01 m") &&
-                                    Catch::Matchers::Contains("a compliant law"));
+                                      Catch::Matchers::Contains("a compliant law"));
   }
 }
 
@@ -291,13 +291,13 @@ TEST_CASE("bifurcation: what cannot be marched is a row with its reason") {
   Json text = beam_sweep({0.08, 0.15});
   text["scene"]["stops"]["at"] = "nodes";
   const CaseRecord record = run_sweep(text);  // 0.15 pushes the clamp's neighbourhood through the stops
-  CHECK(record.status == "done");
+  CHECK(record.status == Status::done);
   CHECK(of_values(record, "status")[0] == "done");
   CHECK(of_values(record, "status")[1] == "refused");
   CHECK_FALSE(of_values(record, "reason")[1].text().empty());
   text["methods"]["contact"] = {{"name", "penalty"}, {"stiffness", 1e9}, {"evaluation", "explicit"}};
   text["parameter"]["values"] = {0.08, 0.09};
   const CaseRecord wild = run_sweep(text);
-  CHECK(wild.status == "diverged");
+  CHECK(wild.status == Status::diverged);
   for (const Cell& status : of_values(wild, "status")) CHECK(status == "diverged");
 }

@@ -32,7 +32,7 @@ Made study_of(const std::vector<std::vector<MotionClass>>& cases, std::mt19937* 
   for (std::size_t c = 0; c < cases.size(); ++c) {
     CaseRecord& record = out.results.cases.emplace_back();
     record.id = "c" + std::to_string(c);
-    record.status = "done";
+    record.status = Status::done;
     record.axes = {{"time", "scheme" + std::to_string(c + 1)}};
     DiagramCase& of = out.swept.diagram.cases.emplace_back();
     for (std::size_t k = 0; k < cases[c].size(); ++k) {

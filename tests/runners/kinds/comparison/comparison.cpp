@@ -233,7 +233,7 @@ TEST_CASE("a method that does not march costs its own rows, and neither the stud
   const StudyResults results = run.results();
   REQUIRE(results.cases.size() == 4);
   for (const CaseRecord& one : results.cases)
-    CHECK(one.status == (one.axes.front().second == "consistent" ? "done" : "refused"));
+    CHECK(one.status == (one.axes.front().second == "consistent" ? Status::done : Status::refused));
   const std::vector<double> told = horizons(results);
   CHECK(told == horizons(without.results()));
   REQUIRE(told.size() == 2);
@@ -262,7 +262,7 @@ TEST_CASE("a budget stops a case, which counts as failed and leaves a study of i
   CHECK(run.go(study) == 3);
   const StudyResults results = run.results();
   REQUIRE(results.cases.size() == 1);
-  CHECK(results.cases[0].status == "failed");
+  CHECK(results.cases[0].status == Status::failed);
   CHECK(results.cases[0].reason().starts_with("the budget of 1e-06 s was spent at step "));
   const auto file = run.folder.path() / "failures" / (results.cases[0].id + ".json");
   REQUIRE(std::filesystem::exists(file));
@@ -281,7 +281,7 @@ TEST_CASE("a measure that some method never has is left out of the effects, neit
     for (const char* time : {"newmark", "hht", "moreau-jean"}) {
       CaseRecord record;
       record.axes = {{"mass", mass}, {"time", time}};
-      record.status = "done";
+      record.status = Status::done;
       const double value = static_cast<double>(results.cases.size());
       record.measures = {{"impulse", 1 + value}};
       if (std::string(time) != "hht") record.measures.emplace_back("work_of_damping", 2 + value * value);
@@ -298,7 +298,7 @@ TEST_CASE("a measure that some method never has is left out of the effects, neit
   CHECK(measures() == std::set<std::string>{"impulse", "first_impact"});
   // A method of which no case came to its end says nothing of what it declares.
   for (CaseRecord& record : results.cases)
-    if (record.axes[1].second == "hht") record.status = "failed";
+    if (record.axes[1].second == "hht") record.status = Status::failed;
   CHECK(measures() == std::set<std::string>{"impulse", "first_impact", "work_of_damping"});
 }
 

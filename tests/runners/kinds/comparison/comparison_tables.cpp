@@ -18,7 +18,7 @@ StudyResults two_schemes() {
   for (const char* scheme : {"one", "other"}) {
     CaseRecord record;
     record.id = scheme;
-    record.status = "done";
+    record.status = Status::done;
     record.axes = {{"mass", "full"}, {"contact", "rigid"}, {"time", scheme}, {"step", 1e-3}};
     results.cases.push_back(std::move(record));
   }

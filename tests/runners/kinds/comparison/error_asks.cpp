@@ -30,9 +30,9 @@ StudyResults study_of(const std::vector<Scheme>& schemes, double size = 1) {
       record.id = scheme.name + std::to_string(k);
       const double h = std::pow(2, -static_cast<double>(k));
       record.axes = {{"time", scheme.name}, {"step", h}};
-      record.status = std::isnan(scheme.errors[k]) ? "diverged" : "done";
-      if (record.status == "diverged") record.reasons = {Said("energy that nothing gave")};
-      if (record.status == "done")
+      record.status = std::isnan(scheme.errors[k]) ? Status::diverged : Status::done;
+      if (record.status == Status::diverged) record.reasons = {Said("energy that nothing gave")};
+      if (record.status == Status::done)
         record.measures = {{"error.impulse", scheme.errors[k]},
                            {"floor.impulse", scheme.floor},
                            {"size.impulse", size},

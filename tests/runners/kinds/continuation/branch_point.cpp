@@ -118,7 +118,7 @@ TEST_CASE("by steps an orbit at a row's arc is that row, and between two rows th
   study["parameter"] = {{"pointer", "/scene/support/amplitude"}, {"from", 0.084}, {"to", 0.086}};
   study["at_most"] = {{"pieces", 12}};
   const RunResults kept(study);
-  REQUIRE(kept.results.cases.front().status == "done");
+  REQUIRE(kept.results.cases.front().status == Status::done);
   const auto rows = rows_of(kept.results.cases.front());
   REQUIRE(rows.size() > 4);
   for (std::size_t k = 0; k < rows.size(); k += 1 + rows.size() / 6) {

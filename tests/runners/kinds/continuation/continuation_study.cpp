@@ -88,7 +88,7 @@ TEST_CASE("several bodies are followed, and need a forcing period as well") {
   study["parameter"] = Json::parse(R"({"pointer": "/scene/stops/0/upper", "from": 1e-3, "to": 2e-3})");
   study["orbits"] = Json::parse(R"([{"at": 1.5e-3, "periods": 30}])");
   CHECK(error_of(study) == "no error");
-  CHECK(continued(study).status == "done");
+  CHECK(continued(study).status == Status::done);
   study["scene"]["support"]["pulsation"] = 0;
   CHECK(error_of(study) == "no error");  // the load has waves
   study["scene"]["load"][0]["force"] = 0.1;
@@ -131,7 +131,7 @@ TEST_CASE("a step without tangents refuses the case, and a motion that does not 
   study["methods"]["time"] = "kane";
   CHECK(refusal_of(study).empty());
   const CaseRecord record = continued(study);
-  CHECK(record.status == "failed");
+  CHECK(record.status == Status::failed);
   check_says(record.reason(), {"no orbit at λ = 1: the scheme's own march leaves what was solved by "});
 }
 

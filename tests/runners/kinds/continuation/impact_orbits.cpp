@@ -177,7 +177,7 @@ TEST_CASE("orbits with impacts are where their closed forms say: displacement, v
     study["follow"] = "none";
     const CaseRecord record = continued(study);
     INFO(time << " " << study.dump() << " " << record.reason());
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     const BranchRow row = rows_of(record).front();
     CHECK(row.symmetric == one.symmetric);
     // An impact is placed with order 2; (ωh)² is 2.5e-6.
@@ -214,7 +214,7 @@ TEST_CASE("impact orbits fold where their closed forms meet, within the interval
     const CaseRecord record = continued(study);
     const std::vector<SpecialRow> points = points_of(record);
     INFO(time << " " << study.dump() << " " << record.reason());
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     std::vector<SpecialRow> folds;
     for (const SpecialRow& point : points)
       if (point.kind == "fold") folds.push_back(point);
@@ -263,7 +263,7 @@ TEST_CASE("impact orbits double their period where a multiplier of the closed fo
     study["parameter"]["pointer"] = "/scene/structure/force/pulsation";
     const CaseRecord record = continued(study);
     INFO(time << " " << low << " " << study.dump() << " " << record.reason());
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     std::vector<SpecialRow> flips;
     for (const SpecialRow& point : points_of(record))
       if (point.kind == "flip") flips.push_back(point);

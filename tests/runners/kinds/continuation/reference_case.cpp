@@ -84,7 +84,7 @@ TEST_CASE("the reference of the tube becomes a torus at 0.0849574 m") {
   const OpenedContinuation opened = opened_continuation(study);
   const std::atomic<bool> stop{false};
   const CaseRecord record = run_continuation(*case_of(opened.study, "reference"), *opened.registry, {}, stop);
-  CHECK(record.status == "done");
+  CHECK(record.status == Status::done);
   std::optional<double> torus;
   for (const SpecialRow& row : points_of(record))
     if (row.kind == "torus") torus = row.parameter;

@@ -15,7 +15,7 @@ TEST_CASE("an orbit at a given value is that of a bifurcation study") {
   Json study = tube_continuation();
   study["follow"] = "none";
   const CaseRecord record = continued(study);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const auto rows = rows_of(record);
   REQUIRE(rows.size() == 1);
   CHECK(*rows[0].residual < 1e-12);
@@ -36,7 +36,7 @@ TEST_CASE("an orbit at a given value is that of a bifurcation study") {
 
 TEST_CASE("every row of a branch is an orbit, and rows go on from each other") {
   const CaseRecord record = continued(tube_continuation());
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const auto rows = rows_of(record);
   REQUIRE(rows.size() > 10);
   std::map<std::string, double> arcs;
@@ -142,7 +142,7 @@ Json oscillator_continuation(const std::string& time) {
 
 TEST_CASE("the bilinear oscillator folds where event-driven shooting says") {
   const CaseRecord record = continued(oscillator_continuation(R"({"name": "newmark-dumont-paoli", "beta": 0.25})"));
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const auto points = points_of(record);
   REQUIRE(points.size() >= 2);
   // Without contact x = F / √((1 − ω²)² + (cω)²), 1 m at the graze.
@@ -161,7 +161,7 @@ TEST_CASE("steps and pieces follow one branch: the same marks, folds and first c
   for (const char* follow : {"pieces", "steps"}) {
     study["follow"] = follow;
     const CaseRecord record = continued(study);
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     for (const SpecialRow& point : points_of(record))
       if (point.kind != "end") found[follow].push_back(point);
   }
@@ -216,7 +216,7 @@ TEST_CASE("an oscillator that rebounds flips near to where Shaw and Holmes found
     "at_most": {"pieces": 60}
   })");
   const CaseRecord record = continued(study);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const auto points = points_of(record);
   const auto flip =
       std::find_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "flip"; });
@@ -237,7 +237,7 @@ TEST_CASE("where symmetry is lost a branch of other orbits begins, and it ends w
   study["switch"] = "symmetry";
   study["at_most"] = {{"pieces", 500}};
   const CaseRecord record = continued(study);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   std::string others;
   for (const SpecialRow& point : points_of(record))
     if (point.kind == "symmetry") others += " " + point.to_branch;
@@ -267,7 +267,7 @@ TEST_CASE("an orbit that is not found fails its case, whose other orbits are fol
     const auto missing =
         std::find_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.branch == "orbit-2"; });
     REQUIRE(missing != points.end());
-    CHECK(record.status == "failed");
+    CHECK(record.status == Status::failed);
     CHECK(record.reason() == missing->note);
     CHECK(record.reason() == "the orbit found from rest at λ = 0.085 repeats after 1 period; expected period 2");
     CHECK_FALSE(rows_of(record).empty());
@@ -280,7 +280,7 @@ TEST_CASE("an orbit of a bifurcation study that is not there is a row that says 
   study["orbits"][0]["from"] = {{"study", "/nowhere"}, {"case", "ab"}, {"parameter", 0.085}, {"start", "rest"}};
   study["at_most"] = {{"pieces", 3}};
   const CaseRecord record = continued(study);
-  CHECK(record.status == "failed");
+  CHECK(record.status == Status::failed);
   CHECK(record.reason().find("/nowhere: there is no results.sqlite") != std::string::npos);
   CHECK(points_of(record).front().note == record.reason());
   CHECK_FALSE(rows_of(record).empty());
@@ -347,7 +347,7 @@ TEST_CASE("a step of several stages that read contact is followed by steps, and 
                                      "time": "bathe"})");
   study["at_most"] = {{"pieces", 3}};
   const CaseRecord record = continued(study);
-  CHECK(record.status == "done");
+  CHECK(record.status == Status::done);
   CHECK(std::any_of(record.notes.begin(), record.notes.end(), [](const std::string& note) {
     return note.find("several of its stages read contact") != std::string::npos;
   }));

@@ -92,7 +92,7 @@ constexpr double central_limit = 0.0334014193 / 25;
 
 TEST_CASE("central differences: the predicted limit, the observed one within 2 %, a status per cell") {
   const Result result = run(study_text("consistent", "signorini", dumont_paoli(0), 1e-4, 1e-2, 9));
-  CHECK(result.record.status == "done");
+  CHECK(result.record.status == Status::done);
   CHECK(result.record.reason().empty());
   const Table& table = result.table("stability");
   CHECK(table_csv({"", "", table.columns, {}}) ==
@@ -149,7 +149,7 @@ TEST_CASE("marginal cells are named, refused ones say why") {
   CHECK(none.column("root", "open", "stability_roots").empty());
 
   const Result refused = run(study_text(singular, "signorini", dumont_paoli(0), 1e-4, 1e-2, 3));
-  CHECK(refused.record.status == "refused");
+  CHECK(refused.record.status == Status::refused);
   CHECK_THAT(refused.record.reason(), Contains("beta"));
   const auto rows = refused.column("status", "open");
   REQUIRE(rows.size() == 3);
@@ -281,7 +281,7 @@ TEST_CASE("an integration that is not what its spectrum says, without contact, i
   Moody::questions = 0;
   text["observe"] = true;
   const Result result = run(text);
-  CHECK(result.record.status == "done");
+  CHECK(result.record.status == Status::done);
   CHECK(*result.measure("largest_radius") == Approx(1).epsilon(1e-6));
   REQUIRE(result.measure("contradictions"));
   CHECK(*result.measure("contradictions") == 3);
@@ -307,7 +307,7 @@ TEST_CASE("oscillators and free masses have their cells") {
     })");
     text["scene"]["structure"]["stiffness"] = stiffness;
     const Result result = run(text);
-    CHECK(result.record.status == "done");
+    CHECK(result.record.status == Status::done);
     for (const std::string contact : {"open", "closed"})
       for (const Cell& status : result.column("status", contact)) {
         INFO(stiffness << " " << contact);
@@ -326,7 +326,7 @@ TEST_CASE("a case stops when asked to, and at its budget") {
   Json short_of_time = text;
   short_of_time["budget"] = 1e-3;
   const Result result = run(short_of_time);
-  CHECK(result.record.status == "done");
+  CHECK(result.record.status == Status::done);
   CHECK(result.noted("budget of 0.001 s"));
   CHECK(result.table("stability").rows.size() == 60);
   CHECK_THAT(result.column("reason", "closed").back().text(), Contains("budget"));
@@ -354,7 +354,7 @@ TEST_CASE("a clearance that is closed holds what two stops across each other hol
   round["scene"]["stops"] =
       Json::parse(R"([{"name": "hole", "at": {"x": 1}, "clearance": {"radius": 0.1, "sides": 16}}])");
   const Result a = run(across), b = run(round);
-  REQUIRE(b.record.status == "done");
+  REQUIRE(b.record.status == Status::done);
   const std::vector<Cell> stops = a.column("radius", "closed"), hole = b.column("radius", "closed");
   REQUIRE(stops.size() == 5);
   REQUIRE(hole.size() == 5);

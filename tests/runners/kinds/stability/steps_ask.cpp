@@ -27,7 +27,7 @@ asks::Answered ask(const std::vector<Spring>& springs, const std::function<void(
   for (const Spring& one : springs) {
     CaseRecord& record = results.cases.emplace_back();
     record.id = "c" + std::to_string(one.elements);
-    record.status = "done";
+    record.status = Status::done;
     record.axes = {{"elements", one.elements}};
     LimitRow open, closed;
     open.id = closed.id = record.id;

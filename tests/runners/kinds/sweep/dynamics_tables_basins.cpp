@@ -16,7 +16,7 @@ CaseRecord basin_case(const std::string& mass, double slope, int count, bool int
   CaseRecord record;
   record.id = mass;
   record.axes = {{"mass", mass}, {"elements", 10}};
-  record.status = "done";
+  record.status = Status::done;
   Table cells{"cells", "", named_columns({"x", "y", "class", "period", "attractor", "status", "reason"}), {}};
   NumberTable points = cell_points_type().head();
   for (int j = 0; j < count; ++j)

@@ -138,7 +138,7 @@ TEST_CASE("forcing: the force of a body is a force of the scene, whatever the ki
       "methods": {"mass": "consistent", "contact": "signorini", "time": "newmark"}})");
     study["scene"] = std::move(scene);
     const CaseRecord record = CaseRuns().first_of(study);
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     return record.curve.columns.at(1).get();
   };
   for (const Json& forced : {pushed, turned}) {
@@ -189,7 +189,7 @@ TEST_CASE("forcing: an impact damper whose structure is driven by its force has 
   for (const auto& [pulsation, impacts] : {std::pair(0.925, 4.0), {1.0, 3.0}, {1.05, 2.0}}) {
     CAPTURE(pulsation);
     const CaseRecord record = run_sweep(impact_damper(pulsation));
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     CHECK(of_values(record, "class").front().text() == "periodic");
     CHECK(of_values(record, "period").front().number() == 1.0);
     CHECK(of_values(record, "impacts_per_period").front().number() == impacts);
@@ -200,7 +200,7 @@ TEST_CASE("forcing: forces of bodies in the ratio 3 : 2 repeat together, others 
   Json study = impact_damper(1.05);
   study["scene"]["bodies"]["particle"]["force"] = {{"amplitude", 1e-3}, {"pulsation", 0.7}, {"phase", 0}};
   const CaseRecord record = run_sweep(study);
-  CHECK(record.status == "done");
+  CHECK(record.status == Status::done);
   study["scene"]["bodies"]["particle"]["force"]["pulsation"] = 0.777;
   CHECK_THAT(testing::input_error([&] { opened_sweep(study); }, ""),
              StartsWith("/scene/bodies/particle/force/pulsation: the force on particle does not repeat with the force "

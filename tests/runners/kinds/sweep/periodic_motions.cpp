@@ -74,7 +74,7 @@ class Moved : ScratchFolder, public CaseRuns {
     const std::atomic<bool> stop = false;
     CaseRecord record = run_bifurcation(study(text).cases.front(), registry(), {}, stop);
     INFO(record.reason());
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     return record;
   }
   std::vector<double> strobes(const Json& text) {
@@ -91,7 +91,7 @@ class Moved : ScratchFolder, public CaseRuns {
     text["samples"] = periods;
     const CaseRecord record = first_of(text);
     INFO(record.reason());
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     const Series& tip = record.curve.columns.at(1);
     return {tip.begin() + transient + 1, tip.end()};
   }
@@ -211,7 +211,7 @@ TEST_CASE("basins: bodies begin as they say, files are multiplied, and both axes
     const std::atomic<bool> stop = false;
     const CaseRecord record = run_basins(studies.study(study).cases.front(), studies.registry(), {}, stop);
     INFO(record.reason());
-    CHECK(record.status == "done");
+    CHECK(record.status == Status::done);
     return table_of(record, "cells").rows.size();
   };
   Json given = Json::parse(R"({"type": "assembled", "stiffness": "K.mtx", "mass": "M.mtx", "dofs": "dofs.csv",

@@ -60,7 +60,7 @@ inline CaseRecord make_case(const Method& method, const std::vector<double>& val
   CaseRecord record;
   record.id = id_of(method);
   record.axes = method.axes;
-  record.status = "done";
+  record.status = Status::done;
   Table table{"values",
               "",
               named_columns({"parameter", "start", "class", "period", "impacts_per_period", "symmetric",

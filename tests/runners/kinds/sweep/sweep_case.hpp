@@ -110,7 +110,7 @@ inline std::vector<Cell> of_values(const CaseRecord& record, const std::string& 
 
 /// Every table and number of a record as text that tells results apart which differ in one bit.
 inline std::string bits_of(const CaseRecord& record) {
-  std::string text = record.status + record.reason() + std::to_string(record.steps);
+  std::string text = word(record.status) + record.reason() + std::to_string(record.steps);
   for (const Table& table : record.tables)
     for (const auto& row : table.rows)
       for (const Cell& cell : row) text += csv_cell(cell) + "\n";

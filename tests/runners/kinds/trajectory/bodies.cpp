@@ -54,7 +54,7 @@ TEST_CASE("a beam written as one body runs as the structure, bit for bit") {
   REQUIRE(a.size() == 8);
   REQUIRE(b.size() == 8);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    CHECK(a[i].status == "done");
+    CHECK(a[i].status == Status::done);
     REQUIRE(a[i].measures.size() == b[i].measures.size());
     for (std::size_t k = 0; k < a[i].measures.size(); ++k) {
       const auto& [name, value] = a[i].measures[k];
@@ -71,7 +71,7 @@ TEST_CASE("a rod and a ball run, each mesh by the numbers of its bodies") {
   REQUIRE(records.size() == 8);
   for (const CaseRecord& record : records) {
     INFO(record.reason());
-    CHECK(record.status == "done");
+    CHECK(record.status == Status::done);
     CHECK(measured(record, "impulse[gap]") > 0);
   }
 }
@@ -86,5 +86,5 @@ TEST_CASE("a study of bodies refuses what one of them refuses, by its name") {
   study["mesh"]["elements"] = 4;
   CaseRuns runs;
   for (const CaseRecord& record : runs.of(study))
-    if (record.status == "refused") CHECK_THAT(record.reason(), Catch::StartsWith("body "));
+    if (record.status == Status::refused) CHECK_THAT(record.reason(), Catch::StartsWith("body "));
 }

@@ -52,7 +52,7 @@ TEST_CASE("a clearance has one row, one name, and the resultant of its sides as 
        {Law{R"("signorini")", 0}, Law{R"({"name": "penalty", "stiffness": 1e5})", 1e-5}}) {
     INFO(contact);
     const CaseRecord record = runs.first_of(whirling(contact));
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     const Table& stops = clearance_table(record, "stops");
     const std::size_t name = find_column(stops.columns, "stop").value();
     CHECK(std::count_if(stops.rows.begin(), stops.rows.end(),

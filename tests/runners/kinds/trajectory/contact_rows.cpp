@@ -72,7 +72,7 @@ TEST_CASE("the impacts of a case are rows, and add up to its measures and to tho
   StudyResults results = results_of(tube_study());
   for (CaseRecord& record : results.cases) {
     INFO(axis(record, "time").text());
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     const NumberTable* impacts = find_table(record.numbers, "impacts");
     const Table* stops = find_table(record.tables, "stops");
     REQUIRE((impacts && stops));
@@ -165,7 +165,7 @@ TEST_CASE("a study that compares lists its impacts too, and one without contact 
   CaseRunner runner = find_kind("convergence")->start({study, registry, {}});
   runner.open({}, goes_on);
   const CaseRecord record = runner.run(study.cases.front(), goes_on);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const NumberTable* impacts = find_table(record.numbers, "impacts");
   REQUIRE(impacts);
   // A quarter of a period, then a half each: 0.157, 0.471, 0.785 s.
@@ -196,7 +196,7 @@ TEST_CASE("a friction damper has one row without a side, and what it takes is th
     "step": 1e-4, "duration": 0.05})json");
   const StudyResults results = results_of(study);
   const CaseRecord& record = results.cases.at(0);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const Table* stops = find_table(record.tables, "stops");
   REQUIRE(stops);
   REQUIRE(stops->rows.size() == 2);

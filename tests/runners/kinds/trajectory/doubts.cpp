@@ -40,10 +40,10 @@ const Json rigid = "signorini", soft = {{"name", "penalty"}, {"stiffness", 100}}
 
 TEST_CASE("a step that is longer than the way from stop to stop is told") {
   const CaseRecord fine = CaseRuns().first_of(thrown(0.1, 1e-3, rigid));
-  CHECK(fine.status == "done");
+  CHECK(fine.status == Status::done);
   CHECK(fine.reason().empty());
   const CaseRecord coarse = CaseRuns().first_of(thrown(1e-3, 1e-2, rigid));
-  CHECK(coarse.status == "done");
+  CHECK(coarse.status == Status::done);
   CHECK_THAT(coarse.reason(),
              Contains("a step of 0.01 s takes a point further than the gap, 10 times as far, first at t"));
   // One stop has no gap, nor have two that meet.
@@ -78,7 +78,7 @@ TEST_CASE("a load that no step sees is told, and a case that fails keeps it as a
   study["budget"] = 1e-12;
   study["duration"] = 1000;
   const CaseRecord failed = CaseRuns().first_of(study);
-  CHECK(failed.status == "failed");
+  CHECK(failed.status == Status::failed);
   CHECK_THAT(failed.reason(), Contains("budget") && !Contains("comes and goes"));
   CHECK(std::any_of(failed.notes.begin(), failed.notes.end(),
                     [](const std::string& note) { return note.find("comes and goes") != std::string::npos; }));
@@ -110,7 +110,7 @@ Json cradle(int balls, double gap, double restitution, const Json& law) {
 std::set<std::string> reasons(const Json& study) {
   std::set<std::string> out;
   for (const CaseRecord& record : CaseRuns().of(study)) {
-    CHECK(record.status == "done");
+    CHECK(record.status == Status::done);
     out.insert(record.reason());
   }
   return out;

@@ -43,7 +43,7 @@ CaseRecord run_in(const Json& text, const ScratchFolder& folder) {
 
 Snapshots film_of(const CaseRecord& record) {
   INFO(record.reason());
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const NumberTable* table = find_table(record.numbers, snapshots_name);
   REQUIRE(table);
   const auto found = snapshots_of(*table);

@@ -25,7 +25,7 @@ TEST_CASE("a scheme that declares no work leaves the others to tell whether a sc
   results.columns = {"time", "support.amplitude", "step"};
   const auto add = [&](const char* scheme, double amplitude, std::optional<double> loads) {
     CaseRecord& record = results.cases.emplace_back();
-    record.status = "done";
+    record.status = Status::done;
     record.axes = {{"time", scheme}, {"support.amplitude", amplitude}, {"step", 1e-3}};
     if (loads) record.measures = {{"work_of_damping", 0.0}, {"work_of_loads", *loads}};
   };
@@ -45,7 +45,7 @@ TEST_CASE("a scheme that declares no work leaves the others to tell whether a sc
 TEST_CASE("the ledger of a case closes, and says so where the works are not known") {
   StudyResults results;
   CaseRecord& known = results.cases.emplace_back();
-  known.status = "done";
+  known.status = Status::done;
   // The scheme's own energy rises by 1.25 J: loads 1 − damping 0.5 − scheme 0.2 + stops 0.95. The common one rises by
   // 1.0625 J, of which springs at the stops hold 0.0625 J at the end.
   known.measures = {{"energy_start", 2},         {"energy_end", 3.0625},      {"energy_brought_in", 3},
@@ -53,7 +53,7 @@ TEST_CASE("the ledger of a case closes, and says so where the works are not know
                     {"stored_at_stops", 0.0625}, {"balance_residual", 1e-12}, {"dissipated_by_scheme", 0.2},
                     {"scheme_energy_start", 2},  {"scheme_energy_end", 3.25}};
   CaseRecord& silent = results.cases.emplace_back();
-  silent.status = "done";
+  silent.status = Status::done;
   silent.measures = {{"energy_start", 2}, {"energy_end", 1}};
   const Table ledger = energy_ledger_table(results);
   const TableReader rows(ledger);

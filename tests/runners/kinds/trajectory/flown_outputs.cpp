@@ -68,7 +68,7 @@ TEST_CASE("shocks and spectra of steps that flights leave out are those of every
   study["methods"]["contact"] = GENERATE(Json("signorini"), Json{{"name", "penalty"}, {"stiffness", 1e5}});
   const std::vector<CaseRecord> both = CaseRuns().of(study);
   REQUIRE(both.size() == 2);
-  for (const CaseRecord& record : both) REQUIRE(record.status == "done");
+  for (const CaseRecord& record : both) REQUIRE(record.status == Status::done);
   CHECK(measure(both[1], "steps_visited").value() < measure(both[0], "steps_visited").value());
   const Apart flown = apart(both[0], both[1]);
   // Impacts multiply what two motions differ by, a million times from the first to the last between rigid stops. What

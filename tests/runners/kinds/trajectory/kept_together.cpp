@@ -22,7 +22,7 @@ TEST_CASE("spectra of a point are there where no stop pushes") {
     "outputs": {"spectra": [{"of": "mid", "quantity": "displacement"}], "rate": 100, "segment": 2},
     "observe": ["third_octave_displacement_3.15Hz[mid]"]})json");
   const auto look = [](const CaseRecord& record) {
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     const NumberTable* spectra = find_table(record.numbers, "spectra");
     REQUIRE(spectra);
     double variance = 0;
@@ -61,7 +61,7 @@ TEST_CASE("a film, parts of a window, wear and a clearance go together") {
     "observe": ["wear_power[plate]"]})json");
   const CaseRecord record = CaseRuns().first_of(study);
   INFO(record.reason());
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   CHECK(measure(record, "wear_power[plate]").value() > 0);
   for (const char* name : {"snapshots", "orbits", "spectra", "shocks", "impacts"}) {
     INFO(name);

@@ -28,8 +28,8 @@ TEST_CASE("a trajectory that leaves out steps has the measures, the curve and th
   const std::vector<CaseRecord> records = CaseRuns().of(shaken_study());
   REQUIRE(records.size() == 2);
   const CaseRecord &every = records[0], &flown = records[1];
-  REQUIRE(every.status == "done");
-  REQUIRE(flown.status == "done");
+  REQUIRE(every.status == Status::done);
+  REQUIRE(flown.status == Status::done);
   CHECK(axis(flown, "march").text() == "flights");
   CHECK(measure(every, "steps_visited").value() == Approx(50000).margin(1));
   CHECK(measure(flown, "steps_visited").value() < 10000);
@@ -81,12 +81,12 @@ TEST_CASE("an integration by flights that cannot fly is refused with the reason,
   Json text = shaken_study();
   text["scene"]["load"] = "0.1*sin(3*t)";
   const std::vector<CaseRecord> records = shaken.of(text);
-  CHECK(records[0].status == "done");
-  CHECK(records[1].status == "refused");
+  CHECK(records[0].status == Status::done);
+  CHECK(records[1].status == Status::refused);
   CHECK_THAT(records[1].reason(), Catch::Contains("the load depends on time") && Catch::Contains("march every step"));
   text["march"] = "auto";
   const CaseRecord chosen = shaken.of(text).front();
-  CHECK(chosen.status == "done");
+  CHECK(chosen.status == Status::done);
   CHECK_THAT(chosen.notes.back(), Catch::Contains("every step is marched") || Catch::Contains("Delassus"));
   text["march"] = "fly";
   CHECK_THAT(shaken.refusal(text), Catch::Contains("/march") && Catch::Contains("every-step"));

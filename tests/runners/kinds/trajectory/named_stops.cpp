@@ -33,8 +33,8 @@ TEST_CASE("names stand in the last column of impacts and stops, the rest is that
   const CaseRecord named = runs.first_of(beam_between(Json::parse(
       R"([{"name": "plate", "at": {"x": 0.75}, "lower": -0.01, "upper": 0.01},
           {"name": "end", "at": {"x": 1.5}, "lower": -0.01, "upper": 0.01}])")));
-  REQUIRE(plain.status == "done");
-  REQUIRE(named.status == "done");
+  REQUIRE(plain.status == Status::done);
+  REQUIRE(named.status == Status::done);
   const auto value = [](const CaseRecord& record, const std::string& name) {
     for (const auto& [key, number] : record.measures)
       if (key == name) return number;

@@ -65,7 +65,7 @@ TEST_CASE("the curve of a point at the tip is that of the tip, and points of one
   study["scene"]["points"] = Json::parse(R"([{"name": "top", "at": {"x": 1.5}}, {"name": "half", "at": {"x": 0.75}},
                                              {"name": "root", "at": {"x": 0}}])");
   const CaseRecord record = CaseRuns().first_of(study);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   CHECK(curve_of(record, "top_displacement") == curve_of(record, "tip_displacement"));
   CHECK(curve_of(record, "top_velocity") == curve_of(record, "tip_velocity"));
   for (const double u : curve_of(record, "root_displacement")) CHECK(u == 0);
@@ -85,7 +85,7 @@ TEST_CASE("a point of a beam shows its bending moment and shear force, which bal
     "mesh": {"elements": 4}, "methods": {"mass": "consistent", "contact": "none", "time": "newmark"},
     "step": 1e-3, "duration": 0.1, "samples": 10})json");
   const CaseRecord record = CaseRuns().first_of(study);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   // F(L − x), and −F.
   for (const double moment : curve_of(record, "half_moment")) CHECK(moment == Approx(3.0).epsilon(1e-7));
   for (const double shear : curve_of(record, "half_shear")) CHECK(shear == Approx(-3.0).epsilon(1e-7));
@@ -114,7 +114,7 @@ TEST_CASE("a point counted from the supports leaves out what they move by") {
     "mesh": {"elements": 6}, "methods": {"mass": "consistent", "contact": "none", "time": "newmark"},
     "step": 1e-3, "duration": 0.5, "samples": 50})json");
   const CaseRecord record = CaseRuns().first_of(study);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const std::vector<double>&t = curve_of(record, "t"), &u = curve_of(record, "absolute_displacement"),
         &w = curve_of(record, "relative_displacement");
   for (std::size_t i = 0; i < t.size(); ++i) CHECK(u[i] - w[i] == Approx(0.01 * std::sin(30 * t[i])).margin(1e-12));
@@ -125,7 +125,7 @@ TEST_CASE("a shock of a study is a row, and its impact points to it") {
   study["outputs"] = Json::parse(R"({"shocks": {"force_above": 0, "rest": 0.001}, "classes": 4})");
   study["observe"] = "shock_rate[wall]";
   const CaseRecord record = CaseRuns().first_of(study);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const NumberTable* shocks = find_table(record.numbers, "shocks");
   REQUIRE(shocks);
   REQUIRE(shocks->rows() == 2);
@@ -154,7 +154,7 @@ TEST_CASE("a free swing past a stop that it does not reach: mean, deviation and 
   study["step"] = period / 4000;
   study["window"] = {{"from", 0}, {"to", 4 * period}, {"parts", 8}};
   const CaseRecord record = CaseRuns().first_of(study);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const auto of = [&](const char* name) { return measure(record, std::string(name) + "[wall]").value(); };
   // Of the scheme's own sine, whose amplitude and period are off by (ωh)² at most.
   CHECK(of("window_displacement_mean") == Approx(0).margin(1e-5 * amplitude));
@@ -179,7 +179,7 @@ TEST_CASE("what a window of the whole run says of its stops adds up to what the 
   Json study = tube();
   study["outputs"] = Json::parse(R"({"shocks": {"force_above": 0.1, "rest": 1e-4}})");
   const CaseRecord record = CaseRuns().first_of(study);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const double duration = 0.1;
   for (const std::string stop : {"[plate]", "[end]"}) {
     const auto of = [&](const char* name) { return measure(record, name + stop).value(); };
@@ -229,7 +229,7 @@ TEST_CASE("observers of stops leave the motion as it is") {
   study.erase("window");
   study["scene"]["stops"][0].erase("tangent");
   const CaseRecord lean = CaseRuns().first_of(study);
-  REQUIRE(full.status == "done");
+  REQUIRE(full.status == Status::done);
   for (const auto& [name, value] : lean.measures)
     // Energies are read at other steps, and summed up in another order.
     if (name != "microseconds_per_step")
@@ -291,7 +291,7 @@ TEST_CASE("a force that holds a mass on its stop has the spectrum of the load, a
   study["step"] = 1.0 / 25600;  // a hundred to a sample
   study["outputs"] = Json::parse(R"({"rate": 256, "segment": 0.25, "spectra": [{"of": "wall", "quantity": "force"}]})");
   const CaseRecord record = CaseRuns().first_of(study);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const NumberTable* spectra = find_table(record.numbers, "spectra");
   REQUIRE(spectra);
   double sum = 0;

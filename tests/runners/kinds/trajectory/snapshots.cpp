@@ -40,7 +40,7 @@ double tip(const Snapshots& shots, std::size_t k) {
 
 TEST_CASE("a snapshot's last place is the tip of the curve at that time, to half a count") {
   const CaseRecord record = CaseRuns().first_of(beam_study());
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   const Snapshots shots = snapshots(record);
   REQUIRE(shots.t.size() == 41);
   CHECK(shots.t.front() == 0);

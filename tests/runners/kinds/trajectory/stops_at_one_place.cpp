@@ -81,7 +81,7 @@ Json carriage(double mass, double speed, const std::vector<Spring>& springs, dou
 }
 
 double value(const CaseRecord& record, const std::string& name) {
-  INFO(name << " of " << record.status << " " << record.reason());
+  INFO(name << " of " << word(record.status) << " " << record.reason());
   const auto found = measure(record, name);
   REQUIRE(found.has_value());
   return *found;
@@ -102,7 +102,7 @@ TEST_CASE("an end stop of two stages: travel, forces and impulses of the closed 
       R"([{"name": "newmark-dumont-paoli", "beta": 0.25}, {"name": "moreau-jean", "theta": 0.5}, "newmark"])");
   for (const CaseRecord& record : CaseRuns().of(study)) {
     INFO(record.id);
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     // The forces are means over steps of 2e-5 s, whose angle is 2e-3 rad or less.
     CHECK(value(record, "deepest_penetration") == Approx(exact.depth - 0.1).epsilon(1e-4));
     CHECK(value(record, "peak_force[s0]") == Approx(exact.force[0]).epsilon(1e-3));
@@ -132,7 +132,7 @@ TEST_CASE("springs at one place with gaps of their own are one spring in pieces"
     const double duration = 0.02 / speed + 1.05 * exact.time.front(), step = duration / 20000;
     const CaseRecord record = CaseRuns().first_of(carriage(mass, speed, springs, step, 20000 * step));
     INFO(scene << ": " << record.reason());
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     CHECK(value(record, "deepest_penetration") == Approx(exact.depth - springs.front().gap).epsilon(1e-4));
     for (std::size_t i = 0; i < springs.size(); ++i) {
       const std::string of = fmt::format("[s{}]", i);
@@ -162,7 +162,7 @@ TEST_CASE("a rod held with interference between two springs, in contact and as o
   for (const Json& one : {study, apart(study)})
     for (const CaseRecord& record : CaseRuns().of(one)) {
       INFO(record.id);
-      REQUIRE(record.status == "done");
+      REQUIRE(record.status == Status::done);
       CHECK(value(record, "largest_tip_displacement") == Approx(0.02 / omega).epsilon(1e-5));  // 4.36436e-5 m
       // The angle of a step is 2.3e-3: after 0.05 s its error, ω³h²t/12, is 1e-5 of a radian.
       CHECK(value(record, "tip_displacement_end") == Approx(-3.47686e-5).epsilon(1e-4));
@@ -176,7 +176,7 @@ TEST_CASE("a rod held with interference between two springs, in contact and as o
   CHECK(most == Approx(2.381266e-4).epsilon(1e-6));
   for (const Json& one : {study, apart(study)})
     for (const CaseRecord& record : CaseRuns().of(one)) {
-      REQUIRE(record.status == "done");
+      REQUIRE(record.status == Status::done);
       CHECK(value(record, "largest_tip_displacement") == Approx(most).epsilon(1e-4));
     }
 }
@@ -186,14 +186,14 @@ TEST_CASE("rigid laws refuse interference and equal bounds case by case, and com
   study["methods"]["contact"] = Json::parse(R"(["signorini", {"name": "penalty", "stiffness": 1e5}])");
   std::vector<CaseRecord> records = CaseRuns().of(study);
   REQUIRE(records.size() == 2);
-  CHECK(records[0].status == "refused");
+  CHECK(records[0].status == Status::refused);
   CHECK_THAT(records[0].reason(), Contains("rigid law knows only the sum of their forces") && names_cause_and_remedy());
-  CHECK(records[1].status == "done");
+  CHECK(records[1].status == Status::done);
   study["scene"]["stops"] = Json::parse(R"([{"name": "grip", "at": {"x": 0}, "lower": 1e-4, "upper": -1e-4}])");
   records = CaseRuns().of(study);
-  CHECK(records[0].status == "refused");
+  CHECK(records[0].status == Status::refused);
   CHECK_THAT(records[0].reason(), Contains("Expected lower ≤ upper, or a compliant law that lets points pass both"));
-  CHECK(records[1].status == "done");
+  CHECK(records[1].status == Status::done);
   study["methods"]["contact"] = "signorini";
   CHECK_THAT(CaseRuns().refusal(study), Contains("/scene/stops/0/lower: stop grip: lower 0.0001 m > upper -0.0001 m"));
 }
@@ -203,7 +203,7 @@ TEST_CASE("the stop of two that a rigid law never meets is told, and has no cont
   study["methods"]["contact"] = "signorini";
   study["methods"]["time"] = {{"name", "moreau-jean"}, {"restitution", 0.5}};
   const CaseRecord record = CaseRuns().first_of(study);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   CHECK(value(record, "impulse[s0]") == Approx(1.5).epsilon(1e-9));
   CHECK(value(record, "impulse[s1]") == 0);
   CHECK(record.reason().empty());

@@ -21,7 +21,7 @@ StudyResults three_steps(const std::string& stop) {
   for (int k = 0; k < 3; ++k) {
     CaseRecord& record = results.cases.emplace_back();
     record.id = "c" + std::to_string(k);
-    record.status = "done";
+    record.status = Status::done;
     record.axes = {{"time", "newmark"}, {"step", steps[k]}};
     record.measures = {{"impulse", impulses[k]}};
     if (!stop.empty()) record.measures.emplace_back("rms_force[" + stop + "]", forces[k]);

@@ -18,7 +18,7 @@ StudyResults two_forces() {
   const auto add = [&](const char* scheme, double step, double value) {
     CaseRecord& record = results.cases.emplace_back();
     record.id = scheme + std::to_string(results.cases.size());
-    record.status = "done";
+    record.status = Status::done;
     record.axes = {{"time", scheme}, {"step", step}};
     record.measures = {{"impulse", 3.0}, {"rms_force[bar]", value}};
   };
@@ -83,9 +83,8 @@ TEST_CASE("small powers are said in thousandths of a watt, and stand in the tabl
   const Table table = uncertain(results);
   CHECK(told(table, "unit").text() == "W");
   CHECK(told(table, "low").number().value() == Approx(9.8e-4).epsilon(1e-12));
-  CHECK(
-      told(table, "sentence").text() ==
-      "Wear power at bar: 0.98 to 1.12 mW; methods differ by 0.10; the step leaves 0.02.");
+  CHECK(told(table, "sentence").text() ==
+        "Wear power at bar: 0.98 to 1.12 mW; methods differ by 0.10; the step leaves 0.02.");
 }
 
 TEST_CASE("an interval of what is never below 0 begins at 0") {

@@ -26,7 +26,7 @@ Json bouncing_study() {
 
 TEST_CASE("window means: over the whole run they are what the run adds up, divided by its length") {
   const CaseRecord record = CaseRuns().first_of(bouncing_study());
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   REQUIRE(measure(record, "impacts").value() > 20);
   const auto times_length = [&](const char* name) { return 64 * measure(record, name).value(); };
   // Sums of parts against one sum: round-off of some thousand terms.
@@ -47,7 +47,7 @@ TEST_CASE("window means: a free oscillation has the root mean square of a sine, 
   text["duration"] = 16 * period;
   text["window"] = {{"from", 0}, {"to", 16 * period}, {"parts", 16}};
   const CaseRecord record = CaseRuns().first_of(text);
-  REQUIRE(record.status == "done");
+  REQUIRE(record.status == Status::done);
   // The scheme's period is longer by (2π/1000)²/12 = 3.3e-6 of it.
   CHECK(measure(record, "window_tip_rms").value() == Approx(2 / std::sqrt(2.0)).epsilon(1e-4));
   CHECK(measure(record, "confidence.window_tip_rms").value() < 1e-4);
@@ -80,7 +80,7 @@ TEST_CASE("window means: without parts there are none, and a run that ends befor
   CHECK(measure(record, "window_force"));
   text["budget"] = 1e-9;
   const CaseRecord stopped = CaseRuns().first_of(text);
-  CHECK(stopped.status == "failed");
+  CHECK(stopped.status == Status::failed);
   CHECK_FALSE(measure(stopped, "window_force"));
 }
 
@@ -107,7 +107,7 @@ Json bar_study() {
 TEST_CASE("the mean force over a window is the impulse that came in it, whatever the stages of the scheme") {
   for (const CaseRecord& record : CaseRuns().of(bar_study())) {
     INFO(axis(record, "time").text() << " " << axis(record, "time.velocity").text());
-    REQUIRE(record.status == "done");
+    REQUIRE(record.status == Status::done);
     // One stop, so that all efforts have one sign. An instant at an end of the window may fall in or out: a step of
     // 300.
     CHECK(measure(record, "contact_force_mean").value() * 1.5 ==

@@ -21,7 +21,7 @@ StudyResults rounds() {
     CaseRecord record;
     record.id = mass;
     record.axes = {{"mass", mass}, {"step", 1e-5}};
-    record.status = "done";
+    record.status = Status::done;
     NumberTable orbits = orbits_type().head();
     orbits.words = {{"stop", {"plate", "grid"}}};
     for (int i = 0; i < 2 * dots; ++i)

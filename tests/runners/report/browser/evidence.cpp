@@ -28,7 +28,7 @@ void check_errors(const StudyResults& results, const browser::Json& page) {
   REQUIRE(steps.at("views") == browser::Json({"tip-linf", "energy", "impact-times"}));
   CHECK_FALSE(has_figure(page, "error-elements"));  // one mesh: nothing to draw against elements
   const auto unfinished =
-      std::count_if(results.cases.begin(), results.cases.end(), [](const auto& r) { return r.status != "done"; });
+      std::count_if(results.cases.begin(), results.cases.end(), [](const auto& r) { return r.status != Status::done; });
   size_t drawn = 0;
   for (size_t v = 0; v < 3; ++v) {
     drawn += items_of(steps, v, is_curve).size();
@@ -108,8 +108,8 @@ void check_work(const StudyResults& results, const browser::Json& page) {
     CHECK(says(notes, "✕ diverged"));
   }
   // Bars from the fastest to the slowest repeat: two ends and a gap per point.
-  const auto bars =
-      items_of(work, 0, [](const browser::Json& s) { return s.at("mark") == "line" && s.value("symbol", "") == "bar"; });
+  const auto bars = items_of(
+      work, 0, [](const browser::Json& s) { return s.at("mark") == "line" && s.value("symbol", "") == "bar"; });
   CHECK(bars.size() == 3 * items_of(work, 0, is_curve).size());
   // The front is what no other point beats, and its points are the larger ones.
   std::vector<std::pair<double, double>> all;

@@ -107,7 +107,7 @@ TEST_CASE(
   CHECK(by_map.at(2) == 0);
   CHECK(read.at(4).at(2) == results.cases.size());
   const auto refused = std::count_if(results.cases.begin(), results.cases.end(),
-                                     [](const CaseRecord& record) { return record.status == "refused"; });
+                                     [](const CaseRecord& record) { return record.status == Status::refused; });
   CHECK(read.at(5) == refused);
   CHECK(said.at("read").at("values").at(0) == results.cases.front().id);
   CHECK(said.at("looked for").at("values").at(0) == browser::Json({0, 5, results.cases.size()}));

@@ -60,7 +60,7 @@ void check_trajectory(const Ran& ran, const browser::Json& page) {
   size_t samples = 0, drawn = 0;
   for (const CaseRecord& record : ran.results.cases) {
     if (!record.curve.columns.empty()) samples += record.curve.columns[0].size();
-    if (record.status != "done") continue;
+    if (record.status != Status::done) continue;
     if (const auto ratio = ricochet::measure(record, "energy_left")) {
       ratios.insert(*ratio);
       if (*ratio != 1) changes.insert(std::abs(*ratio - 1));

@@ -28,7 +28,7 @@ StudyResults stiffnesses() {
     record.id = contact + std::to_string(stiffness.value_or(0));
     record.axes = {{"mass", "consistent"}, {"contact", contact}, {"step", 1e-5}};
     if (stiffness) record.axes.emplace_back("contact.stiffness", *stiffness);
-    record.status = "done";
+    record.status = Status::done;
     record.measures = {{"energy_brought_in", 1}, {"energy_end", ratio}, {"energy_left", ratio}};
     results.cases.push_back(record);
   };
@@ -174,12 +174,12 @@ void check_unfinished(const StudyResults& results, const browser::Json& page) {
           CHECK_THAT(series.at("data")[0].at("text").get<std::string>(),
                      Catch::Matchers::StartsWith("diverged at t = "));
         }
-  CHECK(marks == view.with_status("diverged").size());
+  CHECK(marks == view.with_status(Status::diverged).size());
   for (const browser::Json& series : series_of(figure(page, "final-energy-step"), 0, is_mark)) {
     gutter += series.at("data").size();
     CHECK(series.at("yAxis") == 1);
   }
-  CHECK(gutter == view.with_status("diverged").size() + view.with_status("refused").size());
+  CHECK(gutter == view.with_status(Status::diverged).size() + view.with_status(Status::refused).size());
 }
 
 }  // namespace
