@@ -200,79 +200,103 @@ namespace {
 using namespace free_motion;
 
 // The first thing that is wrong with one stage's levels and measures on a motion at constant speed.
-std::string wrong_stage(const Stage& stage, const Uniform& motion, const std::string& name) {
-  constexpr double tolerance = 1e-6;  // levels written as decimals
-  std::string wrong;
-  const auto near = [&](double a, double b) { return std::abs(a - b) <= tolerance * std::max(1.0, std::abs(b)); };
-  const auto stands = [&](const Levels& levels, const Combination& c, const char* what) {
-    if (levels.empty() || !wrong.empty()) return;
+class MotionCheck {
+ public:
+  MotionCheck(const Uniform& motion, const std::string& name) : motion_(motion), name_(name) {}
+
+  std::string wrong(const Stage& stage) {
+    if (stage.impact) impact(*stage.impact);
+    for (const auto& one : stage.compliance)
+      if (one) compliance(*one, stage);
+    if (stage.work) work(stage);
+    return wrong_;
+  }
+
+ private:
+  static bool near(double a, double b) {
+    constexpr double tolerance = 1e-6;  // levels written as decimals
+    return std::abs(a - b) <= tolerance * std::max(1.0, std::abs(b));
+  }
+
+  void stands(const Levels& levels, const Combination& c, const char* what) {
+    if (levels.empty() || !wrong_.empty()) return;
     double weight = 0, moment = 0;
     for (const Level& level : levels) {
       weight += level.weight;
       moment += level.weight * level.at;
     }
-    if (!near(weight, motion.weight(c)))
-      wrong = fmt::format("{}: {} weights its levels to {:g}, what it bounds weights positions to {:g}", name, what,
-                          weight, motion.weight(c));
-    else if (!near(moment, motion.moment(c)))
-      wrong = fmt::format("{}: {} stands at t + {:g}h on a motion at constant speed, what it bounds at t + {:g}h", name,
-                          what, moment, motion.moment(c));
-  };
-  const auto is_rate = [&](const Combination& c, const char* what) {
-    if (wrong.empty() && !near(motion.rate(c), 1))
-      wrong = fmt::format("{}: {} is {:g} m/s on a motion at 1 m/s", name, what, motion.rate(c));
-  };
-  const auto moves = [&](const Levels& levels, const Combination& rate, const char* what) {
+    if (!near(weight, motion_.weight(c)))
+      wrong_ = fmt::format("{}: {} weights its levels to {:g}, what it bounds weights positions to {:g}", name_, what,
+                           weight, motion_.weight(c));
+    else if (!near(moment, motion_.moment(c)))
+      wrong_ = fmt::format("{}: {} stands at t + {:g}h on a motion at constant speed, what it bounds at t + {:g}h",
+                           name_, what, moment, motion_.moment(c));
+  }
+
+  void is_rate(const Combination& c, const char* what) {
+    if (wrong_.empty() && !near(motion_.rate(c), 1))
+      wrong_ = fmt::format("{}: {} is {:g} m/s on a motion at 1 m/s", name_, what, motion_.rate(c));
+  }
+
+  void moves(const Levels& levels, const Combination& rate, const char* what) {
     double weight = 0;
     for (const Level& level : levels) weight += level.weight;
-    if (wrong.empty() && !levels.empty() && !near(weight, motion.rate(rate)))
-      wrong = fmt::format("{}: {} weights its levels to {:g}, what it bounds is {:g} m/s on a motion at 1 m/s", name,
-                          what, weight, motion.rate(rate));
-  };
-  if (const auto& impact = stage.impact) {
-    if (const auto& gate = impact->gate) {
-      moves(impact->bound, impact->value, "impact bound");
+    if (wrong_.empty() && !levels.empty() && !near(weight, motion_.rate(rate)))
+      wrong_ = fmt::format("{}: {} weights its levels to {:g}, what it bounds is {:g} m/s on a motion at 1 m/s", name_,
+                           what, weight, motion_.rate(rate));
+  }
+
+  // What it measures of a mass at rest is its position.
+  void is_position(const Combination& c, const char* what) {
+    if (wrong_.empty() && !near(motion_.weight(c), 1))
+      wrong_ = fmt::format("{}: the {} measure of a mass at rest is {:g} times its position", name_, what,
+                           motion_.weight(c));
+  }
+
+  void impact(const ImpactMeasure& impact) {
+    if (const auto& gate = impact.gate) {
+      moves(impact.bound, impact.value, "impact bound");
       stands(gate->predictor_bound, gate->predictor, "gate predictor bound");
       moves(gate->approach_bound, gate->approach, "gate approach bound");
       is_rate(gate->approach, "gate approach");
-      is_rate(impact->value, "impact measure");
-    } else if (impact->restores > 0) {
-      stands(impact->bound, impact->value, "bound of the work given back");
+      is_rate(impact.value, "impact measure");
+    } else if (impact.restores > 0) {
+      stands(impact.bound, impact.value, "bound of the work given back");
     } else {
-      stands(impact->bound, impact->value, "impact bound");
-      if (wrong.empty() && !near(motion.weight(impact->value), 1))
-        wrong = fmt::format("{}: the impact measure of a mass at rest is {:g} times its position", name,
-                            motion.weight(impact->value));
+      stands(impact.bound, impact.value, "impact bound");
+      is_position(impact.value, "impact");
     }
   }
-  for (const auto& compliance : stage.compliance) {
-    if (!compliance) continue;
-    stands(compliance->bound, compliance->displacement, "compliance bound");
-    moves(compliance->rate_bound, compliance->rate, "compliance rate bound");
-    if (wrong.empty() && !near(motion.weight(compliance->displacement), 1))
-      wrong = fmt::format("{}: the compliance measure of a mass at rest is {:g} times its position", name,
-                          motion.weight(compliance->displacement));
-    if (!compliance->rate.slots.empty() || compliance->rate.z != 0) is_rate(compliance->rate, "compliance rate");
-    if (!compliance->before) continue;
-    stands(compliance->before_bound, *compliance->before, "compliance bound before the step");
-    const double moved = motion.moment(compliance->displacement) - motion.moment(*compliance->before);
-    if (wrong.empty() && stage.work && !near(moved, motion.moment(stage.work->displacement)))
-      wrong = fmt::format("{}: the displacement before the step is {:g} steps behind, the test displacement is {:g}",
-                          name, moved, motion.moment(stage.work->displacement));
+
+  void compliance(const ComplianceMeasure& measure, const Stage& stage) {
+    stands(measure.bound, measure.displacement, "compliance bound");
+    moves(measure.rate_bound, measure.rate, "compliance rate bound");
+    is_position(measure.displacement, "compliance");
+    if (!measure.rate.slots.empty() || measure.rate.z != 0) is_rate(measure.rate, "compliance rate");
+    if (!measure.before) return;
+    stands(measure.before_bound, *measure.before, "compliance bound before the step");
+    const double moved = motion_.moment(measure.displacement) - motion_.moment(*measure.before);
+    if (wrong_.empty() && stage.work && !near(moved, motion_.moment(stage.work->displacement)))
+      wrong_ = fmt::format("{}: the displacement before the step is {:g} steps behind, the test displacement is {:g}",
+                           name_, moved, motion_.moment(stage.work->displacement));
   }
-  if (stage.work) {
+
+  void work(const Stage& stage) {
     stands(stage.work->support, stage.work->displacement, "work support");
     // Without C nothing is damped.
     bool damped = stage.matrix.C != 0;
     for (const OperatorWeights& row : stage.history) damped = damped || row.C != 0;
     const bool empty = stage.work->rate.z == 0 && stage.work->rate.slots.empty();
     if (damped || !empty) is_rate(stage.work->rate, "work rate");
-    if (wrong.empty() && !is_zero(motion.weight(stage.work->displacement)))
-      wrong = fmt::format("{}: the work displacement of a mass at rest is {:g} times its position", name,
-                          motion.weight(stage.work->displacement));
+    if (wrong_.empty() && !is_zero(motion_.weight(stage.work->displacement)))
+      wrong_ = fmt::format("{}: the work displacement of a mass at rest is {:g} times its position", name_,
+                           motion_.weight(stage.work->displacement));
   }
-  return wrong;
-}
+
+  const Uniform& motion_;
+  const std::string& name_;
+  std::string wrong_;
+};
 
 }  // namespace
 
@@ -296,7 +320,7 @@ std::string inconsistent_motion(const StepPlan& plan) {
     motion.begin();
     for (std::size_t k = 0; k < plan.stages.size(); ++k) {
       motion.measure(plan.stages[k]);
-      if (std::string wrong = wrong_stage(plan.stages[k], motion, fmt::format("stage {}", k + 1)); !wrong.empty())
+      if (std::string wrong = MotionCheck(motion, fmt::format("stage {}", k + 1)).wrong(plan.stages[k]); !wrong.empty())
         return wrong;
       motion.pass(plan.stages[k]);
     }

@@ -61,6 +61,55 @@ double friction_weight(const StageEffort& normal) {
   return std::accumulate(normal.weights.begin(), normal.weights.end(), 0.0);
 }
 
+namespace {
+
+// The factor by which the efforts of a point that sticks come nearer to what they must be in each step, below 0 where
+// they alternate.
+double root_of_held(const DerivedPlan& derived, const StageEfforts& start, const StageEfforts& stages) {
+  // Efforts that are off by less than this are right.
+  constexpr double right = 1e-12;
+  constexpr int most_steps = 400;
+  RubbedMass held(derived, 0, 1, start, stages);
+  std::vector<double> off, signs;
+  const auto hold = [&](double free, double by) {
+    const double p = by != 0 ? -free / by : 0.0;
+    if (by != 0) signs.push_back(p + 1);
+    return p;
+  };
+  // A start that knows no friction disturbs them.
+  held.pass(true, [](double, double) { return 0.0; });
+  for (int n = 0; n < most_steps; ++n) {
+    signs.clear();
+    held.pass(false, hold);
+    double most = 0;
+    for (const double one : signs)
+      if (std::abs(one) > std::abs(most)) most = one;
+    off.push_back(most);
+    if (std::abs(most) < right) break;
+  }
+  // The last steps whose efforts are known better than round-off.
+  std::size_t last = off.size();
+  while (last > 0 && std::abs(off[last - 1]) < right) --last;
+  if (last < 4) return 0;
+  const double first = off[last / 2], end = off[last - 1];
+  const double size = std::pow(std::abs(end / first), 1.0 / static_cast<double>(last - 1 - last / 2));
+  return off[last - 1] * off[last - 2] < 0 ? -size : size;
+}
+
+// By how much a mass of 1 kg slows that slides against 1 N, m/s².
+double slowed(const DerivedPlan& derived, const StageEfforts& start, const StageEfforts& stages) {
+  RubbedMass slides(derived, 1, 0, start, stages);
+  const auto push = [](double, double) { return -1.0; };
+  slides.pass(true, push);
+  constexpr int settling_steps = 200, steps = 8;
+  for (int n = 0; n < settling_steps; ++n) slides.pass(false, push);
+  const double before = slides.velocity();
+  for (int n = 0; n < steps; ++n) slides.pass(false, push);
+  return (before - slides.velocity()) / (steps * derived.h);
+}
+
+}  // namespace
+
 FrictionFacts friction_facts(const DerivedPlan& derived, const std::optional<Evaluation>& evaluation) {
   const StepPlan& plan = derived.plan;
   FrictionFacts facts;
@@ -88,47 +137,12 @@ FrictionFacts friction_facts(const DerivedPlan& derived, const std::optional<Eva
     facts.why_none = fmt::format("its stage {} gives momentum at contact and has no rate of its own", k + 1);
     return facts;
   }
-  // Efforts that are off by less than this are right.
-  constexpr double right = 1e-12;
-  constexpr int most_steps = 400;
-  RubbedMass held(derived, 0, 1, start, stages);
-  std::vector<double> off, signs;
-  const auto hold = [&](double free, double by) {
-    const double p = by != 0 ? -free / by : 0.0;
-    if (by != 0) signs.push_back(p + 1);
-    return p;
-  };
-  // A start that knows no friction disturbs them.
-  held.pass(true, [](double, double) { return 0.0; });
-  for (int n = 0; n < most_steps; ++n) {
-    signs.clear();
-    held.pass(false, hold);
-    double most = 0;
-    for (const double one : signs)
-      if (std::abs(one) > std::abs(most)) most = one;
-    off.push_back(most);
-    if (std::abs(most) < right) break;
-  }
-  // The last steps whose efforts are known better than round-off.
-  std::size_t last = off.size();
-  while (last > 0 && std::abs(off[last - 1]) < right) --last;
-  if (last >= 4) {
-    const double first = off[last / 2], end = off[last - 1];
-    const double size = std::pow(std::abs(end / first), 1.0 / static_cast<double>(last - 1 - last / 2));
-    facts.held_root = off[last - 1] * off[last - 2] < 0 ? -size : size;
-  }
+  facts.held_root = root_of_held(derived, start, stages);
   if (std::abs(facts.held_root) >= 1 - 1e-9) {
     facts.rings = fmt::format("it {} the effort of a point that sticks (by the factor {:.4g} a step)",
                               facts.held_root < 0 ? "alternates" : "does not find", facts.held_root);
   }
-  RubbedMass slides(derived, 1, 0, start, stages);
-  const auto push = [](double, double) { return -1.0; };
-  slides.pass(true, push);
-  constexpr int settling_steps = 200;
-  for (int n = 0; n < settling_steps; ++n) slides.pass(false, push);
-  const double before = slides.velocity();
-  for (int n = 0; n < 8; ++n) slides.pass(false, push);
-  if (!is_zero((before - slides.velocity()) / (8 * derived.h) - 1))
+  if (!is_zero(slowed(derived, start, stages) - 1))
     facts.why_none = "a constant friction of 1 N does not slow a mass of 1 kg by 1 m/s²";
   return facts;
 }

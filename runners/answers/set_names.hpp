@@ -41,15 +41,26 @@ class SetNames {
     std::string owner = {};           // of a parameter: the one method among several that has it
   };
   using Picked = std::vector<char>;
+  /// One level of each of some attributes, and whom it picks.
+  struct Rule {
+    std::vector<std::size_t> attributes;
+    std::vector<std::string> levels;
+    Members members;
+  };
 
   void add(std::string column, bool whole, std::vector<std::string> levels);
   std::optional<std::string> words(const Attribute& attribute, const std::vector<std::string>& levels) const;
   std::optional<std::string> end_of_number(const Attribute& attribute, const std::vector<std::string>& levels) const;
   /// The cheapest conjunction that picks exactly the set, and its cost.
   std::optional<std::pair<double, std::string>> rule(const Picked& chosen) const;
+  bool has(const Rule& rule, std::size_t method) const;
+  /// Of one or two attributes, those that pick none but the set.
+  std::vector<Rule> rules_within(const Picked& chosen) const;
   std::optional<std::string> cover(const Picked& chosen, std::size_t count, std::size_t most_rules) const;
   std::optional<std::string> whole_levels(const Picked& chosen, std::size_t count) const;
   std::optional<std::string> nearest(const Picked& chosen, std::size_t count, double least_worth) const;
+  /// All levels that the set has, of the two choices that leave the fewest others in.
+  std::optional<std::string> all_levels(const Picked& chosen, std::size_t count) const;
   /// By the levels of the choice that tells most: "most with the lumped mass (15 of 19); Newmark and WBZ with …".
   std::optional<std::string> by_levels(const Picked& chosen) const;
   /// The choice of methods with the most levels, as whole as it is; none of fewer than `levels`.

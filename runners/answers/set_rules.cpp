@@ -19,23 +19,21 @@ bool names_a_method(const std::string& column) {
 
 }  // namespace
 
-std::optional<std::string> SetNames::cover(const Picked& chosen, std::size_t count, std::size_t most_rules) const {
-  struct Part {
-    std::vector<std::size_t> attributes;
-    std::vector<std::string> levels;
-    Members members;
-  };
-  std::vector<Part> parts;
-  const auto consider = [&](Part part) {
+bool SetNames::has(const Rule& rule, std::size_t method) const {
+  for (std::size_t k = 0; k < rule.attributes.size(); ++k)
+    if (attributes_[rule.attributes[k]].levels[method] != rule.levels[k]) return false;
+  return true;
+}
+
+std::vector<SetNames::Rule> SetNames::rules_within(const Picked& chosen) const {
+  std::vector<Rule> rules;
+  const auto consider = [&](Rule part) {
     for (std::size_t m = 0; m < methods_.size(); ++m) {
-      bool in = true;
-      for (std::size_t k = 0; k < part.attributes.size(); ++k)
-        in = in && attributes_[part.attributes[k]].levels[m] == part.levels[k];
-      if (!in) continue;
+      if (!has(part, m)) continue;
       if (!chosen[m]) return;
       part.members.push_back(m);
     }
-    if (!part.members.empty()) parts.push_back(std::move(part));
+    if (!part.members.empty()) rules.push_back(std::move(part));
   };
   for (std::size_t a = 0; a < attributes_.size(); ++a)
     for (const std::string& level : attributes_[a].all) {
@@ -47,33 +45,46 @@ std::optional<std::string> SetNames::cover(const Picked& chosen, std::size_t cou
           if (!other.empty()) consider({{a, b}, {level, other}, {}});
       }
     }
-  Picked left = chosen;
-  std::size_t remaining = count;
-  std::vector<const Part*> taken;
-  constexpr std::size_t most_parts = 24;
+  return rules;
+}
+
+namespace {
+
+/// Rules whose union is the set, each the one that adds most; none where that takes too many.
+template <class Rule>
+std::optional<std::vector<const Rule*>> union_of(const std::vector<Rule>& rules, std::vector<char> left,
+                                                 std::size_t remaining) {
+  std::vector<const Rule*> taken;
+  constexpr std::size_t most_rules = 24;
   while (remaining > 0) {
-    const Part* best = nullptr;
+    const Rule* best = nullptr;
     std::size_t gain = 0;
-    for (const Part& part : parts) {
+    for (const Rule& part : rules) {
       const auto new_ones = static_cast<std::size_t>(
           std::count_if(part.members.begin(), part.members.end(), [&](std::size_t m) { return left[m] != 0; }));
       if (new_ones > gain || (new_ones == gain && best && gain > 0 && part.attributes.size() < best->attributes.size()))
         best = &part, gain = new_ones;
     }
-    if (!best || gain == 0 || taken.size() == most_parts) return std::nullopt;
+    if (!best || gain == 0 || taken.size() == most_rules) return std::nullopt;
     taken.push_back(best);
     for (const std::size_t m : best->members) {
       remaining -= left[m] != 0 ? 1 : 0;
       left[m] = 0;
     }
   }
-  // Rules that differ in one level alone are said together.
-  struct Merged {
-    std::vector<std::size_t> attributes;
-    std::vector<std::vector<std::string>> levels;  // of each; of two attributes one has a single level
-  };
+  return taken;
+}
+
+struct Merged {
+  std::vector<std::size_t> attributes;
+  std::vector<std::vector<std::string>> levels;  // of each; of two attributes one has a single level
+};
+
+/// Rules that differ in one level alone are said together.
+template <class Rule>
+std::vector<Merged> merged_rules(const std::vector<const Rule*>& rules) {
   std::vector<Merged> merged;
-  for (const Part* part : taken) {
+  for (const Rule* part : rules) {
     bool joined = false;
     for (Merged& one : merged) {
       if (one.attributes != part->attributes) continue;
@@ -89,6 +100,16 @@ std::optional<std::string> SetNames::cover(const Picked& chosen, std::size_t cou
     Merged& one = merged.emplace_back(Merged{part->attributes, {}});
     for (const std::string& level : part->levels) one.levels.push_back({level});
   }
+  return merged;
+}
+
+}  // namespace
+
+std::optional<std::string> SetNames::cover(const Picked& chosen, std::size_t count, std::size_t most_rules) const {
+  const std::vector<Rule> rules = rules_within(chosen);
+  const auto taken = union_of(rules, chosen, count);
+  if (!taken) return std::nullopt;
+  const std::vector<Merged> merged = merged_rules(*taken);
   if (merged.size() > most_rules) return std::nullopt;
   std::vector<std::string> said;
   for (const Merged& one : merged) {
@@ -136,36 +157,37 @@ std::optional<std::string> SetNames::whole_levels(const Picked& chosen, std::siz
   return text;
 }
 
+namespace {
+
+constexpr double pure = 0.8;  // share of what a rule picks that is of the set
+
+}  // namespace
+
 std::optional<std::string> SetNames::nearest(const Picked& chosen, std::size_t count, double least_worth) const {
   std::optional<std::pair<double, std::string>> best;
-  constexpr double enough_hit = 0.6, pure = 0.8, per_part = 0.01;
-  const auto consider = [&](const std::vector<std::size_t>& parts, const std::vector<std::string>& levels) {
+  constexpr double enough_hit = 0.6, per_part = 0.01;
+  const auto consider = [&](const Rule& rule) {
     std::size_t got = 0, hit = 0;
     for (std::size_t m = 0; m < methods_.size(); ++m) {
-      bool in = true;
-      for (std::size_t k = 0; k < parts.size(); ++k) in = in && attributes_[parts[k]].levels[m] == levels[k];
-      if (!in) continue;
+      if (!has(rule, m)) continue;
       ++got;
       hit += chosen[m] != 0 ? 1 : 0;
     }
     const double h = static_cast<double>(hit), c = static_cast<double>(count), g = static_cast<double>(got);
     if (h < enough_hit * c || h < pure * g) return;
-    const double worth = 2 * h / (g + c) - per_part * static_cast<double>(parts.size());
+    const double worth = 2 * h / (g + c) - per_part * static_cast<double>(rule.levels.size());
     if (worth < least_worth || (best && worth <= best->first)) return;
     std::string text;
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-      const auto said = words(attributes_[parts[k]], {levels[k]});
+    for (std::size_t k = 0; k < rule.levels.size(); ++k) {
+      const auto said = words(attributes_[rule.attributes[k]], {rule.levels[k]});
       if (!said) return;
       text += (k == 0 ? "" : " with ") + *said;
     }
     constexpr std::size_t named = 2;
     if (hit == got && count - hit <= named) {
       std::vector<std::string> others = {text};
-      for (std::size_t m = 0; m < methods_.size(); ++m) {
-        bool in = true;
-        for (std::size_t k = 0; k < parts.size(); ++k) in = in && attributes_[parts[k]].levels[m] == levels[k];
-        if (chosen[m] && !in) others.push_back(label(m));
-      }
+      for (std::size_t m = 0; m < methods_.size(); ++m)
+        if (chosen[m] && !has(rule, m)) others.push_back(label(m));
       best = {worth, and_names(others)};
       return;
     }
@@ -176,45 +198,47 @@ std::optional<std::string> SetNames::nearest(const Picked& chosen, std::size_t c
   for (std::size_t a = 0; a < attributes_.size(); ++a)
     for (const std::string& level : attributes_[a].all) {
       if (level.empty()) continue;
-      consider({a}, {level});
+      consider({{a}, {level}, {}});
       for (std::size_t b = a + 1; b < attributes_.size(); ++b)
         for (const std::string& other : attributes_[b].all)
-          if (!other.empty()) consider({a, b}, {level, other});
+          if (!other.empty()) consider({{a, b}, {level, other}, {}});
     }
-  if (!best && least_worth == 0) {
-    // All levels that the set has, of the two choices that leave the fewest others in.
-    const auto inside = [&](const Attribute& attribute) {
-      std::vector<std::string> met;
-      for (const std::string& level : attribute.all)
-        for (std::size_t m = 0; m < methods_.size(); ++m)
-          if (chosen[m] && attribute.levels[m] == level) {
-            met.push_back(level);
-            break;
-          }
-      return met;
-    };
-    constexpr std::size_t most_levels = 7;
-    std::size_t fewest = methods_.size();
-    for (const Attribute& a : attributes_)
-      for (const Attribute& b : attributes_) {
-        if (axis_role(a.column) == axis_role(b.column)) continue;
-        const std::vector<std::string> in_a = inside(a), in_b = inside(b);
-        if (in_a.size() == a.all.size() || in_b.size() == b.all.size() || in_a.size() + in_b.size() > most_levels)
-          continue;
-        std::size_t got = 0;
-        for (std::size_t m = 0; m < methods_.size(); ++m)
-          got += std::count(in_a.begin(), in_a.end(), a.levels[m]) > 0 &&
-                         std::count(in_b.begin(), in_b.end(), b.levels[m]) > 0
-                     ? 1
-                     : 0;
-        const auto first = words(a, in_a), second = words(b, in_b);
-        if (got >= fewest || !first || !second || static_cast<double>(count) < pure * static_cast<double>(got))
-          continue;
-        fewest = got;
-        best = {0, fmt::format("mostly {} with {} ({} of {})", *first, *second, count, got)};
-      }
-  }
+  if (!best && least_worth == 0) return all_levels(chosen, count);
   return best ? std::optional(best->second) : std::nullopt;
+}
+
+std::optional<std::string> SetNames::all_levels(const Picked& chosen, std::size_t count) const {
+  const auto inside = [&](const Attribute& attribute) {
+    std::vector<std::string> met;
+    for (const std::string& level : attribute.all)
+      for (std::size_t m = 0; m < methods_.size(); ++m)
+        if (chosen[m] && attribute.levels[m] == level) {
+          met.push_back(level);
+          break;
+        }
+    return met;
+  };
+  constexpr std::size_t most_levels = 7;
+  std::size_t fewest = methods_.size();
+  std::optional<std::string> best;
+  for (const Attribute& a : attributes_)
+    for (const Attribute& b : attributes_) {
+      if (axis_role(a.column) == axis_role(b.column)) continue;
+      const std::vector<std::string> in_a = inside(a), in_b = inside(b);
+      if (in_a.size() == a.all.size() || in_b.size() == b.all.size() || in_a.size() + in_b.size() > most_levels)
+        continue;
+      std::size_t got = 0;
+      for (std::size_t m = 0; m < methods_.size(); ++m)
+        got += std::count(in_a.begin(), in_a.end(), a.levels[m]) > 0 &&
+                       std::count(in_b.begin(), in_b.end(), b.levels[m]) > 0
+                   ? 1
+                   : 0;
+      const auto first = words(a, in_a), second = words(b, in_b);
+      if (got >= fewest || !first || !second || static_cast<double>(count) < pure * static_cast<double>(got)) continue;
+      fewest = got;
+      best = fmt::format("mostly {} with {} ({} of {})", *first, *second, count, got);
+    }
+  return best;
 }
 
 std::optional<std::string> SetNames::by_levels(const Picked& chosen) const {

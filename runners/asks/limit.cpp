@@ -34,79 +34,102 @@ Verdict verdict_of(const Line& line, const Bounds& bounds) {
   return beyond ? Verdict::no : all ? Verdict::yes : Verdict::open;
 }
 
+using Marked = std::vector<const Line*>;
+
+/// "below 3 mm and above 1 mm", and both as the figure draws them.
+std::pair<std::string, std::vector<double>> range_of(const Lines& lines, const Bounds& bounds) {
+  std::vector<double> at;
+  std::string text;
+  if (bounds.below) {
+    at.push_back(*bounds.below * lines.words.factor);
+    text = "below " + lines.number(*bounds.below);
+  }
+  if (bounds.above) {
+    at.push_back(*bounds.above * lines.words.factor);
+    text += (text.empty() ? "" : " and ") + ("above " + lines.number(*bounds.above));
+  }
+  return {text, at};
+}
+
+/// The one with the least room to a bound, or the farthest beyond.
+const Line& nearest(const Marked& list, const Bounds& bounds) {
+  const auto margin = [&](const Line* line) {
+    const double v = line->estimate().value;
+    return bounds.below ? *bounds.below - v : v - *bounds.above;
+  };
+  return **std::min_element(list.begin(), list.end(),
+                            [&](const Line* a, const Line* b) { return margin(a) < margin(b); });
+}
+
+std::string kept_sentence(const Lines& lines, const Line& worst, const Bounds& bounds, const std::string& range) {
+  const bool plural = is_plural(lines.words.words);
+  const char* at_most = lines.all.size() == 1 ? "" : bounds.below ? "at most " : "at least ";
+  return in_thirty_words(fmt::format("Yes: {} {} {}; {} {}{}", lines.words.words, plural ? "stay" : "stays", range,
+                                     plural ? "they are" : "it is", at_most, lines.text(worst.estimate())),
+                         {{worst.place()}});
+}
+
+std::string broken_sentence(const Lines& lines, const Marked& no, const Line& worst, const std::string& range) {
+  const bool plural = is_plural(lines.words.words), some = no.size() < lines.all.size();
+  const std::string where = set_name(lines, no);
+  const std::string in_these = !some           ? ""
+                               : where.empty() ? fmt::format(" in {} of {}", no.size(), lines.all.size())
+                                               : " " + where;
+  return in_thirty_words(fmt::format("No: {} {} not {}{}; {} {}", lines.words.words, plural ? "are" : "is", range,
+                                     in_these, plural ? "they are" : "it is", lines.text(worst.estimate())),
+                         {{no.size() == 1 ? "" : worst.place()}});
+}
+
+/// Reason and sentence.
+void say_open(Answered& out, const Lines& lines, const Marked& open, const std::string& range) {
+  const bool plural = is_plural(lines.words.words);
+  const auto known = std::find_if(open.begin(), open.end(), [](const Line* line) { return line->known(); });
+  const Line& first = known == open.end() ? *open.front() : **known;
+  out.reason = first.known() ? (first.estimate().unknown().empty() ? "the limit lies within its interval"
+                                                                   : first.estimate().unknown())
+                             : first.point.none;
+  const std::string which =
+      open.size() < lines.all.size() ? fmt::format(" in {} of {}", open.size(), lines.all.size()) : "";
+  const std::string found =
+      first.known() ? (plural ? "they are " : "it is ") + lines.text(first.estimate()) : "no value";
+  out.sentence = in_thirty_words(
+      fmt::format("Open{}: whether {} {} {} is not told", which, lines.words.words, plural ? "stay" : "stays", range),
+      {{"; " + found + first.place(), "; " + found}, {": " + out.reason, ": " + short_reason(out.reason)}});
+}
+
 Answered answer_limit(const Ask& ask, const Evidence& evidence) {
   const Lines lines = lines_of(ask, evidence, ask.subject(), true);
   Answered out = begin_answer(lines);
   const Bounds bounds{ask.real("below"), ask.real("above")};
-  std::vector<Verdict> verdicts;
-  std::vector<const Line*> yes, no, open;
+  Marked yes, no, open;
   for (const Line& line : lines.all) {
     VerdictRow row = lines.row(line);
     const Verdict verdict = verdict_of(line, bounds);
     row.verdict = word(verdict);
     if (verdict == Verdict::open && row.reason.empty()) row.reason = "the limit lies within its interval";
     out.rows.push_back(std::move(row));
-    verdicts.push_back(verdict);
     (verdict == Verdict::yes ? yes : verdict == Verdict::no ? no : open).push_back(&line);
   }
-  std::vector<double> at;
-  std::string range;
-  if (bounds.below) at.push_back(*bounds.below * lines.words.factor), range = "below " + lines.number(*bounds.below);
-  if (bounds.above)
-    at.push_back(*bounds.above * lines.words.factor),
-        range += (range.empty() ? "" : " and ") + ("above " + lines.number(*bounds.above));
+  const auto [range, at] = range_of(lines, bounds);
   out.figure = bars(lines, at);
   VerdictRow limit;
   limit.level = "the limit";
   limit.unit = lines.words.unit;
-  for (const double one : at) limit.value = one, out.rows.push_back(limit);
+  for (const double one : at) {
+    limit.value = one;
+    out.rows.push_back(limit);
+  }
   // A limit that is broken anywhere is broken.
   out.passes = !no.empty() ? Verdict::no : open.empty() && !yes.empty() ? Verdict::yes : Verdict::open;
   out.verdict = word(*out.passes);
-  const std::string name = lines.words.words;
-  const bool plural = is_plural(name);
-  const auto margin = [&](const Line* line) {
-    const double v = line->estimate().value;
-    return bounds.below ? *bounds.below - v : v - *bounds.above;
-  };
-  const auto nearest = [&](const std::vector<const Line*>& list) {
-    return **std::min_element(list.begin(), list.end(),
-                              [&](const Line* a, const Line* b) { return margin(a) < margin(b); });
-  };
-  if (*out.passes == Verdict::yes) {
-    const Line worst = nearest(yes);
-    const char* at_most = lines.all.size() == 1 ? "" : bounds.below ? "at most " : "at least ";
-    out.sentence = in_thirty_words(fmt::format("Yes: {} {} {}; {} {}{}", name, plural ? "stay" : "stays", range,
-                                               plural ? "they are" : "it is", at_most, lines.text(worst.estimate())),
-                                   {{worst.place()}});
-  } else if (*out.passes == Verdict::no) {
-    const Line worst = nearest(no);
-    const std::string where = set_name(lines, no);
-    const bool some = no.size() < lines.all.size();
-    const std::string in_these = !some           ? ""
-                                 : where.empty() ? fmt::format(" in {} of {}", no.size(), lines.all.size())
-                                                 : " " + where;
-    out.sentence = in_thirty_words(fmt::format("No: {} {} not {}{}; {} {}", name, plural ? "are" : "is", range,
-                                               in_these, plural ? "they are" : "it is", lines.text(worst.estimate())),
-                                   {{no.size() == 1 ? "" : worst.place()}});
-  } else if (auto without = open_without_values(lines, out)) {
+  if (*out.passes == Verdict::yes)
+    out.sentence = kept_sentence(lines, nearest(yes, bounds), bounds, range);
+  else if (*out.passes == Verdict::no)
+    out.sentence = broken_sentence(lines, no, nearest(no, bounds), range);
+  else if (auto without = open_without_values(lines, out))
     return *without;
-  } else {
-    std::vector<const Line*> known;
-    for (const Line* line : open)
-      if (line->known()) known.push_back(line);
-    const Line* first = known.empty() ? open.front() : known.front();
-    out.reason = first->known() ? (first->estimate().unknown().empty() ? "the limit lies within its interval"
-                                                                       : first->estimate().unknown())
-                                : first->point.none;
-    const std::string which =
-        open.size() < lines.all.size() ? fmt::format(" in {} of {}", open.size(), lines.all.size()) : "";
-    const std::string found =
-        first->known() ? (plural ? "they are " : "it is ") + lines.text(first->estimate()) : "no value";
-    out.sentence = in_thirty_words(
-        fmt::format("Open{}: whether {} {} {} is not told", which, name, plural ? "stay" : "stays", range),
-        {{"; " + found + first->place(), "; " + found}, {": " + out.reason, ": " + short_reason(out.reason)}});
-  }
+  else
+    say_open(out, lines, open, range);
   return out;
 }
 

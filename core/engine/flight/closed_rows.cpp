@@ -119,6 +119,18 @@ ClosedRows::Vector ClosedRows::vector_of(int stage, const Combination& c) const 
   return vector;
 }
 
+// The row of a spring takes all slots.
+void ClosedRows::add_to_law(Point& point, const Row& row, double factor) const {
+  Row& law = point.law;
+  if (law.x.empty()) {
+    law.x.assign(static_cast<std::size_t>(slots_ * modes_), 0.0);
+    law.p.assign(row.p.size(), 0.0);
+  }
+  for (std::size_t i = 0; i < row.x.size(); ++i) law.x[row.first + i] += factor * row.x[i];
+  for (std::size_t i = 0; i < 3; ++i) law.e[i] += factor * row.e[i];
+  for (std::size_t i = 0; i < row.p.size(); ++i) law.p[i] += factor * row.p[i];
+}
+
 void ClosedRows::add_points(const Program& program) {
   const LaneSpec& lane = program.lanes.front();
   const double omega = program.problem->support.pulsation;
@@ -150,31 +162,17 @@ void ClosedRows::add_points(const Program& program) {
         point.law = point.depth;
         point.target = point.stop;
       } else {
-        const auto add = [&](const Row& row, double factor) {
-          Row scaled = row;
-          for (double& x : scaled.x) x *= factor;
-          // Rows of a law take all slots.
-          std::vector<double> all(static_cast<std::size_t>(slots_ * modes_), 0.0);
-          std::copy(scaled.x.begin(), scaled.x.end(), all.begin() + static_cast<std::ptrdiff_t>(scaled.first));
-          if (point.law.x.empty()) {
-            point.law.x.assign(all.size(), 0.0);
-            point.law.p.assign(scaled.p.size(), 0.0);
-          }
-          for (std::size_t i = 0; i < all.size(); ++i) point.law.x[i] += all[i];
-          for (std::size_t i = 0; i < 3; ++i) point.law.e[i] += factor * scaled.e[i];
-          for (std::size_t i = 0; i < scaled.p.size(); ++i) point.law.p[i] += factor * scaled.p[i];
-        };
-        add(point.depth, slopes.stiffness);
+        add_to_law(point, point.depth, slopes.stiffness);
         point.target = (slopes.stiffness + slopes.before) * point.stop;
         if (damps) {
           RowVectorXd turned = RowVectorXd::Zero(drives_);
           if (drive_.harmonic) turned.head(2) << -omega * stage.rate_phase.across, omega * stage.rate_phase.along;
           point.rate = row_of(at, stage.compliance->rate, h, turned);
-          add(point.rate, slopes.viscosity);
+          add_to_law(point, point.rate, slopes.viscosity);
         }
         if (means) {
           point.before = row_of(at, *stage.compliance->before, h, harmonic(stage.before_phase, drive_));
-          add(point.before, slopes.before);
+          add_to_law(point, point.before, slopes.before);
         }
       }
       const auto row = static_cast<Index>(points.size());

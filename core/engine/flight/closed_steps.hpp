@@ -93,6 +93,7 @@ class ClosedRows {
              const Eigen::RowVectorXd& drive) const;
   Vector vector_of(int stage, const Combination& c) const;
   void add_points(const Program& program);
+  void add_to_law(Point& point, const Row& row, double factor) const;
   void add_balances(const Program& program);
   void add_reach(FlightSet& free);
   void find_memory(const Program& program);

@@ -117,6 +117,30 @@ MatrixXd SetSteps::combine(const Combination& c, const MatrixXd& now, const Matr
   return sum;
 }
 
+// Of the closed points of a stage, rows of `measured` from `first` on: where the law closes what they lack.
+MatrixXd SetSteps::closing_efforts(std::size_t k, const std::vector<Index>& closed, const MatrixXd& measured,
+                                   Index first, SetStep& step) const {
+  const Stage& stage = stages_[k];
+  const double reach = program_->stages[k].reach;
+  MatrixXd effort = MatrixXd::Zero(layout_.points, measured.cols());
+  const auto count = static_cast<Index>(closed.size());
+  MatrixXd system(count, count), lacks(count, measured.cols());
+  for (Index a = 0; a < count; ++a) {
+    const Index i = closed[static_cast<std::size_t>(a)];
+    const bool upper = step.side[static_cast<std::size_t>(first + i)] > 0;
+    lacks.row(a) = -measured.row(i);
+    lacks(a, size_ + (upper ? layout_.upper(static_cast<int>(i)) : layout_.lower(static_cast<int>(i)))) += 1;
+    for (Index b = 0; b < count; ++b) system(a, b) = reach * stage.delassus(i, closed[static_cast<std::size_t>(b)]);
+    if (stage.stiffness > 0) system(a, a) += 1 / stage.stiffness;
+  }
+  const MatrixXd found = DenseLu(system).solve(lacks);
+  for (Index a = 0; a < count; ++a) effort.row(closed[static_cast<std::size_t>(a)]) = found.row(a);
+  const MatrixXd inverted = inverse(system);
+  for (Index a = 0; a < count; ++a)
+    step.give[static_cast<std::size_t>(first + closed[static_cast<std::size_t>(a)])] = 1 / inverted(a, a);
+  return effort;
+}
+
 SetStep SetSteps::make(const ContactSet& set) const {
   const Program& program = *program_;
   const Index total = size_ + layout_.size(), points = layout_.points;
@@ -151,24 +175,8 @@ SetStep SetSteps::make(const ContactSet& set) const {
           active.push_back(one.point);
           step.side[static_cast<std::size_t>(reading * points + one.point)] = one.upper ? 1 : -1;
         }
-      const auto count = static_cast<Index>(active.size());
-      if (count > 0) {
-        MatrixXd system(count, count), lacks(count, total);
-        for (Index a = 0; a < count; ++a) {
-          const Index i = active[static_cast<std::size_t>(a)];
-          const bool upper = step.side[static_cast<std::size_t>(reading * points + i)] > 0;
-          lacks.row(a) = -y.row(i);
-          lacks(a, size_ + (upper ? layout_.upper(static_cast<int>(i)) : layout_.lower(static_cast<int>(i)))) += 1;
-          for (Index b = 0; b < count; ++b)
-            system(a, b) = folded.reach * stage.delassus(i, active[static_cast<std::size_t>(b)]);
-          if (stage.stiffness > 0) system(a, a) += 1 / stage.stiffness;
-        }
-        const MatrixXd found = DenseLu(system).solve(lacks);
-        for (Index a = 0; a < count; ++a) effort.row(active[static_cast<std::size_t>(a)]) = found.row(a);
-        const MatrixXd inverted = inverse(system);
-        for (Index a = 0; a < count; ++a)
-          step.give[static_cast<std::size_t>(reading * points + active[static_cast<std::size_t>(a)])] =
-              1 / inverted(a, a);
+      if (!active.empty()) {
+        effort = closing_efforts(k, active, y, reading * points, step);
         y += folded.reach * stage.delassus * effort;
         z += folded.effort[0] * stage.response * effort;
       }

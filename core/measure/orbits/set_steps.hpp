@@ -99,6 +99,8 @@ class SetSteps {
     double stiffness = 0;  // κ; 0: rigid
   };
   SetStep make(const ContactSet& set) const;
+  Eigen::MatrixXd closing_efforts(std::size_t k, const std::vector<Eigen::Index>& closed,
+                                  const Eigen::MatrixXd& measured, Eigen::Index first, SetStep& step) const;
   Eigen::MatrixXd combine(const Combination& c, const Eigen::MatrixXd& now, const Eigen::MatrixXd& z) const;
 
   const Program* program_;

@@ -168,35 +168,70 @@ SparseMatrix blocks(const VectorXd& diagonal, const MatrixXd& block) {
   return out;
 }
 
+/// Of all other modes: what stands beside the given ones.
+struct Residual {
+  NamedRows rows;
+  SymmetricModes modes;
+  MatrixXd mass;
+};
+
+Residual read_residual(const ModalFiles& files, const NamedRows& shapes) {
+  Residual out;
+  if (files.residual) {
+    out.rows = read_symmetric(*files.residual, shapes);
+    out.modes = positive_part(out.rows, files.residual->name, "m/N");
+    out.mass = MatrixXd::Zero(out.modes.values.size(), out.modes.values.size());
+  }
+  if (!files.residual_mass) return out;
+  if (!files.residual)
+    throw FileError(files.residual_mass->name + " weighs a residual that is not given; expected residual too");
+  const NamedRows mass = read_symmetric(*files.residual_mass, shapes);
+  const std::vector<std::string>& names = out.rows.names;
+  MatrixXd ordered(out.rows.values.rows(), out.rows.values.rows());
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t j = 0; j < names.size(); ++j) {
+      const Index row = mass.find(names[i]), column = mass.find(names[j]);
+      if (row < 0 || column < 0 || mass.names.size() != names.size())
+        throw FileError(fmt::format("{} has other points than {}", files.residual_mass->name, files.residual->name));
+      ordered(static_cast<Index>(i), static_cast<Index>(j)) = mass.values(row, column);
+    }
+  positive_part({names, ordered}, files.residual_mass->name, "kg");
+  out.mass = out.modes.vectors.transpose() * ordered * out.modes.vectors;
+  return out;
+}
+
+/// Supports, and what they move and carry; the static modes by point.
+NamedRows add_supports(AssembledStructure& out, const ModalFiles& files, const NamedRows& shapes, Index modes) {
+  NamedRows moved;
+  if (files.static_modes) {
+    moved = read_rows(*files.static_modes);
+    out.supports = value_columns(*files.static_modes);
+    for (const std::string& name : moved.names)
+      if (shapes.find(name) < 0)
+        throw FileError(fmt::format("{}: no point \"{}\" in the shapes{}", files.static_modes->name, shortened(name),
+                                    nearest_text(name, shapes.names)));
+  }
+  const auto supports = static_cast<Index>(out.supports.size());
+  out.static_modes = out.support_loads = MatrixXd::Zero(out.dofs(), supports);
+  for (Index j = 0; j < supports; ++j) {
+    const std::string& name = out.supports[static_cast<std::size_t>(j)];
+    const Index row = shapes.find(name);
+    if (row < 0)
+      throw FileError(fmt::format("{}: no row of the support \"{}\", its participation in kg{}", files.shapes.name,
+                                  shortened(name), nearest_text(name, shapes.names)));
+    out.support_loads.col(j).head(modes) = shapes.values.row(row).transpose();
+  }
+  return moved;
+}
+
 }  // namespace
 
 AssembledStructure modal_structure(const ModalFiles& files, std::vector<double>& ratios) {
   const std::vector<Mode> modes = read_modes(files.modes);
   const NamedRows shapes = read_shapes(files.shapes, modes, files.modes.name);
   const auto count = static_cast<Index>(modes.size());
-  NamedRows residual, moved;
-  SymmetricModes beside;
-  MatrixXd heavy;
-  if (files.residual) {
-    residual = read_symmetric(*files.residual, shapes);
-    beside = positive_part(residual, files.residual->name, "m/N");
-    heavy = MatrixXd::Zero(beside.values.size(), beside.values.size());
-  }
-  if (files.residual_mass) {
-    if (!files.residual)
-      throw FileError(files.residual_mass->name + " weighs a residual that is not given; expected residual too");
-    const NamedRows mass = read_symmetric(*files.residual_mass, shapes);
-    MatrixXd ordered(residual.values.rows(), residual.values.rows());
-    for (std::size_t i = 0; i < residual.names.size(); ++i)
-      for (std::size_t j = 0; j < residual.names.size(); ++j) {
-        const Index row = mass.find(residual.names[i]), column = mass.find(residual.names[j]);
-        if (row < 0 || column < 0 || mass.names.size() != residual.names.size())
-          throw FileError(fmt::format("{} has other points than {}", files.residual_mass->name, files.residual->name));
-        ordered(static_cast<Index>(i), static_cast<Index>(j)) = mass.values(row, column);
-      }
-    positive_part({residual.names, ordered}, files.residual_mass->name, "kg");
-    heavy = beside.vectors.transpose() * ordered * beside.vectors;
-  }
+  const Residual residual = read_residual(files, shapes);
+  const SymmetricModes& beside = residual.modes;
   AssembledStructure out;
   out.stiffness_name = files.modes.name;
   out.mass_name = files.modes.name;
@@ -216,7 +251,7 @@ AssembledStructure modal_structure(const ModalFiles& files, std::vector<double>&
     out.notes.push_back(fmt::format("{} mode{} gain{} energy from a damping ratio below 0", negative,
                                     negative == 1 ? "" : "s", negative == 1 ? "s" : ""));
   out.stiffness = blocks(stiff, MatrixXd(beside.values.cwiseInverse().asDiagonal()));
-  out.mass = blocks(mass, heavy);
+  out.mass = blocks(mass, residual.mass);
   for (Index l = 0; l < beside.values.size(); ++l) out.modes->attached.push_back(static_cast<int>(count + l));
   for (int k = 0; k < out.stiffness.rows(); ++k) {
     const int number = k < count ? modes[static_cast<std::size_t>(k)].number : k + 1;
@@ -225,24 +260,8 @@ AssembledStructure modal_structure(const ModalFiles& files, std::vector<double>&
   out.where.resize(static_cast<std::size_t>(out.dofs()));
   for (int k = 0; k < out.dofs(); ++k)
     out.where[static_cast<std::size_t>(out.names[static_cast<std::size_t>(k)].dof) - 1].free = k;
-  if (files.static_modes) {
-    moved = read_rows(*files.static_modes);
-    out.supports = value_columns(*files.static_modes);
-    for (const std::string& name : moved.names)
-      if (shapes.find(name) < 0)
-        throw FileError(fmt::format("{}: no point \"{}\" in the shapes{}", files.static_modes->name, shortened(name),
-                                    nearest_text(name, shapes.names)));
-  }
+  const NamedRows moved = add_supports(out, files, shapes, count);
   const auto supports = static_cast<Index>(out.supports.size());
-  out.static_modes = out.support_loads = MatrixXd::Zero(out.dofs(), supports);
-  for (Index j = 0; j < supports; ++j) {
-    const std::string& name = out.supports[static_cast<std::size_t>(j)];
-    const Index row = shapes.find(name);
-    if (row < 0)
-      throw FileError(fmt::format("{}: no row of the support \"{}\", its participation in kg{}", files.shapes.name,
-                                  shortened(name), nearest_text(name, shapes.names)));
-    out.support_loads.col(j).head(count) = shapes.values.row(row).transpose();
-  }
   for (std::size_t i = 0; i < shapes.names.size(); ++i) {
     const std::string& name = shapes.names[i];
     if (std::find(out.supports.begin(), out.supports.end(), name) != out.supports.end()) continue;
@@ -250,7 +269,7 @@ AssembledStructure modal_structure(const ModalFiles& files, std::vector<double>&
     for (Index k = 0; k < count; ++k)
       if (const double value = shapes.values(static_cast<Index>(i), k); value != 0)
         row.free.emplace_back(static_cast<int>(k), value);
-    if (const Index at = residual.find(name); at >= 0)
+    if (const Index at = residual.rows.find(name); at >= 0)
       for (Index l = 0; l < beside.values.size(); ++l)
         if (beside.vectors(at, l) != 0) row.free.emplace_back(static_cast<int>(count + l), beside.vectors(at, l));
     const Index at = moved.find(name);

@@ -222,6 +222,27 @@ std::filesystem::path csv_file(const std::filesystem::path& folder, const std::s
   return beside / name;
 }
 
+/// What is asked for lies on the branch, and the case has kept states of it.
+KeptStarts starts_of(const CaseRecord& record, const PointRequest& asked, const std::vector<BranchRow>& rows) {
+  const double arc = *asked.arc, first = rows.front().arc.value_or(0), last = rows.back().arc.value_or(0);
+  if (!(arc >= first && arc <= last))
+    throw PointRefused(fmt::format("--arc {}: the branch {} goes from {} to {} m", csv_number(arc), asked.branch,
+                                   csv_number(first), csv_number(last)));
+  KeptStarts kept = kept_starts(record, asked.branch, arc);
+  if (!kept.at)
+    throw PointRefused(fmt::format("the case {} keeps no states of the branch {}: run the study again with --fresh",
+                                   record.id, asked.branch));
+  return kept;
+}
+
+void keep_film(const SnapshotTaker& film, const PointRequest& asked, const CaseRecord& record, std::ostream& out) {
+  Snapshots shots = film.finish();
+  shots.of = fmt::format("{} at an arc of {} m", asked.branch, csv_number(*asked.arc));
+  keep_numbers(asked.folder, record.id, table_of(shots));
+  out << fmt::format("its film is kept beside the case: {} instants; `ricochet report {}` shows it\n", shots.t.size(),
+                     asked.folder.string());
+}
+
 }  // namespace
 
 int solve_branch_point(const StudyResults& results, const PointRequest& asked, std::ostream& out) {
@@ -232,15 +253,7 @@ int solve_branch_point(const StudyResults& results, const PointRequest& asked, s
   const double arc = *asked.arc;
   const CaseRecord& record = find_case(results, asked.case_id);
   const std::vector<BranchRow> rows = branch_named(record, asked.branch);
-  const double first = rows.front().arc.value_or(0), last = rows.back().arc.value_or(0);
-  if (!(arc >= first && arc <= last))
-    throw PointRefused(fmt::format("--arc {}: the branch {} goes from {} to {} m", csv_number(arc), asked.branch,
-                                   csv_number(first), csv_number(last)));
-  const KeptStarts kept = kept_starts(record, asked.branch, arc);
-  if (!kept.at)
-    throw PointRefused(fmt::format("the case {} keeps no states of the branch {}: run the study again with --fresh",
-                                   record.id, asked.branch));
-
+  const KeptStarts kept = starts_of(record, asked, rows);
   const StoredStudy stored(results, asked.plugins);
   const StudyCase& study_case = stored.find(record.id);
   const ContinuationPlan plan = continuation_plan(study_case.settings);
@@ -287,13 +300,7 @@ int solve_branch_point(const StudyResults& results, const PointRequest& asked, s
   const std::filesystem::path file = csv_file(asked.folder, record.id, asked);
   write_file(file, writer.csv());
   out << "\nits period, step by step: " << file.string() << "\n";
-  if (film.taken()) {
-    Snapshots shots = film.finish();
-    shots.of = fmt::format("{} at an arc of {} m", asked.branch, csv_number(arc));
-    keep_numbers(asked.folder, record.id, table_of(shots));
-    out << fmt::format("its film is kept beside the case: {} instants; `ricochet report {}` shows it\n", shots.t.size(),
-                       asked.folder.string());
-  }
+  if (film.taken()) keep_film(film, asked, record, out);
   return 0;
 }
 
