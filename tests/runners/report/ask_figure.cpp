@@ -41,6 +41,8 @@ struct Drawn {
   std::vector<Line> boxes;                      ///< corners
 };
 
+// Matches look into the text, which must outlive them.
+std::vector<std::smatch> all_of(std::string&& text, const char* pattern) = delete;
 std::vector<std::smatch> all_of(const std::string& text, const char* pattern) {
   const std::regex expression(pattern);
   std::vector<std::smatch> out;
@@ -511,9 +513,9 @@ TEST_CASE("no two of thirty-two series have the same sign", "[report][asks]") {
   Json figure = {{"form", "curves"}, {"x", "h"}, {"y", "e"}, {"series", Json::array()}};
   for (int k = 0; k < 32; ++k) figure["series"].push_back({{"name", "n" + std::to_string(k)}, {"points", {{1, k}}}});
   std::set<std::string> signs;
+  const std::string svg = figure_svg(figure);
   // A triangle has a level side, a rhombus has none.
-  for (const auto& one :
-       all_of(figure_svg(figure), R"re(<(circle|rect|path d="M[^h"]*h|path d="M[^h"]*z)[^>]*class="(dot s\d))re"))
+  for (const auto& one : all_of(svg, R"re(<(circle|rect|path d="M[^h"]*h|path d="M[^h"]*z)[^>]*class="(dot s\d))re"))
     signs.insert(one[1].str().substr(0, 4) + one[1].str().back() + one[2].str());
   CHECK(signs.size() == 32);
 }
