@@ -17,7 +17,7 @@ inline ricochet::StudyResults sample_results() {
   ricochet::CaseRecord done;
   done.id = "c0123456789";
   done.axes = {{"mass", "singular"}, {"mass.velocity", "P1"}, {"step", 1e-5}};
-  done.status = Status::done;
+  done.status = ricochet::Status::done;
   done.steps = 5000;
   done.setup_seconds = 0.125;
   done.run_seconds = 0.1;  // no exact binary form: must come back as the same double
@@ -39,7 +39,7 @@ inline ricochet::StudyResults sample_results() {
   ricochet::CaseRecord refused;
   refused.id = "cabcdefabcd";
   refused.axes = {{"mass", "lumped"}, {"step", 1e-4}};
-  refused.status = Status::refused;
+  refused.status = ricochet::Status::refused;
   refused.reasons = {ricochet::said("β = {} leaves S \"singular\",\nuse β ≥ 1/{}", 0, 4)};
   results.cases = {done, refused};
   results.environment.entries = {{"program", "ricochet"}, {"cores", "2"}};
