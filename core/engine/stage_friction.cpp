@@ -30,7 +30,6 @@ std::size_t at(int i) {
 }  // namespace
 
 double Tangent::effort(const double* efforts, std::ptrdiff_t stride) const {
-  if (count == 1) return efforts[0] / share[0];
   double squares = 0;
   for (int k = 0; k < count; ++k) squares += share[at(k)] * share[at(k)];
   return of(efforts, stride) / squares;
