@@ -118,7 +118,7 @@ std::vector<SectionPoint> stored_section(const CaseRecord& record, std::size_t r
 }
 
 std::string text_of(const CellEnd& end) {
-  if (end.status != Status::done) return (end.no_start ? no_start : word(end.status)) + (": " + end.reason);
+  if (end.status != Status::done) return status_word(end) + (": " + end.reason);
   return text(end.motion);
 }
 

@@ -63,6 +63,9 @@ CellEnd refused_end(const std::string& sentence);
 
 /// The class and the status of a cell without a start, as tables say them.
 inline constexpr const char* no_start = "no start";
+inline const char* status_word(const CellEnd& end) {
+  return end.no_start ? no_start : word(end.status);
+}
 CellEnd no_start_end(const std::string& sentence);
 
 /// Ends as bytes and back, bit for bit. Bytes that to_bytes() did not write throw std::runtime_error.

@@ -228,7 +228,7 @@ class BasinsRun {
       if (told >= 0) row.attractor = told + 1;
       row.marched = sources[cell] == cell;
       row.source = row_of[sources[cell]];
-      row.status = end.no_start ? no_start : word(end.status);
+      row.status = status_word(end);
       row.reason = end.reason;
       cells.rows.push_back(type.rows.row(row));
       for (std::size_t i = 0; i < end.section.size(); ++i) {
