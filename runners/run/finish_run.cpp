@@ -88,16 +88,17 @@ AnalysedResults::AnalysedResults(StudyResults results)
 }
 
 Table reasons_table(const StudyResults& results) {
-  std::vector<std::pair<std::pair<std::string, std::string>, Cases>> groups;  // by status and reason
+  std::vector<std::pair<std::pair<Status, std::string>, Cases>> groups;  // by status and reason
   for (const answers::Doubt& doubt : answers::doubts_of(results))
-    groups.emplace_back(std::pair(std::string(word(Status::done)), doubt.text), doubt.cases);
+    groups.emplace_back(std::pair(Status::done, doubt.text), doubt.cases);
   for (const CaseRecord& record : results.cases)
     if (!record.partial && record.status != Status::done)
-      in_order_met(groups, std::pair(std::string(word(record.status)), record.reason())).push_back(&record);
+      in_order_met(groups, std::pair(record.status, record.reason())).push_back(&record);
   const auto first = [&](const auto& group) { return group.second.front(); };
   std::stable_sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) { return first(a) < first(b); });
   std::vector<ReasonRow> rows;
-  for (const auto& [said, cases] : groups) rows.push_back({said.first, said.second, cases.size(), cases.front()->id});
+  for (const auto& [said, cases] : groups)
+    rows.push_back({word(said.first), said.second, cases.size(), cases.front()->id});
   return reasons_type().with(rows);
 }
 
