@@ -94,13 +94,18 @@ Marcher made(const Registry& registry, const Case& one) {
       std::get<Program>(compile(problem, plan, 6.25e-5, std::move(law), {scene_lane(*problem, parameters)}, options)));
 }
 
+// Microseconds per step, once it has settled.
+double timed(Marcher& tube, int steps, const Observers& observers) {
+  tube.start(observers);
+  tube.march(steps / 4, observers);
+  const double begin = thread_nanoseconds();
+  tube.march(steps, observers);
+  return 1e-3 * (thread_nanoseconds() - begin) / steps;
+}
+
 void measure(const Registry& registry, Case& one) {
   Marcher tube = made(registry, one);
-  tube.start();
-  tube.march(one.steps / 4);
-  double begin = thread_nanoseconds();
-  tube.march(one.steps);
-  one.alone.push_back(1e-3 * (thread_nanoseconds() - begin) / one.steps);
+  one.alone.push_back(timed(tube, one.steps, {}));
   Marcher other = made(registry, one);
   EnergyAudit audit(other, SamplingMode::seldom);
   FrictionWatch wear(other, audit, {});
@@ -109,11 +114,7 @@ void measure(const Registry& registry, Case& one) {
   Observers observers{&audit};
   if (wear.any()) observers.add(&wear);
   observers.add(&recorder);
-  other.start(observers);
-  other.march(one.steps / 4, observers);
-  begin = thread_nanoseconds();
-  other.march(one.steps, observers);
-  one.watched.push_back(1e-3 * (thread_nanoseconds() - begin) / one.steps);
+  one.watched.push_back(timed(other, one.steps, observers));
   one.ran &= tube.status(0).running && other.status(0).running;
 }
 
