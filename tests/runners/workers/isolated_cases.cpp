@@ -225,6 +225,15 @@ class Running {
     }
     return all;
   }
+  /// Its workers while they march; none where it ended. One look may miss a child whose thread ends just then.
+  std::vector<pid_t> marching() {
+    std::vector<pid_t> all;
+    lingering::comes_true([&] {
+      if (lingering::marches(out_)) all = children();
+      return !all.empty() || ended();
+    });
+    return all;
+  }
   /// Sends a signal and waits; the exit code, or minus the signal.
   int finish(int signal = 0) {
     if (signal != 0) ::kill(process_, signal);
@@ -263,8 +272,7 @@ TEST_CASE("workers: one that another program kills costs nothing but time") {
     const std::string out = "killed-" + std::to_string(which);
     const lingering::Held held;
     Running running(scratch, study, out);
-    REQUIRE(lingering::comes_true([&] { return running.ended() || lingering::marches(scratch / out); }));
-    const std::vector<pid_t> children = running.children();
+    const std::vector<pid_t> children = running.marching();
     REQUIRE_FALSE(children.empty());
     CHECK(::kill(children[which % children.size()], SIGKILL) == 0);
     held.let_go();
@@ -286,11 +294,10 @@ TEST_CASE("workers: a data file that changes under way ends the run and is named
   REQUIRE(run(scratch, study, "here", std::string("--inline") + lingering::plugin).code == 0);
   const lingering::Held held;
   Running running(scratch, study, "out");
-  REQUIRE(lingering::comes_true([&] { return running.ended() || lingering::marches(scratch / "out"); }));
-  write_text(scratch / "force.csv", table + "0.3,6\n");
   // Small cases travel together: one worker may have all of them, and another none.
-  const std::vector<pid_t> children = running.children();
+  const std::vector<pid_t> children = running.marching();
   REQUIRE_FALSE(children.empty());
+  write_text(scratch / "force.csv", table + "0.3,6\n");
   for (const pid_t one : children) CHECK(::kill(one, SIGKILL) == 0);
   held.let_go();
   CHECK(running.finish() == 5);
@@ -337,9 +344,8 @@ TEST_CASE("workers: a run that is stopped or killed goes on to the same tables, 
   {
     const lingering::Held held;
     Running running(scratch, study, "out");
-    REQUIRE(lingering::comes_true([&] { return running.ended() || lingering::marches(scratch / "out"); }));
+    children = running.marching();
     REQUIRE_FALSE(running.ended());
-    children = running.children();
     CHECK(running.finish(signal) == (signal == SIGKILL ? -SIGKILL : 130));
   }
   CHECK_FALSE(children.empty());
