@@ -67,6 +67,17 @@ DiscEffort disc_effort(const std::array<double, 3>& matrix, const std::array<dou
   return {turned(scale * p[0], scale * p[1]), false};
 }
 
+inline double FrictionSolver::size_of(const FrictionProblem& problem, int point) const {
+  const int first = problem.first_row[point];
+  return norm(effort_.data() + first, problem.first_row[point + 1] - first);
+}
+
+inline void FrictionSolver::put_within(const FrictionProblem& problem, int point) {
+  const double size = size_of(problem, point), s = bound_[place(point)];
+  if (size <= s) return;
+  for (int i = problem.first_row[point]; i < problem.first_row[point + 1]; ++i) effort_[place(i)] *= s / size;
+}
+
 void FrictionSolver::prepare(int points, int rows) {
   effort_.resize(place(rows));
   rate_.resize(place(rows));
@@ -81,11 +92,10 @@ void FrictionSolver::prepare(int points, int rows) {
 // u = u° + A p.
 void FrictionSolver::measure(const FrictionProblem& problem) {
   const int rows = problem.rows();
-  for (int i = 0; i < rows; ++i) {
-    double sum = problem.free[i];
-    for (int j = 0; j < rows; ++j) sum += problem.at(i, j) * effort_[place(j)];
-    rate_[place(i)] = sum;
-  }
+  std::copy_n(problem.free, rows, rate_.begin());
+  for (int j = 0; j < rows; ++j)
+    if (const double p = effort_[place(j)]; p != 0)
+      for (int i = 0; i < rows; ++i) rate_[place(i)] += problem.at(i, j) * p;
 }
 
 // Each point against the others as they are; by how much the largest effort changed.
@@ -197,17 +207,6 @@ double FrictionSolver::move_together(const FrictionProblem& problem, double befo
   }
   measure(problem);
   return residual(problem);
-}
-
-double FrictionSolver::size_of(const FrictionProblem& problem, int point) const {
-  const int first = problem.first_row[point];
-  return norm(effort_.data() + first, problem.first_row[point + 1] - first);
-}
-
-void FrictionSolver::put_within(const FrictionProblem& problem, int point) {
-  const double size = size_of(problem, point), s = bound_[place(point)];
-  if (size <= s) return;
-  for (int i = problem.first_row[point]; i < problem.first_row[point + 1]; ++i) effort_[place(i)] *= s / size;
 }
 
 bool FrictionSolver::settle(const FrictionProblem& problem, int& sweeps, double& left) {

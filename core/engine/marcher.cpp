@@ -142,6 +142,8 @@ std::unique_ptr<StageState> Marcher::make_state(StageProgram& stage, const Stage
     state->end_rate_weights = with_z(stage.facts.end_rate.rate);
     for (std::size_t j = 0; j < state->end_rate_weights.size(); ++j)
       if (state->end_rate_weights[j] != 0) state->end_rate_of.push_back(j);
+    state->columns.resize(static_cast<std::size_t>(lower_.rows() + program_.model->rubbed().rows()));
+    state->couples.resize(static_cast<std::size_t>(program_.model->rubbed().rows()));
     std::erase(state->end_rate_weights, 0.0);
   }
   state->measure_weights = with_z(stage.measure);

@@ -153,6 +153,8 @@ class Marcher {
   /// What a row that rubs is moved by against its surface at t, m/s; and Σ weight of the same as a way, V t counted
   /// from t, with weights that sum to 0.
   double rubbed_rate(int lane, int row, double t) const;
+  /// Whether any of them moves.
+  bool surfaces_move() const;
   double rubbed_levels(int lane, int row, double t, const Levels& levels) const;
   const SupportMotions& motions() const { return program_.problem->motions; }
   /// Which stops pushed a lane at the last instant of contact: lower, upper.
@@ -255,17 +257,13 @@ class Marcher {
   void rub(const StageProgram& program, StageState& state, const double* z);
   void rub_lane(const StageProgram& program, StageState& state, int lane);
   void measure_end_rates(const StageProgram& program, StageState& state, const double* z);
-  struct Pressed {
-    double force = 0;                // N
-    std::array<double, 2> normal{};  // of a round point
-  };
-  Pressed pressed(const StageProgram& program, const StageState& state, int point, int lane) const;
   void find_pressed(const StageProgram& program, const StageState& state, int lane);
   void gather_friction(const StageProgram& program, StageState& state, int lane, bool first);
   LaneOutcome find_friction(const StageProgram& program, StageState& state, int lane, bool first);
   void moved_by_friction(StageState& state, const std::vector<double>& efforts);
   bool friction_moves_normals(StageState& state, double reach, int lane);
   static DelassusColumns& columns_of(StageState& state);
+  const double* column_of(StageState& state, int row) const;
 
   // effort_history.cpp: efforts of stages and steps before.
   void connect_efforts();

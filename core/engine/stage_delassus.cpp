@@ -40,7 +40,12 @@ void ActiveSystem::solve() {
 }
 
 StageDelassus::StageDelassus(StageOperator& op, const MarchModel& model, const FoldedStage* band)
-    : op_(op), model_(model), band_(model.rubbed().rows() > 0 ? nullptr : band), contact_(model.pushed()), rows_(model.rows()), points_(contact_.rows()) {
+    : op_(op),
+      model_(model),
+      band_(model.rubbed().rows() > 0 ? nullptr : band),
+      contact_(model.pushed()),
+      rows_(model.rows()),
+      points_(contact_.rows()) {
   const auto points = static_cast<std::size_t>(points_);
   known_.assign(points, false);
   columns_ = std::make_unique_for_overwrite<double[]>(points * points);

@@ -30,6 +30,7 @@ std::size_t at(int i) {
 }  // namespace
 
 double Tangent::effort(const double* efforts, std::ptrdiff_t stride) const {
+  if (count == 1) return efforts[0];
   double squares = 0;
   for (int k = 0; k < count; ++k) squares += share[at(k)] * share[at(k)];
   return of(efforts, stride) / squares;
@@ -53,11 +54,14 @@ StageFriction::StageFriction(const Program& program) {
   turns.resize(at(T));
   for (const RubbingPoint& one : problem.rubbing)
     if (one.given.normal_force) always = (std::uint32_t{1} << program.lanes.size()) - 1;
+  moves = !problem.rubbed_motions.empty() || !problem.motions.empty() || !problem.rubbed_speeds.isZero(0) ||
+          (program.support && !problem.rubbed.on_support.isZero(0));
   if (program.lanes.size() == 32) always = always != 0 ? ~std::uint32_t{0} : 0;
   tangents.reserve(at(all));
   kept_at.reserve(at(all));
   directions.resize(at(count));
   first_row.reserve(at(count) + 1);
+  first_row.assign(1, 0);
   number.reserve(at(count));
   matrix.resize(at(all) * at(all));
   for (auto* numbers : {&free, &effort, &given, &found, &found_before, &off_before}) numbers->resize(at(all));
@@ -66,6 +70,13 @@ StageFriction::StageFriction(const Program& program) {
   measured.resize(at(problem.points()));
   moved.resize(at(problem.points()));
   rate.resize(at(problem.points()));
+}
+
+void StageFriction::keep_first(std::size_t points) {
+  number.resize(points);
+  first_row.resize(points + 1);
+  tangents.resize(at(first_row[points]));
+  kept_at.resize(at(first_row[points]));
 }
 
 FrictionChange StageFriction::change() const {
@@ -103,98 +114,72 @@ void StageFriction::keep(int lane) {
     sticks.at(i, lane) = holds[k] != 0 ? 1 : 0;
     slid.at(i, lane) = slides[k];
     normal.at(i, lane) = normals[k];
-    for (const int axis : {0, 1}) along.at(2 * i + axis, lane) = directions[k][at(axis)];
+    const auto [x, y] = directions[k];
+    along.at(2 * i, lane) = x;
+    along.at(2 * i + 1, lane) = y;
   }
 }
 
-// u° of all rows and lanes: that of the stage without its own efforts, against the surface.
-void Marcher::measure_end_rates(const StageProgram& program, StageState& state, const double* z) {
-  const EndRate& end = program.facts.end_rate;
-  std::array<const double*, most_slots + 1> slots{};
-  const int terms = static_cast<int>(state.end_rate_of.size());
-  for (int k = 0; k < terms; ++k) {
-    const std::size_t j = state.end_rate_of[at(k)];
-    slots[at(k)] = j == at(slot_count()) ? z : slot_pointers_[j];
-  }
-  measure_rows(program_.model->rubbed(), terms, slots.data(), state.end_rate_weights.data(), nullptr,
-               state.end_rate.data());
-  for (int row = 0; row < state.end_rate.rows(); ++row)
-    for (int lane = 0; lane < lanes(); ++lane) {
-      double& rate = state.end_rate.at(row, lane);
-      for (const Level& level : end.speeds)
-        rate += level.weight * rubbed_rate(lane, row, time() + level.at * program_.h);
-      rate += rubbed_levels(lane, row, time(), end.places);
-    }
+const double* Marcher::column_of(StageState& state, int row) const {
+  const double*& column = state.columns[at(row)];
+  if (column) return column;
+  column = columns_of(state).column(row);
+  const int points = lower_.rows();
+  for (int i = 0; row >= points && i < points; ++i)
+    state.couples[at(row - points)] = std::max(state.couples[at(row - points)], std::abs(column[i]));
+  return column;
 }
 
-double Marcher::rubbed_rate(int lane, int row, double t) const {
-  const SemiDiscrete& problem = *program_.problem;
-  double rate = -problem.rubbed_speeds[row];
-  for (const SurfaceMotion& one : problem.rubbed_motions)
-    if (one.row == row) rate -= one.share * one.history->rate(t);
-  if (problem.rubbed.on_support[row] != 0 && program_.support)
-    rate += problem.rubbed.on_support[row] * support_rate(lane, t);
-  if (!motions().empty()) rate += motions().sum(problem.rubbed.on_motions.row(row), t, true);
-  return rate;
-}
-
-double Marcher::rubbed_levels(int lane, int row, double t, const Levels& levels) const {
-  const SemiDiscrete& problem = *program_.problem;
-  double way = 0;
-  if (problem.rubbed.on_support[row] != 0) way += problem.rubbed.on_support[row] * support_levels(lane, t, levels);
-  for (const Level& level : levels) {
-    const double later = level.at * program_.h;
-    way -= level.weight * later * problem.rubbed_speeds[row];
-    for (const SurfaceMotion& one : problem.rubbed_motions)
-      if (one.row == row) way -= level.weight * one.share * (one.history->value(t + later) - one.history->value(t));
-    if (!motions().empty()) way += level.weight * motions().sum(problem.rubbed.on_motions.row(row), t + later, false);
-  }
-  return way;
-}
-
-// |N| of a point that rubs, in the units of the stage's efforts of friction, and the direction of a round one.
-Marcher::Pressed Marcher::pressed(const StageProgram& program, const StageState& state, int point, int lane) const {
-  const RubbingPoint& one = program_.problem->rubbing[at(point)];
-  if (const auto& force = program_.lanes[at(lane)].rubbing[at(point)].normal_force) return {*force, {}};
-  const auto normal = [&](int row) {
-    const std::size_t e = at(row) * at(program_.width) + at(lane);
-    if (state.impulse) return state.effort[0].data()[e];
-    double sum = 0;
-    for (std::size_t k = 0; k < program.effort.size() && k < state.effort_pointers.size(); ++k)
-      if (state.effort_pointers[k]) sum += program.effort[k] * state.effort_pointers[k][e];
-    return sum / program.friction_weight;
-  };
-  if (!one.round) return {std::abs(normal(one.point)), {}};
-  const double x = normal(one.point), y = normal(one.point + 1), size = std::hypot(x, y);
-  if (!(size > 0)) return {};
-  return {size, {-x / size, -y / size}};
-}
-
-// The points that something presses, and their tangents.
+// The points that something presses, and their tangents: |N| in the units of the stage's efforts of friction, and of a
+// round one the direction.
 void Marcher::find_pressed(const StageProgram& program, const StageState& state, int lane) {
   StageFriction& rub = *rubbing_;
-  rub.tangents.clear();
-  rub.kept_at.clear();
-  rub.number.clear();
-  rub.first_row.assign(1, 0);
+  const Rubbing* const surfaces = program_.lanes[at(lane)].rubbing.data();
+  const double* const own = state.effort[0].data() + lane;
+  const int T = program_.width;
+  const std::size_t efforts = std::min(program.effort.size(), state.effort_pointers.size());
+  const auto normal = [&](int row) {
+    if (state.impulse) return own[row * T];
+    double sum = 0;
+    for (std::size_t k = 0; k < efforts; ++k)
+      if (state.effort_pointers[k]) sum += program.effort[k] * state.effort_pointers[k][row * T + lane];
+    return sum / program.friction_weight;
+  };
   const std::vector<RubbingPoint>& all = program_.problem->rubbing;
+  std::size_t next = 0;
   for (int i = 0; i < static_cast<int>(all.size()); ++i) {
-    const Pressed found = pressed(program, state, i, lane);
-    if (!(found.force > 0)) continue;
-    const std::size_t next = rub.number.size();
     const RubbingPoint& one = all[at(i)];
-    const Rubbing& surface = program_.lanes[at(lane)].rubbing[at(i)];
-    rub.normals[next] = found.force;
-    rub.directions[next] = found.normal;
-    rub.sliding[next] = surface.sliding * found.force;
-    rub.held[next] = rub.sticks.at(i, lane) != 0 ? surface.held * found.force : rub.sliding[next];
+    const Rubbing& surface = surfaces[i];
+    double force = 0;
+    std::array<double, 2> direction{};
+    if (surface.normal_force) {
+      force = *surface.normal_force;
+    } else if (!one.round) {
+      force = std::abs(normal(one.point));
+    } else {
+      const double x = normal(one.point), y = normal(one.point + 1);
+      force = std::hypot(x, y);
+      if (force > 0) direction = {-x / force, -y / force};
+    }
+    if (!(force > 0)) continue;
+    rub.normals[next] = force;
+    rub.directions[next] = direction;
+    rub.sliding[next] = surface.sliding * force;
+    rub.held[next] = rub.sticks.at(i, lane) != 0 ? surface.held * force : rub.sliding[next];
+    // As often as not the same points are pressed as before.
+    if (next < rub.number.size() && rub.number[next] == i && !one.round) {
+      ++next;
+      continue;
+    }
+    rub.keep_first(next++);
     rub.number.push_back(i);
     for (int k = 0; k < one.tangents(); ++k) {
-      rub.tangents.push_back(tangent_of(one, k, found.normal));
+      rub.tangents.push_back(tangent_of(one, k, direction));
       rub.kept_at.push_back(one.row + k);
     }
     rub.first_row.push_back(static_cast<int>(rub.tangents.size()));
   }
+  if (next < rub.number.size()) rub.keep_first(next);
 }
 
 // u° and A of these tangents, and what they begin with.
@@ -203,32 +188,27 @@ void Marcher::gather_friction(const StageProgram& program, StageState& state, in
   const int points = lower_.rows(), T = program_.width, count = static_cast<int>(rub.tangents.size());
   const double of_normal = program.friction_reach * (state.impulse ? 1.0 : program.effort[0]),
                of_own = program.friction_reach * (state.impulse ? 1.0 : program.friction_weight);
-  DelassusColumns& W = columns_of(state);
+  const Tangent* const ways = rub.tangents.data();
+  // Adds what an effort of a column of W moves each tangent by.
+  const auto add = [&](const double* column, double effort, double* to, std::ptrdiff_t stride) {
+    for (int a = 0; a < count; ++a) to[a * stride] += effort * ways[a].of(column + points + ways[a].row);
+  };
   std::fill_n(rub.matrix.begin(), count * count, 0.0);
-  for (int b = 0; b < count; ++b) {
-    const Tangent& way = rub.tangents[at(b)];
-    for (int l = 0; l < way.count; ++l) {
-      if (way.share[at(l)] == 0) continue;
-      const double *column = W.column(points + way.row + l), share = of_own * way.share[at(l)];
-      for (int a = 0; a < count; ++a)
-        rub.matrix[at(a * count + b)] += share * rub.tangents[at(a)].of(column + points + rub.tangents[at(a)].row);
-    }
-  }
+  for (int b = 0; b < count; ++b)
+    for (int l = 0; l < ways[b].count; ++l)
+      if (const double share = ways[b].share[at(l)]; share != 0)
+        add(column_of(state, points + ways[b].row + l), of_own * share, rub.matrix.data() + b, count);
   for (int a = 0; a < count; ++a) {
-    const Tangent& way = rub.tangents[at(a)];
+    const Tangent& way = ways[a];
     rub.free[at(a)] = way.of(&state.end_rate.at(way.row, lane), T);
     rub.effort[at(a)] = first ? way.effort(&state.effort[0].at(points + way.row, lane), T)
                               : way.effort(rub.found_before.data() + way.row);
     for (int k = 0; k < rub.per_row; ++k)
       rub.remembered[at(a * rub.per_row + k)] = rub.kept.at(rub.kept_at[at(a)] * rub.per_row + k, lane);
   }
-  for (int i = 0; i < points; ++i) {
-    const double p = of_normal * state.effort[0].data()[i * T + lane];
-    if (p == 0) continue;
-    const double* column = W.column(i);
-    for (int a = 0; a < count; ++a)
-      rub.free[at(a)] += p * rub.tangents[at(a)].of(column + points + rub.tangents[at(a)].row);
-  }
+  for (int i = 0; i < points; ++i)
+    if (const double p = of_normal * state.effort[0].data()[i * T + lane]; p != 0)
+      add(column_of(state, i), p, rub.free.data(), 1);
 }
 
 // p_t of a lane for the normal efforts as they are, into `found`.
@@ -264,10 +244,9 @@ LaneOutcome Marcher::find_friction(const StageProgram& program, StageState& stat
 void Marcher::moved_by_friction(StageState& state, const std::vector<double>& efforts) {
   std::vector<double>& moved = rubbing_->moved;
   std::fill(moved.begin(), moved.end(), 0.0);
-  DelassusColumns& W = columns_of(state);
   for (std::size_t row = 0; row < efforts.size(); ++row) {
     if (efforts[row] == 0) continue;
-    const double* column = W.column(lower_.rows() + static_cast<int>(row));
+    const double* column = column_of(state, lower_.rows() + static_cast<int>(row));
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += efforts[row] * column[i];
   }
 }
@@ -275,15 +254,20 @@ void Marcher::moved_by_friction(StageState& state, const std::vector<double>& ef
 // Whether what was found moves what the law reads by more than round-off of what the normal efforts do.
 bool Marcher::friction_moves_normals(StageState& state, double reach, int lane) {
   if (reach == 0) return false;
-  moved_by_friction(state, rubbing_->found);
-  DelassusColumns& W = columns_of(state);
-  double own = 0, most = 0;
+  const std::vector<double>& found = rubbing_->found;
+  double bound = 0, own = 0, most = 0;
+  for (std::size_t row = 0; row < found.size(); ++row)
+    if (found[row] != 0) bound += std::abs(found[row]) * state.couples[row];
+  if (bound == 0) return false;
+  const auto stands_free = [&](int i) { return lower_.at(i, lane) == -infinity && upper_.at(i, lane) == infinity; };
   for (int i = 0; i < lower_.rows(); ++i) {
-    if (lower_.at(i, lane) == -infinity && upper_.at(i, lane) == infinity) continue;
-    most = std::max(most, std::abs(rubbing_->moved[at(i)]));
     const double p = state.effort[0].at(i, lane);
-    if (p != 0) own = std::max(own, std::abs(p * W.column(i)[i]));
+    if (p != 0 && !stands_free(i)) own = std::max(own, std::abs(p * column_of(state, i)[i]));
   }
+  if (bound <= negligible * own) return false;
+  moved_by_friction(state, found);
+  for (int i = 0; i < lower_.rows(); ++i)
+    if (!stands_free(i)) most = std::max(most, std::abs(rubbing_->moved[at(i)]));
   return most > negligible * own;
 }
 
@@ -312,10 +296,12 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
   const double rate_reach = !program.compliance ? 0.0
                             : state.impulse     ? program.rate_reach
                                                 : program.compliance->rate.z * program.friction_weight;
-  for (int i = 0; i < points; ++i) {
-    rub.measured[at(i)] = state.free.at(i, lane);
-    if (state.rate.rows() > 0) rub.rate[at(i)] = state.rate.at(i, lane);
-  }
+  const auto keep_measures = [&] {
+    for (int i = 0; i < points; ++i) {
+      rub.measured[at(i)] = state.free.at(i, lane);
+      if (state.rate.rows() > 0) rub.rate[at(i)] = state.rate.at(i, lane);
+    }
+  };
   std::fill(rub.given.begin(), rub.given.end(), 0.0);
   LaneOutcome outcome;
   int turn = 0;
@@ -333,6 +319,7 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
       most = 0;
       break;
     }
+    if (turn == 0) keep_measures();
     if (++turn > most_turns) break;
     rub.give(turn > 1 && turn % plain_every != 0 && change.along > 0 ? change.down / change.along : 0.0);
     moved_by_friction(state, rub.given);
@@ -347,7 +334,7 @@ void Marcher::rub_lane(const StageProgram& program, StageState& state, int lane)
     solve_law(program, state, one);
     if (!outcome_[at(lane)].converged) break;
   }
-  for (int i = 0; i < points; ++i) {
+  for (int i = 0; turn > 0 && i < points; ++i) {
     state.free.at(i, lane) = rub.measured[at(i)];
     if (state.rate.rows() > 0) state.rate.at(i, lane) = rub.rate[at(i)];
   }

@@ -7,13 +7,14 @@
 
 namespace ricochet {
 
-/// A tangent of a point as rows that rub: Σ share_k times row `row + k`.
+/// A tangent of a point as rows that rub: Σ share_k times row `row + k`. One of a single row is that row.
 struct Tangent {
   int row = 0, count = 1;
   std::array<double, 3> share{1, 0, 0};
 
   /// Of rows at `values`, `stride` apart.
   double of(const double* values, std::ptrdiff_t stride = 1) const {
+    if (count == 1) return values[0];
     double sum = share[0] * values[0];
     for (int k = 1; k < count; ++k) sum += share[static_cast<std::size_t>(k)] * values[k * stride];
     return sum;
@@ -36,6 +37,8 @@ struct FrictionChange {
 struct StageFriction {
   explicit StageFriction(const Program& program);
 
+  /// Of the points that are pressed, only the first ones stay.
+  void keep_first(std::size_t points);
   FrictionChange change() const;
   /// The normal efforts are to be found with what friction found, less `back` times its change of the last turn.
   void give(double back);
@@ -51,6 +54,7 @@ struct StageFriction {
   std::vector<double> residual;  ///< per lane, over the largest effort
   std::vector<int> turns;        ///< per lane: how often the normal efforts were found
   int per_row = 0;               ///< numbers that the law keeps of a row
+  bool moves = false;            ///< whether a surface does, or a support of one
   std::uint32_t always = 0;      ///< lanes in which a damper acts
 
   // Of the lane that is being solved, by row or by point.

@@ -40,6 +40,8 @@ struct StageState {
   Block end_rate;                        ///< u° of rows that rub, rows × T
   std::vector<double> end_rate_weights;  ///< over those of the slots and z that have one
   std::vector<std::size_t> end_rate_of;  ///< which these are
+  std::vector<const double*> columns;    ///< of W, once asked for: of points, then of rows that rub
+  std::vector<double> couples;           ///< of these rows, with their column: the largest that it has of a point
   std::vector<double> measure_weights, rate_weights, before_weights, gap_weights, approach_weights;
   std::vector<int> contact_age;  ///< steps of contact so far, points × T; only where tangents wait
   ActiveSystem tangents;         ///< of the lane whose tangents are being corrected

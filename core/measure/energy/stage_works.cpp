@@ -256,12 +256,13 @@ void StageWorks::add_efforts(const Marcher& marcher, const StageView& view, cons
 void StageWorks::add_friction(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane,
                               const double* s, Works& works) {
   const std::vector<double>& weights = view.program->friction_work;
-  const int points = model_.problem().points();
+  const int points = model_.problem().points(), efforts = std::min(static_cast<int>(weights.size()), view.efforts);
+  const bool moves = marcher.surfaces_move();
   for (int row = 0; row < model_.rubbed().rows(); ++row) {
     double effort = 0;
-    for (int j = 0; j < std::min(static_cast<int>(weights.size()), view.efforts); ++j)
+    for (int j = 0; j < efforts; ++j)
       if (view.effort[j]) effort += weights[static_cast<std::size_t>(j)] * view.effort[j][(points + row) * T_ + lane];
-    const double lift = marcher.rubbed_levels(lane, row, view.time, stage.support_levels);
+    const double lift = moves ? marcher.rubbed_levels(lane, row, view.time, stage.support_levels) : 0.0;
     const double way = model_.times(model_.rubbed(), row, s) + lift;
     friction_works_[static_cast<std::size_t>(row)] = effort * way;
     friction_ways_[static_cast<std::size_t>(row)] = way;
