@@ -45,6 +45,8 @@ class FrictionLaw {
   virtual LaneOutcome solve(FrictionProblem& problem) = 0;
   /// How fast a point drifts that is held by this share of its bound, m/s; 0: it does not.
   virtual double creeps(double /*load_over_bound*/) const { return 0; }
+  /// By how much a point gives way that is held, m per N; 0: it does not.
+  virtual double gives_way() const { return 0; }
   /// Numbers that it keeps of each row from stage to stage, at most most_friction_memory; part of a lane's state.
   virtual int memory_per_row() const { return 0; }
   /// Energy that a row stores, J, by what is kept of it: what its force can still give back.

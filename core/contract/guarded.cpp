@@ -166,6 +166,11 @@ class GuardedFriction final : public Guard<FrictionLaw> {
     if (!(answer >= 0) || !std::isfinite(answer)) fault("creeps", fmt::format("drifts by {:g} m/s", answer));
     return answer;
   }
+  double gives_way() const override {
+    const double answer = ask("gives_way", [](auto& inner) { return inner.gives_way(); });
+    if (!(answer >= 0) || !std::isfinite(answer)) fault("gives_way", fmt::format("gives way by {:g} m per N", answer));
+    return answer;
+  }
   int memory_per_row() const override {
     const int answer = ask("memory_per_row", [](auto& inner) { return inner.memory_per_row(); });
     if (answer < 0 || answer > most_friction_memory)

@@ -37,6 +37,7 @@ class Spring final : public FrictionLaw {
           problem.remembered[i] - problem.h * (problem.effort[i] + stiffness_ * problem.remembered[i]) / firm;
     return outcome;
   }
+  double gives_way() const override { return 1 / stiffness_; }
   int memory_per_row() const override { return 1; }
   double stored(const double* remembered) const override { return 0.5 * stiffness_ * remembered[0] * remembered[0]; }
   bool must_settle() const override { return false; }

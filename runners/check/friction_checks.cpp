@@ -200,6 +200,12 @@ Verdict holds_and_slides(const Friction& subject) {
   if (std::abs(held) > declared * (1 + 1e-6) + 1e-9)
     return fails(
         fmt::format("a mass held by 0.97 of its bound drifts at {:.3g} m/s, and creeps() says {:.3g}", held, declared));
+  // Of a bound of 1 N, which the swing that a sudden load begins does not reach.
+  constexpr double load = 0.3;
+  const double way = pulled(*law, load, steps).second, declared_way = load * law->gives_way();
+  if (declared == 0 && std::abs(way - declared_way) > 1e-3 * declared_way + 1e-12)
+    return fails(
+        fmt::format("a mass held by {} N gives way by {:.3g} m, and gives_way() says {:.3g}", load, way, declared_way));
   const double early = pulled(*law, 1.1, steps / 2).first, late = pulled(*law, 1.1, steps).first;
   const double acceleration = (late - early) / (0.5 * steps * 1e-3);
   if (std::abs(acceleration - 0.1) > 1e-3)

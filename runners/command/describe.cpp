@@ -173,10 +173,12 @@ std::string facts_of(Role role, const PluginManual& manual, const Registry& regi
     case Role::contact:
       return facts_of(manual, *registry.contact(manual.name)->make(parameters), parameters);
     case Role::friction: {
-      const double creep = registry.friction(manual.name)->make(parameters)->creeps(1);
-      return fmt::format(
-          "facts of {} with its default parameters:\n  a held point {}\n", manual.name,
-          creep == 0 ? std::string("does not drift") : fmt::format("creeps by {:g} m/s at its bound", creep));
+      const auto law = registry.friction(manual.name)->make(parameters);
+      const double creep = law->creeps(1), way = law->gives_way();
+      return fmt::format("facts of {} with its default parameters:\n  a held point {}\n", manual.name,
+                         creep > 0 ? fmt::format("creeps by {:g} m/s at its bound", creep)
+                         : way > 0 ? fmt::format("gives way by {:g} m per N", way)
+                                   : "stays where it is");
     }
     case Role::time:
       return facts_of(manual, *registry.time(manual.name)->make(parameters));

@@ -21,7 +21,6 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t most_contact_lines = 8;
-constexpr int most_dofs = 240;           // of a dense problem of eigenvalues
 constexpr int phases = 8;                // of the instant at which a contact begins within a step
 constexpr double longest_contact = 2e4;  // steps that are marched
 
@@ -69,21 +68,26 @@ std::vector<StopSpring> springs_of(const StudyCase& one, const Registry& registr
   return out;
 }
 
+// With what the contact law changes; nothing where a value of the scene is missing that only orbits have.
+std::optional<SemiDiscrete> problem_of(const StudyCase& one, const Registry& registry) {
+  SceneSpec scene = one.scene;
+  scene.initial = {};
+  try {
+    const auto law = make_law(one, registry);
+    auto built = discretise(scene, one.elements, *make_mass(one, registry), law.get(), &one.contact.parameters);
+    if (auto* problem = std::get_if<SemiDiscrete>(&built)) return std::move(*problem);
+  } catch (const InputError&) {
+  }
+  return std::nullopt;
+}
+
 std::optional<ContactSpring> spring_of(const StudyCase& one, const StopSpring& stop, const Registry& registry) {
   const double stiffness = stop.stiffness;
   if (const auto* oscillator = std::get_if<OscillatorSpec>(&one.scene.structure))
     return ContactSpring{stiffness, oscillator->mass,
                          std::sqrt((oscillator->stiffness + stiffness) / oscillator->mass)};
-  SceneSpec scene = one.scene;
-  scene.initial = {};
-  try {
-    const auto law = make_law(one, registry);
-    const auto built = discretise(scene, one.elements, *make_mass(one, registry), law.get(), &one.contact.parameters);
-    const auto* problem = std::get_if<SemiDiscrete>(&built);
-    return problem && problem->dofs() <= most_dofs ? contact_spring(*problem, stiffness, stop.point) : std::nullopt;
-  } catch (const InputError&) {  // a value of the scene that none of its orbits has
-    return std::nullopt;
-  }
+  const auto problem = problem_of(one, registry);
+  return problem ? contact_spring(*problem, stiffness, stop.point) : std::nullopt;
 }
 
 // A free mass that meets the law at one metre per second.
@@ -163,18 +167,14 @@ std::string law_text(const MethodChoice& law, double stiffness) {
 // R κ: what the modes leave out of the flexibility at the stop, against its spring.
 std::string left_out_text(const StudyCase& one, const StopSpring& stop, const Registry& registry) {
   if (!one.scene.basis) return "";
-  SceneSpec scene = one.scene;
-  scene.initial = {};
-  try {
-    const auto built = discretise(scene, one.elements, *make_mass(one, registry));
-    const auto* problem = std::get_if<SemiDiscrete>(&built);
-    if (!problem || !problem->basis || problem->points() == 0) return "";
-    const int point = stop.point < 0 ? problem->points() - 1 : stop.point;
-    return fmt::format("; the modes leave out {:.2g} of its depth, Rκ",
-                       problem->basis->left_out[point] * stop.stiffness);
-  } catch (const InputError&) {  // a value of the scene that none of its orbits has
-    return "";
-  }
+  const auto problem = problem_of(one, registry);
+  if (!problem || !problem->basis || problem->points() == 0) return "";
+  const int point = stop.point < 0 ? problem->points() - 1 : stop.point;
+  return fmt::format("; the modes leave out {:.2g} of its depth, Rκ", problem->basis->left_out[point] * stop.stiffness);
+}
+
+std::string steps_text(double steps) {
+  return steps >= 1000 ? fmt::format("{:.0f}", steps) : fmt::format("{:.3g}", steps);
 }
 
 std::string line_of(const StudyCase& given, const StopSpring& stop, double h, const Registry& registry) {
@@ -187,14 +187,37 @@ std::string line_of(const StudyCase& given, const StopSpring& stop, double h, co
   const double steps = half / h;
   std::string text = fmt::format(
       "    {}{}; {}, h = {} s: half a period lasts {}: {} steps", stop.stop.empty() ? "" : "stop " + stop.stop + ", ",
-      law_text(one.contact, stop.stiffness), one.time.name, Cell(h).text(), duration_text(half),
-      steps >= 1000 ? fmt::format("{:.0f}", steps) : fmt::format("{:.3g}", steps));
+      law_text(one.contact, stop.stiffness), one.time.name, Cell(h).text(), duration_text(half), steps_text(steps));
   if (!std::holds_alternative<OscillatorSpec>(one.scene.structure))
     text += fmt::format(" ({:.3g} kg move)", spring->mass);
   text += left_out_text(one, stop, registry);
   if (const auto left = left_by(one, *spring, h, registry))
     text += "; a bounce " + loss_text(left->first, left->second);
   return text + "\n";
+}
+
+double give_way_of(const StudyCase& one, const Registry& registry) {
+  const auto make = friction_maker(one, registry);
+  return make ? make()->gives_way() : 0;
+}
+
+// How the structure swings on a friction law that gives way, along the first tangent of each stop that is no circle.
+std::string swings_of(const StudyCase& one, double h, const Registry& registry) {
+  const double gives_way = give_way_of(one, registry);
+  if (!(gives_way > 0)) return "";
+  const auto problem = problem_of(one, registry);
+  std::string text;
+  for (const RubbingPoint& point : problem ? problem->rubbing : std::vector<RubbingPoint>{}) {
+    if (point.round) continue;
+    const Eigen::VectorXd along = Eigen::MatrixXd(problem->rubbed.rows).row(point.row).transpose();
+    const auto spring = contact_spring(*problem, 1 / gives_way, along);
+    if (!spring) continue;
+    const double swing = 2 * std::numbers::pi / spring->pulsation;
+    text += fmt::format("    stop {}, {} of {:.4g} N/m, h = {} s: held, it swings in {}, undamped: {} steps\n",
+                        problem->stops[static_cast<std::size_t>(point.point)], one.friction.name, 1 / gives_way,
+                        Cell(h).text(), duration_text(swing), steps_text(swing / h));
+  }
+  return text;
 }
 
 std::string lines_of(const StudyCase& one, double h, const Registry& registry) {
@@ -234,21 +257,29 @@ std::string contacts_text(const std::vector<PlannedCase>& cases, const CasePlann
   std::size_t told = 0, more = 0;
   for (const PlannedCase& planned : cases) {
     const StudyCase& one = *planned.study_case;
+    const auto say = [&](const std::string& key, const auto& any, const auto& lines) {
+      if (!met.insert(key).second) return;
+      if (told == most_contact_lines) {
+        more += any();
+        return;
+      }
+      const std::string line = planner.ask(one, lines);
+      text += line;
+      told += !line.empty();
+    };
     if (told < most_contact_lines &&
         met.insert(structures_of(one.scene_json).dump() + content_of(one.contact).dump()).second)
       text += planner.ask(one, [&] { return table_line(one, registry); });
     for (const double h : {planned.plan.coarsest_step, planned.plan.finest_step}) {
       if (h <= 0) continue;
-      const std::string key = structures_of(one.scene_json).dump() + content_of(one.contact).dump() +
-                              content_of(one.time).dump() + Cell(h).text();
-      if (!met.insert(key).second) continue;
-      if (told == most_contact_lines) {
-        more += !springs_of(one, registry).empty();
-        continue;
-      }
-      const std::string line = planner.ask(one, [&] { return lines_of(one, h, registry); });
-      text += line;
-      told += !line.empty();
+      const std::string scene = structures_of(one.scene_json).dump() + Cell(h).text();
+      say(
+          scene + content_of(one.contact).dump() + content_of(one.time).dump(),
+          [&] { return !springs_of(one, registry).empty(); }, [&] { return lines_of(one, h, registry); });
+      if (!one.friction.name.empty())
+        say(
+            scene + "friction" + content_of(one.friction).dump(), [&] { return give_way_of(one, registry) > 0; },
+            [&] { return swings_of(one, h, registry); });
     }
   }
   if (text.empty()) return text;

@@ -18,7 +18,7 @@ using Change = std::function<void(FrictionProblem& problem)>;
 // Exact friction, and what is changed before and after it is found.
 class Changed final : public FrictionLaw {
  public:
-  Changed(Change before, Change after) : before_(std::move(before)), after_(std::move(after)) {}
+  Changed(Change before, Change after, double way) : before_(std::move(before)), after_(std::move(after)), way_(way) {}
   void prepare(int points, int rows) override { solver_.prepare(points, rows); }
   LaneOutcome solve(FrictionProblem& problem) override {
     if (before_) before_(problem);
@@ -26,20 +26,23 @@ class Changed final : public FrictionLaw {
     if (after_) after_(problem);
     return outcome;
   }
+  double gives_way() const override { return way_; }
 
  private:
   Change before_, after_;
+  double way_;
   FrictionSolver solver_;
 };
 
-Entry<FrictionLaw> entry(const Change& before, const Change& after) {
+Entry<FrictionLaw> entry(const Change& before, const Change& after, double way = 0) {
   Entry<FrictionLaw> made{full_manual("made-here"), {}, ""};
-  made.make = [=](const Parameters&) { return std::make_unique<Changed>(before, after); };
+  made.make = [=](const Parameters&) { return std::make_unique<Changed>(before, after, way); };
   return made;
 }
 
-void caught(const std::string& check, const std::string& words, const Change& before, const Change& after) {
-  const CheckResult result = one_check(checking::friction_checks(), entry(before, after), check);
+void caught(const std::string& check, const std::string& words, const Change& before, const Change& after,
+            double way = 0) {
+  const CheckResult result = one_check(checking::friction_checks(), entry(before, after, way), check);
   INFO(text_of({result}));
   CHECK(result.finding == Finding::fails);
   REQUIRE(!result.sentences.empty());
@@ -67,4 +70,6 @@ TEST_CASE("friction laws with one thing wrong are caught") {
     for (int i = 0; i < problem.points; ++i) problem.slid[i] += 1e-3;
   });
   caught("holds and slides", "drifts", {}, [](FrictionProblem& problem) { problem.effort[0] *= 0.99; });
+  // Exact friction that says it were a spring of 1e6 N/m.
+  caught("holds and slides", "gives way by 0 m", {}, {}, 1e-6);
 }

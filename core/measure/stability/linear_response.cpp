@@ -91,7 +91,12 @@ double overlap(const LinearResponse& response, const LaneSpec& lane) {
 std::optional<ContactSpring> contact_spring(const SemiDiscrete& problem, double stiffness, int point) {
   if (problem.points() == 0) return std::nullopt;
   if (point < 0) point = problem.points() - 1;
-  const Eigen::VectorXd h = Eigen::MatrixXd(problem.contact).row(point).transpose();
+  return contact_spring(problem, stiffness, Eigen::VectorXd(Eigen::MatrixXd(problem.contact).row(point).transpose()));
+}
+
+std::optional<ContactSpring> contact_spring(const SemiDiscrete& problem, double stiffness, const Eigen::VectorXd& h) {
+  constexpr int most_dofs = 240;
+  if (problem.dofs() > most_dofs) return std::nullopt;
   const Eigen::MatrixXd held = Eigen::MatrixXd(problem.stiffness) + stiffness * h * h.transpose();
   const SymmetricModes modes = symmetric_modes(dense_mass(problem.inertia), held);
   if (!modes.found) return std::nullopt;

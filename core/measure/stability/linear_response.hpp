@@ -36,8 +36,11 @@ struct ContactSpring {
 ///
 ///     M φ = μ (K + κ hᵀh) φ,   φᵀ(K + κ hᵀh) φ = 1,   κ (h φ)² largest:   m = κ μ,   ω = 1/√μ,
 ///
-/// a dense problem of n dofs. Nothing where it has no points, no modes are found, or that one has no mass.
+/// a dense problem of n dofs, of 240 at most. Nothing beyond, where it has no points, no modes are found, or that one
+/// has no mass.
 std::optional<ContactSpring> contact_spring(const SemiDiscrete& problem, double stiffness, int point = -1);
+/// The same along a row h (n) of coordinates.
+std::optional<ContactSpring> contact_spring(const SemiDiscrete& problem, double stiffness, const Eigen::VectorXd& h);
 
 /// How much a contact law gives way, m/N. A rigid law has 0, one that declares a constant stiffness κ has 1/κ. Any
 /// other has the secant d²/2U(d) of the energy U that it stores at the depth `depth` (m). Nothing for a compliant law

@@ -276,6 +276,8 @@ std::string rubbing_note(const Program& program, std::size_t number, double sche
     text += fmt::format("; with restitution {:g} an impact may give up to {:.3g} % more energy than it finds", e,
                         100 * gain);
   if (creeps > 0) return text + fmt::format("; held, it creeps by up to {:.3g} m/s", creeps);
+  if (const double way = program.friction->gives_way(); way > 0)
+    return text + fmt::format("; held, it gives way by {:.3g} m per N", way);
   if (root >= 1) return text + "; a disturbance of a held effort stays";
   const double steps = root > 0 ? std::ceil(std::log(left) / std::log(root)) : 0;
   return text + (steps > 0 ? fmt::format("; a held effort forgets 99 % of a disturbance in {:g} steps", steps)

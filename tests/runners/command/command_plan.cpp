@@ -105,6 +105,14 @@ TEST_CASE("A plan says the physics: a slip of units is seen") {
   // π√(m/(k + κ)) = 0.03126 s, in steps of 1e-4 s.
   CHECK_THAT(here.run("plan spring.json").out,
              Contains("k 1e4 N/m") && Contains("half a period lasts 31 ms: 313 steps") && Contains("; a bounce "));
+  study["methods"]["contact"] = "none";
+  study["methods"]["friction"] = {{"name", "spring"}, {"stiffness", 3e4}};
+  study["scene"]["stops"] =
+      nlohmann::ordered_json::parse(R"([{"name": "damper", "at": {"x": 0}, "normal_force": 20, "friction": 0.1}])");
+  here.write("damper.json", study.dump(1));
+  // 2π√(m/(k + κ)) = 0.31416 s.
+  CHECK_THAT(here.run("plan damper.json").out,
+             Contains("held, it swings in 314 ms, undamped: 3142 steps") && Contains("gives way by 3.33e-05 m per N"));
 }
 
 TEST_CASE("Where every case is refused nothing runs, which is no success") {
