@@ -185,9 +185,8 @@ std::vector<Field> observed_of_stops() {
   component.fields = {
       of_form(Field::Form::text, "component", std::nullopt, "Component along it, at the places of the stop.")};
   ObjectForm tangent;
-  tangent.fields = {
-      quiet(real("speed", "m/s", any, 0.0, "Speed of the surface; or its history.")
-                .as("speed of the surface", "the speed of the surface"))};
+  tangent.fields = {quiet(real("speed", "m/s", any, 0.0, "Speed of the surface; or its history.")
+                              .as("speed of the surface", "the speed of the surface"))};
   tangent.fields.front().given.push_back(speed_history());
   tangent.ways = {radius, direction, component, ObjectForm()};
   Field along =
@@ -347,8 +346,8 @@ Field clearance_key() {
   offset.spec.unit = "m";
   offset.repeats = true;
   ObjectForm keys;
-  keys.fields = {single(real("radius", "m", positive, std::nullopt, "How far the place may move from the axis.")
-                            .as("within", "the radius of a clearance")),
+  keys.fields = {real("radius", "m", positive, std::nullopt, "How far the place may move from the axis.")
+                     .as("within", "the radius of a clearance"),
                  std::move(sides), quiet(std::move(offset)), std::move(components)};
   return quiet(object("clearance", Json(nullptr), "A circle round the place, in the place of bounds.", keys));
 }

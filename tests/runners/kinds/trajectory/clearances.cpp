@@ -116,6 +116,27 @@ TEST_CASE("points of modes and nodes of matrices move within clearances as the b
   CHECK_THROWS_WITH(runs.study(study), Catch::Contains("a beam has no nodes that are called"));
 }
 
+TEST_CASE("the radius of a clearance may vary, with every law") {
+  CaseRuns runs;
+  for (const char* law : {R"("signorini")", R"({"name": "penalty", "stiffness": 1e5})"}) {
+    Json study = whirling(law);
+    study["duration"] = 0.2;
+    study.erase("window");
+    study.erase("outputs");
+    const CaseRecord alone = runs.first_of(study);
+    Json& radius = study["scene"]["stops"][0]["clearance"]["radius"];
+    radius = {1e-3, radius};
+    const std::vector<CaseRecord> both = runs.of(study);
+    REQUIRE(both.size() == 2);
+    CHECK(std::any_of(both.front().axes.begin(), both.front().axes.end(),
+                      [](const auto& axis) { return axis.first == "stops.0.clearance.radius"; }));
+    for (const char* name : {"impulse[plate]", "first_impact", "energy_end"}) {
+      CHECK(reading(both.back(), name) == reading(alone, name));
+      CHECK(reading(both.front(), name) != reading(alone, name));
+    }
+  }
+}
+
 TEST_CASE("sides of a clearance move nothing under a compliant law, and rigid laws say what they leave of the circle") {
   CaseRuns runs;
   Json study = whirling(R"({"name": "penalty", "stiffness": 1e5})");
