@@ -103,8 +103,8 @@ Commands method_commands() {
       {"list", "[mass|contact|time|reference]", "List the methods found.", 0, 1, {plugin}, command_list},
       {"describe",
        "NAME|PLAN.json",
-       "Show the manual of a method, a structure, a kind of study, a measure or an error; or of a scheme stated in a "
-       "file.",
+       "Show the manual of a method, a structure, a kind of study, an ask, a measure or an error; or of a scheme "
+       "stated in a file.",
        1,
        1,
        {plugin},

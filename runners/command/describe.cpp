@@ -284,7 +284,7 @@ int command_describe(const Arguments& arguments, std::ostream& out) {
   std::vector<std::string> all = names;
   all.insert(all.end(), studies.begin(), studies.end());
   all.insert(all.end(), results.begin(), results.end());
-  std::string message = "no method, structure, kind, measure or error is called \"" + name + "\"" +
+  std::string message = "no method, structure, kind, ask, measure or error is called \"" + name + "\"" +
                         did_you_mean(name, all) + " (methods: " + quoted_list(names) +
                         "; of studies: " + quoted_list(studies) + "; measures: the columns of cases.csv)";
   for (const Unusable& file : catalogue.unusable())

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ostream>
 
+#include "runners/asks/ask.hpp"
 #include "runners/command/manual.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/store/record.hpp"
@@ -26,6 +27,7 @@ std::string plain(const nlohmann::ordered_json& value) {
 namespace {
 
 constexpr const char* whole_study = "study";
+constexpr const char* all_asks = "ask";
 constexpr const char* see_below = "see below";
 
 /// A word of the study format on which the keys of an object depend.
@@ -106,10 +108,20 @@ std::string default_of(const Field& field) {
   return text.size() > longest ? see_below : text;
 }
 
-/// A row per key, those of nested objects by their path; `when`: the words under which it is there.
-void add_keys(const ObjectForm& form, const std::string& path, const std::string& when, std::vector<KeyRow>& rows) {
+/// The key that a way of an object cannot be without; "" where none is required.
+std::string key_of_way(const ObjectForm& way) {
+  const auto key = std::find_if(way.fields.begin(), way.fields.end(), [](const Field& one) { return one.required(); });
+  return key == way.fields.end() ? "" : key->key();
+}
+
+/// A row per key, those of nested objects by their path; `given`: the words under which it is there, `way`: the key of
+/// its way.
+void add_keys(const ObjectForm& form, const std::string& path, const std::string& given, std::vector<KeyRow>& rows,
+              const std::optional<std::string>& way = std::nullopt) {
   for (const Field& field : form.fields) {
     const std::string name = path + field.key();
+    const bool names_it = !way || way->empty() || *way == field.key();
+    const std::string when = given + (!way ? "" : names_it ? " (one way)" : " (with " + *way + ")");
     const bool listed = field.form == Field::Form::scalar || field.form == Field::Form::numbers;
     const bool number = listed && field.spec.type != ParameterSpec::Type::word;
     rows.push_back({name, type_of(field), field.spec.unit, default_of(field),
@@ -121,7 +133,7 @@ void add_keys(const ObjectForm& form, const std::string& path, const std::string
   }
   for (const Variant& variant : form.variants)
     add_keys(variant.keys, path, fmt::format(" (with {})", fmt::join(variant.words, ", ")), rows);
-  for (const ObjectForm& way : form.ways) add_keys(way, path, " (one way)", rows);
+  for (const ObjectForm& one : form.ways) add_keys(one, path, "", rows, key_of_way(one));
 }
 
 std::string key_table(const std::vector<KeyRow>& rows) {
@@ -159,6 +171,19 @@ void print_study(std::ostream& out) {
 bool is_called(const MeasureInfo& measure, const std::string& name) {
   const std::string own = measure.name;
   return own == name || own.ends_with("." + name);
+}
+
+void print(const asks::Verb& verb, std::ostream& out) {
+  out << fmt::format("{} (a verb of asks): {}\n\nkeys\n{}", verb.name, verb.text,
+                     key_table(rows_of({verb.keys, "", {}})));
+}
+
+/// What a study may ask.
+void print_asks(std::ostream& out) {
+  out << "asks (the list `ask` of a study): what it wants to know; each entry has one verb\n\n";
+  TextTable table({"verb", "what it asks"});
+  for (const asks::Verb* verb : asks::verbs()) table.add({verb->name, verb->text});
+  out << table.text(2);
 }
 
 void print(const MeasureInfo& measure, std::ostream& out) {
@@ -220,6 +245,14 @@ bool describe_word(const std::string& name, std::ostream& out) {
     next();
     print_study(out);
   }
+  if (name == all_asks) {
+    next();
+    print_asks(out);
+  }
+  if (const asks::Verb* verb = asks::find_verb(name)) {
+    next();
+    print(*verb, out);
+  }
   for (const FormWord& word : form_words())
     if (word.name == name) {
       next();
@@ -239,7 +272,8 @@ bool describe_word(const std::string& name, std::ostream& out) {
 }
 
 std::vector<std::string> words_of_studies() {
-  std::vector<std::string> names = {whole_study};
+  std::vector<std::string> names = {whole_study, all_asks};
+  for (const asks::Verb* verb : asks::verbs()) names.emplace_back(verb->name);
   for (const FormWord& word : form_words()) names.push_back(word.name);
   return names;
 }

@@ -130,6 +130,9 @@ TEST_CASE("What a study and its results call by a name has a manual too, and the
       {"impulse", {"impulse (a measure of a case, in N s): ", "error.impulse"}},
       {"tip-l2", {"error.tip-l2 (a measure of a case, in m): Root mean square"}},
       {"error.tip-l2", {"Root mean square"}},
+      {"ask", {"threshold", "From which value of an axis on", "each entry has one verb"}},
+      {"rank", {"rank (a verb of asks): ", "over", "required"}},
+      {"study", {"In the measure's unit. (with limit)", "It is below this value. (with threshold)"}},
   };
   for (const auto& [name, parts] : all) {
     const Outcome outcome = here.run("describe " + name);
@@ -137,11 +140,14 @@ TEST_CASE("What a study and its results call by a name has a manual too, and the
     CHECK(outcome.code == 0);
     for (const std::string& part : parts) CHECK_THAT(outcome.out, Contains(part));
   }
-  for (const auto& [wrong, right] : std::vector<std::pair<std::string, std::string>>{
-           {"baem", "beam"}, {"trajectroy", "trajectory"}, {"impluse", "impulse"}, {"tip-l3", "tip-l2"}}) {
+  for (const auto& [wrong, right] : std::vector<std::pair<std::string, std::string>>{{"baem", "beam"},
+                                                                                     {"trajectroy", "trajectory"},
+                                                                                     {"impluse", "impulse"},
+                                                                                     {"tip-l3", "tip-l2"},
+                                                                                     {"treshold", "threshold"}}) {
     const Outcome outcome = here.run("describe " + wrong);
     CHECK(outcome.code == 2);
-    CHECK_THAT(outcome.err, StartsWith("ricochet: no method, structure, kind, measure or error is called") &&
+    CHECK_THAT(outcome.err, StartsWith("ricochet: no method, structure, kind, ask, measure or error is called") &&
                                 Contains("did you mean \"" + right + "\"?"));
   }
 }
