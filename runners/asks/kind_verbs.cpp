@@ -1,6 +1,9 @@
 #include "runners/asks/kind_verbs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <ricochet/measure/orbits/regime.hpp>
 
 #include "runners/asks/verbs.hpp"
 #include "runners/json/json_text.hpp"
@@ -33,7 +36,9 @@ const Verb& motions_verb() {
                          "Which motions there are, where they change, and their shares.",
                          {keys::of_form(Field::Form::text, "motions", std::nullopt,
                                         "The parameter of a sweep, or \"share\" of the starts of basins.")},
-                         "only one that finds motions can: kinds bifurcation and basins"};
+                         "only one that finds motions can: kinds bifurcation and basins",
+                         {},
+                         [](const Ask&, const Study& study) { return too_short_to_judge(study.resolved); }};
   return verb;
 }
 
@@ -55,6 +60,14 @@ const Verb& steps_verb() {
                          {keys::word("steps", {"limit"}, std::nullopt, "\"limit\".")},
                          "only one of kind stability can"};
   return verb;
+}
+
+std::string too_short_to_judge(const Json& resolved) {
+  if (!resolved.contains("keep")) return "";
+  const int kept = resolved.at("keep").get<int>();
+  if (kept >= zero_one_readings || resolved.value("exponents", 0) > 0) return "";
+  return fmt::format("{} kept periods{} leave undecided whatever does not repeat; {} tell regular from chaotic", kept,
+                     resolved.contains("exponents") ? " without an exponent" : "", zero_one_readings);
 }
 
 std::string fitting(const std::vector<std::string>& sentences) {

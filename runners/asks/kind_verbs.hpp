@@ -20,6 +20,10 @@ Ask ask_at(const Json& keys, const std::string& pointer);
 std::function<void(const Json& resolved, const std::string& measure, const std::string& pointer)> measures_alone(
     const std::vector<MeasureInfo>& measures);
 
+/// Why no orbit of this study that does not repeat is decided: too few kept periods for the 0–1 test, and no exponent;
+/// "" where that is not so.
+std::string too_short_to_judge(const Json& resolved);
+
 /// Refuses stops, of which such a verb does not speak.
 void refuse_stops(const Ask& ask);
 

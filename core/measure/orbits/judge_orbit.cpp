@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-constexpr std::size_t fewest_readings = 60, frequencies = 100, longest_lag = 100;
+constexpr std::size_t frequencies = 100, longest_lag = 100;
 constexpr double no_variation = 1e-12;  // of a series that does not vary
 
 // Correlation of (1, …, m) with D.
@@ -31,7 +31,7 @@ double correlation(const std::vector<double>& D) {
 
 std::optional<double> zero_one_test(std::span<const double> series, std::uint64_t seed) {
   const std::size_t count = series.size();
-  if (count < fewest_readings) return std::nullopt;
+  if (count < zero_one_readings) return std::nullopt;
   double mean = 0, largest = 0, spread = 0;
   for (const double x : series) {
     if (!std::isfinite(x)) return std::nullopt;

@@ -78,7 +78,8 @@ std::string exponent_text(const Interval& e) {
 }
 
 std::string zero_one_text(const RegimeInput& input) {
-  return input.zero_one ? fmt::format("K = {:.2f}", *input.zero_one) : "no 0–1 test (60 kept periods are needed)";
+  return input.zero_one ? fmt::format("K = {:.2f}", *input.zero_one)
+                        : fmt::format("no 0–1 test ({} kept periods are needed)", zero_one_readings);
 }
 
 std::string distance_text(const RegimeInput& input) {

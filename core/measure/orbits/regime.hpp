@@ -43,6 +43,9 @@ std::optional<MotionClass> motion_class(std::string_view regime, std::optional<d
 /// whose contacts never change they are `period` (forcing periods; 0: not known), one at least. Others have none.
 int cycle_of(const MotionClass& motion, int period);
 
+/// Readings that the 0–1 test needs.
+inline constexpr int zero_one_readings = 60;
+
 /// What is known of one orbit over its kept periods.
 struct RegimeInput {
   bool contact = false;   ///< whether any stop was touched

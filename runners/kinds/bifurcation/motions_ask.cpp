@@ -240,6 +240,9 @@ class MotionsAlong {
     out.verdict = open ? "undecided" : "decided";
     const std::string share = answers::percent(undecided_) + " of the range is undecided";
     if (open) out.reason = share;
+    if (const std::string short_of = asks::too_short_to_judge(evidence_.results().study);
+        undecided_ > 0 && !short_of.empty())
+      out.aside.push_back(short_of + ".");
     if (told_.empty() || std::all_of(told_.begin(), told_.end(), [](const CaseMotions& one) {
           return std::all_of(one.stretches.begin(), one.stretches.end(),
                              [](const auto& part) { return part.motion.empty(); });
@@ -292,7 +295,9 @@ class MotionsAlong {
     for (std::string& one : texts) one = answers::capitalised(one);
     out.sentence = asks::fitting(texts);
     if (several && others > 0 && !none_shared)
-      out.aside.push_back(fmt::format("{} more changes are not those of every method.", others));
+      out.aside.push_back(others == 1
+                              ? "One change of the motion is that of some methods alone."
+                              : fmt::format("{} changes of the motion are those of some methods alone.", others));
     if (several && none_shared && others > 0) out.aside.emplace_back("No change is that of every method.");
   }
 

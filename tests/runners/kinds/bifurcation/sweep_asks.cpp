@@ -77,7 +77,7 @@ TEST_CASE("a change of one method alone is not that of every method", "[asks]") 
   const asks::Answered out = ask(study_of({{one, one, two, two, two}, {one, one, two, two, three}}), motions);
   CHECK_THAT(out.sentence, Contains("period 1 to 2 (2–3") && !Contains("2 to 3"));
   REQUIRE_FALSE(out.aside.empty());
-  CHECK_THAT(out.aside.front(), Contains("1 more"));
+  CHECK_THAT(out.aside.front(), Contains("One change of the motion"));
 }
 
 TEST_CASE("what is undecided stands first above a quarter, and behind it below", "[asks]") {
@@ -98,6 +98,21 @@ TEST_CASE("what is undecided stands first above a quarter, and behind it below",
   CHECK(*out.rows.front().value == Approx(37.5));
   out = ask(study_of({{open, open, open}}), motions);
   CHECK_THAT(out.sentence, Catch::Matchers::StartsWith("Open: no orbit is decided"));
+}
+
+TEST_CASE("kept periods that tell nothing of what does not repeat are said above the motions", "[asks]") {
+  const auto aside_of = [](int keep, int exponents, const std::vector<MotionClass>& motions_of_case) {
+    Made made = study_of({motions_of_case});
+    made.results.study["keep"] = keep;
+    made.results.study["exponents"] = exponents;
+    return ask(made, motions).aside;
+  };
+  REQUIRE(aside_of(40, 0, {one, open}).size() == 1);
+  CHECK(aside_of(40, 0, {one, open}).front() ==
+        "40 kept periods without an exponent leave undecided whatever does not repeat; 60 tell regular from chaotic.");
+  CHECK(aside_of(40, 1, {one, open}).empty());
+  CHECK(aside_of(60, 0, {one, open}).empty());
+  CHECK(aside_of(40, 0, {one, two}).empty());
 }
 
 TEST_CASE("motions beside each other are counted by attractor", "[asks]") {
