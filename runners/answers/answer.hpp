@@ -44,6 +44,8 @@ std::vector<Sentence> doubted(const Compared& study);
 /// did, or has no stops.
 std::optional<Sentence> say_untouched(const Compared& study);
 
+/// Why there is no value of what is known by works alone.
+inline constexpr const char* no_work_form = "the scheme declares no work form";
 /// Why a case that ran has no value of a measure; "" where that is not known.
 std::string why_without(const std::string& measure, const CaseRecord& record);
 

@@ -16,7 +16,7 @@ std::string why_without(const std::string& name, const CaseRecord& record) {
   const bool of_energy = words.scale == "energy_brought_in" || words.most;
   if (!of_energy) return "";
   // Works are known together or not at all.
-  if (!measure(record, "work_of_damping")) return "the scheme declares no work form, and works are not known";
+  if (!measure(record, "work_of_damping")) return no_work_form;
   if (!measure(record, "energy_left")) return "the motion has no energy to lose";
   return "";
 }

@@ -42,6 +42,16 @@ struct Side {
     const auto marched = [](const auto& cell) { return cell.has_value(); };
     return std::any_of(cells.begin(), cells.end(), marched) && std::none_of(cells.begin(), cells.end(), stable);
   }
+  /// Marched, or with a spectrum, at every step, and stable at all of them.
+  bool always_stable(bool marched) const {
+    const auto bounded = [](const auto& cell) { return cell && cell->stable(); };
+    const auto inside = [](const auto& one) {
+      const auto* known = one ? std::get_if<StepSpectrum>(&*one) : nullptr;
+      return known && known->stable();
+    };
+    return marched ? !cells.empty() && std::all_of(cells.begin(), cells.end(), bounded)
+                   : !spectra.empty() && std::all_of(spectra.begin(), spectra.end(), inside);
+  }
   /// Without contact a step is linear: it does what its spectrum says, or the plan is not what is marched.
   bool contradicts(std::size_t i) const {
     const StepSpectrum* known = spectrum(i);
@@ -345,10 +355,20 @@ class StabilityRun {
       const auto limit = expected(sides, side);
       if (limit && side.observed.step && !std::isfinite(agreement)) agreement = *side.observed.step / *limit;
     }
-    put_measure(record_, "limit_predicted", predicted);
-    put_measure(record_, "limit_observed", observed);
+    put_limit("limit_predicted", predicted, sides, false);
+    put_limit("limit_observed", observed, sides, true);
     if (radius >= 0) put_measure(record_, "largest_radius", radius);
     put_measure(record_, "agreement", agreement);
+  }
+
+  // Or why there is none.
+  void put_limit(const char* name, double limit, const std::vector<Side>& sides, bool marched) {
+    put_measure(record_, name, limit);
+    if (std::isfinite(limit)) return;
+    if (std::all_of(sides.begin(), sides.end(), [&](const Side& side) { return side.always_stable(marched); }))
+      record_.left_out.emplace_back(name, "every step of the range is stable");
+    else if (marched && std::any_of(sides.begin(), sides.end(), [](const Side& side) { return side.never_stable(); }))
+      record_.left_out.emplace_back(name, "no step of the range is stable");
   }
 
   void compare_declared(const Side& open) {

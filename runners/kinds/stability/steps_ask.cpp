@@ -226,15 +226,16 @@ class StepsAsk {
     };
     for (const int brief : {0, 1, 2}) {
       std::vector<std::string> parts;
-      // The largest group needs no name beside the others.
-      std::size_t largest = 0;
-      for (const auto& [bound, of] : bounds) largest = std::max(largest, of.size());
+      // The largest group needs no name beside the others; of several the last.
+      Bound largest = bounds.begin()->first;
+      for (const auto& [bound, of] : bounds)
+        if (of.size() >= bounds.at(largest).size()) largest = bound;
       std::string verb = " bounds the step";  // once
       for (const auto& [bound, of] : bounds) {
         const std::string who = of.size() == limits_.size() ? (limits_.size() == 1 ? "" : " with every case")
                                 : brief == 2 ? fmt::format(" in {} of {} cases", of.size(), limits_.size())
-                                : brief == 1 && of.size() == largest && bounds.size() > 1 ? " elsewhere"
-                                                                                          : " with " + named(of);
+                                : brief == 1 && bound == largest && bounds.size() > 1 ? " elsewhere"
+                                                                                      : " with " + named(of);
         switch (bound) {
           case Bound::stop:
           case Bound::mesh:

@@ -10,6 +10,7 @@
 #include <ricochet/measure/statistics/spectra.hpp>
 #include <utility>
 
+#include "runners/answers/answer.hpp"
 #include "runners/json/json_text.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/text.hpp"
@@ -130,9 +131,7 @@ const StopMeasure stop_measures[] = {
      "stick share at {}", while_rubbed<[](Rubbed f, double) { return f.held / f.time; }>, Needs::friction, true},
     {"friction_power", "W", "Power that friction at the stop {} turns to heat, mean over the window.",
      "friction power at {}",
-     [](const StopReading& of) {
-       return of.friction_works ? Known(of.friction->heat / of.rubbed_over) : std::nullopt;
-     },
+     [](const StopReading& of) { return of.friction_works ? Known(of.friction->heat / of.rubbed_over) : std::nullopt; },
      Needs::friction, true},
     {"slip_distance", "m", "How far the surface of the stop {} slides while it is pressed, in the window.",
      "slip at {}", rubbed<[](Rubbed f, double) { return f.slipped; }>, Needs::friction, true},
@@ -148,7 +147,8 @@ const StopMeasure stop_measures[] = {
      rubbed<[](Rubbed f, double) { return f.peak; }>, Needs::friction, true, true},
     {"drift_of_sticking", "m/s", "How fast the surface of the stop {} creeps while it sticks.", "creep at {}",
      [](const StopReading& of) -> Known {
-       return of.friction_works && of.friction->held > 0 ? Known(of.friction->drifted / of.friction->held) : std::nullopt;
+       return of.friction_works && of.friction->held > 0 ? Known(of.friction->drifted / of.friction->held)
+                                                         : std::nullopt;
      },
      Needs::friction, true}};
 
@@ -318,16 +318,21 @@ std::vector<std::string> forces_while_they_act(const std::string& stop) {
 }
 
 void put_stop_measures(CaseRecord& record, const std::string& stop, const StopReading& reading) {
+  StopReading with_works = reading;
+  with_works.friction_works = true;
   for (const StopMeasure& one : stop_measures)
-    if (const Known value = one.value(reading)) put_measure(record, name_of(one.name, stop), *value);
+    if (const Known value = one.value(reading))
+      put_measure(record, name_of(one.name, stop), *value);
+    else if (reading.friction && one.value(with_works))
+      record.left_out.emplace_back(name_of(one.name, stop), answers::no_work_form);
 }
 
 std::vector<Column> stop_reading_columns(const StopReading& known) {
   std::vector<Column> columns;
   for (const StopMeasure& one : stop_measures)
-    if (one.column && ((one.needs == Needs::window && known.pushed) || (one.needs == Needs::shocks && known.shocks) ||
-                       (one.needs == Needs::tangent && known.wear_power) ||
-                       (one.needs == Needs::friction && known.friction)))
+    if (one.column &&
+        ((one.needs == Needs::window && known.pushed) || (one.needs == Needs::shocks && known.shocks) ||
+         (one.needs == Needs::tangent && known.wear_power) || (one.needs == Needs::friction && known.friction)))
       columns.push_back({one.name, one.unit, fmt::format(fmt::runtime(one.text), "of the row")});
   return columns;
 }

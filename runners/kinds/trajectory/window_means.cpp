@@ -6,6 +6,7 @@
 #include <cmath>
 #include <ricochet/engine/flight/flight.hpp>
 
+#include "runners/answers/answer.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
@@ -94,7 +95,10 @@ void WindowMeans::put(CaseRecord& record) const {
   const char* const names[means] = {"window_power", "window_force", "window_impact_rate", "window_tip_rms"};
   for (int mean = 0; mean < means; ++mean) {
     // Without a work form it is not known what the stops take.
-    if (mean == power && !audit_.balances()) continue;
+    if (mean == power && !audit_.balances()) {
+      record.left_out.emplace_back(names[mean], answers::no_work_form);
+      continue;
+    }
     const Interval found = block_bootstrap_mean(series_[static_cast<std::size_t>(mean)]);
     put_measure(record, names[mean], found.value);
     put_measure(record, std::string("confidence.") + names[mean],

@@ -167,6 +167,18 @@ TEST_CASE("without observation nothing is marched") {
   CHECK(*result.measure("limit_predicted") == Approx(central_limit).epsilon(2e-3));
   CHECK_FALSE(result.measure("limit_observed"));
   CHECK_FALSE(result.measure("agreement"));
+  CHECK(result.record.left_out.empty());
+}
+
+TEST_CASE("where every step is stable the case says so in the place of a limit") {
+  Json text = study_text("consistent", "signorini", dumont_paoli(0.5), 1e-4, 1e-2, 4);
+  const Result result = run(text);
+  for (const char* name : {"limit_predicted", "limit_observed"}) {
+    CHECK_FALSE(result.measure(name));
+    const auto& why = result.record.left_out;
+    CHECK(std::find(why.begin(), why.end(),
+                    std::pair<std::string, std::string>(name, "every step of the range is stable")) != why.end());
+  }
 }
 
 TEST_CASE("what cannot touch has open cells only") {

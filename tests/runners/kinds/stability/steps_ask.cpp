@@ -87,4 +87,20 @@ TEST_CASE("what has no limit, no stable step or another limit in marches is told
   CHECK_THAT(out.aside.front(), Contains("another limit"));
 }
 
+TEST_CASE("of groups as large as each other one alone goes without its name", "[asks]") {
+  // Limits of the stop, of the mesh and none, in turn: the names are long.
+  std::vector<Spring> springs;
+  for (int k = 0; k < 24; ++k) springs.push_back({k + 1, 1e-4, k % 3 == 0 ? 1e-5 : 1e-2});
+  int number = 0;
+  const asks::Answered out = ask(springs, [&](LimitRow& open, LimitRow& closed) {
+    if (number++ % 3 != 2) return;
+    open.prediction = closed.prediction = "none";
+    open.predicted = closed.predicted = {};
+  });
+  INFO(out.sentence);
+  const std::size_t first = out.sentence.find("elsewhere");
+  CHECK((first == std::string::npos || out.sentence.find("elsewhere", first + 1) == std::string::npos));
+  CHECK_THAT(out.sentence, Contains("8 of 24 cases") || Contains("elsewhere"));
+}
+
 }  // namespace ricochet::tests_of_steps_asks

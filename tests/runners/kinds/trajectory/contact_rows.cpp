@@ -6,6 +6,7 @@
 #include <ricochet/loader/catalogue.hpp>
 #include <set>
 
+#include "runners/answers/answer.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/trajectory/stop_tables.hpp"
 #include "runners/kinds/trajectory/trajectory.hpp"
@@ -215,4 +216,11 @@ TEST_CASE("a friction damper has one row without a side, and what it takes is th
   CHECK(cell(1, "friction_power").number().value() ==
         Approx(0.15 * 40 * cell(1, "slip_distance").number().value() / 0.05).epsilon(2.5e-3));
   CHECK(cell(1, "slip_distance").number().value() > 0.01);
+
+  // Without works there is no heat, and the case says why.
+  study["methods"]["time"] = "bathe";
+  const CaseRecord unknown = results_of(study).cases.at(0);
+  CHECK(measure(unknown, "stick_share[damper]"));
+  CHECK_FALSE(measure(unknown, "friction_power[damper]"));
+  CHECK_THAT(answers::why_without("friction_power[damper]", unknown), Catch::Contains("declares no work form"));
 }
