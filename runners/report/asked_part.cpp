@@ -15,10 +15,10 @@ std::string table_html(const AskedTable& table) {
   HtmlTable out("", {}, "verdicts");
   for (std::size_t k = 0; k < table.heads.size(); ++k) out.add({table.heads[k], k == table.values});
   for (const std::vector<std::string>& row : table.rows) {
-    out.row(row.front());
+    out.row("", "", unbroken(row.front()));
     for (std::size_t k = 1; k < row.size(); ++k) {
       if (k != table.values)
-        out.text(row[k]);
+        out.cell(row[k].empty() ? "–" : unbroken(row[k]));
       else if (row[k].empty())
         out.absent();
       else

@@ -21,6 +21,8 @@ std::string escape(std::string_view text);
 
 /// A sentence as HTML with its numbers in bold, so that the eye finds them.
 std::string emphasised(const std::string& sentence);
+/// Text, escaped, in which no line ends within a number: a page breaks lines behind the "-" of "1e-4".
+std::string unbroken(const std::string& text);
 
 /// JSON that may stand inside a <script> element: no '<' appears raw, so neither "</script" nor "<!--" can.
 std::string script_json(const nlohmann::ordered_json& value);

@@ -18,6 +18,11 @@ namespace {
 
 using asks::VerdictRow;
 
+/// A measure, or an axis, in words.
+std::string words_of(const std::string& name) {
+  return name.empty() ? "" : measure_info(name) ? answers::measure_words(name).words : answers::spoken(name);
+}
+
 std::string unit_of(const VerdictRow& row) {
   return row.unit == "1" ? "" : row.unit;
 }
@@ -62,8 +67,7 @@ report::AskedTable asked_rows(const asks::Answered& answered) {
                "verdict"};
   constexpr std::size_t values = 3;
   for (const VerdictRow& row : answered.rows)
-    out.rows.push_back({row.level, stops.size() > 1 ? row.stop : "",
-                        measures.size() > 1 && !row.measure.empty() ? answers::measure_words(row.measure).words : "",
+    out.rows.push_back({row.level, stops.size() > 1 ? row.stop : "", measures.size() > 1 ? words_of(row.measure) : "",
                         value(row),
                         row.verdict + (row.reason.empty() ? "" : (row.verdict.empty() ? "" : ": ") + row.reason)});
   out.values = values;
