@@ -21,7 +21,7 @@
 /// of the library runs. Fields, in order: contract version, Eigen version, Eigen's alignment limits, libstdc++ string
 /// ABI. The sizes of types stand beside it (RICOCHET_LAYOUTS).
 #ifndef RICOCHET_ABI_CONTRACT
-#define RICOCHET_ABI_CONTRACT 9
+#define RICOCHET_ABI_CONTRACT 10
 #endif
 #define RICOCHET_ABI_JOIN_(contract, world, major, align, static_align, cxx11) \
   ricochet_abi__contract_##contract##__eigen_##world##_##major##__align_##align##_##static_align##__cxx11_##cxx11

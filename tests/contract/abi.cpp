@@ -46,9 +46,9 @@ TEST_CASE("the tag is a symbol name that tells the four fields in order") {
 }
 
 TEST_CASE("each field that differs is named with what was expected and what was found") {
-  const std::string tag = "ricochet_abi__contract_9__eigen_3_4__align_32_16__cxx11_1";
+  const std::string tag = "ricochet_abi__contract_10__eigen_3_4__align_32_16__cxx11_1";
   REQUIRE(mismatch(tag) == "none");
-  CHECK(mismatch(replaced(tag, "contract_9", "contract_99")) == "contract: expected 9, found 99");
+  CHECK(mismatch(replaced(tag, "contract_10", "contract_99")) == "contract: expected 10, found 99");
   CHECK(mismatch(replaced(tag, "eigen_3_4", "eigen_3_3")) == "eigen: expected 3.4, found 3.3");
   CHECK(mismatch(replaced(tag, "align_32_16", "align_64_16")) == "align: expected 32.16, found 64.16");
   CHECK(mismatch(replaced(tag, "align_32_16", "align_32_32")) == "align: expected 32.16, found 32.32");
@@ -56,14 +56,14 @@ TEST_CASE("each field that differs is named with what was expected and what was 
 }
 
 TEST_CASE("the first field that differs is the one told") {
-  CHECK(mismatch("ricochet_abi__contract_1__eigen_4_0__align_64_64__cxx11_0") == "contract: expected 9, found 1");
+  CHECK(mismatch("ricochet_abi__contract_1__eigen_4_0__align_64_64__cxx11_0") == "contract: expected 10, found 1");
 }
 
 TEST_CASE("a tag with fields missing or added does not fit") {
-  CHECK(mismatch("ricochet_abi__contract_9__eigen_3_4__align_32_16") == "cxx11: expected 1, found nothing");
-  CHECK(mismatch("ricochet_abi__") == "contract: expected 9, found nothing");
-  CHECK(mismatch("") == "contract: expected 9, found nothing");
-  CHECK(mismatch("ricochet_abi__eigen_3_4") == "contract: expected 9, found nothing");
+  CHECK(mismatch("ricochet_abi__contract_10__eigen_3_4__align_32_16") == "cxx11: expected 1, found nothing");
+  CHECK(mismatch("ricochet_abi__") == "contract: expected 10, found nothing");
+  CHECK(mismatch("") == "contract: expected 10, found nothing");
+  CHECK(mismatch("ricochet_abi__eigen_3_4") == "contract: expected 10, found nothing");
   CHECK(mismatch(abi_tag() + "__cuda_12") == "cuda: a field that this program does not know");
 }
 
