@@ -153,9 +153,9 @@ class Marcher {
   /// What a row that rubs is moved by against its surface at t, m/s; and Σ weight of the same as a way, V t counted
   /// from t, with weights that sum to 0.
   double rubbed_rate(int lane, int row, double t) const;
-  /// Whether any of them moves.
-  bool surfaces_move() const;
   double rubbed_levels(int lane, int row, double t, const Levels& levels) const;
+  /// Whether a surface moves, or a support of what rubs: else both know the motion of the rows alone.
+  bool surfaces_move() const;
   const SupportMotions& motions() const { return program_.problem->motions; }
   /// Which stops pushed a lane at the last instant of contact: lower, upper.
   std::array<bool, 2> pushed_by(int lane) const;
