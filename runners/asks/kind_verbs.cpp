@@ -70,6 +70,10 @@ std::string too_short_to_judge(const Json& resolved) {
                      resolved.contains("exponents") ? " without an exponent" : "", zero_one_readings);
 }
 
+void warn_too_short(Answered& out, const Json& resolved) {
+  if (const std::string why = too_short_to_judge(resolved); !why.empty()) out.aside.push_back(why + ".");
+}
+
 std::string fitting(const std::vector<std::string>& sentences) {
   for (const std::string& one : sentences)
     if (fits(one)) return one;

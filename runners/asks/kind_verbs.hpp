@@ -23,6 +23,8 @@ std::function<void(const Json& resolved, const std::string& measure, const std::
 /// Why no orbit of this study that does not repeat is decided: too few kept periods for the 0–1 test, and no exponent;
 /// "" where that is not so.
 std::string too_short_to_judge(const Json& resolved);
+/// Adds it to what warns.
+void warn_too_short(Answered& out, const Json& resolved);
 
 /// Refuses stops, of which such a verb does not speak.
 void refuse_stops(const Ask& ask);

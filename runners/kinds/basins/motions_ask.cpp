@@ -162,10 +162,8 @@ class MotionShares {
       if (const auto starts = basins_.starts.find(one.record->id); starts != basins_.starts.end())
         beyond = std::max(beyond, starts->second.no_starts), cells = std::max(cells, starts->second.cells);
     }
-    const bool open =
-        std::any_of(told_.begin(), told_.end(), [](const CaseShares& one) { return one.undecided_share() > 0; });
-    if (const std::string short_of = asks::too_short_to_judge(evidence_.results().study); open && !short_of.empty())
-      out.aside.push_back(short_of + ".");
+    if (std::any_of(told_.begin(), told_.end(), [](const CaseShares& one) { return one.undecided_share() > 0; }))
+      asks::warn_too_short(out, evidence_.results().study);
     if (failed > 0) out.aside.push_back(fmt::format("Left out: {} {} failed.", failed, places()));
     if (beyond > 0)
       out.aside.push_back(fmt::format(

@@ -240,9 +240,7 @@ class MotionsAlong {
     out.verdict = open ? "undecided" : "decided";
     const std::string share = answers::percent(undecided_) + " of the range is undecided";
     if (open) out.reason = share;
-    if (const std::string short_of = asks::too_short_to_judge(evidence_.results().study);
-        undecided_ > 0 && !short_of.empty())
-      out.aside.push_back(short_of + ".");
+    if (undecided_ > 0) asks::warn_too_short(out, evidence_.results().study);
     if (told_.empty() || std::all_of(told_.begin(), told_.end(), [](const CaseMotions& one) {
           return std::all_of(one.stretches.begin(), one.stretches.end(),
                              [](const auto& part) { return part.motion.empty(); });
