@@ -99,4 +99,8 @@ struct ExportedSymbol {
 /// processor". Nothing outside of the file is read, whatever bytes it holds. Source: System V ABI, chapters 4 and 5.
 std::vector<ExportedSymbol> exported_symbols(const std::filesystem::path& file, std::string_view prefix);
 
+/// The bytes by which the linker names what it made of a program or library: two files with one id run the same code.
+/// "" where it gave none. Throws std::runtime_error as exported_symbols() does.
+std::string build_id(const std::filesystem::path& file);
+
 }  // namespace ricochet

@@ -89,4 +89,22 @@ std::vector<ExportedSymbol> exported_symbols(const fs::path& file, std::string_v
   return result;
 }
 
+std::string build_id(const fs::path& file) {
+  Bytes bytes(file);
+  const Elf64_Ehdr header = read_header(bytes);
+  for (const auto& section : bytes.read<Elf64_Shdr>(header.e_shoff, header.e_shnum, "its section table")) {
+    if (section.sh_type != SHT_NOTE) continue;
+    const auto note = bytes.read<char>(section.sh_offset, section.sh_size, "a note");
+    constexpr std::string_view owner("GNU\0", 4);
+    Elf64_Nhdr head;
+    if (note.size() < sizeof(head) + owner.size()) continue;
+    std::memcpy(&head, note.data(), sizeof(head));
+    const std::string_view rest(note.data() + sizeof(head), note.size() - sizeof(head));
+    if (head.n_type == NT_GNU_BUILD_ID && head.n_namesz == owner.size() && rest.starts_with(owner) &&
+        head.n_descsz <= rest.size() - owner.size())
+      return std::string(rest.substr(owner.size(), head.n_descsz));
+  }
+  return {};
+}
+
 }  // namespace ricochet

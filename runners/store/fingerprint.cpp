@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <ricochet/loader/catalogue.hpp>
 #include <sstream>
 
 #include "runners/store/atomic_file.hpp"
@@ -29,6 +30,16 @@ std::filesystem::path core_file() {
       },
       &found);
   return found;
+}
+
+// What tells one build of a file from another: read at each start, where a hash of all bytes would cost half of it.
+std::string build_of(const std::filesystem::path& file) {
+  std::string id;
+  try {
+    id = build_id(file);
+  } catch (const std::runtime_error&) {  // no program of this form
+  }
+  return id.empty() ? file_hash(file) : id;
 }
 
 }  // namespace
@@ -59,7 +70,7 @@ std::string file_hash(const std::filesystem::path& file) {
 }
 
 const std::string& program_hash() {
-  static const std::string hash = content_hash(file_hash(program_file()) + file_hash(core_file()));
+  static const std::string hash = content_hash(build_of(program_file()) + build_of(core_file()));
   return hash;
 }
 

@@ -19,7 +19,8 @@ std::string file_hash(const std::filesystem::path& file);
 /// The program that computes: this one, or `ricochet` beside ricochet-mpi, which starts it.
 std::filesystem::path program_file();
 
-/// Hash of the running program: the executable and the core library it uses. Computed once per process.
+/// Hash of the running program: what the linker named the executable and the core library it uses, or their bytes where
+/// it named none. Computed once per process.
 const std::string& program_hash();
 
 /// Decides whether a stored case is still the case of the study.

@@ -229,6 +229,25 @@ TEST_CASE("the size of a symbol is that of its object") {
   CHECK(exported_symbols(library, "ricochet_provides__").front().size == 1);
 }
 
+TEST_CASE("the id of a build is that of its code, wherever the file lies, and of no other") {
+  const ScratchFolder here;
+  const std::string id = build_id(library);
+  CHECK(id.size() == 20);  // SHA-1
+  fs::copy_file(library, here / "copy.so");
+  CHECK(build_id(here / "copy.so") == id);
+  CHECK(build_id(fs::path(tests::places().plugins) / "time.so") != id);
+  CHECK(build_id("/proc/self/exe").size() == 20);
+  write_text(here / "text.so", "not a library");
+  CHECK_THROWS_WITH(build_id(here / "text.so"), "not a shared library");
+  // A note that says it is longer than its section.
+  std::string bytes = read_text(library);
+  const std::size_t note = bytes.find(std::string("\x04\0\0\0\x14\0\0\0\x03\0\0\0GNU", 15));
+  REQUIRE(note != std::string::npos);
+  bytes[note + 7] = '\x7f';
+  write_text(here / "long.so", bytes);
+  CHECK(build_id(here / "long.so").empty());
+}
+
 TEST_CASE("symbols that a library only uses are not its own") {
   // Every plugin calls the registry, whose mangled name begins like this.
   CHECK(exported_symbols(library, "_ZN8ricochet8Registry").empty());
