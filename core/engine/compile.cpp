@@ -13,6 +13,7 @@
 #include <ricochet/engine/left_out.hpp>
 #include <ricochet/scene/stop_parameters.hpp>
 #include <stdexcept>
+#include <variant>
 
 namespace ricochet {
 namespace {
@@ -230,6 +231,135 @@ ProblemFacts problem_facts(const SemiDiscrete& problem, const ContactLaw& law) {
   return facts;
 }
 
+namespace {
+
+// Why a law has no tangents under this plan, or nothing.
+std::optional<Refusal> refuse_tangents(const Program& program) {
+  if (program.tangents == 0) return std::nullopt;
+  const ContactLaw& law = *program.law;
+  if (law.reads() && !law.offers_slopes())
+    return Refusal{"the contact law offers no slopes, hence no tangents: its exponents are those of twins"};
+  const bool turns = law.reads_rate() || law.reads() == Evaluation::conserving;
+  if (turns && !program.problem->circles().empty())
+    return Refusal{
+        "a force in a circle that reads a rate, or the step before, has no tangents here: exponents are those of "
+        "twins. Use a force of the depth alone"};
+  const auto restores = [](const Stage& stage) { return stage.impact && stage.impact->restores > 0; };
+  if (!law.reads() && !law.absent() && std::any_of(program.plan.stages.begin(), program.plan.stages.end(), restores))
+    return Refusal{
+        "the time scheme gives the work of rigid contact back by a quadratic equation, which has no tangents here: "
+        "its exponents are those of twins"};
+  return std::nullopt;
+}
+
+// Lanes and laws meet the problem and the plan.
+std::optional<Refusal> meet_problem(Program& program, std::vector<LaneSpec> lanes, const DerivedPlan& derived,
+                                    const CompileOptions& options) {
+  const SemiDiscrete& problem = *program.problem;
+  if (auto refusal = meet_law(*program.law, problem, lanes)) return refusal;
+  check_stiffness_of_law(problem);
+  if (auto refusal = refuse_own(*program.law, problem.own, problem.stops)) return refusal;
+  if (auto refusal = refuse_restitution(program)) return refusal;
+  program.own_sets = sets_per_point(*program.law, problem.own);
+  if (auto refusal = refuse_tangents(program)) return refusal;
+  program.width = lane_width(static_cast<int>(lanes.size()) * (1 + program.tangents));
+  program.support = options.moving_support;
+  program.lanes = std::move(lanes);
+  for (const LaneSpec& lane : program.lanes) {
+    if (lane.rubbing.size() != problem.rubbing.size()) throw std::logic_error("a lane has no friction of its own");
+    program.support = program.support || lane.amplitude != 0;
+  }
+  program.contact = meets_contact(problem, *program.law);
+  if (auto refusal = refuse_unread(program)) return refusal;
+  if (auto refusal = meet_friction(program, derived, options)) return refusal;
+  program.load = problem.load && !problem.load->absent();
+  program.load_constant = program.load && problem.load->constant_in_time();
+  return std::nullopt;
+}
+
+StepWork work_of(const Program& program) {
+  const int slots = static_cast<int>(program.plan.slots.size());
+  StepWork work{slots, 0, true};
+  for (const Stage& stage : program.plan.stages) {
+    const FoldedStage folded = fold(stage, program.problem->damping, slots);
+    work.solves += folded.solves() ? 1 : 0;
+    work.without_stiffness = work.without_stiffness && folded.stiffness == 0;
+  }
+  return work;
+}
+
+// How a program marches: by which operator, and whether it leaves out what no stop sees.
+struct Way {
+  bool flies = false;
+  double by_flights = 0;  // seconds of all steps
+};
+
+using WayOrRefusal = std::variant<Way, Refusal>;
+
+WayOrRefusal choose_way(Program& program, const CompileOptions& options) {
+  const SemiDiscrete& problem = *program.problem;
+  const StepWork work = work_of(program);
+  program.kind = options.kind;
+  program.every_step_because = options.march == MarchWay::every_step ? "" : why_grounded(program, options);
+  const std::string& grounded = program.every_step_because;
+  if (options.march == MarchWay::flights && !grounded.empty()) return refuse_flight(grounded);
+  Way way{options.march != MarchWay::every_step && grounded.empty()};
+  if (way.flies) way.by_flights = predict_flights(problem, work, options.expected_steps);
+  if (program.kind == OperatorKind::automatic)
+    program.kind = cheapest_kind(problem, work, program.width, options.expected_steps);
+  // Both predictions may be wrong by so much. Somebody looks at a step that is marched.
+  constexpr double sure = 1.2, looked_at = 1e-7;
+  if (way.flies && options.march == MarchWay::automatic) {
+    const Cost every_step = predict_cost(program.kind, problem, work, program.width);
+    way.flies = sure * way.by_flights < every_step.setup_seconds + static_cast<double>(options.expected_steps) *
+                                                                       (every_step.step_seconds + looked_at);
+  }
+  if (way.flies)
+    program.kind = OperatorKind::modal;
+  else if (program.kind != OperatorKind::modal && problem.damping.by_modes())
+    return Refusal{
+        "damping ratios are those of modes, by which at most 1000 degrees of freedom march: use mesh.modes, or α and "
+        "η"};
+  else if (!kind_applies(program.kind, problem))
+    return Refusal{std::string("the ") + operator_name(program.kind) + " operator does not apply to this structure"};
+  const Cost cost = predict_cost(program.kind, problem, work, program.width);
+  program.predicted_step_seconds = cost.step_seconds;
+  program.predicted_setup_seconds = cost.setup_seconds;
+  program.model = std::make_shared<MarchModel>(program.problem, program.kind == OperatorKind::modal);
+  return way;
+}
+
+std::optional<Refusal> fill_stages(Program& program, const DerivedPlan& derived) {
+  program.start.resize(program.plan.start.size());
+  program.stages.resize(program.plan.stages.size());
+  for (std::size_t k = 0; k < program.start.size(); ++k) {
+    program.start[k].facts = derived.start[k];
+    if (auto refusal = fill(program.start[k], program.plan.start[k], program)) return refusal;
+  }
+  for (std::size_t k = 0; k < program.stages.size(); ++k) {
+    program.stages[k].facts = derived.stages[k];
+    if (auto refusal = fill(program.stages[k], program.plan.stages[k], program)) return refusal;
+  }
+  connect_works(program);
+  if (auto refusal = add_contact_facts(program)) return refusal;
+  if (program.friction) add_friction_facts(program);
+  return std::nullopt;
+}
+
+// Whether each stage solves with a multiple of a diagonal mass.
+bool solves_diagonal(const Program& program) {
+  if (!program.problem->inertia.assembled()) return false;
+  for (const StageProgram& stage : program.stages)
+    if (stage.folded.stiffness != 0) return false;
+  const SparseMatrix& mass = program.problem->inertia.mass;
+  for (int j = 0; j < mass.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(mass, j); it; ++it)
+      if (it.row() != j && it.value() != 0) return false;
+  return true;
+}
+
+}  // namespace
+
 ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan plan, double h,
                          std::unique_ptr<ContactLaw> law, std::vector<LaneSpec> lanes, const CompileOptions& options) {
   if (const auto wrong = check_plan(plan, h)) throw std::logic_error("ill-formed plan: " + *wrong);
@@ -243,100 +373,19 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   program.increment_slot = derived.increment_slot;
   program.law = std::move(law);
   program.tangents = options.tangents;
-  if (program.tangents > 0 && program.law->reads() && !program.law->offers_slopes())
-    return Refusal{"the contact law offers no slopes, hence no tangents: its exponents are those of twins"};
-  const bool turns = program.law->reads_rate() || program.law->reads() == Evaluation::conserving;
-  if (program.tangents > 0 && turns && !problem->circles().empty())
-    return Refusal{
-        "a force in a circle that reads a rate, or the step before, has no tangents here: exponents are those of "
-        "twins. Use a force of the depth alone"};
-  if (auto refusal = meet_law(*program.law, *problem, lanes)) return *refusal;
-  check_stiffness_of_law(*problem);
-  if (auto refusal = refuse_own(*program.law, problem->own, problem->stops)) return *refusal;
-  if (auto refusal = refuse_restitution(program)) return *refusal;
-  program.own_sets = sets_per_point(*program.law, problem->own);
-  const auto restores = [](const Stage& stage) { return stage.impact && stage.impact->restores > 0; };
-  if (program.tangents > 0 && !program.law->reads() && !program.law->absent() &&
-      std::any_of(program.plan.stages.begin(), program.plan.stages.end(), restores))
-    return Refusal{
-        "the time scheme gives the work of rigid contact back by a quadratic equation, which has no tangents here: "
-        "its exponents are those of twins"};
-  program.width = lane_width(static_cast<int>(lanes.size()) * (1 + program.tangents));
-  program.support = options.moving_support;
-  program.lanes = std::move(lanes);
-  for (const LaneSpec& lane : program.lanes)
-    if (lane.rubbing.size() != problem->rubbing.size()) throw std::logic_error("a lane has no friction of its own");
-  program.contact = meets_contact(*problem, *program.law);
-  if (auto refusal = refuse_unread(program)) return *refusal;
-  if (auto refusal = meet_friction(program, derived, options)) return *refusal;
-  for (const LaneSpec& lane : program.lanes) program.support = program.support || lane.amplitude != 0;
-  program.load = problem->load && !problem->load->absent();
-  program.load_constant = program.load && problem->load->constant_in_time();
   program.eager_delassus = options.eager_delassus;
   program.bounded = options.bounded;
-
-  const int slots = static_cast<int>(program.plan.slots.size());
-  StepWork work{slots, 0, true};
-  for (const Stage& stage : program.plan.stages) {
-    const FoldedStage folded = fold(stage, problem->damping, slots);
-    work.solves += folded.solves() ? 1 : 0;
-    work.without_stiffness = work.without_stiffness && folded.stiffness == 0;
-  }
-  program.kind = options.kind;
-  const std::string grounded = options.march == MarchWay::every_step ? "" : why_grounded(program, options);
-  if (options.march == MarchWay::flights && !grounded.empty()) return refuse_flight(grounded);
-  bool flies = options.march != MarchWay::every_step && grounded.empty();
-  const double by_flights = flies ? predict_flights(*problem, work, options.expected_steps) : 0;
-  if (program.kind == OperatorKind::automatic)
-    program.kind = cheapest_kind(*problem, work, program.width, options.expected_steps);
-  // Both predictions may be wrong by so much. Somebody looks at a step that is marched.
-  constexpr double sure = 1.2, looked_at = 1e-7;
-  if (flies && options.march == MarchWay::automatic) {
-    const Cost every_step = predict_cost(program.kind, *problem, work, program.width);
-    flies = sure * by_flights < every_step.setup_seconds +
-                                    static_cast<double>(options.expected_steps) * (every_step.step_seconds + looked_at);
-  }
-  if (flies)
-    program.kind = OperatorKind::modal;
-  else if (program.kind != OperatorKind::modal && problem->damping.by_modes())
-    return Refusal{
-        "damping ratios are those of modes, by which at most 1000 degrees of freedom march: use mesh.modes, or α and "
-        "η"};
-  else if (!kind_applies(program.kind, *problem))
-    return Refusal{std::string("the ") + operator_name(program.kind) + " operator does not apply to this structure"};
-  const Cost cost = predict_cost(program.kind, *problem, work, program.width);
-  program.predicted_step_seconds = cost.step_seconds;
-  program.predicted_setup_seconds = cost.setup_seconds;
-  program.model = std::make_shared<MarchModel>(problem, program.kind == OperatorKind::modal);
-
-  program.start.resize(program.plan.start.size());
-  program.stages.resize(program.plan.stages.size());
-  for (std::size_t k = 0; k < program.start.size(); ++k) {
-    program.start[k].facts = derived.start[k];
-    if (auto refusal = fill(program.start[k], program.plan.start[k], program)) return *refusal;
-  }
-  bool mass_only = true;
-  for (std::size_t k = 0; k < program.stages.size(); ++k) {
-    program.stages[k].facts = derived.stages[k];
-    if (auto refusal = fill(program.stages[k], program.plan.stages[k], program)) return *refusal;
-    mass_only = mass_only && program.stages[k].folded.stiffness == 0;
-  }
-  connect_works(program);
-  if (auto refusal = add_contact_facts(program)) return *refusal;
-  if (program.friction) add_friction_facts(program);
-  if (program.kind == OperatorKind::band && mass_only && problem->inertia.assembled()) {
-    bool diagonal = true;
-    const SparseMatrix& mass = problem->inertia.mass;
-    for (int j = 0; j < mass.outerSize(); ++j)
-      for (SparseMatrix::InnerIterator it(mass, j); it; ++it) diagonal = diagonal && (it.row() == j || it.value() == 0);
-    // The band operator of half-bandwidth zero: nothing else changes, but a person wants to read it.
-    if (diagonal) program.kind = OperatorKind::diagonal;
-  }
+  if (auto refusal = meet_problem(program, std::move(lanes), derived, options)) return *refusal;
+  const WayOrRefusal chosen = choose_way(program, options);
+  if (const auto* refusal = std::get_if<Refusal>(&chosen)) return *refusal;
+  const auto& way = std::get<Way>(chosen);
+  if (auto refusal = fill_stages(program, derived)) return *refusal;
+  // The band operator of half-bandwidth zero: nothing else changes, but a person wants to read it.
+  if (program.kind == OperatorKind::band && solves_diagonal(program)) program.kind = OperatorKind::diagonal;
   if (program.friction)
     if (auto refusal = refuse_jamming(program)) return *refusal;
   say_left_out(program);
-  program.every_step_because = grounded;
-  if (!flies) return program;
+  if (!way.flies) return program;
   if (const std::string cause = let_fly(program, options); !cause.empty()) {
     if (options.march == MarchWay::flights) return refuse_flight(cause);
     // Once more, with the operator that every step is cheapest with.
@@ -348,7 +397,7 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
     return again;
   }
   program.predicted_setup_seconds = 0;
-  program.predicted_step_seconds = by_flights / static_cast<double>(std::max(1LL, options.expected_steps));
+  program.predicted_step_seconds = way.by_flights / static_cast<double>(std::max(1LL, options.expected_steps));
   return program;
 }
 

@@ -107,19 +107,38 @@ void Marcher::connect(const Observers& observers) {
   runs_ = run_ && (observers_.empty() || (keeps_sums_ && !told_alone));
 }
 
+namespace {
+
+// The weights of a combination over the slots and z, as the kernels read them.
+std::vector<double> with_z(Combination c, std::size_t slots) {
+  c.slots.resize(slots, 0.0);
+  c.slots.push_back(c.z);
+  return c.slots;
+}
+
+// Storage of a gate, and of the rebound of each point.
+void make_gate(StageState& state, const VelocityGate& gate, const SemiDiscrete& problem, std::size_t slots, int width) {
+  const int points = problem.points();
+  for (Block* block : {&state.gap, &state.approach, &state.gate_lower, &state.gate_upper})
+    *block = Block(points, width);
+  state.fastest = Block(1, width);
+  state.rebound.assign(static_cast<std::size_t>(points), gate.restitution);
+  for (std::size_t i = 0; i < problem.own.size(); ++i)
+    state.rebound[i] = problem.own[i].restitution.value_or(gate.restitution);
+  state.gap_weights = with_z(gate.predictor, slots);
+  state.approach_weights = with_z(gate.approach, slots);
+}
+
+}  // namespace
+
 // Storage of a stage, and its combinations as the kernels read them.
 std::unique_ptr<StageState> Marcher::make_state(StageProgram& stage, const Stage& plan) const {
   const MarchModel& model = *program_.model;
   const int T = program_.width, points = program_.problem->points();
-  const auto slot_count = program_.plan.slots.size();
-  const auto with_z = [&](Combination c) {
-    c.slots.resize(slot_count, 0.0);
-    c.slots.push_back(c.z);
-    return c.slots;
-  };
+  const auto slots = program_.plan.slots.size();
   auto state = std::make_unique<StageState>();
   for (const Combination& c : plan.update) {
-    const std::vector<double> row = with_z(c);
+    const std::vector<double> row = with_z(c, slots);
     state->update.insert(state->update.end(), row.begin(), row.end());
     state->update_w.push_back(c.w);
   }
@@ -139,39 +158,28 @@ std::unique_ptr<StageState> Marcher::make_state(StageProgram& stage, const Stage
     state->weighted = Block(pushed, T);
   if (program_.friction) {
     state->end_rate = Block(model.rubbed().rows(), T);
-    state->end_rate_weights = with_z(stage.facts.end_rate.rate);
+    state->end_rate_weights = with_z(stage.facts.end_rate.rate, slots);
     for (std::size_t j = 0; j < state->end_rate_weights.size(); ++j)
       if (state->end_rate_weights[j] != 0) state->end_rate_of.push_back(j);
     state->columns.resize(static_cast<std::size_t>(lower_.rows() + program_.model->rubbed().rows()));
     state->couples.resize(static_cast<std::size_t>(program_.model->rubbed().rows()));
     std::erase(state->end_rate_weights, 0.0);
   }
-  state->measure_weights = with_z(stage.measure);
+  state->measure_weights = with_z(stage.measure, slots);
   if (program_.tangents > 0) state->tangents.reserve(points);
   if (stage.compliance && program_.law->reads_rate()) {
     state->rate = Block(points, T);
-    state->rate_weights = with_z(stage.compliance->rate);
+    state->rate_weights = with_z(stage.compliance->rate, slots);
   }
   if (stage.compliance && stage.compliance->before) {
     state->before = Block(points, T);
-    state->before_weights = with_z(*stage.compliance->before);
+    state->before_weights = with_z(*stage.compliance->before, slots);
   }
-  if (stage.gate) {
-    state->gap = Block(points, T);
-    state->approach = Block(points, T);
-    state->fastest = Block(1, T);
-    state->gate_lower = Block(points, T);
-    state->gate_upper = Block(points, T);
-    state->rebound.assign(static_cast<std::size_t>(points), stage.gate->restitution);
-    for (std::size_t i = 0; i < program_.problem->own.size(); ++i)
-      state->rebound[i] = program_.problem->own[i].restitution.value_or(stage.gate->restitution);
-    state->gap_weights = with_z(stage.gate->predictor);
-    state->approach_weights = with_z(stage.gate->approach);
-  }
+  if (stage.gate) make_gate(*state, *stage.gate, *program_.problem, slots, T);
   if (!stage.motion.slots.empty()) {
     state->way = Block(points, T);
     state->way_error = Block(1, T);
-    state->way_weights = with_z(stage.motion);
+    state->way_weights = with_z(stage.motion, slots);
   }
   if (stage.restores > 0) state->restoring.prepare(points);
   if (program_.eager_delassus)

@@ -289,99 +289,122 @@ void march_in_basis(const SceneSpec& scene, const SparseMatrix& mass, const Spar
   load.project({problem.basis, &basis.shapes});
 }
 
+void take_points(const ContactPoints& points, const SceneSpec& scene, SemiDiscrete& problem) {
+  problem.contact_x = points.x;
+  problem.contact = points.rows;
+  problem.stops = points.names;
+  problem.own = points.own;
+  problem.lower = points.lower;
+  problem.upper = points.upper;
+  problem.clearances = clearances_of(scene.stops);
+  problem.space.contact_dofs = touched_dofs(bounded_rows(problem.contact, points.lower, points.upper));
+}
+
+// Modes of the structure, where it marches in them, and the mass matrix that is chosen.
+std::optional<Refusal> give_inertia(const SceneSpec& scene, const MassStrategy& mass, const SparseMatrix& whole,
+                                    const SparseRows& pushed_rows, SemiDiscrete& problem) {
+  const JoinedBodies* bodies = bodies_of(scene.structure);
+  if (scene.basis)
+    problem.basis =
+        bodies ? std::make_shared<const ModalBasis>(join_bases(*bodies, problem, whole, pushed_rows, *scene.basis))
+               : shared_basis(problem.stiffness, whole, pushed_rows, problem.held, *scene.basis);
+  const auto build = [&](const SemiDiscrete& structure) { return build_mass(structure, mass); };
+  auto built = bodies ? join_masses(*bodies, problem, build) : build(problem);
+  if (auto* refusal = std::get_if<Refusal>(&built)) return *refusal;
+  problem.inertia = std::get<Inertia>(std::move(built));
+  problem.inertia.mass.makeCompressed();
+  problem.stiffness.makeCompressed();
+  return std::nullopt;
+}
+
+// Where the tip is, unless a person would know.
+void note_tip(const SceneSpec& scene, SemiDiscrete& problem) {
+  if (const std::string chosen = tip_choice(scene); !chosen.empty()) problem.notes.push_back("the tip is " + chosen);
+  if (shown_position(scene) != structure_length(scene) && std::holds_alternative<BeamSpec>(scene.structure))
+    problem.notes.push_back(
+        fmt::format("the displacement shown as that of the tip is at x = {:.6g} m", shown_position(scene)));
+}
+
+// The state at t = 0, checked. `still`: F(0) before supports accelerate; `law`: null where none decides.
+std::optional<Refusal> begin(const InitialSpec& initial, const Eigen::VectorXd& still, const ForceBeyond& beyond,
+                             ContactLaw* law, const Parameters* parameters, SemiDiscrete& problem) {
+  Eigen::VectorXd pushed;
+  if (initial.equilibrium) {
+    if (law) prepare_law(*law, std::max(1, problem.points()), {parameters, 1}, problem.own);
+    Equilibrium found = equilibrium(problem, still, lift_at_start(problem), law);
+    check_rest(initial, found, problem);
+    problem.position = std::move(found.position);
+    if (!found.pushed.isZero(0)) pushed = std::move(found.pushed);
+  }
+  check_start(problem, "/scene/initial/displacement", "the initial displacement", beyond);
+  if (!initial.equilibrium && law && problem.inertia.kernel_dimension > 0)
+    pushed = pushed_at_start(*law, *parameters, problem);
+  if (initial.projection != InitialSpec::Projection::constraint) {
+    measure_mass_constraint(problem, pushed);
+    return std::nullopt;
+  }
+  if (pushed.size() > 0)
+    return Refusal{
+        "the initial state lies beyond a stop, whose force the projection does not know; expected a state "
+        "between the stops, or no projection"};
+  project_on_mass_constraint(problem);
+  check_start(problem, "/scene/initial/projection", "the projected initial displacement", beyond);
+  return std::nullopt;
+}
+
 }  // namespace
 
 SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const MassStrategy& mass, ContactLaw* law,
                                  const Parameters* parameters) try {
   // Formulas keep their variables inside: evaluate our own copies.
   SceneSpec scene = on_mesh(shared, elements);
-  const bool compliant = law && !law->absent() && law->reads();
+  const bool acts = law && !law->absent(), compliant = acts && law->reads();
   if (compliant) scene.stops = with_circles(std::move(scene.stops));
   const bool law_decides = law && parameters;
   // A law that changes the problem knows its force once it has.
   ForceBeyond beyond;
   if (law_decides) beyond = law->changes_problem() ? anywhere_beyond() : force_beyond(*law, *parameters);
   check_scene(scene, elements, beyond);
-  if (law && !law->absent() && !compliant)
+  const bool rigid = acts && !compliant;
+  if (rigid)
     if (auto refusal = refuse_polygon(scene.stops)) return *refusal;
 
   SemiDiscrete problem = structure_alone(scene.structure, elements);
   problem.notes.insert(problem.notes.begin(), scene.notes.begin(), scene.notes.end());
-  ContactPoints points = contact_points(scene, problem.space, elements);
-  problem.contact_x = std::move(points.x);
-  problem.contact = std::move(points.rows);
-  problem.stops = std::move(points.names);
-  problem.own = std::move(points.own);
-  problem.clearances = clearances_of(scene.stops);
-  if (law && !law->absent() && !compliant)
+  const ContactPoints points = contact_points(scene, problem.space, elements);
+  take_points(points, scene, problem);
+  if (rigid)
     for (std::string& note : polygon_notes(problem.clearances)) problem.notes.push_back(std::move(note));
-  problem.space.contact_dofs = touched_dofs(bounded_rows(problem.contact, points.lower, points.upper));
   problem.support = scene.support;
-  const JoinedBodies* bodies = bodies_of(scene.structure);
   // The modes of K with the consistent or given mass, whatever mass is marched.
   const SparseMatrix whole = scene.basis ? consistent_mass(problem.space) : SparseMatrix();
   const SparseRows pushed_rows = scene.basis ? pushed_rows_of(scene, problem) : SparseRows();
-  if (scene.basis)
-    problem.basis =
-        bodies ? std::make_shared<const ModalBasis>(join_bases(*bodies, problem, whole, pushed_rows, *scene.basis))
-               : shared_basis(problem.stiffness, whole, pushed_rows, problem.held, *scene.basis);
-  const auto build = [&](const SemiDiscrete& one) { return build_mass(one, mass); };
-  auto built = bodies ? join_masses(*bodies, problem, build) : build(problem);
-  if (auto* refusal = std::get_if<Refusal>(&built)) return *refusal;
-  problem.inertia = std::get<Inertia>(std::move(built));
-  problem.inertia.mass.makeCompressed();
-  problem.stiffness.makeCompressed();
+  if (auto refusal = give_inertia(scene, mass, whole, pushed_rows, problem)) return *refusal;
 
   const auto* assembled = std::get_if<AssembledSpec>(&scene.structure);
   auto load = std::make_shared<DistributedLoad>(whole_load(scene), problem.space,
                                                 assembled ? assembled->structure.get() : nullptr);
-
-  problem.lower = std::move(points.lower);
-  problem.upper = std::move(points.upper);
   show_tip(scene, problem);
-  if (const std::string chosen = tip_choice(scene); !chosen.empty()) problem.notes.push_back("the tip is " + chosen);
-  if (shown_position(scene) != structure_length(scene) && std::holds_alternative<BeamSpec>(scene.structure))
-    problem.notes.push_back(
-        fmt::format("the displacement shown as that of the tip is at x = {:.6g} m", shown_position(scene)));
+  note_tip(scene, problem);
   Eigen::VectorXd still;  // F(0), before supports accelerate
   if (scene.initial.equilibrium) load->assemble(0, (still.resize(problem.space.dofs), still.data()));
   add_support(scene, points.on_supports, problem, *load);
   observe_rows(scene, problem);
   for (std::string& note : missing_residuals(scene, problem.space)) problem.notes.push_back(std::move(note));
-  if (law_decides && !law->absent() && !law->reads())
+  if (law_decides && rigid)
     if (auto refusal = keep_nearest_bounds(problem)) return *refusal;
   interpolate_initial(scene, problem);
   if (problem.basis) march_in_basis(scene, whole, pushed_rows, problem, *load);
-  if (bodies && problem.damping.matrix)
+  if (const JoinedBodies* bodies = bodies_of(scene.structure); bodies && problem.damping.matrix)
     problem.damping.matrix = std::make_shared<const SparseMatrix>(join_dampings(*bodies, problem));
   problem.load = std::move(load);
   if (law && law->changes_problem() && problem.points() > 0) {
     if (auto refusal = change_by(*law, problem)) return *refusal;
     if (law_decides) beyond = force_beyond(*law, *parameters);
   }
-
-  Eigen::VectorXd pushed;
-  if (scene.initial.equilibrium) {
-    if (problem.basis) still = problem.basis->shapes.transpose() * still;
-    if (law_decides) prepare_law(*law, std::max(1, problem.points()), {parameters, 1}, problem.own);
-    Equilibrium found = equilibrium(problem, still, lift_at_start(problem), law_decides ? law : nullptr);
-    check_rest(scene.initial, found, problem);
-    problem.position = std::move(found.position);
-    if (!found.pushed.isZero(0)) pushed = std::move(found.pushed);
-  }
-  check_start(problem, "/scene/initial/displacement", "the initial displacement", beyond);
-  if (!scene.initial.equilibrium && law_decides && problem.inertia.kernel_dimension > 0)
-    pushed = pushed_at_start(*law, *parameters, problem);
-  if (scene.initial.projection == InitialSpec::Projection::constraint) {
-    if (pushed.size() > 0)
-      return Refusal{
-          "the initial state lies beyond a stop, whose force the projection does not know; expected a state "
-          "between the stops, or no projection"};
-    project_on_mass_constraint(problem);
-    check_start(problem, "/scene/initial/projection", "the projected initial displacement", beyond);
-  } else {
-    measure_mass_constraint(problem, pushed);
-  }
+  if (problem.basis && scene.initial.equilibrium) still = problem.basis->shapes.transpose() * still;
+  if (auto refusal = begin(scene.initial, still, beyond, law_decides ? law : nullptr, parameters, problem))
+    return *refusal;
   return problem;
 } catch (const BeyondStop& error) {
   if (!law || !parameters) throw;

@@ -69,6 +69,44 @@ std::optional<double> scaled_value(const MeasureWords& words, const CaseRecord& 
   return brought && *brought > 0 ? std::optional(*value / *brought) : std::nullopt;
 }
 
+namespace {
+
+/// The limit of a method whose `grid` and `done` are filled, at its finest case. `share`: its values are shares, whose
+/// floor is round-off of 1. `coarser`: values on other meshes, in modes.
+void find_limit(const Compared& study, const MeasureWords& words, bool share, const std::vector<Valued>& coarser,
+                Method& method) {
+  const auto& best = *std::max_element(method.done.begin(), method.done.end(), [&](const Valued& a, const Valued& b) {
+    return study.finer(*b.record, *a.record);
+  });
+  method.finest = best.record;
+  const double h = step_or_one(study, *best.record), N = elements_or_one(study, *best.record);
+  std::vector<SizedValue> by_step, by_mesh;
+  double largest = 0;
+  for (const auto& [size, value] : method.grid) {
+    if (size.second == N) by_step.push_back({size.first, value});
+    if (size.first == h) by_mesh.push_back({1 / size.second, value});
+    largest = std::max(largest, std::abs(value));
+  }
+  const double floor = 0x1p-52 * static_cast<double>(best.record->steps) * (share ? 1 : largest);
+  method.step = limit_of(by_step, floor, words.truth);
+  method.mesh = limit_of(by_mesh, floor);
+  method.limit = combined(method.step, method.mesh);
+  method.half = measure(*best.record, "confidence." + words.measure).value_or(0);
+  method.gains = energy_kept(words, *best.record).value_or(0) > gains_above;
+  if (method.limit) widen(*method.limit, method.half);
+  // Of modes on several meshes, what the nearest coarser mesh says otherwise.
+  double most = 0, apart = 0;
+  for (const auto& [record, value] : coarser) {
+    const double elements = number_in(study.text(*record, "elements")).value_or(0);
+    if (step_or_one(study, *record) != h || elements_or_one(study, *record) != N || elements <= most) continue;
+    most = elements;
+    apart = std::abs(value - method.grid.at({h, N}));
+  }
+  if (method.limit && most > 0) widen(*method.limit, apart);
+}
+
+}  // namespace
+
 MeasureLimits limits_of(const Compared& study, const std::string& name, bool conservative, const Cases& cases) {
   MeasureLimits out;
   out.words = measure_words(name);
@@ -94,36 +132,7 @@ MeasureLimits limits_of(const Compared& study, const std::string& name, bool con
       method.done.push_back({record, *value});
       method.grid[{step_or_one(study, *record), elements_or_one(study, *record)}] = *value;
     }
-    if (!method.done.empty()) {
-      const auto& best =
-          *std::max_element(method.done.begin(), method.done.end(),
-                            [&](const Valued& a, const Valued& b) { return study.finer(*b.record, *a.record); });
-      method.finest = best.record;
-      const double h = step_or_one(study, *best.record), N = elements_or_one(study, *best.record);
-      std::vector<SizedValue> by_step, by_mesh;
-      double largest = 0;
-      for (const auto& [size, value] : method.grid) {
-        if (size.second == N) by_step.push_back({size.first, value});
-        if (size.first == h) by_mesh.push_back({1 / size.second, value});
-        largest = std::max(largest, std::abs(value));
-      }
-      const double floor = 0x1p-52 * static_cast<double>(best.record->steps) * (share ? 1 : largest);
-      method.step = limit_of(by_step, floor, out.words.truth);
-      method.mesh = limit_of(by_mesh, floor);
-      method.limit = combined(method.step, method.mesh);
-      method.half = measure(*best.record, "confidence." + name).value_or(0);
-      method.gains = energy_kept(out.words, *best.record).value_or(0) > gains_above;
-      if (method.limit) widen(*method.limit, method.half);
-      // Of modes on several meshes, what the nearest coarser mesh says otherwise.
-      double most = 0, apart = 0;
-      for (const auto& [record, value] : coarser) {
-        const double elements = number_in(study.text(*record, "elements")).value_or(0);
-        if (step_or_one(study, *record) != h || elements_or_one(study, *record) != N || elements <= most) continue;
-        most = elements;
-        apart = std::abs(value - method.grid.at({h, N}));
-      }
-      if (method.limit && most > 0) widen(*method.limit, apart);
-    }
+    if (!method.done.empty()) find_limit(study, out.words, share, coarser, method);
     out.methods.push_back(std::move(method));
   }
   std::vector<Limit*> limits;

@@ -67,6 +67,33 @@ void DenseMarch::note(const std::string& sentence) {
   if (difference_.empty()) difference_ = fmt::format("step {}: {}", step_ + 1, sentence);
 }
 
+DenseMarch::Efforts DenseMarch::efforts_of(const Stage& stage) const {
+  const auto of = [&](const auto& measure) {
+    return absent_ || !measure ? Efforts{} : Efforts{&measure->effort, measure->impulse};
+  };
+  return reads_ ? of(stage.at(*reads_)) : of(stage.impact);
+}
+
+void DenseMarch::solve(const Lane& lane, const StageView& view, const Efforts& efforts, Found& found) const {
+  const Stage& stage = *view.plan;
+  const OperatorWeights& s = stage.matrix;
+  if (s.M == 0 && s.C == 0 && s.K == 0) return;
+  const std::vector<double>* weights = efforts.weights;
+  const auto dense = [&](const OperatorWeights& o) { return (o.M * M_ + o.C * C_ + o.K * K_).eval(); };
+  Eigen::VectorXd b = load(lane, view.time, stage.load);
+  for (std::size_t j = 0; j < stage.history.size(); ++j) b += dense(stage.history[j]) * lane.slots[j];
+  if (weights && !view.starting)
+    for (std::size_t k = 1; k < weights->size(); ++k) b += (*weights)[k] * (H_.transpose() * lane.past[k - 1]);
+  const DenseLu S(dense(s));
+  found.free = S.solve(b);
+  if (weights && stage.impulse && efforts.impulse != 0) {
+    found.w = DenseLu(dense(stage.impulse->R)).solve(efforts.impulse * (H_.transpose() * found.p));
+    b += dense(stage.impulse->feed) * found.w;
+  }
+  if (weights) b += weights->front() * (H_.transpose() * found.p);
+  found.z = S.solve(b);
+}
+
 void DenseMarch::stage_solved(const Marcher& marcher, const StageView& view) {
   const Stage& stage = *view.plan;
   const auto points = H_.rows();
@@ -77,39 +104,15 @@ void DenseMarch::stage_solved(const Marcher& marcher, const StageView& view) {
       lane.starting = false;
       if (!plan_.start.empty()) lane.past.front() = lane.last_start;
     }
-    const std::vector<double>* weights = nullptr;
-    double impulse = 0;
-    const auto reads = [&](const auto& measure) {
-      if (absent_ || !measure) return;
-      weights = &measure->effort;
-      impulse = measure->impulse;
-    };
-    if (reads_)
-      reads(stage.at(*reads_));
-    else
-      reads(stage.impact);
+    const Efforts efforts = efforts_of(stage);
+    const std::vector<double>* weights = efforts.weights;
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(M_.rows());
     Found found{none, none, Eigen::VectorXd::Zero(points), none};
-    Eigen::VectorXd &z = found.z, &w = found.w, &p = found.p;
+    Eigen::VectorXd& p = found.p;
     if (weights && view.effort)
       for (Eigen::Index i = 0; i < points; ++i)
         p[i] = view.effort[0][i * marcher.width() + static_cast<Eigen::Index>(l)];
-    const auto dense = [&](const OperatorWeights& o) { return (o.M * M_ + o.C * C_ + o.K * K_).eval(); };
-    const OperatorWeights& s = stage.matrix;
-    if (s.M != 0 || s.C != 0 || s.K != 0) {
-      Eigen::VectorXd b = load(lane, view.time, stage.load);
-      for (std::size_t j = 0; j < stage.history.size(); ++j) b += dense(stage.history[j]) * lane.slots[j];
-      if (weights && !view.starting)
-        for (std::size_t k = 1; k < weights->size(); ++k) b += (*weights)[k] * (H_.transpose() * lane.past[k - 1]);
-      const DenseLu S(dense(s));
-      found.free = S.solve(b);
-      if (weights && stage.impulse && impulse != 0) {
-        w = DenseLu(dense(stage.impulse->R)).solve(impulse * (H_.transpose() * p));
-        b += dense(stage.impulse->feed) * w;
-      }
-      if (weights) b += weights->front() * (H_.transpose() * p);
-      z = S.solve(b);
-    }
+    solve(lane, view, efforts, found);
     if (view.stage == 0) {
       lane.efforts.clear();
       lane.ways.clear();

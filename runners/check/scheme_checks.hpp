@@ -66,6 +66,14 @@ class DenseMarch final : public StepObserver {
     Eigen::VectorXd z, w, p;
     Eigen::VectorXd free;  ///< z without p
   };
+  /// What brings p into a stage; null where nothing does.
+  struct Efforts {
+    const std::vector<double>* weights = nullptr;
+    double impulse = 0;
+  };
+  Efforts efforts_of(const Stage& stage) const;
+  /// z, w and free of a stage whose p is known.
+  void solve(const Lane& lane, const StageView& view, const Efforts& efforts, Found& found) const;
   Eigen::VectorXd combined(const Lane& lane, const Combination& c, const Found& found) const;
   double support(const Lane& lane, double t, const Levels& levels, bool rate) const;
   Eigen::VectorXd load(const Lane& lane, double t, const Levels& levels) const;

@@ -241,26 +241,31 @@ bool is_axis(const Field& field, const Json& value) {
   return std::any_of(value.begin(), value.end(), [](const Json& item) { return item.is_string() || item.is_array(); });
 }
 
-Json check_value(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
-  if (is_axis(field, value)) {
-    if (value.empty()) throw InputError(pointer, "an empty list makes no cases; give at least one value");
-    Field element = field;
-    element.axis = false;
-    Axis axis{pointer, {}};
-    Json list = Json::array();
-    std::map<std::string, std::size_t> seen;
-    for (std::size_t i = 0; i < value.size(); ++i) {
-      axis.values.push_back(check_value(element, value[i], pointer_to(pointer, i), axes));
-      list.push_back(axis.values.back());
-      const auto [first, fresh] = seen.emplace(list.back().dump(), i);
-      if (!fresh)
-        throw InputError(pointer_to(pointer, i), "repeats the value " + quote(value[i]) + " of " +
-                                                     shortened(pointer_to(pointer, first->second)) +
-                                                     ": the same case would run twice");
-    }
-    axes.push_back(std::move(axis));
-    return list;
+Json check_value(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes);
+
+// A list of values, each of which makes cases.
+Json check_axis(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
+  if (value.empty()) throw InputError(pointer, "an empty list makes no cases; give at least one value");
+  Field element = field;
+  element.axis = false;
+  Axis axis{pointer, {}};
+  Json list = Json::array();
+  std::map<std::string, std::size_t> seen;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    axis.values.push_back(check_value(element, value[i], pointer_to(pointer, i), axes));
+    list.push_back(axis.values.back());
+    const auto [first, fresh] = seen.emplace(list.back().dump(), i);
+    if (!fresh)
+      throw InputError(pointer_to(pointer, i), "repeats the value " + quote(value[i]) + " of " +
+                                                   shortened(pointer_to(pointer, first->second)) +
+                                                   ": the same case would run twice");
   }
+  axes.push_back(std::move(axis));
+  return list;
+}
+
+Json check_value(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
+  if (is_axis(field, value)) return check_axis(field, value, pointer, axes);
   if (value.is_object() && !field.given.empty() && (field.form != Field::Form::object || by_body(value)))
     return check_given(field, value, pointer, axes);
   switch (field.form) {

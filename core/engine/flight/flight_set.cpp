@@ -136,6 +136,105 @@ void FlightSet::close(const Program& program, const FlightSet* twin) {
   lever_ = closed_rows_.transpose() * definite_solve(closed_rows_ * closed_rows_.transpose(), one);
 }
 
+// Of the modes that fly.
+VectorXd FlightSet::masses(const Program& program) const {
+  if (closed_.empty()) return own_mass_;
+  VectorXd mass = closed_mass_;
+  // What holds of the structure's own massless modes holds of these.
+  const double most = mass.maxCoeff(), nothing = 1e-14;
+  const auto massless = static_cast<Index>(program.model->inertia().kernel_dimension) - closed_rows_.rows();
+  for (Index k = 0; k < massless; ++k)
+    if (mass[k] <= nothing * most) mass[k] = 0;
+  return mass;
+}
+
+MatrixXd FlightSet::lift_by(const std::vector<RowVectorXd>& rests) const {
+  MatrixXd lift = MatrixXd::Zero(rows_, drive_.count());
+  for (std::size_t i = 0; i < closed_.size(); ++i) lift += lever_.col(static_cast<Index>(i)) * rests[i];
+  return lift;
+}
+
+std::vector<FlightStage> FlightSet::flight_stages(const Program& program, const MatrixXd& inertia) const {
+  std::vector<FlightStage> stages;
+  for (std::size_t k = 0; k < program.stages.size(); ++k)
+    stages.push_back({program.stages[k].folded, program.plan.stages[k].update,
+                      load_over_drive(program, program.plan.stages[k].load, drive_)});
+  if (!closed_.empty()) stages.front().force = project(stages.front().force - inertia);
+  return stages;
+}
+
+// A combination of the lifts with such weights of its slots.
+MatrixXd FlightSet::lift_of(double z, const std::vector<double>& history, const MatrixXd& lifted) const {
+  MatrixXd sum = z * lifted;
+  for (int j = 0; j < slots_; ++j) sum -= weight_at(history, j) * lift_[static_cast<std::size_t>(j)];
+  return sum;
+}
+
+// The position after the step. It is watched whatever the law reads: a point beyond its stop is something to be told.
+FlightWatch FlightSet::end_watch(const Program& program, const MatrixXd& points) const {
+  FlightWatch end;
+  end.stage = static_cast<int>(program.stages.size());
+  end.value.slots.assign(static_cast<std::size_t>(slots_), 0.0);
+  end.value.slots[0] = 1;
+  end.rows = onto(points);
+  end.drive = (points * (lift_[0] + lift_[0] * drive_.change(1))).rowwise() +
+              harmonic(PhaseWeights({{1, 1}}, program.problem->support.pulsation, program.h), drive_);
+  return end;
+}
+
+std::vector<FlightWatch> FlightSet::contact_watches(const Program& program, double layer,
+                                                    const MatrixXd& lifted) const {
+  std::vector<FlightWatch> watches;
+  if (!program.contact) return watches;
+  const LaneSpec& lane = program.lanes.front();
+  const MatrixXd measured = program.model->measured().dense(rows_), contact = program.model->contact().dense(rows_);
+  const auto reads = [&](int stage, const Combination& value, const PhaseWeights& phase) {
+    FlightWatch watch;
+    watch.stage = stage;
+    watch.value = value;
+    watch.rows = onto(measured);
+    watch.drive = (measured * lift_of(value, lifted)).rowwise() + harmonic(phase, drive_);
+    watch.bounds = FlightWatch::Bounds::layer;
+    set_bounds(watch, lane, layer);
+    watches.push_back(std::move(watch));
+  };
+  for (int k = 0; k < static_cast<int>(program.stages.size()); ++k) {
+    const StageProgram& stage = program.stages[static_cast<std::size_t>(k)];
+    // Work is given back where some was taken, and nowhere else.
+    if (!stage.reads_contact || stage.restores > 0) continue;
+    if (stage.gate) {
+      reads(k, stage.gate->predictor, stage.predictor_phase);
+      continue;
+    }
+    reads(k, stage.measure, stage.measure_phase);
+    if (stage.compliance && stage.compliance->before) reads(k, *stage.compliance->before, stage.before_phase);
+  }
+  FlightWatch end = end_watch(program, contact);
+  end.bounds = FlightWatch::Bounds::stops;
+  set_bounds(end, lane, layer);
+  if (watches.empty() || layer != 0 || program.problem->changed_by_law() || !same(*step_rows_, watches.back(), end))
+    watches.push_back(std::move(end));
+  return watches;
+}
+
+// p = Lᵀ(S z − b).
+FlightWatch FlightSet::effort_watch(const Program& program, const MatrixXd& inertia, const MatrixXd& lifted) const {
+  const FoldedStage& folded = program.stages.front().folded;
+  FlightWatch pushed;
+  pushed.value.z = folded.mass;
+  pushed.value.slots.resize(static_cast<std::size_t>(slots_));
+  for (int j = 0; j < slots_; ++j) pushed.value.slots[static_cast<std::size_t>(j)] = -weight_at(folded.mass_history, j);
+  pushed.rows = lever_.transpose() * own_mass_.asDiagonal() * basis_;
+  const MatrixXd elastic = lift_of(folded.stiffness, folded.stiffness_history, lifted);
+  pushed.drive =
+      lever_.transpose() * (inertia + elastic - load_over_drive(program, program.plan.stages.front().load, drive_));
+  for (const ClosedPoint& point : closed_) {
+    pushed.lower.push_back(point.lower ? 0 : -infinity);
+    pushed.upper.push_back(point.lower ? infinity : 0);
+  }
+  return pushed;
+}
+
 FlightSet::FlightSet(const Program& program, double layer, std::vector<ClosedPoint> closed, int powers,
                      const FlightSet* twin)
     : closed_(std::move(closed)),
@@ -147,124 +246,43 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<ClosedPoi
     metres_.push_back(position != 0 ? 1.0 : velocity != 0 ? program.h / velocity : program.h * program.h);
   drive_ = {program.support, program.load || touching, program.problem->support.pulsation * program.h};
   own_mass_ = program.model->inertia().mass.diagonal();
-  VectorXd mass = own_mass_;
   if (touching) {
     close(program, twin);
     if (!rest(program)) {
       cause_ = "the scheme never rests at a stop";
       return;
     }
-    mass = closed_mass_;
-    // What holds of the structure's own massless modes holds of these.
-    const double most = mass.maxCoeff(), nothing = 1e-14;
-    const auto massless = static_cast<Index>(program.model->inertia().kernel_dimension) - closed_rows_.rows();
-    for (Index k = 0; k < massless; ++k)
-      if (mass[k] <= nothing * most) mass[k] = 0;
   }
+  const VectorXd mass = masses(program);
   modes_ = static_cast<int>(mass.size());
+  std::vector<RowVectorXd> rests(closed_.size());
   for (int j = 0; j < slots_; ++j) {
-    MatrixXd lift = MatrixXd::Zero(rows_, drive_.count());
-    for (std::size_t i = 0; i < closed_.size(); ++i) lift += lever_.col(static_cast<Index>(i)) * rest_[i].row(j);
-    lift_.push_back(std::move(lift));
+    for (std::size_t i = 0; i < closed_.size(); ++i) rests[i] = rest_[i].row(j);
+    lift_.push_back(lift_by(rests));
   }
-  MatrixXd lifted = MatrixXd::Zero(rows_, drive_.count());  // of z
-  for (std::size_t i = 0; i < closed_.size(); ++i) lifted += lever_.col(static_cast<Index>(i)) * rest_unknown_[i];
-  std::vector<FlightStage> stages;
-  for (std::size_t k = 0; k < program.stages.size(); ++k)
-    stages.push_back({program.stages[k].folded, program.plan.stages[k].update,
-                      load_over_drive(program, program.plan.stages[k].load, drive_)});
-  MatrixXd inertia;  // M L(s_M H z − Σ β^M_j ξ_j) of the stage that holds
+  const MatrixXd lifted = lift_by(rest_unknown_);  // of z
+  MatrixXd inertia;                                // M L(s_M H z − Σ β^M_j ξ_j) of the stage that holds
   if (touching) {
-    FlightStage& stage = stages.front();
-    MatrixXd weighed = stage.folded.mass * lifted;
-    for (int j = 0; j < slots_; ++j)
-      weighed -= weight_at(stage.folded.mass_history, j) * lift_[static_cast<std::size_t>(j)];
-    inertia = own_mass_.asDiagonal() * weighed;
-    stage.force = project(stage.force - inertia);
+    const FoldedStage& holds = program.stages.front().folded;
+    inertia = own_mass_.asDiagonal() * lift_of(holds.mass, holds.mass_history, lifted);
   }
-  step_rows_ = std::make_unique<const StepRows>(stages, slots_, mass, drive_);
-  const StepRows& rows = *step_rows_;
+  step_rows_ = std::make_unique<const StepRows>(flight_stages(program, inertia), slots_, mass, drive_);
 
-  const LaneSpec& lane = program.lanes.front();
-  const MatrixXd measured = program.model->measured().dense(rows_), contact = program.model->contact().dense(rows_);
-  std::vector<FlightWatch> watches;
-  const auto watch = [&](int stage, const Combination& value, const MatrixXd& points, const MatrixXd& drive,
-                         FlightWatch::Bounds bounds) {
-    FlightWatch one;
-    one.stage = stage;
-    one.value = value;
-    one.rows = onto(points);
-    one.drive = drive;
-    one.bounds = bounds;
-    set_bounds(one, lane, layer);
-    return one;
-  };
-  const auto reads = [&](int stage, const Combination& value, const PhaseWeights& phase) {
-    watches.push_back(watch(stage, value, measured,
-                            (measured * lift_of(value, lifted)).rowwise() + harmonic(phase, drive_),
-                            FlightWatch::Bounds::layer));
-  };
-  const int after = static_cast<int>(program.stages.size());
-  if (program.contact) {
-    for (int k = 0; k < after; ++k) {
-      const StageProgram& stage = program.stages[static_cast<std::size_t>(k)];
-      // Work is given back where some was taken, and nowhere else.
-      if (!stage.reads_contact || stage.restores > 0) continue;
-      if (stage.gate) {
-        reads(k, stage.gate->predictor, stage.predictor_phase);
-        continue;
-      }
-      reads(k, stage.measure, stage.measure_phase);
-      if (stage.compliance && stage.compliance->before) reads(k, *stage.compliance->before, stage.before_phase);
-    }
-    // The position after the step too, whatever the law reads: a point beyond its stop is something to be told.
-    Combination position;
-    position.slots.assign(static_cast<std::size_t>(slots_), 0.0);
-    position.slots[0] = 1;
-    const PhaseWeights phase({{1, 1}}, program.problem->support.pulsation, program.h);
-    const MatrixXd next = lift_[0] + lift_[0] * drive_.change(1);
-    FlightWatch end = watch(after, position, contact, (contact * next).rowwise() + harmonic(phase, drive_),
-                            FlightWatch::Bounds::stops);
-    if (watches.empty() || layer != 0 || program.problem->changed_by_law() || !same(rows, watches.back(), end))
-      watches.push_back(std::move(end));
-  }
+  std::vector<FlightWatch> watches = contact_watches(program, layer, lifted);
   if (touching) {
-    const FoldedStage& folded = stages.front().folded;
-    FlightWatch pushed;
-    pushed.value.z = folded.mass;
-    pushed.value.slots.resize(static_cast<std::size_t>(slots_));
-    for (int j = 0; j < slots_; ++j)
-      pushed.value.slots[static_cast<std::size_t>(j)] = -weight_at(folded.mass_history, j);
-    pushed.rows = lever_.transpose() * own_mass_.asDiagonal() * basis_;
-    MatrixXd elastic = folded.stiffness * lifted;
-    for (int j = 0; j < slots_; ++j)
-      elastic -= weight_at(folded.stiffness_history, j) * lift_[static_cast<std::size_t>(j)];
-    pushed.drive =
-        lever_.transpose() * (inertia + elastic - load_over_drive(program, program.plan.stages.front().load, drive_));
-    for (const ClosedPoint& point : closed_) {
-      pushed.lower.push_back(point.lower ? 0 : -infinity);
-      pushed.upper.push_back(point.lower ? infinity : 0);
-    }
     effort_watch_ = static_cast<int>(watches.size());
-    watches.push_back(std::move(pushed));
+    watches.push_back(effort_watch(program, inertia, lifted));
   }
-  bound_ = std::make_unique<FlightBound>(rows, std::move(watches));
+  bound_ = std::make_unique<FlightBound>(*step_rows_, std::move(watches));
   cause_ = bound_->cause();
   if (!cause_.empty()) return;
 
-  // Where the tip is after the step.
-  tip_watch_.stage = after;
-  tip_watch_.value.slots.assign(static_cast<std::size_t>(slots_), 0.0);
-  tip_watch_.value.slots[0] = 1;
-  const MatrixXd tip_row = program.model->tip().dense(rows_);
-  tip_watch_.rows = onto(tip_row);
-  tip_watch_.drive = (tip_row * (lift_[0] + lift_[0] * drive_.change(1))).rowwise() +
-                     harmonic(PhaseWeights({{1, 1}}, program.problem->support.pulsation, program.h), drive_);
+  tip_watch_ = end_watch(program, program.model->tip().dense(rows_));
   tip_watch_.lower = {-infinity};
   tip_watch_.upper = {infinity};
-  motion_ = std::make_unique<FlightMotion>(rows, powers);
-  clear_steps_ = std::make_unique<ClearSteps>(rows, *bound_, *motion_);
-  works_ = std::make_unique<FlightWorks>(*motion_, forms(program, rows, mass, lifted));
+  motion_ = std::make_unique<FlightMotion>(*step_rows_, powers);
+  clear_steps_ = std::make_unique<ClearSteps>(*step_rows_, *bound_, *motion_);
+  works_ = std::make_unique<FlightWorks>(*motion_, forms(program, *step_rows_, mass, lifted));
 }
 
 // Held points are watched by their efforts.

@@ -166,7 +166,15 @@ class FlightSet {
   bool rest(const Program& program);
   Eigen::RowVectorXd unknown_at_rest(const Stage& plan, const Eigen::MatrixXd& steady) const;
   void set_bounds(FlightWatch& watch, const LaneSpec& lane, double layer) const;
+  Eigen::VectorXd masses(const Program& program) const;
+  /// Σ_i L_i r_i, rows × drives.
+  Eigen::MatrixXd lift_by(const std::vector<Eigen::RowVectorXd>& rests) const;
   Eigen::MatrixXd lift_of(const Combination& c, const Eigen::MatrixXd& lifted) const;
+  Eigen::MatrixXd lift_of(double z, const std::vector<double>& history, const Eigen::MatrixXd& lifted) const;
+  std::vector<FlightStage> flight_stages(const Program& program, const Eigen::MatrixXd& inertia) const;
+  FlightWatch end_watch(const Program& program, const Eigen::MatrixXd& points) const;
+  std::vector<FlightWatch> contact_watches(const Program& program, double layer, const Eigen::MatrixXd& lifted) const;
+  FlightWatch effort_watch(const Program& program, const Eigen::MatrixXd& inertia, const Eigen::MatrixXd& lifted) const;
   ExtremeBounds extremes_of(const FlightWatch& value) const;
   FlightWorks::Forms forms(const Program& program, const StepRows& rows, const Eigen::VectorXd& mass,
                            const Eigen::MatrixXd& lifted);

@@ -270,6 +270,37 @@ const MotionSampler::State* MotionSampler::at(long long step) {
   return &states_.back();
 }
 
+std::optional<MotionSampler::Read> MotionSampler::read(double t) {
+  const SemiDiscrete& problem = *marcher_.program().problem;
+  const double h = marcher_.program().h, ratio = t / h;
+  long long n = std::llround(ratio);
+  const bool whole = std::abs(ratio - static_cast<double>(n)) <= rounding_of_steps;
+  if (!whole) n = static_cast<long long>(std::floor(ratio));
+  if (whole && n == 0) return Read{problem.position, problem.velocity, 0};
+  if (whole) {
+    const std::array<const State*, 3> s = {at(n - 1), at(n), at(n + 1)};
+    if (!s[0] || !s[1] || !s[2]) return std::nullopt;
+    return Read{s[1]->position, (s[2]->position - s[0]->position) / (2 * h),
+                s[1]->impulse - offset_ * (s[2]->impulse - s[1]->impulse)};
+  }
+  const long long first = std::max(n - 1, 0LL);
+  std::array<const State*, 4> s{};
+  for (int k = 0; k < 4; ++k)
+    if (!(s[static_cast<std::size_t>(k)] = at(first + k))) return std::nullopt;
+  // Before the second step the window begins at 0: the same cubic, seen from further left.
+  const double local = ratio - static_cast<double>(first + 1);
+  const Cubic weights = cubic(local);
+  Read out{Eigen::VectorXd::Zero(problem.dofs()), Eigen::VectorXd::Zero(problem.dofs()), 0};
+  for (std::size_t k = 0; k < 4; ++k) {
+    out.position += weights.value[k] * s[k]->position;
+    out.velocity += weights.slope[k] / h * s[k]->position;
+  }
+  const std::size_t left = static_cast<std::size_t>(n - first);
+  const double share = ratio - static_cast<double>(n) - offset_;
+  out.impulse = (1 - share) * s[left]->impulse + share * s[left + 1]->impulse;
+  return out;
+}
+
 bool MotionSampler::next() {
   if (next_ >= grid_.times.size()) return false;
   const SemiDiscrete& problem = *marcher_.program().problem;
@@ -279,40 +310,10 @@ bool MotionSampler::next() {
     marcher_.start(observers_);
     if (marcher_.step() > 0) keep();
   }
-  const double h = marcher_.program().h, t = grid_.times[next_], ratio = t / h;
-  long long n = std::llround(ratio);
-  const bool whole = std::abs(ratio - static_cast<double>(n)) <= rounding_of_steps;
-  if (!whole) n = static_cast<long long>(std::floor(ratio));
-
-  Eigen::VectorXd w, v;
-  double impulse = 0;
-  if (whole && n == 0) {
-    w = problem.position;
-    v = problem.velocity;
-  } else if (whole) {
-    const std::array<const State*, 3> s = {at(n - 1), at(n), at(n + 1)};
-    if (!s[0] || !s[1] || !s[2]) return false;
-    w = s[1]->position;
-    v = (s[2]->position - s[0]->position) / (2 * h);
-    impulse = s[1]->impulse - offset_ * (s[2]->impulse - s[1]->impulse);
-  } else {
-    const long long first = std::max(n - 1, 0LL);
-    std::array<const State*, 4> s{};
-    for (int k = 0; k < 4; ++k)
-      if (!(s[static_cast<std::size_t>(k)] = at(first + k))) return false;
-    // Before the second step the window begins at 0: the same cubic, seen from further left.
-    const double local = ratio - static_cast<double>(first + 1);
-    const Cubic weights = cubic(local);
-    w = Eigen::VectorXd::Zero(problem.dofs());
-    v = Eigen::VectorXd::Zero(problem.dofs());
-    for (std::size_t k = 0; k < 4; ++k) {
-      w += weights.value[k] * s[k]->position;
-      v += weights.slope[k] / h * s[k]->position;
-    }
-    const std::size_t left = static_cast<std::size_t>(n - first);
-    const double share = ratio - static_cast<double>(n) - offset_;
-    impulse = (1 - share) * s[left]->impulse + share * s[left + 1]->impulse;
-  }
+  const double t = grid_.times[next_];
+  const std::optional<Read> seen = read(t);
+  if (!seen) return false;
+  const Eigen::VectorXd &w = seen->position, &v = seen->velocity;
   const double support = marcher_.support(0, t), rate = marcher_.support_rate(0, t);
   double energy = 0.5 * mass_(v.data()) + 0.5 * stiffness_(w.data());
   if (marcher_.program().contact && marcher_.law().reads()) {
@@ -323,7 +324,7 @@ bool MotionSampler::next() {
   motion_.tip.push_back((problem.tip * w)[0] + support + problem.motions.tip(t));
   motion_.tip_velocity.push_back((problem.tip * v)[0] + rate + problem.motions.tip_rate(t));
   motion_.energy.push_back(energy);
-  motion_.impulse.push_back(impulse);
+  motion_.impulse.push_back(seen->impulse);
   Eigen::VectorXd u = (places_ * w).array() + support, velocity = (places_ * v).array() + rate;
   if (shares_.rows() > 0) {
     u += shares_ * problem.motions.values(t, false);

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <deque>
+#include <optional>
 #include <ricochet/contract/reference.hpp>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/marcher.hpp>
@@ -133,7 +134,14 @@ class MotionSampler {
     Eigen::VectorXd position;
     double impulse;
   };
+  /// The motion at a time, between steps.
+  struct Read {
+    Eigen::VectorXd position, velocity;
+    double impulse;
+  };
   const State* at(long long step);
+  /// Nothing where the lane stopped before.
+  std::optional<Read> read(double t);
   void keep();
 
   Marcher& marcher_;

@@ -132,82 +132,105 @@ LaneState random_column(const LaneState& like, std::mt19937_64& random) {
   return column;
 }
 
+// Tangents of a block, period by period.
+class TangentRun {
+ public:
+  TangentRun(Program program, const std::vector<LaneState>& states, const LyapunovPlan& plan)
+      : plan_(plan),
+        marcher_(std::move(program)),
+        metric_(marcher_.program(), plan.pulsation),
+        period_(plan.steps_per_period * marcher_.program().h),
+        columns_(states.size()),
+        untold_(states.size(), 0),
+        found_(states.size()) {
+    marcher_.set_clock(plan_.strobe + 1);
+    for (std::size_t lane = 0; lane < states.size(); ++lane) {
+      std::mt19937_64 random(plan.seed);
+      marcher_.set_lane(static_cast<int>(lane), LaneSpec(marcher_.program().lanes[lane]), states[lane]);
+      for (int k = 0; k < count(); ++k) columns_[lane].push_back(random_column(states[lane], random));
+      orthonormalise(columns_[lane], metric_, upper_);
+      store(lane);
+      found_[lane].rates.resize(static_cast<std::size_t>(count()));
+      rounds_.emplace_back(plan.round(lane), columns_[lane]);
+    }
+  }
+
+  std::vector<LyapunovRates> rates() {
+    ImpactJump jump(marcher_);
+    StepObserver* observer = jump.needed() ? &jump : nullptr;
+    for (int n = -plan_.discard; n < plan_.periods && marcher_.any_running(); ++n) {
+      marcher_.march(plan_.steps_per_period - 1, observer);
+      std::vector<std::vector<LaneState>> before(columns_.size());
+      if (plan_.without_sawtooth)
+        for (std::size_t lane = 0; lane < before.size(); ++lane) before[lane] = tangents(lane);
+      marcher_.march(1, observer);
+      marcher_.set_clock(plan_.strobe + 1);
+      for (std::size_t lane = 0; lane < columns_.size(); ++lane) end_period(n, lane, before[lane], jump);
+    }
+    for (std::size_t lane = 0; lane < columns_.size(); ++lane) {
+      const int number = static_cast<int>(lane);
+      found_[lane].jumps = jump.applied(number);
+      found_[lane].told = std::clamp(2 * marcher_.program().model->rows() - jump.lost(number), 0, count());
+      found_[lane].untold = jump.untold(number) - untold_[lane];
+      found_[lane].turning = rounds_[lane].turning();
+      keep_whole_rounds(found_[lane].rates, plan_.round(lane));
+    }
+    return std::move(found_);
+  }
+
+ private:
+  int count() const { return marcher_.tangents(); }
+  void store(std::size_t lane) {
+    for (int k = 0; k < count(); ++k)
+      marcher_.set_tangent(static_cast<int>(lane), k, columns_[lane][static_cast<std::size_t>(k)]);
+  }
+  std::vector<LaneState> tangents(std::size_t lane) const {
+    std::vector<LaneState> columns;
+    for (int k = 0; k < count(); ++k) columns.push_back(marcher_.tangent(static_cast<int>(lane), k));
+    return columns;
+  }
+  // `before`: the columns a step earlier, where a mode that alternates is averaged out.
+  void end_period(int n, std::size_t lane, const std::vector<LaneState>& before, ImpactJump& jump) {
+    const LaneStatus& status = marcher_.status(static_cast<int>(lane));
+    if (!status.running) {
+      found_[lane].end = status.end;
+      return;
+    }
+    if (plan_.keep_orbit) found_[lane].orbit.push_back(marcher_.lane_state(static_cast<int>(lane)));
+    columns_[lane] = tangents(lane);
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      add(columns_[lane][k], 1, before[k]);
+      scale(columns_[lane][k], 0.5);
+    }
+    orthonormalise(columns_[lane], metric_, upper_);
+    store(lane);
+    jump.columns_replaced();
+    if (n == -1) {
+      rounds_[lane] = Rounds(plan_.round(lane), columns_[lane]);
+      untold_[lane] = jump.untold(static_cast<int>(lane));
+    }
+    if (n < 0) return;
+    for (int k = 0; k < count(); ++k)
+      found_[lane].rates[static_cast<std::size_t>(k)].push_back(std::log(upper_(k, k)) / period_);
+    rounds_[lane].add(upper_, columns_[lane], metric_);
+  }
+
+  const LyapunovPlan& plan_;
+  Marcher marcher_;
+  const Columns metric_;
+  const double period_;
+  std::vector<std::vector<LaneState>> columns_;  // of each lane
+  std::vector<Rounds> rounds_;
+  std::vector<int> untold_;  // before the measured periods
+  Eigen::MatrixXd upper_;
+  std::vector<LyapunovRates> found_;
+};
+
 }  // namespace
 
 std::vector<LyapunovRates> lyapunov_rates(Program program, const std::vector<LaneState>& states,
                                           const LyapunovPlan& plan) {
-  Marcher marcher(std::move(program));
-  const int origin = plan.strobe + 1, count = marcher.tangents();
-  const double period = plan.steps_per_period * marcher.program().h;
-  const Columns metric(marcher.program(), plan.pulsation);
-  std::vector<LyapunovRates> found(states.size());
-  std::vector<std::vector<LaneState>> columns(states.size());
-  std::vector<Rounds> rounds;
-  std::vector<int> untold(states.size(), 0);  // before the measured periods
-  Eigen::MatrixXd upper;
-  marcher.set_clock(origin);
-  const auto store = [&](int lane) {
-    for (int k = 0; k < count; ++k)
-      marcher.set_tangent(lane, k, columns[static_cast<std::size_t>(lane)][static_cast<std::size_t>(k)]);
-  };
-  const auto fetch = [&](int lane) {
-    for (int k = 0; k < count; ++k)
-      columns[static_cast<std::size_t>(lane)][static_cast<std::size_t>(k)] = marcher.tangent(lane, k);
-  };
-  for (std::size_t lane = 0; lane < states.size(); ++lane) {
-    std::mt19937_64 random(plan.seed);
-    marcher.set_lane(static_cast<int>(lane), LaneSpec(marcher.program().lanes[lane]), states[lane]);
-    for (int k = 0; k < count; ++k) columns[lane].push_back(random_column(states[lane], random));
-    orthonormalise(columns[lane], metric, upper);
-    store(static_cast<int>(lane));
-    found[lane].rates.resize(static_cast<std::size_t>(count));
-    rounds.emplace_back(plan.round(lane), columns[lane]);
-  }
-  ImpactJump jump(marcher);
-  StepObserver* observer = jump.needed() ? &jump : nullptr;
-  for (int n = -plan.discard; n < plan.periods && marcher.any_running(); ++n) {
-    marcher.march(plan.steps_per_period - 1, observer);
-    std::vector<std::vector<LaneState>> before(states.size());
-    if (plan.without_sawtooth)
-      for (std::size_t lane = 0; lane < states.size(); ++lane)
-        for (int k = 0; k < count; ++k) before[lane].push_back(marcher.tangent(static_cast<int>(lane), k));
-    marcher.march(1, observer);
-    marcher.set_clock(origin);
-    for (std::size_t lane = 0; lane < states.size(); ++lane) {
-      const LaneStatus& status = marcher.status(static_cast<int>(lane));
-      if (!status.running) {
-        found[lane].end = status.end;
-        continue;
-      }
-      if (plan.keep_orbit) found[lane].orbit.push_back(marcher.lane_state(static_cast<int>(lane)));
-      fetch(static_cast<int>(lane));
-      if (plan.without_sawtooth)
-        for (std::size_t k = 0; k < columns[lane].size(); ++k) {
-          add(columns[lane][k], 1, before[lane][k]);
-          scale(columns[lane][k], 0.5);
-        }
-      orthonormalise(columns[lane], metric, upper);
-      store(static_cast<int>(lane));
-      jump.columns_replaced();
-      if (n == -1) {
-        rounds[lane] = Rounds(plan.round(lane), columns[lane]);
-        untold[lane] = jump.untold(static_cast<int>(lane));
-      }
-      if (n < 0) continue;
-      for (int k = 0; k < count; ++k)
-        found[lane].rates[static_cast<std::size_t>(k)].push_back(std::log(upper(k, k)) / period);
-      rounds[lane].add(upper, columns[lane], metric);
-    }
-  }
-  for (std::size_t lane = 0; lane < states.size(); ++lane) {
-    const int number = static_cast<int>(lane);
-    found[lane].jumps = jump.applied(number);
-    found[lane].told = std::clamp(2 * marcher.program().model->rows() - jump.lost(number), 0, count);
-    found[lane].untold = jump.untold(number) - untold[lane];
-    found[lane].turning = rounds[lane].turning();
-    keep_whole_rounds(found[lane].rates, plan.round(lane));
-  }
-  return found;
+  return TangentRun(std::move(program), states, plan).rates();
 }
 
 std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneState>& states,

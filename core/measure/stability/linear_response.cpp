@@ -11,6 +11,63 @@ namespace {
 
 using Complex = std::complex<double>;
 
+// Of one mode; C is 0 where damping is folded.
+struct Mode {
+  double M, C, K, support;
+};
+
+// The clamp accelerates as −push e^{iωt}.
+struct Forcing {
+  Complex push;
+  double pulsation, h;
+};
+
+// One step as X ← A X + b e^{iωt}, stage by stage.
+struct ModeStep {
+  Eigen::MatrixXcd A;
+  Eigen::VectorXcd b;
+};
+
+// Nothing where a stage has no solution.
+std::optional<ModeStep> mode_step(const StepPlan& plan, const Damping& damping, const Mode& mode,
+                                  const Forcing& forcing) {
+  const int slots = static_cast<int>(plan.slots.size());
+  ModeStep step{Eigen::MatrixXcd::Identity(slots, slots), Eigen::VectorXcd::Zero(slots)};
+  for (const Stage& stage : plan.stages) {
+    const FoldedStage folded = fold(stage, damping, slots);
+    Eigen::RowVectorXcd z = Eigen::RowVectorXcd::Zero(slots);
+    Complex z0 = 0;
+    if (folded.solves()) {
+      const double S = folded.mass * mode.M + folded.stiffness * mode.K + folded.damping * mode.C;
+      if (S == 0) return std::nullopt;
+      Eigen::RowVectorXcd history = Eigen::RowVectorXcd::Zero(slots);
+      for (int j = 0; j < slots; ++j) {
+        const auto at = static_cast<std::size_t>(j);
+        history[j] = folded.mass_history[at] * mode.M + folded.stiffness_history[at] * mode.K;
+        if (!folded.damping_history.empty()) history[j] += folded.damping_history[at] * mode.C;
+      }
+      Complex load = 0;
+      for (const Level& level : stage.load)
+        load += level.weight * std::polar(1.0, forcing.pulsation * level.at * forcing.h);
+      z = history * step.A / S;
+      z0 = ((history * step.b)(0) + load * forcing.push * mode.support) / S;
+    }
+    Eigen::MatrixXcd next(slots, slots);
+    Eigen::VectorXcd added(slots);
+    for (int j = 0; j < slots; ++j) {
+      const Combination& update = stage.update[static_cast<std::size_t>(j)];
+      next.row(j) = update.z * z;
+      added[j] = update.z * z0;
+      for (std::size_t i = 0; i < update.slots.size(); ++i) {
+        next.row(j) += update.slots[i] * step.A.row(static_cast<Eigen::Index>(i));
+        added[j] += update.slots[i] * step.b[static_cast<Eigen::Index>(i)];
+      }
+    }
+    step = {next, added};
+  }
+  return step;
+}
+
 }  // namespace
 
 std::optional<LinearResponse> linear_response(const SemiDiscrete& problem, const StepPlan& plan, double h) {
@@ -25,44 +82,13 @@ std::optional<LinearResponse> linear_response(const SemiDiscrete& problem, const
   // u = φ + w, φ = A Im(e^{iωt}): with A = 1 the phasor of φ is −i, that of −φ'' is −iω².
   const Complex clamp(0, -1), push = clamp * omega * omega;
   Eigen::VectorXcd position = Eigen::VectorXcd::Zero(model.rows());
+  const Eigen::MatrixXcd identity = Eigen::MatrixXcd::Identity(slots, slots);
   for (int mode = 0; mode < model.rows(); ++mode) {
-    // One step as X ← A X + b e^{iωt}, stage by stage.
-    Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(slots, slots);
-    Eigen::VectorXcd b = Eigen::VectorXcd::Zero(slots);
-    for (const Stage& stage : plan.stages) {
-      const FoldedStage folded = fold(stage, problem.damping, slots);
-      Eigen::RowVectorXcd z = Eigen::RowVectorXcd::Zero(slots);
-      Complex z0 = 0;
-      if (folded.solves()) {
-        double S = folded.mass * M[mode] + folded.stiffness * K[mode];
-        if (C.size() > 0) S += folded.damping * C[mode];
-        if (S == 0) return std::nullopt;
-        Eigen::RowVectorXcd history = Eigen::RowVectorXcd::Zero(slots);
-        for (int j = 0; j < slots; ++j) {
-          history[j] = folded.mass_history[static_cast<std::size_t>(j)] * M[mode] +
-                       folded.stiffness_history[static_cast<std::size_t>(j)] * K[mode];
-          if (C.size() > 0) history[j] += folded.damping_history[static_cast<std::size_t>(j)] * C[mode];
-        }
-        Complex load = 0;
-        for (const Level& level : stage.load) load += level.weight * std::polar(1.0, omega * level.at * h);
-        z = history * A / S;
-        z0 = ((history * b)(0) + load * push * model.support_shape()[mode]) / S;
-      }
-      Eigen::MatrixXcd next(slots, slots);
-      Eigen::VectorXcd added(slots);
-      for (int j = 0; j < slots; ++j) {
-        const Combination& update = stage.update[static_cast<std::size_t>(j)];
-        next.row(j) = update.z * z;
-        added[j] = update.z * z0;
-        for (std::size_t i = 0; i < update.slots.size(); ++i) {
-          next.row(j) += update.slots[i] * A.row(static_cast<Eigen::Index>(i));
-          added[j] += update.slots[i] * b[static_cast<Eigen::Index>(i)];
-        }
-      }
-      A = next;
-      b = added;
-    }
-    const auto answer = regular_solve(turn * Eigen::MatrixXcd::Identity(slots, slots) - A, b);
+    const auto step =
+        mode_step(plan, problem.damping, {M[mode], C.size() > 0 ? C[mode] : 0.0, K[mode], model.support_shape()[mode]},
+                  {push, omega, h});
+    if (!step) return std::nullopt;
+    const auto answer = regular_solve(turn * identity - step->A, step->b);
     if (!answer) return std::nullopt;
     position[mode] = (*answer)[0];
   }

@@ -218,6 +218,33 @@ void set_interval(EffectShare& out, double share, const std::vector<double>& sor
   out.high = std::max(share, tidy(at(0.975)));
 }
 
+// Of each set of factors that is told, with its interval.
+void add_shares(const std::vector<Factor>& factors, const Table& table, const Active& active,
+                const EffectOptions& options, Effects& out) {
+  const std::size_t count = active.factors.size();
+  const std::vector<FactorMask> sets = told(count);
+  const std::vector<double> shares =
+      shares_of(table.shape.variances(table.values, table.shape.uniform()), sets, table.repeats);
+  const auto draws = bootstrap(table, sets, options);
+  for (std::size_t k = 0; k < sets.size(); ++k) {
+    std::vector<std::string> members;
+    for (std::size_t f = 0; f < count; ++f)
+      if (sets[k] >> f & 1) members.push_back(factors[active.factors[f]].name);
+    const bool alone = members.size() == 1;
+    if (!alone) out.shares.push_back({fmt::format("{}", fmt::join(members, " × "))});
+    set_interval(alone ? out.shares[active.factors[k]] : out.shares.back(), shares[k], draws[k]);
+  }
+  if (count > highest_order) {
+    out.shares.push_back({"higher"});
+    set_interval(out.shares.back(), shares[sets.size()], draws[sets.size()]);
+  }
+  if (table.repeats > 0) {
+    out.shares.push_back({"repeats"});
+    set_interval(out.shares.back(), shares.back(), draws.back());
+    out.notes.push_back("cells that the factors do not tell apart differ: their means are taken, the rest is repeats");
+  }
+}
+
 }  // namespace
 
 Effects effects_of(const std::vector<Factor>& factors, const Values& values, const EffectOptions& options) {
@@ -265,27 +292,7 @@ Effects effects_of(const std::vector<Factor>& factors, const Values& values, con
   out.missing = out.combinations - static_cast<std::size_t>(table.present);
   if (const std::string reason = complete(table, out); !reason.empty()) return without_shares(reason);
 
-  const std::vector<FactorMask> sets = told(sizes.size());
-  const std::vector<double> shares =
-      shares_of(table.shape.variances(table.values, table.shape.uniform()), sets, table.repeats);
-  const auto draws = bootstrap(table, sets, options);
-  for (std::size_t k = 0; k < sets.size(); ++k) {
-    std::vector<std::string> members;
-    for (std::size_t f = 0; f < sizes.size(); ++f)
-      if (sets[k] >> f & 1) members.push_back(factors[active.factors[f]].name);
-    const bool alone = members.size() == 1;
-    if (!alone) out.shares.push_back({fmt::format("{}", fmt::join(members, " × "))});
-    set_interval(alone ? out.shares[active.factors[k]] : out.shares.back(), shares[k], draws[k]);
-  }
-  if (sizes.size() > highest_order) {
-    out.shares.push_back({"higher"});
-    set_interval(out.shares.back(), shares[sets.size()], draws[sets.size()]);
-  }
-  if (table.repeats > 0) {
-    out.shares.push_back({"repeats"});
-    set_interval(out.shares.back(), shares.back(), draws.back());
-    out.notes.push_back("cells that the factors do not tell apart differ: their means are taken, the rest is repeats");
-  }
+  add_shares(factors, table, active, options, out);
   return out;
 }
 

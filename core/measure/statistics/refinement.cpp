@@ -42,6 +42,56 @@ void set(Limit& limit, LimitStatus status, double uncertainty) {
   limit.high = limit.value + uncertainty;
 }
 
+/// The last three values, and their last two differences.
+struct Tail {
+  SizedValue v1, v2, v3;
+  double before, last;
+
+  double lowest() const { return std::min({v1.value, v2.value, v3.value}); }
+  double highest() const { return std::max({v1.value, v2.value, v3.value}); }
+  std::optional<double> order() const { return order_of(v1.size, v2.size, v3.size, before, last); }
+  /// What an order leaves after the last difference, times a factor.
+  double rest(double order, double factor = 1) const {
+    return factor * std::abs(last) / (std::pow(v2.size / v3.size, order) - 1);
+  }
+};
+
+/// To zero, in the order that its sizes show.
+std::optional<Limit> vanishing(const Tail& t, Limit out, double floor) {
+  if (std::abs(t.v3.value) > std::abs(t.last) ||
+      std::min({std::abs(t.v1.value), std::abs(t.v2.value), std::abs(t.v3.value)}) <= floor)
+    return std::nullopt;
+  const auto before = slope(t.v1, t.v2), now = slope(t.v2, t.v3);
+  // What passes zero on its way to a limit beyond falls as well, and has more left than itself.
+  constexpr double beyond = 1.5;
+  const auto order = t.order();
+  const double rest = order && *order > 0 ? t.rest(*order) : 0;
+  if (!before || !now || std::min(*before, *now) < lowest_order || rest > beyond * std::abs(t.v3.value))
+    return std::nullopt;
+  out.status = LimitStatus::vanishes;
+  out.uncertainty = std::max(std::abs(out.value), safety * rest);
+  out.low = std::min(0.0, out.value);
+  out.high = std::max(0.0, out.value);
+  out.order = now;
+  return out;
+}
+
+/// By an order that three sizes show; two orders that agree are needed for less than the last difference.
+Limit settling(const Tail& t, const std::vector<SizedValue>& values, const std::vector<double>& d, double order,
+               Limit out, double floor) {
+  const double last = std::abs(t.last), rest = t.rest(order, safety);
+  double u = std::max(last, rest);
+  if (const std::size_t n = values.size(); n >= 4 && t.before * t.last > 0 && d[n - 4] * t.before > 0) {
+    const auto earlier = order_of(values[n - 4].size, t.v1.size, t.v2.size, d[n - 4], t.before);
+    if (earlier && std::abs(order - *earlier) <= orders_agree && order <= steepest_order) {
+      out.order = order;
+      u = std::max(0.1 * last, rest);
+    }
+  }
+  set(out, LimitStatus::settles, std::max(u, floor));
+  return out;
+}
+
 /// Without a truth.
 Limit plain_limit(const std::vector<SizedValue>& values, double floor) {
   Limit out = at_finest(values);
@@ -58,65 +108,35 @@ Limit plain_limit(const std::vector<SizedValue>& values, double floor) {
     set(out, LimitStatus::two, std::max(last, floor));
     return out;
   }
-  const SizedValue &v1 = values[n - 3], &v2 = values[n - 2], &v3 = values[n - 1];
-  // Falls to zero.
-  if (std::abs(v3.value) <= last && std::min({std::abs(v1.value), std::abs(v2.value), std::abs(v3.value)}) > floor) {
-    const auto before = slope(v1, v2), now = slope(v2, v3);
-    // What passes zero on its way to a limit beyond falls as well, and has more left than itself.
-    constexpr double beyond = 1.5;
-    const auto order = order_of(v1.size, v2.size, v3.size, d[d.size() - 2], d.back());
-    const double rest = order && *order > 0 ? last / (std::pow(v2.size / v3.size, *order) - 1) : 0;
-    if (before && now && std::min(*before, *now) >= lowest_order && rest <= beyond * std::abs(v3.value)) {
-      out.status = LimitStatus::vanishes;
-      out.uncertainty = std::max(std::abs(out.value), safety * rest);
-      out.low = std::min(0.0, out.value);
-      out.high = std::max(0.0, out.value);
-      out.order = now;
-      return out;
-    }
-  }
-  if (std::abs(v2.value) > grows * std::abs(v1.value) && std::abs(v3.value) > grows * std::abs(v2.value) &&
-      std::abs(v3.value) > grown * std::abs(values.front().value) && last > std::abs(d[d.size() - 2])) {
+  const Tail t{values[n - 3], values[n - 2], values[n - 1], d[n - 3], d[n - 2]};
+  if (const auto limit = vanishing(t, out, floor)) return *limit;
+  if (std::abs(t.v2.value) > grows * std::abs(t.v1.value) && std::abs(t.v3.value) > grows * std::abs(t.v2.value) &&
+      std::abs(t.v3.value) > grown * std::abs(values.front().value) && last > std::abs(t.before)) {
     out.status = LimitStatus::blows_up;
     out.uncertainty = infinity;
-    out.low = std::min({v1.value, v2.value, v3.value});
-    out.high = std::max({v1.value, v2.value, v3.value});
+    out.low = t.lowest();
+    out.high = t.highest();
     return out;
   }
   if (last <= floor) {
     set(out, LimitStatus::settles, floor);
     return out;
   }
-  const double before = d[d.size() - 2];
-  const auto order = order_of(v1.size, v2.size, v3.size, before, d.back());
-  const bool one_sign = before * d.back() > 0;
-  if (order && *order >= lowest_order) {
-    // What is left of h^p after the last difference; two orders that agree are needed for less than the difference.
-    const double rest = safety * last / (std::pow(v2.size / v3.size, *order) - 1);
-    double u = std::max(last, rest);
-    if (n >= 4 && one_sign && d[d.size() - 3] * before > 0) {
-      const auto earlier = order_of(values[n - 4].size, v1.size, v2.size, d[d.size() - 3], before);
-      if (earlier && std::abs(*order - *earlier) <= orders_agree && *order <= steepest_order) {
-        out.order = order;
-        u = std::max(0.1 * last, rest);
-      }
-    }
-    set(out, LimitStatus::settles, std::max(u, floor));
-    return out;
-  }
-  if (one_sign && (n < 5 || d[d.size() - 3] * before > 0)) {
+  if (const auto order = t.order(); order && *order >= lowest_order)
+    return settling(t, values, d, *order, std::move(out), floor);
+  if (t.before * t.last > 0 && (n < 5 || d[n - 4] * t.before > 0)) {
     out.status = LimitStatus::moves;
     out.uncertainty = 2 * last;
-    out.trend = d.back() > 0 ? 1 : -1;
-    const double end = out.value + 2 * d.back();
+    out.trend = t.last > 0 ? 1 : -1;
+    const double end = out.value + 2 * t.last;
     out.low = std::min(out.value, end);
     out.high = std::max(out.value, end);
     return out;
   }
   out.status = LimitStatus::wanders;
   out.uncertainty = out.range;
-  out.low = std::min({v1.value, v2.value, v3.value});
-  out.high = std::max({v1.value, v2.value, v3.value});
+  out.low = t.lowest();
+  out.high = t.highest();
   return out;
 }
 

@@ -57,6 +57,43 @@ PlaceRow point_row(const AssembledStructure& structure, const Place& place, cons
                                                : "; nearest " + nearest));
 }
 
+// Adds the displacement of a place at a node: `add`(dof, weight), dofs from 1.
+template <class Add>
+void add_node(const AssembledStructure& structure, const Place& place, const std::string& pointer, PlaceRow& out,
+              const Add& add) {
+  const auto found = structure.nodes.find(place.node);
+  if (found == structure.nodes.end()) {
+    std::vector<std::string> known;
+    for (const auto& [name, ignored] : structure.nodes) known.push_back(name);
+    const std::string nearest = nearest_name(place.node, known);
+    throw InputError(
+        pointer + "/node",
+        fmt::format("\"{}\": no such node{}", shortened(place.node),
+                    nearest.empty() ? fmt::format("; {} has {} nodes", structure.table_name, structure.nodes.size())
+                                    : "; nearest " + nearest));
+  }
+  const auto& node = found->second;
+  out.x = node.place[0];
+  const auto component = [&](const std::string& name, double weight, const char* key) {
+    const auto dof = node.dofs.find(name);
+    if (dof == node.dofs.end())
+      throw InputError(fmt::format("{}/{}", pointer, key),
+                       fmt::format("node {} has {} and no {}", place.node, components_of(node), shortened(name)));
+    add(dof->second, weight);
+  };
+  if (place.direction.empty()) {
+    component(place.component, 1, "component");
+    return;
+  }
+  double length = 0;
+  for (const double one : place.direction) length = std::hypot(length, one);
+  if (!(length > 0) || !std::isfinite(length))
+    throw InputError(pointer + "/direction", "the direction has no length; expected three numbers, not all 0");
+  static const char* const axes[] = {"ux", "uy", "uz"};
+  for (std::size_t axis = 0; axis < place.direction.size() && axis < 3; ++axis)
+    if (place.direction[axis] != 0) component(axes[axis], place.direction[axis] / length, "direction");
+}
+
 }  // namespace
 
 PlaceRow AssembledStructure::row(const Place& place, const std::string& pointer) const {
@@ -88,36 +125,7 @@ PlaceRow AssembledStructure::row(const Place& place, const std::string& pointer)
             if (number == dof) out.x = node.place[0];
     }
   } else {
-    const auto found = nodes.find(place.node);
-    if (found == nodes.end()) {
-      std::vector<std::string> known;
-      for (const auto& [name, ignored] : nodes) known.push_back(name);
-      const std::string nearest = nearest_name(place.node, known);
-      throw InputError(pointer + "/node",
-                       fmt::format("\"{}\": no such node{}", shortened(place.node),
-                                   nearest.empty() ? fmt::format("; {} has {} nodes", table_name, nodes.size())
-                                                   : "; nearest " + nearest));
-    }
-    const Node& node = found->second;
-    out.x = node.place[0];
-    const auto component = [&](const std::string& name, double weight, const char* key) {
-      const auto dof = node.dofs.find(name);
-      if (dof == node.dofs.end())
-        throw InputError(fmt::format("{}/{}", pointer, key),
-                         fmt::format("node {} has {} and no {}", place.node, components_of(node), shortened(name)));
-      add(dof->second, weight);
-    };
-    if (place.direction.empty()) {
-      component(place.component, 1, "component");
-    } else {
-      double length = 0;
-      for (const double one : place.direction) length = std::hypot(length, one);
-      if (!(length > 0) || !std::isfinite(length))
-        throw InputError(pointer + "/direction", "the direction has no length; expected three numbers, not all 0");
-      static const char* const axes[] = {"ux", "uy", "uz"};
-      for (std::size_t axis = 0; axis < place.direction.size() && axis < 3; ++axis)
-        if (place.direction[axis] != 0) component(axes[axis], place.direction[axis] / length, "direction");
-    }
+    add_node(*this, place, pointer, out, add);
   }
   out.free = gathered(std::move(out.free));
   out.held = gathered(std::move(out.held));

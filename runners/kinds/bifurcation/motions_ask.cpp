@@ -233,6 +233,27 @@ class MotionsAlong {
                        unit);
   }
 
+  bool any_decided() const {
+    return std::any_of(told_.begin(), told_.end(), [](const CaseMotions& one) {
+      return std::any_of(one.stretches.begin(), one.stretches.end(),
+                         [](const auto& part) { return !part.motion.empty(); });
+    });
+  }
+
+  /// How many changes of any method are none of these.
+  std::size_t beside(const std::vector<MotionChange>& shared) const {
+    std::size_t others = 0;
+    for (const CaseMotions* one : heads_)
+      others += static_cast<std::size_t>(
+          std::count_if(one->changes.begin(), one->changes.end(), [&](const MotionChange& change) {
+            return std::none_of(shared.begin(), shared.end(), [&](const MotionChange& of_all) {
+              return of_all.from == change.from && of_all.to == change.to && of_all.low <= change.high &&
+                     change.low <= of_all.high;
+            });
+          }));
+    return others;
+  }
+
   void say(asks::Answered& out) const {
     const std::string unit = parameter_.unit.empty() ? "" : " " + parameter_.unit;
     const bool open = undecided_ > much_open;
@@ -241,10 +262,7 @@ class MotionsAlong {
     const std::string share = answers::percent(undecided_) + " of the range is undecided";
     if (open) out.reason = share;
     if (undecided_ > 0) asks::warn_too_short(out, evidence_.results().study);
-    if (told_.empty() || std::all_of(told_.begin(), told_.end(), [](const CaseMotions& one) {
-          return std::all_of(one.stretches.begin(), one.stretches.end(),
-                             [](const auto& part) { return part.motion.empty(); });
-        })) {
+    if (!any_decided()) {
       out.passes = asks::Verdict::open;
       out.verdict = "undecided";
       out.reason = told_.empty() ? "no case has a diagram" : "no orbit is decided";
@@ -257,15 +275,7 @@ class MotionsAlong {
     for (const MotionChange& change : own)
       if (std::all_of(heads_.begin(), heads_.end(), [&](const CaseMotions* one) { return has(*one, change); }))
         shared.push_back(change);
-    std::size_t others = 0;
-    for (const CaseMotions* one : heads_)
-      others += static_cast<std::size_t>(
-          std::count_if(one->changes.begin(), one->changes.end(), [&](const MotionChange& change) {
-            return std::none_of(shared.begin(), shared.end(), [&](const MotionChange& of_all) {
-              return of_all.from == change.from && of_all.to == change.to && of_all.low <= change.high &&
-                     change.low <= of_all.high;
-            });
-          }));
+    const std::size_t others = beside(shared);
     const bool several = heads_.size() > 1, none_shared = shared.empty();
     const std::vector<MotionChange>& said = none_shared ? own : shared;
     const std::string whose = !several      ? ""

@@ -266,6 +266,29 @@ class BifurcationRun {
 
   void finish(ExponentCheckpoints& batches) {
     std::vector<OrbitView> all = views();
+    give_exponents(all, batches);
+    classify_all(all);
+    write_tables(record_, all);
+    add_portraits(record_, scenes_, all, section_);
+    add_entries(record_, all, start_names());
+    add_grazing();
+    if (crowded_)
+      record_.notes.push_back(fmt::format("only {} changes of class per start were refined at a time", most_brackets));
+    for (int one = 0; one < scheduler_->count(); ++one)
+      if (scheduler_->finished(one)) record_.steps += scheduler_->marched_periods(one) * section_.steps_per_period;
+    const auto marched = std::count_if(all.begin(), all.end(), [](const OrbitView& view) { return view.complete(); });
+    put_measure(record_, "orbits", static_cast<double>(marched));
+    for (const OrbitView& view : all) lost_ += view.orbit && view.orbit->end.cause == EndCause::process_ended;
+    if (lost_ > 0) put_measure(record_, "orbits_lost", static_cast<double>(lost_));
+    add_shares(record_, all);
+    if (scheduler_->lane_periods() > 0)
+      put_measure(record_, "lane_steps_per_second",
+                  static_cast<double>(scheduler_->lane_periods() * section_.steps_per_period) /
+                      std::max(1e-9, scheduler_->seconds()));
+    conclude(all, marched);
+  }
+
+  void give_exponents(std::vector<OrbitView>& all, ExponentCheckpoints& batches) {
     ExponentTask task;
     std::vector<std::size_t> places;
     std::vector<OrbitPeriod> periods;
@@ -278,57 +301,41 @@ class BifurcationRun {
       task.rounds.push_back(period.doubtful > 0 ? period.doubtful : period.recurrence.period);
       places.push_back(i);
     }
-    if (exponents() > 0 && !places.empty()) {
-      for (const MarginalRoots& roots : marginal_) task.sawtooth.push_back(roots.sawtooth);
-      task.count = exponents();
-      task.blocks = context_.blocks;
-      task.case_id = case_.id;
-      task.lost = [this](const std::string& cause) {
-        ++lost_;
-        record_.notes.push_back("no exponents of an orbit: " + cause);
-      };
-      batches.serve(task);
-      double seconds = 0;
-      auto found = measure_exponents(scenes_, task, section_, seconds, stop_);
-      for (std::size_t i = 0; i < found.size(); ++i)
-        if (found[i].method == "tangent+jump" && !found[i].values.empty() &&
-            outlives(periods[i], found[i].values.front(), section_)) {
-          found[i] = {};
-          found[i].outlived = true;
-        }
-      record_.run_seconds += seconds;
-      for (std::size_t i = 0; i < found.size(); ++i) all[places[i]].exponents = found[i];
-      put_measure(record_, "exponent_seconds", seconds);
-      const auto none_where = [&](bool OrbitExponents::*fact, const char* which, const char* why) {
-        const auto count = std::count_if(found.begin(), found.end(), [&](const auto& one) { return one.*fact; });
-        if (count == 0) return;
-        record_.notes.push_back(fmt::format("no exponents of {} orbit{}{}: {}", count, &"s"[count == 1], which, why));
-      };
-      none_where(&OrbitExponents::saturated, "", why_saturated);
-      none_where(&OrbitExponents::blind, " with impacts", why_blind);
-      none_where(&OrbitExponents::untold, "", why_untold);
-      none_where(&OrbitExponents::outlived, "", why_outlived);
-      none_where(&OrbitExponents::superstable, "", why_superstable);
-    }
-    classify_all(all);
-    write_tables(record_, all);
-    add_portraits(record_, scenes_, all, section_);
-    add_entries(record_, all, start_names());
-    add_grazing();
-    if (crowded_)
-      record_.notes.push_back(fmt::format("only {} changes of class per start were refined at a time", most_brackets));
-    long long marched = 0, bad = 0;
-    for (const OrbitView& view : all) (view.complete() ? marched : bad) += 1;
-    for (int one = 0; one < scheduler_->count(); ++one)
-      if (scheduler_->finished(one)) record_.steps += scheduler_->marched_periods(one) * section_.steps_per_period;
-    put_measure(record_, "orbits", static_cast<double>(marched));
-    for (const OrbitView& view : all) lost_ += view.orbit && view.orbit->end.cause == EndCause::process_ended;
-    if (lost_ > 0) put_measure(record_, "orbits_lost", static_cast<double>(lost_));
-    add_shares(record_, all);
-    if (scheduler_->lane_periods() > 0)
-      put_measure(record_, "lane_steps_per_second",
-                  static_cast<double>(scheduler_->lane_periods() * section_.steps_per_period) /
-                      std::max(1e-9, scheduler_->seconds()));
+    if (exponents() == 0 || places.empty()) return;
+    for (const MarginalRoots& roots : marginal_) task.sawtooth.push_back(roots.sawtooth);
+    task.count = exponents();
+    task.blocks = context_.blocks;
+    task.case_id = case_.id;
+    task.lost = [this](const std::string& cause) {
+      ++lost_;
+      record_.notes.push_back("no exponents of an orbit: " + cause);
+    };
+    batches.serve(task);
+    double seconds = 0;
+    auto found = measure_exponents(scenes_, task, section_, seconds, stop_);
+    for (std::size_t i = 0; i < found.size(); ++i)
+      if (found[i].method == "tangent+jump" && !found[i].values.empty() &&
+          outlives(periods[i], found[i].values.front(), section_)) {
+        found[i] = {};
+        found[i].outlived = true;
+      }
+    record_.run_seconds += seconds;
+    for (std::size_t i = 0; i < found.size(); ++i) all[places[i]].exponents = found[i];
+    put_measure(record_, "exponent_seconds", seconds);
+    const auto none_where = [&](bool OrbitExponents::*fact, const char* which, const char* why) {
+      const auto count = std::count_if(found.begin(), found.end(), [&](const auto& one) { return one.*fact; });
+      if (count == 0) return;
+      record_.notes.push_back(fmt::format("no exponents of {} orbit{}{}: {}", count, &"s"[count == 1], which, why));
+    };
+    none_where(&OrbitExponents::saturated, "", why_saturated);
+    none_where(&OrbitExponents::blind, " with impacts", why_blind);
+    none_where(&OrbitExponents::untold, "", why_untold);
+    none_where(&OrbitExponents::outlived, "", why_outlived);
+    none_where(&OrbitExponents::superstable, "", why_superstable);
+  }
+
+  void conclude(const std::vector<OrbitView>& all, std::ptrdiff_t marched) {
+    const auto bad = static_cast<std::ptrdiff_t>(all.size()) - marched;
     record_.status = marched > 0 ? Status::done : Status::diverged;
     if (scheduler_->over_budget()) {
       record_.status = Status::failed;

@@ -66,6 +66,14 @@ void compare(CaseRecord& record, const SampledMotion& motion, const ReferenceSet
   }
 }
 
+void put_ends(CaseRecord& record, const SampledMotion& motion) {
+  put_measure(record, "tip_displacement_end", motion.tip.back());
+  put_measure(record, "energy_start", motion.energy.front());
+  put_measure(record, "energy_end", motion.energy.back());
+  put_measure(record, "microseconds_per_step",
+              1e6 * record.run_seconds / static_cast<double>(std::max(record.steps, 1LL)));
+}
+
 }  // namespace
 
 CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry, References& references,
@@ -103,7 +111,6 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   record.run_seconds = thread_seconds() - run;
   record.steps = std::min(marcher.step(), prepared.steps);
   const bool whole = sampler.sampled() == set.grid.times.size();
-  const auto& events = sampler.contact().events();
   put_measure(record, "horizon", set.horizon);
   put_measure(record, "steps_visited", static_cast<double>(marcher.steps_visited()));
   const bool of_the_mesh = set.applicable.front()->of_the_mesh;
@@ -115,15 +122,11 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   put_measure(record, "active_set_changes", static_cast<double>(sampler.contact().changes()));
   if (whole) {
     record.status = Status::done;
-    if (events.empty())
+    if (sampler.contact().events().empty())
       put_measure(record, "declared_order", facts.order);
     else if (rigid && point_mass && facts.contact_order)
       put_measure(record, "declared_order", std::min(facts.order, *facts.contact_order));
-    put_measure(record, "tip_displacement_end", sampler.motion().tip.back());
-    put_measure(record, "energy_start", sampler.motion().energy.front());
-    put_measure(record, "energy_end", sampler.motion().energy.back());
-    put_measure(record, "microseconds_per_step",
-                1e6 * record.run_seconds / static_cast<double>(std::max(record.steps, 1LL)));
+    put_ends(record, sampler.motion());
     compare(record, sampler.finish(), set, errors_of(study_case));
   } else {
     record_early_end(record, marcher, prepared.steps, budget);

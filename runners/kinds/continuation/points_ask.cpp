@@ -304,21 +304,58 @@ class PointsAsk {
     return fmt::format("{} at {}", point_words(told.point->kind).does, point_value(told.value, told.half));
   }
 
-  void say(asks::Answered& out) const {
+  /// How the branches of all methods end.
+  struct Ends {
     std::size_t branches = 0, known = 0, inside = 0, points = 0;
-    const Followed* stopped = nullptr;
+    const Followed *first = nullptr, *stopped = nullptr;  ///< of all; of those that stop inside the range
+  };
+
+  Ends ends() const {
+    Ends ends;
     for (const Followers& one : methods_) {
-      points += one.points.size();
+      ends.points += one.points.size();
       for (const Followed& branch : one.branches) {
-        ++branches;
-        known += branch.end != nullptr;
+        if (ends.branches++ == 0) ends.first = &branch;
+        ends.known += branch.end != nullptr;
         if (!branch.end || !end_words(branch.end->ended).empty()) continue;
-        ++inside;
-        if (!stopped) stopped = &branch;
+        ++ends.inside;
+        if (!ends.stopped) ends.stopped = &branch;
       }
     }
-    const std::string unit = parameter_.unit.empty() ? "" : " " + parameter_.unit;
-    if (branches == 0) {
+    return ends;
+  }
+
+  std::string text(const Ends& ends) const {
+    if (ends.branches == 1 && ends.stopped)
+      return fmt::format("the branch stops inside the range at {}{}",
+                         answers::short_number(ends.stopped->end->parameter.value_or(ends.stopped->to), 6), unit());
+    if (ends.branches == 1 && ends.first->end) return "the branch " + end_words(ends.first->end->ended);
+    if (ends.known == 0) return "no end of a branch is told";
+    if (ends.inside == 0) return fmt::format("all {} branches end at the range, closed or joined", ends.known);
+    return fmt::format("{} of {} branches stop inside the range", ends.inside, ends.branches);
+  }
+
+  std::string unit() const { return parameter_.unit.empty() ? "" : " " + parameter_.unit; }
+
+  /// The first `count` points, a period named once.
+  std::string text(const std::vector<const Told*>& list, std::size_t count) const {
+    std::string text;
+    int period = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const Told& told = *list[k];
+      const bool same = told.point->period == period;
+      text +=
+          (k == 0 ? "" : ", ") + (same ? place(told) : fmt::format("period {} {}", told.point->period, place(told)));
+      period = told.point->period;
+    }
+    text += unit();
+    if (count < list.size()) text += fmt::format(", {} more", list.size() - count);
+    return text;
+  }
+
+  void say(asks::Answered& out) const {
+    const Ends branches = ends();
+    if (branches.branches == 0) {
       out.passes = asks::Verdict::open;
       out.verdict = "open";
       out.reason = nothing();
@@ -326,23 +363,17 @@ class PointsAsk {
           {"Open: no periodic orbit was found: " + out.reason + ".", "Open: no periodic orbit was found."});
       return;
     }
-    out.passes = points > 0 ? asks::Verdict::yes : inside > 0 ? asks::Verdict::open : asks::Verdict::no;
-    out.verdict = points > 0 ? "found" : inside > 0 ? "open" : "none";
-    std::string ends = known == 0    ? "no end of a branch is told"
-                       : inside == 0 ? fmt::format("all {} branches end at the range, closed or joined", known)
-                                     : fmt::format("{} of {} branches stop inside the range", inside, branches);
-    if (branches == 1 && stopped)
-      ends = fmt::format("the branch stops inside the range at {}{}",
-                         answers::short_number(stopped->end->parameter.value_or(stopped->to), 6), unit);
-    if (const SpecialRow* end = methods_.front().branches.front().end; branches == 1 && !stopped && end)
-      ends = "the branch " + end_words(end->ended);
-    if (stopped) out.reason = stopped->end->note;
+    const bool any = branches.points > 0, inside = branches.inside > 0;
+    out.passes = any ? asks::Verdict::yes : inside ? asks::Verdict::open : asks::Verdict::no;
+    out.verdict = any ? "found" : inside ? "open" : "none";
+    const std::string ends = text(branches);
+    if (branches.stopped) out.reason = branches.stopped->end->note;
     // Of the first method that has points; those at one place once.
     const auto first =
         std::find_if(methods_.begin(), methods_.end(), [](const Followers& one) { return !one.points.empty(); });
     if (first == methods_.end()) {
       const std::string asked = all_ ? "special point" : kinds_text();
-      out.sentence = asks::fitting({fmt::format("{}: no {} was met; {}.", inside > 0 ? "Open" : "No", asked, ends)});
+      out.sentence = asks::fitting({fmt::format("{}: no {} was met; {}.", inside ? "Open" : "No", asked, ends)});
       return;
     }
     std::vector<const Told*> list;
@@ -355,18 +386,7 @@ class PointsAsk {
     for (const bool named : {true, false})
       for (std::size_t count = list.size(); count > 0; --count) {
         if (named && count < list.size() && count < 2) continue;
-        std::string text;
-        int period = 0;
-        for (std::size_t k = 0; k < count; ++k) {
-          const Told& told = *list[k];
-          const bool same = told.point->period == period;
-          text += (k == 0 ? "" : ", ") +
-                  (same ? place(told) : fmt::format("period {} {}", told.point->period, place(told)));
-          period = told.point->period;
-        }
-        text += unit;
-        if (count < list.size()) text += fmt::format(", {} more", list.size() - count);
-        texts.push_back(answers::capitalised((named ? who : "") + text + "; " + ends + "."));
+        texts.push_back(answers::capitalised((named ? who : "") + text(list, count) + "; " + ends + "."));
       }
     out.sentence = asks::fitting(texts);
   }

@@ -32,37 +32,53 @@ MarginalRoots marginal_roots(const ForcedScenes& scenes, int group) {
   return {spectrum->marginal, std::abs(spectrum->root + 1.0) < 1e-4 && spectrum->on_kernel};
 }
 
-std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const ExponentTask& task,
-                                              const SectionPlan& plan, double& seconds, const std::atomic<bool>& stop) {
-  const auto& orbits = task.orbits;
-  const int count = task.count;
-  std::vector<OrbitExponents> found(orbits.size());
+namespace {
+
+// Orbits whose tangents tell, group by group, at most `most` in a batch; those of the others are marked blind.
+std::vector<Batch> batches_of(const ForcedScenes& scenes, const ExponentTask& task, std::size_t most,
+                              std::vector<OrbitExponents>& found) {
   std::map<int, std::vector<std::size_t>> by_group;
   std::map<int, bool> misses;
-  for (std::size_t i = 0; i < orbits.size(); ++i) {
+  for (std::size_t i = 0; i < task.orbits.size(); ++i) {
     const int group = task.groups[i];
     const auto [at, fresh] = misses.try_emplace(group, false);
-    if (fresh) at->second = tangents_miss_impacts(scenes.program(group, {orbits[i]->lane}));
-    found[i].blind = at->second && impacts_per_period(*orbits[i]) > 0;
+    if (fresh) at->second = tangents_miss_impacts(scenes.program(group, {task.orbits[i]->lane}));
+    found[i].blind = at->second && impacts_per_period(*task.orbits[i]) > 0;
     if (!found[i].blind) by_group[group].push_back(i);
   }
   std::vector<Batch> batches;
-  // One column more than asked for: it may belong to the last one as a complex pair.
-  const int columns =
-      task.groups.empty() ? count : std::min({count + 1, 31, 2 * scenes.problem(task.groups.front()).dofs()});
-  // What leaves out steps marches alone.
-  const auto most = static_cast<std::size_t>(scenes.flies() ? 1 : std::max(1, block_width / (1 + columns)));
   for (const auto& [group, members] : by_group)
     for (std::size_t first = 0; first < members.size(); first += most)
       batches.push_back({group,
                          {members.begin() + static_cast<std::ptrdiff_t>(first),
                           members.begin() + static_cast<std::ptrdiff_t>(std::min(first + most, members.size()))}});
-  LyapunovPlan base;
-  base.steps_per_period = plan.steps_per_period;
-  base.strobe = plan.strobe;
-  base.pulsation = plan.pulsation;
-  base.discard = std::clamp(plan.keep / 10, 2, 20);
-  base.periods = plan.keep;
+  return batches;
+}
+
+LyapunovPlan lyapunov_plan(const SectionPlan& plan) {
+  LyapunovPlan lyapunov;
+  lyapunov.steps_per_period = plan.steps_per_period;
+  lyapunov.strobe = plan.strobe;
+  lyapunov.pulsation = plan.pulsation;
+  lyapunov.discard = std::clamp(plan.keep / 10, 2, 20);
+  lyapunov.periods = plan.keep;
+  return lyapunov;
+}
+
+}  // namespace
+
+std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const ExponentTask& task,
+                                              const SectionPlan& plan, double& seconds, const std::atomic<bool>& stop) {
+  const auto& orbits = task.orbits;
+  const int count = task.count;
+  std::vector<OrbitExponents> found(orbits.size());
+  // One column more than asked for: it may belong to the last one as a complex pair.
+  const int columns =
+      task.groups.empty() ? count : std::min({count + 1, 31, 2 * scenes.problem(task.groups.front()).dofs()});
+  // What leaves out steps marches alone.
+  const auto most = static_cast<std::size_t>(scenes.flies() ? 1 : std::max(1, block_width / (1 + columns)));
+  const std::vector<Batch> batches = batches_of(scenes, task, most, found);
+  const LyapunovPlan base = lyapunov_plan(plan);
   const auto measure = [&](const Batch& batch) {
     LyapunovPlan one = base;
     one.without_sawtooth = task.sawtooth[static_cast<std::size_t>(batch.group)];

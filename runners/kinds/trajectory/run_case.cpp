@@ -189,8 +189,7 @@ double smallest_gap(const Marcher& marcher) {
   return gap;
 }
 
-void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit& audit, const SemiDiscrete& problem,
-                   const StopContacts& contacts) {
+void fill_energies(CaseRecord& record, const Marcher& marcher, const EnergyAudit& audit) {
   const EnergyTotals& energy = audit.totals(0);
   const ContactTotals& contact = audit.contact(0);
   const auto put = [&](const char* name, double value) { put_measure(record, name, value); };
@@ -234,6 +233,14 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
     put("stored_at_stops", stored);
     put("balance_residual", energy.balance_residual());
   }
+}
+
+void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit& audit, const SemiDiscrete& problem,
+                   const StopContacts& contacts) {
+  fill_energies(record, marcher, audit);
+  const EnergyTotals& energy = audit.totals(0);
+  const ContactTotals& contact = audit.contact(0);
+  const auto put = [&](const char* name, double value) { put_measure(record, name, value); };
   if (const double gap = smallest_gap(marcher); std::isfinite(gap)) put("smallest_gap", gap);
   put("projection_energy", problem.projection_energy);
   put("kernel_energy", problem.kernel_energy);
@@ -311,6 +318,44 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   return plan;
 }
 
+namespace {
+
+// Marches to the last step, with samples at equal fractions of the run, on whole steps; ends sooner once `budget` (s of
+// this thread) is spent.
+void march_sampled(Marcher& marcher, Watched& watched, long long steps, long long samples, double budget,
+                   const std::atomic<bool>& stop) {
+  const double run = thread_seconds();
+  double before = run;
+  bool spent = false;
+  // Steps between two readings of the clock; those that are left out cost it nothing.
+  long long chunk = 16;
+  const long long longest_chunk = marcher.program().flight ? 1000000 : 20000;
+  marcher.start(watched.observers);
+  const auto sample = [&] {
+    watched.sampler.take(marcher);
+    watched.audit.mark_brought_in(0);
+  };
+  if (marcher.step() > 0) sample();
+  for (long long k = 1; k <= samples && marcher.any_running() && !spent; ++k) {
+    const auto target = static_cast<long long>(
+        std::llround(static_cast<double>(steps) * static_cast<double>(k) / static_cast<double>(samples)));
+    watched.audit.sample_after(target);
+    while (marcher.step() < target && marcher.any_running() && !spent) {
+      if (stop) throw Interrupted{};
+      marcher.march(std::min(target - marcher.step(), chunk), watched.observers);
+      const double now = thread_seconds();
+      spent = now - run > budget;
+      // Long enough to cost nothing, short enough to stop soon.
+      chunk = now - before < 0.01 ? std::min(2 * chunk, longest_chunk)
+                                  : (now - before > 0.1 ? std::max(chunk / 2, 1LL) : chunk);
+      before = now;
+    }
+    if (marcher.any_running() && marcher.step() == target) sample();
+  }
+}
+
+}  // namespace
+
 CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) {
   const double set_up = thread_seconds();
   Prepared prepared = prepare_case(study_case, registry);
@@ -326,35 +371,8 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 
   const double run = thread_seconds(), budget = budget_of(study_case);
-  double before = run;
-  bool spent = false;
-  // Steps between two readings of the clock; those that are left out cost it nothing.
-  long long chunk = 16;
-  const long long longest_chunk = marcher.program().flight ? 1000000 : 20000;
-  marcher.start(observers);
-  const auto sample = [&watched, &marcher] {
-    watched.sampler.take(marcher);
-    watched.audit.mark_brought_in(0);
-  };
-  if (marcher.step() > 0) sample();
-  const long long samples = std::min<long long>(std::max(study_case.samples, 1), prepared.steps);
-  for (long long k = 1; k <= samples && marcher.any_running() && !spent; ++k) {
-    // Samples at equal fractions of the run, on whole steps.
-    const auto target = static_cast<long long>(
-        std::llround(static_cast<double>(prepared.steps) * static_cast<double>(k) / static_cast<double>(samples)));
-    audit.sample_after(target);
-    while (marcher.step() < target && marcher.any_running() && !spent) {
-      if (stop) throw Interrupted{};
-      marcher.march(std::min(target - marcher.step(), chunk), observers);
-      const double now = thread_seconds();
-      spent = now - run > budget;
-      // Long enough to cost nothing, short enough to stop soon.
-      chunk = now - before < 0.01 ? std::min(2 * chunk, longest_chunk)
-                                  : (now - before > 0.1 ? std::max(chunk / 2, 1LL) : chunk);
-      before = now;
-    }
-    if (marcher.any_running() && marcher.step() == target) sample();
-  }
+  march_sampled(marcher, watched, prepared.steps, std::min<long long>(std::max(study_case.samples, 1), prepared.steps),
+                budget, stop);
   record.run_seconds = thread_seconds() - run;
   record.steps = marcher.step();
   record.curve = sampler.finish();
