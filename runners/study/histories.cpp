@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <ricochet/scene/history/time_history.hpp>
@@ -94,9 +95,13 @@ void set_period(const Json& json, const std::string& pointer, TimeTable& table) 
       throw InputError(pointer + key, "stands beside a period; what repeats has neither beginning nor end");
 }
 
-TimeTable read_table(const Json& json, const std::string& pointer, StudyFiles* files) {
+StudyFiles& given(StudyFiles* files, const std::string& pointer) {
   if (!files) throw InputError(pointer + "/file", "a scene that names files stands in a study alone");
-  TimeTable table = files->table(json, pointer);
+  return *files;
+}
+
+TimeTable read_table(const Json& json, const std::string& pointer, StudyFiles* files) {
+  TimeTable table = given(files, pointer).table(json, pointer);
   const double factor = json.at("factor").get<double>();
   for (double& value : table.values) value *= factor;
   table.between = between(json.at("interpolation").get<std::string>());
@@ -161,13 +166,48 @@ std::pair<double, double> read_start(const Json& start, const std::string& point
   return out;
 }
 
-void read_spectrum(const Json& json, const std::string& pointer, long long seed, std::size_t number, LoadTerm& term) {
+// S(f) between the entries of a table, straight, or straight in logarithms of both.
+std::function<double(double)> tabled_density(const Json& json, const std::string& pointer, const TimeTable& table) {
+  const std::vector<double>& f = table.times;
+  if (f.size() < 2) throw InputError(pointer, table.name + " has one frequency; expected two or more");
+  const double from = json.at("from").get<double>(), to = json.at("to").get<double>();
+  if (from < f.front())
+    throw InputError(pointer + "/from",
+                     fmt::format("{} begins at {:.9g} Hz; expected at least that", table.name, f[0]));
+  if (to > f.back())
+    throw InputError(pointer + "/to", fmt::format("{} ends at {:.9g} Hz; expected at most that", table.name, f.back()));
+  const double factor = json.at("factor").get<double>();
+  const bool logarithms = json.at("interpolation") == "log";
+  std::vector<double> S = table.values;
+  for (std::size_t k = 0; k < S.size(); ++k) {
+    S[k] *= factor;
+    if (logarithms && !(f[k] > 0 && S[k] > 0))
+      throw InputError(pointer + "/interpolation",
+                       fmt::format("\"log\" has no S(f) = {:.6g} at {:.6g} Hz; expected \"linear\"", S[k], f[k]));
+  }
+  return [f, S, logarithms](double at) {
+    const auto after = std::upper_bound(f.begin() + 1, f.end() - 1, at);
+    const auto k = static_cast<std::size_t>(after - f.begin());
+    if (!logarithms) return S[k - 1] + (S[k] - S[k - 1]) * (at - f[k - 1]) / (f[k] - f[k - 1]);
+    return S[k - 1] * std::pow(S[k] / S[k - 1], std::log(at / f[k - 1]) / std::log(f[k] / f[k - 1]));
+  };
+}
+
+void read_spectrum(const Json& json, const std::string& pointer, StudyFiles* files, long long seed, std::size_t number,
+                   LoadTerm& term) {
   SpectrumSpec spectrum;
-  const Json& density = json.at("formula");
-  const std::string text = density.is_number() ? density.dump() : density.get<std::string>();
-  const Formula formula =
-      density.is_number() ? Formula(density.get<double>()) : Formula(text, pointer + "/formula", "f");
-  spectrum.density = [formula](double f) { return formula.value(0, f); };
+  std::string text;
+  if (json.contains("file")) {
+    const TimeTable table = given(files, pointer).spectrum(json, pointer);
+    text = "of " + table.name;
+    spectrum.density = tabled_density(json, pointer, table);
+  } else {
+    const Json& density = json.at("formula");
+    text = "= " + (density.is_number() ? density.dump() : density.get<std::string>());
+    const Formula formula = density.is_number() ? Formula(density.get<double>())
+                                                : Formula(density.get<std::string>(), pointer + "/formula", "f");
+    spectrum.density = [formula](double f) { return formula.value(0, f); };
+  }
   spectrum.from = json.at("from").get<double>();
   spectrum.to = json.at("to").get<double>();
   spectrum.lines = json.at("lines").get<int>();
@@ -175,7 +215,7 @@ void read_spectrum(const Json& json, const std::string& pointer, long long seed,
   spectrum.load = number;
   spectrum.pointer = pointer;
   const auto load = std::make_shared<const RandomLoad>(spectrum);
-  term.history = {[load](double t) { return load->value(t); }, fmt::format("random, S(f) = {}", text), pointer};
+  term.history = {[load](double t) { return load->value(t); }, "random, S(f) " + text, pointer};
   term.period = 2 * load->period();
 }
 
@@ -186,13 +226,22 @@ ObjectForm load_history(const char* unit) {
   table.fields = table_fields(unit, {"linear", "cubic", "step"}, {"error", "zero", "hold"});
   ObjectForm spectrum;
   const std::string density = std::string("One-sided S(f), (") + unit + ")²/Hz, f in Hz.";
-  spectrum.fields = {
-      of_form(Field::Form::formula, "formula", std::nullopt, density.c_str())
-          .as(std::string("S(f) in ") + (std::string(unit) == "1" ? "1/Hz" : std::string(unit) + "²/Hz")),
-      single(real("from", "Hz", non_negative, std::nullopt, "Where the first band begins.")),
-      single(real("to", "Hz", positive, std::nullopt, "Where the last band ends.")),
-      integer("lines", {1, 1000000, false, false}, std::nullopt, "Equal bands, a cosine in each.")};
-  spectrum.fields.front().variables = "f";
+  const std::string squared = std::string(unit) == "1" ? "1/Hz" : std::string(unit) + "²/Hz";
+  ObjectForm by_formula, by_table;
+  by_formula.fields = {
+      of_form(Field::Form::formula, "formula", std::nullopt, density.c_str()).as("S(f) in " + squared)};
+  by_formula.fields.front().variables = "f";
+  const std::string column = "Column of S(f), in " + squared + ".";
+  by_table.fields = {
+      of_form(Field::Form::text, "file", std::nullopt, "CSV with a header, in the folder of the study."),
+      of_form(Field::Form::text, "frequency", Json("f"), "Column of the frequencies, in Hz."),
+      of_form(Field::Form::text, "value", std::nullopt, column.c_str()).as("column"),
+      real("factor", "1", positive, 1.0, "What S(f) is multiplied by.").as("factor", "the factor of a spectrum"),
+      word("interpolation", {"log", "linear"}, "log", "Between entries: straight in logarithms of both, or straight.")};
+  spectrum.ways = {by_formula, by_table};
+  spectrum.fields = {single(real("from", "Hz", non_negative, std::nullopt, "Where the first band begins.")),
+                     single(real("to", "Hz", positive, std::nullopt, "Where the last band ends.")),
+                     integer("lines", {1, 1000000, false, false}, std::nullopt, "Equal bands, a cosine in each.")};
   ObjectForm random;
   random.fields = {
       object("psd", std::nullopt, "Random with this spectrum and the scene's seed.", spectrum).as("random")};
@@ -240,7 +289,7 @@ ObjectForm motion_form() {
 
 void read_load_history(const Json& json, const std::string& pointer, StudyFiles* files, long long seed,
                        std::size_t number, LoadTerm& term) {
-  if (json.contains("psd")) return read_spectrum(json.at("psd"), pointer + "/psd", seed, number, term);
+  if (json.contains("psd")) return read_spectrum(json.at("psd"), pointer + "/psd", files, seed, number, term);
   term.table = std::make_shared<const TimeTable>(read_table(json, pointer, files));
   const auto pieces = std::make_shared<const PiecewiseCubic>(PiecewiseCubic::interpolate(*term.table));
   term.history = {[pieces](double t) { return pieces->value(t); }, term.table->name, pointer};
@@ -320,8 +369,9 @@ std::vector<Json*> histories_with_files(Json& scene) {
     if (!scene.contains(list) || !scene[list].is_array()) return;
     for (Json& entry : scene[list])
       for (const char* key : keys)
-        if (entry.is_object() && entry.contains(key) && entry[key].is_object() && entry[key].contains("file"))
-          found.push_back(&entry[key]);
+        for (const char* inside : {"", "/psd"})
+          if (const Json::json_pointer at(std::string("/") + key + inside + "/file"); entry.contains(at))
+            found.push_back(&entry[at.parent_pointer()]);
   };
   check_list("load", {"force", "time"});
   check_list("motions", {"acceleration", "displacement"});

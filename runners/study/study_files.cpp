@@ -79,21 +79,42 @@ void expect_unit(const std::string& unit, bool scaled, const std::string& what) 
   throw FileError(fmt::format("{} is in {}; expected \"factor\", which makes SI units of it", what, shortened(unit)));
 }
 
-/// Instants and values of a table.
-void read_columns(const CsvFile& csv, const std::string& time, const std::string& value, bool scaled,
-                  TimeTable& table) {
-  const std::size_t t = csv.column(time), v = csv.column(value);
-  const std::string unit = csv.unit(t);
-  if (!unit.empty() && unit != "s" && unit != "sec" && unit != "seconds")
-    throw FileError(fmt::format("{}: the column {} is in {}; expected s", csv.name, csv.columns[t], shortened(unit)));
-  expect_unit(csv.unit(v), scaled, fmt::format("{}: the column {}", csv.name, csv.columns[v]));
+/// What the values of a table are of.
+struct Abscissa {
+  const char *key, *symbol, *plural;
+  std::vector<std::string> units;  ///< that a header may say, SI first
+};
+
+const Abscissa instants = {"time", "t", "times", {"s", "sec", "seconds"}},
+               frequencies = {"frequency", "f", "frequencies", {"Hz", "hz", "1/s"}};
+
+/// The unit of what a spectrum is of: "N^2/Hz" → "N".
+std::string unit_in_spectrum(const std::string& unit, const std::string& what) {
+  if (unit.empty() || unit == "1/Hz") return "";
+  for (const std::string_view end : {"**2/Hz", "^2/Hz", "²/Hz", "2/Hz"})
+    if (unit.ends_with(end)) return unit.substr(0, unit.size() - end.size());
+  throw FileError(
+      fmt::format("{} is in {}; expected N²/Hz, or \"factor\", which makes that of it", what, shortened(unit)));
+}
+
+/// The columns of a table: instants, or frequencies, and values.
+void read_columns(const CsvFile& csv, const Abscissa& along, const std::string& first, const std::string& value,
+                  bool scaled, TimeTable& table) {
+  const std::size_t t = csv.column(first), v = csv.column(value);
+  if (const std::string unit = csv.unit(t);
+      !unit.empty() && std::find(along.units.begin(), along.units.end(), unit) == along.units.end())
+    throw FileError(fmt::format("{}: the column {} is in {}; expected {}", csv.name, csv.columns[t], shortened(unit),
+                                along.units.front()));
+  const bool spectrum = &along == &frequencies;
+  const std::string unit = csv.unit(v), what = fmt::format("{}: the column {}", csv.name, csv.columns[v]);
+  expect_unit(spectrum && !scaled ? unit_in_spectrum(unit, what) : unit, scaled, what);
   for (const CsvFile::Row& row : csv.rows) {
     table.times.push_back(csv.number(row, t));
     table.values.push_back(csv.number(row, v));
     const std::size_t n = table.times.size();
     if (n > 1 && !(table.times[n - 1] > table.times[n - 2]))
-      csv.fail(row,
-               fmt::format("t = {:.9g} after {:.9g}; times must increase", table.times[n - 1], table.times[n - 2]));
+      csv.fail(row, fmt::format("{} = {:.9g} after {:.9g}; {} must increase", along.symbol, table.times[n - 1],
+                                table.times[n - 2], along.plural));
   }
 }
 
@@ -217,10 +238,19 @@ std::shared_ptr<const AssembledStructure> StudyFiles::modal(const Json& structur
 }
 
 TimeTable StudyFiles::table(const Json& history, const std::string& pointer) {
+  return columns(history, false, pointer);
+}
+
+TimeTable StudyFiles::spectrum(const Json& given, const std::string& pointer) {
+  return columns(given, true, pointer);
+}
+
+TimeTable StudyFiles::columns(const Json& history, bool spectrum, const std::string& pointer) {
   const std::lock_guard lock(mutex_);
-  const auto name = history.at("file").get<std::string>(), time = history.at("time").get<std::string>(),
+  const Abscissa& along = spectrum ? frequencies : instants;
+  const auto name = history.at("file").get<std::string>(), first = history.at(along.key).get<std::string>(),
              value = history.at("value").get<std::string>();
-  const std::string id = name + "\n" + time + "\n" + value;
+  const std::string id = name + "\n" + along.key + "\n" + first + "\n" + value;
   if (const auto known = tables_.find(id); known != tables_.end()) return known->second;
   try {
     const std::string& content = file(name, pointer + "/file").content;
@@ -228,6 +258,7 @@ TimeTable StudyFiles::table(const Json& history, const std::string& pointer) {
     TimeTable table;
     table.name = name;
     if (auto at2 = read_at2(content, name)) {
+      if (spectrum) throw FileError(name + " is a record over time; expected a table of frequencies and S(f)");
       expect_unit(at2->unit, scaled, name);
       note(name, at2->notes);
       for (std::size_t k = 0; k < at2->values.size(); ++k) table.times.push_back(static_cast<double>(k) * at2->step);
@@ -235,7 +266,7 @@ TimeTable StudyFiles::table(const Json& history, const std::string& pointer) {
     } else {
       const CsvFile csv = read_csv(content, name);
       note(name, csv.notes);
-      read_columns(csv, time, value, scaled, table);
+      read_columns(csv, along, first, value, scaled, table);
     }
     std::string().swap(files_[name].content);
     return tables_[id] = std::move(table);

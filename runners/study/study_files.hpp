@@ -31,6 +31,8 @@ class StudyFiles {
   /// Two columns of a CSV file that a checked history names: {"file", "time", "value"}. Throws InputError below
   /// `pointer`.
   TimeTable table(const Json& history, const std::string& pointer);
+  /// Those that a checked spectrum names: {"file", "frequency", "value"}, f (Hz) in the place of instants.
+  TimeTable spectrum(const Json& given, const std::string& pointer);
   /// How the dofs of such a structure begin: the file of a checked initial state, which stands at `pointer`.
   std::vector<DofState> initial(const Json& initial, const Json& structure, const std::string& pointer);
   /// Adds to a scene the digests of the files that it names: they determine its results.
@@ -47,6 +49,7 @@ class StudyFiles {
   };
   /// The file of this name, read; `pointer` names it in the study.
   const File& file(const std::string& name, const std::string& pointer);
+  TimeTable columns(const Json& history, bool spectrum, const std::string& pointer);
   /// Keeps what was recognised in it.
   void note(const std::string& name, const std::vector<std::string>& notes);
 

@@ -105,6 +105,20 @@ TEST_CASE("random loads: a seed is an axis, and each seed is another load") {
   CHECK(ends.size() == 3);
 }
 
+TEST_CASE("a spectrum from a table is the one of the formula that the table samples") {
+  Studies studies;
+  // A power of f is straight in logarithms, and 2 + f straight: entries may lie anywhere.
+  studies.write("power.csv", "f,S [N^2/Hz]\n0.5,16\n3,0.444444444444444444\n60,0.00111111111111111111\n");
+  studies.write("line.csv", "f (Hz),S\n0,1\n7,4.5\n60,31\n");
+  const auto end = [&](Json psd) {
+    psd.update({{"from", 1}, {"to", 50}, {"lines", 980}});
+    return end_of(studies.of(with_force({{"psd", psd}})).front(), "tip_displacement");
+  };
+  CHECK(end({{"file", "power.csv"}, {"value", "S"}}) == Approx(end({{"formula", "4/f^2"}})).epsilon(1e-12));
+  CHECK(end({{"file", "line.csv"}, {"value", "S"}, {"interpolation", "linear"}, {"factor", 2}}) ==
+        Approx(end({{"formula", "2 + f"}})).epsilon(1e-12));
+}
+
 TEST_CASE("a random load that repeats within the run is told") {
   Studies studies;
   Json study = with_force({{"psd", {{"formula", 4}, {"from", 0}, {"to", 20}, {"lines", 100}}}});
@@ -270,6 +284,28 @@ TEST_CASE("each fault of a spectrum is told with its frequency") {
   CHECK_THAT(refused(R"json({"formula": 1, "from": 50, "to": 5, "lines": 49})json"),
              Contains("psd/to") && Contains("ends at 5 Hz"));
   CHECK_THAT(refused(R"json({"formula": 1, "from": 1, "to": 5, "lines": 0})json"), Contains("psd/lines"));
+}
+
+TEST_CASE("each fault of a tabled spectrum is told with its place") {
+  Studies studies;
+  const auto refused = [&](const char* table, Json more = Json::object()) {
+    studies.write("S.csv", table);
+    Json psd = {{"file", "S.csv"}, {"value", "S"}, {"from", 5}, {"to", 20}, {"lines", 10}};
+    psd.update(more);
+    return studies.refusal(with_force({{"psd", psd}}));
+  };
+  CHECK_THAT(refused("f,S\n6,1\n30,1\n"), Contains("psd/from") && Contains("S.csv begins at 6 Hz"));
+  CHECK_THAT(refused("f,S\n1,1\n19,1\n"), Contains("psd/to") && Contains("S.csv ends at 19 Hz"));
+  CHECK_THAT(refused("f,S\n1,1\n"), Contains("has one frequency; expected two or more"));
+  CHECK_THAT(refused("f,S\n1,1\n9,2\n8,3\n30,1\n"), Contains("f = 8 after 9; frequencies must increase"));
+  CHECK_THAT(refused("f,S\n0,1\n30,1\n"), Contains("psd/interpolation") && Contains("expected \"linear\""));
+  CHECK_THAT(refused("f,S\n1,1\n9,0\n30,1\n"), Contains("\"log\" has no S(f) = 0 at 9 Hz"));
+  CHECK_THAT(refused("f,S\n1,1\n9,-2\n30,1\n", {{"interpolation", "linear"}}), Contains("S(f) is -"));
+  CHECK_THAT(refused("f [rad/s],S\n1,1\n30,1\n"), Contains("is in rad/s; expected Hz"));
+  CHECK_THAT(refused("f,S [g^2/Hz]\n1,1\n30,1\n"), Contains("is in g; expected \"factor\""));
+  CHECK_THAT(refused("f,S [N]\n1,1\n30,1\n"), Contains("is in N; expected N²/Hz"));
+  CHECK_THAT(refused("f,S\n1,1\n30,1\n", {{"frequency", "Hz"}}), Contains("Hz"));
+  CHECK_THAT(refused("f,S\n1,1\n30,1\n", {{"formula", "1"}}), Contains("psd"));
 }
 
 namespace {
