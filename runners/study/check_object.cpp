@@ -333,10 +333,6 @@ const ObjectForm& find_way(const ObjectForm& form, const Json& object, const std
     if (keys.empty()) found = &way;
     if (!keys.empty()) expected += (expected.empty() ? "" : ", or ") + quoted_list(keys);
   }
-  for (const auto& [key, ignored] : object.items())
-    if (key != written_digest && std::find(all.begin(), all.end(), key) == all.end())
-      throw InputError(pointer_to(pointer, key), "unknown key \"" + shortened(key) + "\"" + did_you_mean(key, all) +
-                                                     " (keys here: " + quoted_list(all) + ")");
   for (const ObjectForm& way : form.ways)
     for (const Field& field : way.fields) {
       // A key that several ways have tells none of them.
@@ -348,6 +344,17 @@ const ObjectForm& find_way(const ObjectForm& form, const Json& object, const std
       if (!found || found->fields.empty()) first = field.key();
       found = &way;
     }
+  // Keys of the way that is taken, of all where none is; the nearest name may be of another.
+  std::vector<std::string> here = keys_of(form.fields);
+  if (found && !found->fields.empty())
+    for (const std::string& key : keys_of(found->fields)) here.push_back(key);
+  else
+    for (const std::string& key : all)
+      if (std::find(here.begin(), here.end(), key) == here.end()) here.push_back(key);
+  for (const auto& [key, ignored] : object.items())
+    if (key != written_digest && std::find(all.begin(), all.end(), key) == all.end())
+      throw InputError(pointer_to(pointer, key), "unknown key \"" + shortened(key) + "\"" + did_you_mean(key, all) +
+                                                     " (keys here: " + quoted_list(here) + ")");
   if (!found) throw InputError(pointer, "expected either " + expected);
   return *found;
 }
