@@ -417,7 +417,8 @@ int exit_code_of(const std::function<int()>& work, std::ostream& err) {
     return exit_store;
   } catch (const std::system_error& error) {
     const bool at_end = is_at_end(error.code());
-    err << "ricochet: " << (at_end ? "" : "internal error: ") << error.what() << "\n";
+    err << "ricochet: " << (at_end ? "the system has no more memory, threads or files to give: " : "internal error: ")
+        << error.what() << "\n";
     if (at_end) return exit_store;
   } catch (const std::exception& error) {
     err << "ricochet: internal error: " << error.what() << "\n";

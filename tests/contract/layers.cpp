@@ -213,7 +213,7 @@ TEST_CASE("folders include what lies below them, and every folder has its rule")
       {"runners/study",
        {"core/contract", "core/loader", "core/scene", "core/engine", "runners/table", "runners/json",
         "runners/plan_files"}},
-      {"runners/store", {"core/contract", "runners/table", "runners/study"}},
+      {"runners/store", {"core/contract", "core/loader", "runners/table", "runners/study"}},
       {"runners/march",
        {"core/contract", "core/engine", "core/measure", "core/scene", "runners/table", "runners/study",
         "runners/store"}},
