@@ -24,6 +24,33 @@ double two_digits_below(double value) {
   return to_digits(std::floor(value / digit) * digit, 2);
 }
 
+/// Whether the last change of the step lies within the draws: of each with itself, its mean is not told from zero. Such
+/// a change is no error of the step, and a smaller step leaves as much. Of windows alone their half-widths decide.
+bool drawn_by_chance(const Point& point) {
+  if (!point.finest) return false;
+  const Size fine = *point.finest;
+  const auto coarse = std::find_if(point.values.upper_bound(fine), point.values.end(),
+                                   [&](const auto& one) { return one.first.second == fine.second; });
+  if (coarse == point.values.end()) return false;
+  std::vector<double> changes;
+  double variance = 0;
+  for (const auto& [seed, value] : point.values.at(fine)) {
+    const auto other = coarse->second.find(seed);
+    if (other == coarse->second.end()) continue;
+    changes.push_back(value - other->second);
+    for (const Size& size : {fine, coarse->first})
+      if (const auto halves = point.halves.find(size); halves != point.halves.end())
+        if (const auto half = halves->second.find(seed); half != halves->second.end())
+          variance += half->second * half->second;
+  }
+  const auto n = static_cast<double>(changes.size());
+  if (changes.size() < 2) return changes.size() == 1 && std::abs(changes.front()) <= std::sqrt(variance);
+  double mean = 0, squares = 0;
+  for (const double change : changes) mean += change / n;
+  for (const double change : changes) squares += (change - mean) * (change - mean);
+  return std::abs(mean) <= std::sqrt(squares / (n - 1)) * half_interval_over_scatter(changes.size());
+}
+
 class Enough {
  public:
   Enough(const Ask& ask, const Evidence& evidence) : evidence_(evidence), within_(*ask.real("within")) {
@@ -107,8 +134,13 @@ class Enough {
       out.why = "the mesh alone leaves " + answers::percent(mesh / std::abs(one.value));
       return out;
     }
-    // Steps and draws share what the mesh leaves of it; what one does not need is the other's.
     const double rest = asked - mesh, half = rest / 2;
+    if (sampling > 0 && step > 0 && drawn_by_chance(line.point)) {
+      // Both fall with more draws.
+      draws_for(out, one, sampling * rest / (sampling + step));
+      return out;
+    }
+    // Steps and draws share what the mesh leaves of it; what one does not need is the other's.
     const double of_draws = step <= half ? rest - step : half, of_step = sampling <= half ? rest - sampling : half;
     if (sampling > of_draws) draws_for(out, one, of_draws);
     if (step > of_step) {

@@ -58,6 +58,10 @@ struct Series {
   }
 };
 
+std::string with_all(std::size_t methods) {
+  return methods == 2 ? ", with both methods" : fmt::format(", with all {} methods", methods);
+}
+
 void find_change(Series& series) {
   std::vector<std::size_t> firm;
   for (std::size_t k = 0; k < series.states.size(); ++k)
@@ -145,7 +149,7 @@ class Threshold {
     const Series& first = *with.front();
     std::vector<std::vector<std::string>> rest;
     if (!without.empty()) rest.push_back({fmt::format("; {} of {} have no threshold", without.size(), judged)});
-    if (one_bracket && with.size() > 1) rest.push_back({fmt::format(", with all {} methods", with.size())});
+    if (one_bracket && with.size() > 1) rest.push_back({with_all(with.size())});
     if (!one_bracket)
       rest.push_back({fmt::format("; methods differ: {} and {}{}", x_text(first.between->first),
                                   x_text(first.between->second), place(first)),
@@ -192,7 +196,7 @@ class Threshold {
         in_thirty_words(fmt::format("{} {}, from {} to {}", answers::capitalised(lines_.words.words),
                                     condition_.text(lines_, which + " "), x_text(first.points.front().first),
                                     x_text(first.points.back().first)),
-                        {{open.empty() && all > 1 ? fmt::format(", with all {} methods", all)
+                        {{open.empty() && all > 1 ? with_all(all)
                           : open.empty()          ? ""
                                          : fmt::format(", with {} of {}; open with the others", all, without.size())}});
     return out;

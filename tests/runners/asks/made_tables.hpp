@@ -20,6 +20,7 @@ struct Made {
   std::function<double(const std::vector<std::size_t>& at)> truth;
   double error = 0, order = 1, second = 0;  ///< value = truth (1 + error hᵖ/h₁ᵖ + second h²ᵖ/h₁²ᵖ)
   double scatter = 0;                       ///< of draws, as a share of the truth
+  double chance = 0;                        ///< likewise, of each step with its own
   std::string measure = "impulse";
 
   StudyResults results() const {
@@ -34,7 +35,11 @@ struct Made {
               std::mt19937 of_seed(static_cast<unsigned>(at[k]) * 7919 + first_seed);
               draw = scatter * std::normal_distribution<double>()(of_seed);
             }
-          return truth(at) * (1 + error * part + second * part * part + draw);
+          std::size_t number = static_cast<std::size_t>(first_seed) + std::hash<double>()(h);
+          for (const std::size_t level : at) number = 31 * number + level;
+          std::mt19937 of_case(static_cast<unsigned>(number));
+          const double own = chance > 0 ? chance * std::normal_distribution<double>()(of_case) : 0;
+          return truth(at) * (1 + error * part + second * part * part + draw + own);
         },
         measure);
   }

@@ -232,6 +232,34 @@ TEST_CASE("asks: the seeds that would do give the half-width asked, and one fewe
   }
 }
 
+TEST_CASE("asks: a step is asked for where its change is more than the draws make of it, and only there") {
+  std::mt19937 random(15);
+  int by_chance = 0, by_step = 0, more_draws = 0;
+  const int all = tries / 10;
+  for (int k = 0; k < all; ++k) {
+    Made made;
+    made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+    made.choices = {{seed_axis, {"1", "2", "3", "4", "5", "6"}}};
+    made.steps = {1e-3, 5e-4};
+    made.scatter = 0.02;
+    made.first_seed = random();
+    const auto told = [&](const char* what) {
+      const Answered answered = answer_of(made.results(), {{"enough", "impulse"}, {"within", 0.02}});
+      return std::any_of(answered.rows.begin(), answered.rows.end(),
+                         [&](const VerdictRow& row) { return row.verdict == what; });
+    };
+    made.chance = 0.2;
+    by_chance += told("step that would do");
+    more_draws += told("seeds that would do");
+    made.chance = 0;
+    made.error = 0.5;
+    by_step += told("step that would do");
+  }
+  CHECK(by_chance <= all / 8);  // the interval holds 95 % of what is chance alone
+  CHECK(more_draws == all);
+  CHECK(by_step == all);
+}
+
 TEST_CASE("asks: a threshold lies between the levels that are told") {
   std::mt19937 random(4);
   std::size_t told = 0;
