@@ -77,8 +77,7 @@ def smaller(dice, study):
     for key in ("exclude", "compare", "outputs"):
         study.pop(key, None)
     study.update({key: value for key, value in ENDS.get(study["kind"], {}).items() if key in study})
-    if study["kind"] == "trajectory":
-        study["budget"] = 2
+    study["budget"] = 2
     return study
 
 
