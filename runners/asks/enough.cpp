@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "runners/asks/lines.hpp"
 #include "runners/asks/verbs.hpp"
@@ -43,12 +44,10 @@ bool drawn_by_chance(const Point& point) {
         if (const auto half = halves->second.find(seed); half != halves->second.end())
           variance += half->second * half->second;
   }
-  const auto n = static_cast<double>(changes.size());
-  if (changes.size() < 2) return changes.size() == 1 && std::abs(changes.front()) <= std::sqrt(variance);
-  double mean = 0, squares = 0;
-  for (const double change : changes) mean += change / n;
-  for (const double change : changes) squares += (change - mean) * (change - mean);
-  return std::abs(mean) <= std::sqrt(squares / (n - 1)) * half_interval_over_scatter(changes.size());
+  const std::optional<double> half = half_interval(changes);
+  if (!half) return changes.size() == 1 && std::abs(changes.front()) <= std::sqrt(variance);
+  const double sum = std::accumulate(changes.begin(), changes.end(), 0.0);
+  return std::abs(sum) <= *half * static_cast<double>(changes.size());
 }
 
 class Enough {
