@@ -321,6 +321,17 @@ std::vector<std::string> keys_of(const std::vector<Field>& fields) {
 // No key of a study: the program writes beside the name of a file what it holds.
 constexpr const char* written_digest = "digest";
 
+// Keys of the way that is taken, of all where none is, each once. The nearest name of a wrong one may be of another.
+std::vector<std::string> keys_here(const ObjectForm& form, const ObjectForm* taken) {
+  std::vector<std::string> keys = keys_of(form.fields);
+  const bool one = taken && !taken->fields.empty();
+  for (const ObjectForm& way : form.ways)
+    if (!one || &way == taken)
+      for (const std::string& key : keys_of(way.fields))
+        if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+  return keys;
+}
+
 // The one of the ways whose keys the object has.
 const ObjectForm& find_way(const ObjectForm& form, const Json& object, const std::string& pointer) {
   std::string expected;
@@ -344,17 +355,10 @@ const ObjectForm& find_way(const ObjectForm& form, const Json& object, const std
       if (!found || found->fields.empty()) first = field.key();
       found = &way;
     }
-  // Keys of the way that is taken, of all where none is; the nearest name may be of another.
-  std::vector<std::string> here = keys_of(form.fields);
-  if (found && !found->fields.empty())
-    for (const std::string& key : keys_of(found->fields)) here.push_back(key);
-  else
-    for (const std::string& key : all)
-      if (std::find(here.begin(), here.end(), key) == here.end()) here.push_back(key);
   for (const auto& [key, ignored] : object.items())
     if (key != written_digest && std::find(all.begin(), all.end(), key) == all.end())
       throw InputError(pointer_to(pointer, key), "unknown key \"" + shortened(key) + "\"" + did_you_mean(key, all) +
-                                                     " (keys here: " + quoted_list(here) + ")");
+                                                     " (keys here: " + quoted_list(keys_here(form, found)) + ")");
   if (!found) throw InputError(pointer, "expected either " + expected);
   return *found;
 }
