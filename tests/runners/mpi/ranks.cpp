@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "core/loader/catalogue.hpp"
 #include "runners/march/study_identity.hpp"
 #include "tests/places.hpp"
 #include "tests/runners/mpi/launch.hpp"
@@ -123,9 +124,13 @@ TEST_CASE("ranks: one beside which the program is missing, or is another build, 
   CHECK(missing.code == 2);
   CHECK(missing.told("rank 1 on ") == 1);
   CHECK_THAT(missing.messages, Contains((scratch / "ricochet").string() + ": cannot be read"));
-  // Another build: the same program, and a byte behind its end.
+  // Another build: a program whose linker has given it another id.
   fs::copy_file(places().command, scratch / "ricochet");
-  write_text(scratch / "ricochet", read_text(scratch / "ricochet") + "x");
+  std::string bytes = read_text(scratch / "ricochet");
+  const std::size_t id = bytes.find(ricochet::build_id(places().command));
+  REQUIRE(id != std::string::npos);
+  bytes[id] = static_cast<char>(~bytes[id]);
+  write_text(scratch / "ricochet", bytes);
   const Ended another = to_its_end(scratch, line + second);
   INFO(another.messages);
   CHECK(another.code == 2);
