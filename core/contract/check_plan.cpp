@@ -5,59 +5,65 @@
 #include <ricochet/contract/stage_facts.hpp>
 #include <ricochet/contract/step_plan.hpp>
 #include <ricochet/contract/unit_mass.hpp>
+#include <string_view>
 
 namespace ricochet {
 namespace {
 
-// Collects the first thing that is wrong.
+// Collects the first thing that is wrong. Sentences begin with the name of a stage and the part of it: both are put
+// together only for the first of them.
 class Checker {
+  using Name = std::string_view;
+
  public:
   Checker(std::size_t slots) : slots_(slots) {}
   std::optional<std::string> wrong;
 
-  void demand(bool holds, const std::string& sentence) {
-    if (!holds && !wrong) wrong = sentence;
+  template <class... Values>
+  void demand(bool holds, fmt::format_string<const Values&...> sentence, const Values&... values) {
+    if (!holds && !wrong) wrong = fmt::format(sentence, values...);
   }
-  void number(double x, const std::string& what) { demand(std::isfinite(x), what + " is not finite"); }
-  void levels(const Levels& list, const std::string& what) {
-    demand(list.size() <= most_levels,
-           fmt::format("{} has {} time levels, at most {} are marched", what, list.size(), most_levels));
+  void number(double x, Name name, const char* part) { demand(std::isfinite(x), "{}{} is not finite", name, part); }
+  void levels(const Levels& list, Name name, const char* part) {
+    demand(list.size() <= most_levels, "{}{} has {} time levels, at most {} are marched", name, part, list.size(),
+           most_levels);
     for (const Level& level : list) {
-      number(level.at, what);
-      number(level.weight, what);
+      number(level.at, name, part);
+      number(level.weight, name, part);
     }
   }
   /// `jumps`: whether w is known there.
-  void combination(const Combination& c, const std::string& what, bool jumps = false) {
-    demand(c.slots.size() <= slots_, what + " combines more slots than the plan has");
-    for (const double w : c.slots) number(w, what);
-    number(c.z, what);
-    number(c.w, what);
-    demand(jumps || c.w == 0, what + " weighs w, which is known only after the effort of a stage that has an impulse");
+  void combination(const Combination& c, Name name, const char* part, bool jumps = false) {
+    demand(c.slots.size() <= slots_, "{}{} combines more slots than the plan has", name, part);
+    for (const double w : c.slots) number(w, name, part);
+    number(c.z, name, part);
+    number(c.w, name, part);
+    demand(jumps || c.w == 0, "{}{} weighs w, which is known only after the effort of a stage that has an impulse",
+           name, part);
   }
-  void operators(const OperatorWeights& weights, const std::string& what) {
-    for (const double w : {weights.M, weights.C, weights.K}) number(w, what);
+  void operators(const OperatorWeights& weights, Name name, const char* part) {
+    for (const double w : {weights.M, weights.C, weights.K}) number(w, name, part);
   }
-  void impulse(const Stage& stage, const std::string& name) {
-    operators(stage.impulse->R, name + ": R of the impulse");
-    operators(stage.impulse->feed, name + ": feed of the impulse");
+  void impulse(const Stage& stage, Name name) {
+    operators(stage.impulse->R, name, ": R of the impulse");
+    operators(stage.impulse->feed, name, ": feed of the impulse");
     const auto some = [](const OperatorWeights& w) { return w.M != 0 || w.C != 0 || w.K != 0; };
-    demand(some(stage.impulse->R), name + ": R of the impulse is zero: no w solves R w = Hᵀp");
-    demand(some(stage.matrix), name + ": an impulse in a stage that solves nothing: its S is zero");
+    demand(some(stage.impulse->R), "{}: R of the impulse is zero: no w solves R w = Hᵀp", name);
+    demand(some(stage.matrix), "{}: an impulse in a stage that solves nothing: its S is zero", name);
   }
-  void effort(const std::vector<double>& weights, const std::string& what) {
-    demand(!weights.empty() && weights.size() <= most_efforts,
-           fmt::format("{} has {} effort weights, one to {} are marched", what, weights.size(), most_efforts));
-    for (const double w : weights) number(w, what);
+  void effort(const std::vector<double>& weights, Name name, const char* part) {
+    demand(!weights.empty() && weights.size() <= most_efforts, "{}{} has {} effort weights, one to {} are marched",
+           name, part, weights.size(), most_efforts);
+    for (const double w : weights) number(w, name, part);
   }
-  void partition(const Levels& list, const std::string& what) {
+  void partition(const Levels& list, Name name, const char* part) {
     if (list.empty()) return;
     double sum = 0;
     for (const Level& level : list) sum += level.weight;
-    demand(std::abs(sum - 1) < 1e-9, what + " must weight its levels to one");
+    demand(std::abs(sum - 1) < 1e-9, "{}{} must weight its levels to one", name, part);
   }
   // Stage k of a step, where it gives back the work of another one.
-  void restoring(const std::vector<Stage>& stages, std::size_t k, const std::string& name) {
+  void restoring(const std::vector<Stage>& stages, std::size_t k, Name name) {
     const auto& impact = stages[k].impact;
     if (!impact || impact->restores == 0) return;
     const auto works_whole = [](const Stage& stage) {
@@ -71,73 +77,73 @@ class Checker {
       return equal;
     };
     demand(impact->restores > 0 && static_cast<std::size_t>(impact->restores) <= k,
-           fmt::format("{}: gives back the work of the stage {} before it, which is none of the same step", name,
-                       impact->restores));
-    demand(works_whole(stages[k]),
-           name + ": a stage that gives work back has a work form, its own effort alone and no gate");
+           "{}: gives back the work of the stage {} before it, which is none of the same step", name, impact->restores);
+    demand(works_whole(stages[k]), "{}: a stage that gives work back has a work form, its own effort alone and no gate",
+           name);
     if (wrong) return;
     demand(impact->value.z > 0 && same(impact->value, stages[k].work->displacement),
-           name + ": what a stage that gives work back measures is its test displacement, which its effort moves");
+           "{}: what a stage that gives work back measures is its test displacement, which its effort moves", name);
     const Stage& source = stages[k - static_cast<std::size_t>(impact->restores)];
     demand(works_whole(source) && source.impact->restores == 0,
-           name + ": the stage whose work is given back measures positions, with its own effort alone and a work form");
+           "{}: the stage whose work is given back measures positions, with its own effort alone and a work form",
+           name);
     for (std::size_t other = 0; other < k; ++other)
       demand(!stages[other].impact || stages[other].impact->restores == 0 ||
                  other + static_cast<std::size_t>(impact->restores) !=
                      k + static_cast<std::size_t>(stages[other].impact->restores),
-             name + ": the work that it gives back was given back before");
+             "{}: the work that it gives back was given back before", name);
   }
-  void stage(const Stage& stage, const std::string& name) {
+  void stage(const Stage& stage, Name name) {
     const bool jumps = stage.impulse.has_value();
-    operators(stage.matrix, name + ": S");
+    operators(stage.matrix, name, ": S");
     if (jumps) impulse(stage, name);
-    demand(stage.history.size() <= slots_, name + ": history names more slots than the plan has");
-    for (const OperatorWeights& w : stage.history) operators(w, name + ": history");
-    levels(stage.load, name + ": load");
-    demand(stage.update.size() == slots_, name + ": update must give one combination per slot");
-    for (const Combination& c : stage.update) combination(c, name + ": update", jumps);
+    demand(stage.history.size() <= slots_, "{}: history names more slots than the plan has", name);
+    for (const OperatorWeights& w : stage.history) operators(w, name, ": history");
+    levels(stage.load, name, ": load");
+    demand(stage.update.size() == slots_, "{}: update must give one combination per slot", name);
+    for (const Combination& c : stage.update) combination(c, name, ": update", jumps);
     for (const LossTerm& term : stage.loss) {
-      number(term.coefficient, name + ": loss");
-      demand(!(term.coefficient < 0), name + ": loss has a negative coefficient: it would be a gain");
-      combination(term.value, name + ": loss", jumps);
+      number(term.coefficient, name, ": loss");
+      demand(!(term.coefficient < 0), "{}: loss has a negative coefficient: it would be a gain", name);
+      combination(term.value, name, ": loss", jumps);
     }
     if (stage.impact) {
-      combination(stage.impact->value, name + ": impact measure", jumps);
-      number(stage.impact->impulse, name + ": impact impulse");
-      levels(stage.impact->bound, name + ": impact bound");
+      combination(stage.impact->value, name, ": impact measure", jumps);
+      number(stage.impact->impulse, name, ": impact impulse");
+      levels(stage.impact->bound, name, ": impact bound");
       if (!stage.impact->gate && stage.impact->restores == 0)
-        partition(stage.impact->bound, name + ": position-level impact bound");
+        partition(stage.impact->bound, name, ": position-level impact bound");
       if (stage.impact->gate) {
-        combination(stage.impact->gate->predictor, name + ": gate predictor");
-        combination(stage.impact->gate->approach, name + ": gate approach");
-        partition(stage.impact->gate->predictor_bound, name + ": gate predictor bound");
-        levels(stage.impact->gate->approach_bound, name + ": gate approach bound");
-        number(stage.impact->gate->restitution, name + ": restitution");
-        levels(stage.impact->gate->predictor_bound, name + ": gate predictor bound");
+        combination(stage.impact->gate->predictor, name, ": gate predictor");
+        combination(stage.impact->gate->approach, name, ": gate approach");
+        partition(stage.impact->gate->predictor_bound, name, ": gate predictor bound");
+        levels(stage.impact->gate->approach_bound, name, ": gate approach bound");
+        number(stage.impact->gate->restitution, name, ": restitution");
+        levels(stage.impact->gate->predictor_bound, name, ": gate predictor bound");
       }
-      effort(stage.impact->effort, name + ": impact");
+      effort(stage.impact->effort, name, ": impact");
     }
     for (const auto& compliance : stage.compliance) {
       if (!compliance) continue;
-      combination(compliance->displacement, name + ": compliance", jumps);
-      combination(compliance->rate, name + ": compliance rate", jumps);
-      number(compliance->impulse, name + ": compliance impulse");
-      levels(compliance->bound, name + ": compliance bound");
-      partition(compliance->bound, name + ": compliance bound");
-      levels(compliance->rate_bound, name + ": compliance rate bound");
-      effort(compliance->effort, name + ": compliance");
+      combination(compliance->displacement, name, ": compliance", jumps);
+      combination(compliance->rate, name, ": compliance rate", jumps);
+      number(compliance->impulse, name, ": compliance impulse");
+      levels(compliance->bound, name, ": compliance bound");
+      partition(compliance->bound, name, ": compliance bound");
+      levels(compliance->rate_bound, name, ": compliance rate bound");
+      effort(compliance->effort, name, ": compliance");
       if (compliance->before) {
-        combination(*compliance->before, name + ": compliance before the step");
-        levels(compliance->before_bound, name + ": compliance bound before the step");
+        combination(*compliance->before, name, ": compliance before the step");
+        levels(compliance->before_bound, name, ": compliance bound before the step");
       }
     }
     if (stage.work) {
-      combination(stage.work->displacement, name + ": work displacement", jumps);
-      combination(stage.work->rate, name + ": work rate", jumps);
-      number(stage.work->impulse, name + ": work impulse");
-      levels(stage.work->load, name + ": work load");
-      effort(stage.work->effort, name + ": work");
-      levels(stage.work->support, name + ": work support");
+      combination(stage.work->displacement, name, ": work displacement", jumps);
+      combination(stage.work->rate, name, ": work rate", jumps);
+      number(stage.work->impulse, name, ": work impulse");
+      levels(stage.work->load, name, ": work load");
+      effort(stage.work->effort, name, ": work");
+      levels(stage.work->support, name, ": work support");
     }
   }
 
@@ -152,29 +158,30 @@ std::optional<std::string> check_plan(const StepPlan& plan) {
   check.demand(!plan.slots.empty() && plan.slots.front() == "q", "the first slot of a plan is the position q");
   check.demand(plan.initial.size() == plan.slots.size(), "a plan says for each slot how it starts");
   for (const auto& [position, velocity] : plan.initial) {
-    check.number(position, "initial");
-    check.number(velocity, "initial");
+    check.number(position, "", "initial");
+    check.number(velocity, "", "initial");
   }
-  check.demand(plan.slots.size() <= most_slots,
-               fmt::format("the plan has {} slots, at most {} are marched", plan.slots.size(), most_slots));
+  check.demand(plan.slots.size() <= most_slots, "the plan has {} slots, at most {} are marched", plan.slots.size(),
+               most_slots);
   check.demand(!plan.stages.empty() && plan.stages.size() <= most_stages,
-               fmt::format("the plan has {} stages, one to {} are marched", plan.stages.size(), most_stages));
-  check.demand(plan.start.size() <= most_stages,
-               fmt::format("the start has {} stages, at most {} are marched", plan.start.size(), most_stages));
+               "the plan has {} stages, one to {} are marched", plan.stages.size(), most_stages);
+  check.demand(plan.start.size() <= most_stages, "the start has {} stages, at most {} are marched", plan.start.size(),
+               most_stages);
   for (const Stage& stage : plan.start) {
     check.stage(stage, "start");
     check.demand(!stage.impact || stage.impact->restores == 0, "start: only a stage of a step gives work back");
   }
   for (std::size_t k = 0; k < plan.stages.size(); ++k) {
-    check.stage(plan.stages[k], fmt::format("stage {}", k + 1));
-    check.restoring(plan.stages, k, fmt::format("stage {}", k + 1));
+    const std::string name = fmt::format("stage {}", k + 1);
+    check.stage(plan.stages[k], name);
+    check.restoring(plan.stages, k, name);
   }
   for (const QuadraticTerm& term : plan.energy) {
     check.demand(term.slots.size() <= plan.slots.size(), "energy: more slots than the plan has");
-    check.number(term.coefficient, "energy");
-    for (const double w : term.slots) check.number(w, "energy");
+    check.number(term.coefficient, "", "energy");
+    for (const double w : term.slots) check.number(w, "", "energy");
   }
-  check.combination(plan.velocity, "velocity");
+  check.combination(plan.velocity, "", "velocity");
   check.demand(plan.velocity.z == 0, "velocity combines slots after the step, not z");
   check.demand(std::isfinite(plan.facts.order) && plan.facts.order > 0, "facts: the order is positive");
   check.demand(!plan.facts.stability_limit || *plan.facts.stability_limit > 0,
@@ -202,7 +209,7 @@ using namespace free_motion;
 // The first thing that is wrong with one stage's levels and measures on a motion at constant speed.
 class MotionCheck {
  public:
-  MotionCheck(const Uniform& motion, const std::string& name) : motion_(motion), name_(name) {}
+  explicit MotionCheck(const Uniform& motion) : motion_(motion) {}
 
   std::string wrong(const Stage& stage) {
     if (stage.impact) impact(*stage.impact);
@@ -226,31 +233,30 @@ class MotionCheck {
       moment += level.weight * level.at;
     }
     if (!near(weight, motion_.weight(c)))
-      wrong_ = fmt::format("{}: {} weights its levels to {:g}, what it bounds weights positions to {:g}", name_, what,
-                           weight, motion_.weight(c));
+      wrong_ = fmt::format("{} weights its levels to {:g}, what it bounds weights positions to {:g}", what, weight,
+                           motion_.weight(c));
     else if (!near(moment, motion_.moment(c)))
-      wrong_ = fmt::format("{}: {} stands at t + {:g}h on a motion at constant speed, what it bounds at t + {:g}h",
-                           name_, what, moment, motion_.moment(c));
+      wrong_ = fmt::format("{} stands at t + {:g}h on a motion at constant speed, what it bounds at t + {:g}h", what,
+                           moment, motion_.moment(c));
   }
 
   void is_rate(const Combination& c, const char* what) {
     if (wrong_.empty() && !near(motion_.rate(c), 1))
-      wrong_ = fmt::format("{}: {} is {:g} m/s on a motion at 1 m/s", name_, what, motion_.rate(c));
+      wrong_ = fmt::format("{} is {:g} m/s on a motion at 1 m/s", what, motion_.rate(c));
   }
 
   void moves(const Levels& levels, const Combination& rate, const char* what) {
     double weight = 0;
     for (const Level& level : levels) weight += level.weight;
     if (wrong_.empty() && !levels.empty() && !near(weight, motion_.rate(rate)))
-      wrong_ = fmt::format("{}: {} weights its levels to {:g}, what it bounds is {:g} m/s on a motion at 1 m/s", name_,
-                           what, weight, motion_.rate(rate));
+      wrong_ = fmt::format("{} weights its levels to {:g}, what it bounds is {:g} m/s on a motion at 1 m/s", what,
+                           weight, motion_.rate(rate));
   }
 
   // What it measures of a mass at rest is its position.
   void is_position(const Combination& c, const char* what) {
     if (wrong_.empty() && !near(motion_.weight(c), 1))
-      wrong_ = fmt::format("{}: the {} measure of a mass at rest is {:g} times its position", name_, what,
-                           motion_.weight(c));
+      wrong_ = fmt::format("the {} measure of a mass at rest is {:g} times its position", what, motion_.weight(c));
   }
 
   void impact(const ImpactMeasure& impact) {
@@ -277,8 +283,8 @@ class MotionCheck {
     stands(measure.before_bound, *measure.before, "compliance bound before the step");
     const double moved = motion_.moment(measure.displacement) - motion_.moment(*measure.before);
     if (wrong_.empty() && stage.work && !near(moved, motion_.moment(stage.work->displacement)))
-      wrong_ = fmt::format("{}: the displacement before the step is {:g} steps behind, the test displacement is {:g}",
-                           name_, moved, motion_.moment(stage.work->displacement));
+      wrong_ = fmt::format("the displacement before the step is {:g} steps behind, the test displacement is {:g}",
+                           moved, motion_.moment(stage.work->displacement));
   }
 
   void work(const Stage& stage) {
@@ -289,12 +295,11 @@ class MotionCheck {
     const bool empty = stage.work->rate.z == 0 && stage.work->rate.slots.empty();
     if (damped || !empty) is_rate(stage.work->rate, "work rate");
     if (wrong_.empty() && !is_zero(motion_.weight(stage.work->displacement)))
-      wrong_ = fmt::format("{}: the work displacement of a mass at rest is {:g} times its position", name_,
+      wrong_ = fmt::format("the work displacement of a mass at rest is {:g} times its position",
                            motion_.weight(stage.work->displacement));
   }
 
   const Uniform& motion_;
-  const std::string& name_;
   std::string wrong_;
 };
 
@@ -320,8 +325,8 @@ std::string inconsistent_motion(const StepPlan& plan) {
     motion.begin();
     for (std::size_t k = 0; k < plan.stages.size(); ++k) {
       motion.measure(plan.stages[k]);
-      if (std::string wrong = MotionCheck(motion, fmt::format("stage {}", k + 1)).wrong(plan.stages[k]); !wrong.empty())
-        return wrong;
+      if (const std::string wrong = MotionCheck(motion).wrong(plan.stages[k]); !wrong.empty())
+        return fmt::format("stage {}: {}", k + 1, wrong);
       motion.pass(plan.stages[k]);
     }
   }
