@@ -163,8 +163,8 @@ std::vector<FlightStage> FlightSet::flight_stages(const Program& program, const 
   return stages;
 }
 
-// A combination of the lifts with such weights of its slots.
-MatrixXd FlightSet::lift_of(double z, const std::vector<double>& history, const MatrixXd& lifted) const {
+// z L − Σ_j history_j L_j: what one operator of a stage leaves of the lift.
+MatrixXd FlightSet::residual_of_lift(double z, const std::vector<double>& history, const MatrixXd& lifted) const {
   MatrixXd sum = z * lifted;
   for (int j = 0; j < slots_; ++j) sum -= weight_at(history, j) * lift_[static_cast<std::size_t>(j)];
   return sum;
@@ -225,7 +225,7 @@ FlightWatch FlightSet::effort_watch(const Program& program, const MatrixXd& iner
   pushed.value.slots.resize(static_cast<std::size_t>(slots_));
   for (int j = 0; j < slots_; ++j) pushed.value.slots[static_cast<std::size_t>(j)] = -weight_at(folded.mass_history, j);
   pushed.rows = lever_.transpose() * own_mass_.asDiagonal() * basis_;
-  const MatrixXd elastic = lift_of(folded.stiffness, folded.stiffness_history, lifted);
+  const MatrixXd elastic = residual_of_lift(folded.stiffness, folded.stiffness_history, lifted);
   pushed.drive =
       lever_.transpose() * (inertia + elastic - load_over_drive(program, program.plan.stages.front().load, drive_));
   for (const ClosedPoint& point : closed_) {
@@ -264,7 +264,7 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<ClosedPoi
   MatrixXd inertia;                                // M L(s_M H z − Σ β^M_j ξ_j) of the stage that holds
   if (touching) {
     const FoldedStage& holds = program.stages.front().folded;
-    inertia = own_mass_.asDiagonal() * lift_of(holds.mass, holds.mass_history, lifted);
+    inertia = own_mass_.asDiagonal() * residual_of_lift(holds.mass, holds.mass_history, lifted);
   }
   step_rows_ = std::make_unique<const StepRows>(flight_stages(program, inertia), slots_, mass, drive_);
 

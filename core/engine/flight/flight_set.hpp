@@ -170,7 +170,7 @@ class FlightSet {
   /// Σ_i L_i r_i, rows × drives.
   Eigen::MatrixXd lift_by(const std::vector<Eigen::RowVectorXd>& rests) const;
   Eigen::MatrixXd lift_of(const Combination& c, const Eigen::MatrixXd& lifted) const;
-  Eigen::MatrixXd lift_of(double z, const std::vector<double>& history, const Eigen::MatrixXd& lifted) const;
+  Eigen::MatrixXd residual_of_lift(double z, const std::vector<double>& history, const Eigen::MatrixXd& lifted) const;
   std::vector<FlightStage> flight_stages(const Program& program, const Eigen::MatrixXd& inertia) const;
   FlightWatch end_watch(const Program& program, const Eigen::MatrixXd& points) const;
   std::vector<FlightWatch> contact_watches(const Program& program, double layer, const Eigen::MatrixXd& lifted) const;
