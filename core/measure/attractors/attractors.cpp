@@ -48,9 +48,8 @@ class Merging {
 double relative_distance(const SettledSection& a, const SettledSection& b, const LinkRule& rule) {
   if (!(a.motion == b.motion)) return std::numeric_limits<double>::infinity();
   if (a.cloud.empty() || b.cloud.empty()) return 0;
-  double threshold = rule.cycle;
-  if (!a.cycle || !b.cycle) threshold = std::max(threshold, rule.null_factor * std::max(a.cloud.null, b.cloud.null));
-  return cloud_distance(a.cloud, b.cloud) / threshold;
+  const double null = std::max(a.cloud.null, b.cloud.null);
+  return cloud_distance(a.cloud, b.cloud) / std::max(rule.cycle, rule.null_factor * null);
 }
 
 std::vector<int> cluster_starts(const std::vector<SettledSection>& sections, const LinkRule& rule) {

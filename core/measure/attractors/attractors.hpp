@@ -11,12 +11,12 @@
 /// Sections of different class (no contact, periodic 3, chaotic …) never do. Sections of one class are linked where
 /// their distance is at most a threshold. The distance is cloud_distance(), a mirror image folded onto its original.
 ///
-///     cycles: c        others: max(c, f × the larger of the two nulls)
+///     max(c, f × the larger of the two nulls)
 ///
-/// The nulls enter because two runs of one non-periodic attractor differ as much as the halves of one run do. The
-/// factor f is above 1: a diagram asks this thousands of times, and one answer in 20 would be wrong. Distances are in
-/// units of the spread of all points of the study. Sections whose points are not known are told apart by their class
-/// alone.
+/// The nulls enter because two runs of one non-periodic attractor differ as much as the halves of one run do. Two runs
+/// of one cycle differ by what their steps leave open of it, which is its null. The factor f is above 1: a diagram asks
+/// this thousands of times, and one answer in 20 would be wrong. Distances are in units of the spread of all points of
+/// the study. Sections whose points are not known are told apart by their class alone.
 namespace ricochet {
 
 // Distances between sections of motions, as clouds of points in (displacement, velocity) made dimensionless.
@@ -56,16 +56,17 @@ struct SectionCloud {
   std::vector<CloudPoint> points;    ///< at most 64, dimensionless: the points of a cycle, or an even sample of a run
   std::vector<CloudPoint> opposite;  ///< of the mirror image x → −x, t → t + T/2; empty where it is not known
   std::vector<double> slices, opposite_slices;  ///< sorted projections, direction by direction; empty for a cycle
-  double null = 0;                              ///< W of the run against itself; 0 for a cycle
+  double null = 0;                              ///< W of the run against itself; of a cycle, what its steps leave open
   bool empty() const { return points.empty(); }
 };
 
 /// Prepares the section of a run. `run` and `opposite` (as long, or empty) are in SI units, in the order of time; they
 /// are divided by `scale` here. `cycle` > 0: the section repeats after that many points, and the last ones stand for
-/// it, at most 64. `cycle` = 0: an even sample of at most 64 points stands for it. The sample is never more than half
-/// of the run, so that the null has halves of that size. Points that are not finite are left out. Deterministic.
+/// it, at most 64; `open` (in the unit of displacements) is what its steps leave open of it. `cycle` = 0: an even
+/// sample of at most 64 points stands for it. The sample is never more than half of the run, so that the null has
+/// halves of that size. Points that are not finite are left out. Deterministic.
 SectionCloud make_cloud(std::span<const CloudPoint> run, std::span<const CloudPoint> opposite, const CloudPoint& scale,
-                        int cycle);
+                        int cycle, double open = 0);
 
 /// The points that are further apart than `tolerance` (dimensionless), in the order met: a periodic section whose
 /// number of points is not known.

@@ -24,6 +24,7 @@ struct DiagramRun {
   std::string status = {};   ///< where it was not: what the case says instead, "diverged"
   MotionClass motion = {};   ///< failed where it was not settled
   int period = 0;            ///< of what repeats, be it without contact; 0: nothing does
+  double open = 0;           ///< how far the step leaves its section open, m
   std::optional<bool> symmetric = {};
   std::optional<double> viscosity = {};  ///< numerical, as a multiple of the stiffness: α_eq, s
   int attractor = 0;                     ///< from 1; 0: none

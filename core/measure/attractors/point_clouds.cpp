@@ -256,7 +256,7 @@ double hausdorff_distance(Points a, Points b) {
   return std::sqrt(std::max(farthest(a, b), farthest(b, a)));
 }
 
-SectionCloud make_cloud(Points run, Points opposite, const CloudPoint& scale, int cycle) {
+SectionCloud make_cloud(Points run, Points opposite, const CloudPoint& scale, int cycle, double open) {
   SectionCloud cloud;
   std::vector<CloudPoint> points = scaled(run, scale), mirrored = scaled(opposite, scale);
   if (points.empty()) return cloud;
@@ -265,6 +265,7 @@ SectionCloud make_cloud(Points run, Points opposite, const CloudPoint& scale, in
     const std::size_t length = std::min(static_cast<std::size_t>(cycle), std::min(points.size(), kLargest));
     cloud.points.assign(points.end() - static_cast<std::ptrdiff_t>(length), points.end());
     if (!mirrored.empty()) cloud.opposite.assign(mirrored.end() - static_cast<std::ptrdiff_t>(length), mirrored.end());
+    cloud.null = open / scale[0];
     return cloud;
   }
   const std::size_t count = sample_size(points.size());

@@ -106,13 +106,13 @@ OrbitPeriod orbit_period(const Orbit& orbit, const SectionPlan& plan) {
       largest = std::max(largest, std::abs(orbit.readings.values[i]) / unit);
   const double h = 2 * std::numbers::pi / (plan.pulsation * plan.steps_per_period);
   out.placed = plan.scale > 0 ? h * orbit.rebounds / plan.scale : 0;
-  const double open = std::min(most_amplified * out.placed, most_left_open * largest);
-  out.tolerance = std::max(recurrence_tolerance, open / 2);
+  out.open = std::min(most_amplified * out.placed, most_left_open * largest);
+  out.tolerance = std::max(recurrence_tolerance, out.open / 2);
   out.recurrence = find_recurrence(orbit.readings, scale, out.tolerance);
   if (out.tolerance == recurrence_tolerance) return out;
   const int below = out.recurrence.period > 0 ? out.recurrence.period : longest_period + 1;
   for (int lag = 1; lag < below && out.doubtful == 0; ++lag)
-    if (const double apart = lag_distance(orbit.readings, scale, lag); apart < 2 * open)
+    if (const double apart = lag_distance(orbit.readings, scale, lag); apart < 2 * out.open)
       out.doubtful = lag, out.doubtful_distance = apart;
   return out;
 }
@@ -123,6 +123,17 @@ bool outlives(const OrbitPeriod& period, const Interval& exponent, const Section
   const double time = 2 * std::numbers::pi / plan.pulsation * r.window;
   return std::log(r.distance) + exponent.low * time > 0;
 }
+
+namespace {
+
+// (3)
+double left_open(const OrbitPeriod& period, const std::optional<Interval>& exponent, double forcing_period) {
+  const double kept =
+      exponent && exponent->high < 0 ? std::exp(exponent->high * forcing_period) : period.recurrence.contraction;
+  return std::min(period.open, period.placed / std::max(1 - kept, 1 / most_amplified));
+}
+
+}  // namespace
 
 JudgedOrbit judge(const Orbit& orbit, const SectionPlan& plan, const std::optional<Interval>& exponent) {
   JudgedOrbit out;
@@ -147,6 +158,7 @@ JudgedOrbit judge(const Orbit& orbit, const SectionPlan& plan, const std::option
   input.doubtful_distance = period.doubtful_distance;
   input.forcing_period = 2 * std::numbers::pi / plan.pulsation;
   out.verdict = classify(input);
+  out.verdict.open = left_open(period, exponent, input.forcing_period);
   if (out.recurrence.period > 0)
     out.symmetric =
         is_own_image(orbit, out.recurrence.period, plan, std::max(10 * recurrence_tolerance, period.tolerance));

@@ -46,6 +46,7 @@ struct OrbitPeriod {
   Recurrence recurrence;                    ///< within `tolerance`
   double tolerance = recurrence_tolerance;  ///< that, or half of (2) where it is larger
   double placed = 0;                        ///< u
+  double open = 0;                          ///< D
   /// The smallest lag at which the readings differ by less than twice (2), short of the period or without one. They may
   /// repeat at it, and the step does not tell. 0: none.
   int doubtful = 0;
@@ -59,7 +60,10 @@ OrbitPeriod orbit_period(const Orbit& orbit, const SectionPlan& plan);
 /// what the step makes of a neighbour.
 bool outlives(const OrbitPeriod& period, const Interval& exponent, const SectionPlan& plan);
 
-/// What the kept periods of an orbit say.
+/// What the kept periods of an orbit say. Two orbits of one motion, begun apart, end as far apart as the step places
+/// their impacts and the motion forgets that:
+///     open = min(D, u min(50, 1/(1 − r))),                                                                      (3)
+/// r = e^{high T} of an exponent whose interval lies below zero, else the contraction of the recurrence.
 struct JudgedOrbit {
   Recurrence recurrence;
   std::optional<double> zero_one;  ///< K of the strobed displacements

@@ -68,6 +68,7 @@ struct RegimeVerdict {
   MotionClass motion;
   int period = 0;        ///< forcing periods, of what repeats, be it without contact; 0: nothing does
   std::string evidence;  ///< one sentence, with the numbers
+  double open = 0;       ///< how far the step leaves its section open, relative (judge_orbit.hpp); 0: by nothing known
 };
 
 /// 1. No contact: no stop was touched. At rest: one was, and that contact never opened.

@@ -149,6 +149,7 @@ class GainWatch final : public StepObserver {
     }
     cell.gain = gain_;
     cell.impacts = contact.impacts;
+    cell.touched = contact.contact_steps > 0 || contact.impacts > 0;
     if (contact.spells > 0)
       cell.changes_per_impact = static_cast<double>(contact.active_set_changes) / static_cast<double>(contact.spells);
     cell.fast_share = force_.share();

@@ -31,6 +31,7 @@ struct ObservedCell {
   double growth = 0;              ///< of amplitudes, per step, where they grow geometrically
   double gain = 0;                ///< largest energy that nothing gave, over all that was given
   long long impacts = 0;          ///< times that a contact point closed
+  bool touched = false;           ///< whether one was closed at any step, from the start too
   /// Changes of the active set for each time that contact began anywhere; 2: it closes and opens.
   double changes_per_impact = 0;
   /// Share of the contact force's power above a quarter of the step frequency, the mean left out. It is taken over

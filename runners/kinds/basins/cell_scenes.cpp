@@ -70,14 +70,14 @@ CellScenes::Prepared CellScenes::prepare(std::size_t column, std::size_t row) {
 
 namespace {
 
-constexpr const char* ends_mark = "ends of cells 5";
+constexpr const char* ends_mark = "ends of cells 6";
 
 }  // namespace
 
 template <class Archive>
 void serialize(Archive& archive, CellEnd& end) {
-  auto& [motion, period, periods, status, reason, without, lost, section, displacements] = end;
-  archive(motion, period, periods, status, reason, without, lost, section, displacements);
+  auto& [motion, period, open, periods, status, reason, without, lost, section, displacements] = end;
+  archive(motion, period, open, periods, status, reason, without, lost, section, displacements);
 }
 
 CellEnd cell_end(const Orbit& orbit) {
@@ -88,6 +88,7 @@ CellEnd cell_end(const Orbit& orbit) {
   if (orbit.stage != Orbit::Stage::complete) return end;
   end.motion = orbit.verdict.value().motion;
   end.period = orbit.verdict->period;
+  end.open = orbit.verdict->open;
   end.section = orbit.strobed;
   end.displacements = orbit.readings.values;
   return end;
@@ -123,7 +124,8 @@ SettledSection settled_section(const CellEnd& end, const SectionPlan& plan) {
     opposite.push_back({end.section[i].opposite_displacement, end.section[i].opposite_velocity});
   }
   const int cycle = cycle_of(end.motion, end.period);
-  return {end.motion, cycle > 0, make_cloud(run, opposite, {plan.scale, plan.scale * plan.pulsation}, cycle)};
+  return {end.motion, cycle > 0,
+          make_cloud(run, opposite, {plan.scale, plan.scale * plan.pulsation}, cycle, end.open * plan.scale)};
 }
 
 CellEnd march_cell(const StudyCase& study_case, const Registry& registry, CellPlace cell, SampleCount count,

@@ -48,6 +48,7 @@ class CellScenes {
 struct CellEnd {
   MotionClass motion{Regime::failed};
   int period = 0;         ///< of what repeats, be it without contact; 0: nothing does
+  double open = 0;        ///< RegimeVerdict::open
   long long periods = 0;  ///< marched, transient and kept
   Status status = Status::failed;
   std::string reason;

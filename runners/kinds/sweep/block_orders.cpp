@@ -12,7 +12,7 @@ namespace ricochet {
 namespace {
 
 constexpr const char* order_mark = "block 4";
-constexpr const char* answer_mark = "answer of a block 4";
+constexpr const char* answer_mark = "answer of a block 5";
 constexpr std::size_t most_scenes = 8192, most_kept_cases = 8;  // that are kept for later blocks
 
 std::vector<double> numbers(const Eigen::VectorXd& vector) {

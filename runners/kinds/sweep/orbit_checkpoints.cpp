@@ -10,7 +10,7 @@
 namespace ricochet {
 namespace {
 
-constexpr const char* orbits_mark = "orbits 8";
+constexpr const char* orbits_mark = "orbits 9";
 constexpr const char* exponents_mark = "exponents 4";
 
 }  // namespace

@@ -67,7 +67,7 @@ void serialize(Archive& archive, MotionClass& motion) {
 
 template <class Archive>
 void serialize(Archive& archive, RegimeVerdict& verdict) {
-  archive(verdict.motion, verdict.period, verdict.evidence);
+  archive(verdict.motion, verdict.period, verdict.evidence, verdict.open);
 }
 
 template <class Archive>

@@ -53,6 +53,7 @@ OrbitRow orbit_row(const OrbitView& view, const std::string& start, const Sectio
   row.chatter = orbit.most_on_a_side >= chatter_impacts;
   row.sticking =
       static_cast<double>(orbit.contact_steps) / (static_cast<double>(orbit.kept_periods) * plan.steps_per_period);
+  row.open = verdict.open * plan.scale;
   row.evidence = verdict.evidence;
   return row;
 }

@@ -35,6 +35,7 @@ void read_runs(StudyDiagram& study, DiagramSource& source, DiagramCase& owner) {
     run.settled = orbit.done();
     run.motion = motion_of(orbit.regime, orbit.period, run.status);
     if (orbit.period && *orbit.period >= 1) run.period = *orbit.period;
+    run.open = orbit.open.value_or(0);
     run.symmetric = orbit.symmetric;
     run.viscosity = orbit.alpha_equivalent;
     source.rows.push_back(r);
@@ -153,7 +154,7 @@ SettledSection settled_section(const StudyDiagram& study, std::size_t case_index
   const int cycle = run.cycle();
   SettledSection out{run.motion, cycle > 0, {}};
   if (cycle == 0 || study.strobed) {
-    out.cloud = make_cloud(readings.points, readings.opposite, study.scale, cycle);
+    out.cloud = make_cloud(readings.points, readings.opposite, study.scale, cycle, run.open);
     return out;
   }
   // Impacts or extrema: how many there are in a cycle is seen from the points themselves.

@@ -109,6 +109,10 @@ RowType<OrbitRow> orbit_row_type(int exponents, const SweptColumns& swept) {
       .add({"chatter", "", "Whether there were ten or more impacts on one side within one forcing period."},
            &OrbitRow::chatter)
       .add({"sticking", "1", "Share of the kept steps with contact closed."}, &OrbitRow::sticking)
+      .add({"section_open", "m",
+            "How far the step leaves the section open: impacts that rebound are placed to within it. Motions that are "
+            "nearer are one."},
+           &OrbitRow::open)
       .add({"evidence", "", "What the class rests on, one sentence with its numbers."}, &OrbitRow::evidence)
       .add(status_column, &OrbitRow::status)
       .add(reason_column, &OrbitRow::reason);

@@ -42,6 +42,7 @@ struct OrbitRow {
   std::optional<int> transient_periods;
   std::optional<bool> settled, chatter;
   std::optional<double> sticking;
+  std::optional<double> open;  ///< m
   std::string evidence, status, reason;
   bool done() const { return status.empty() || status == word(Status::done); }
   /// The motion, or why there is none: "refused".

@@ -158,6 +158,11 @@ SettledSection orbit(double x, int period = 1) {
   return {{Regime::periodic, period}, true, make_cloud(std::vector<CloudPoint>{{x, 0}}, {}, {1, 1}, 1)};
 }
 
+/// One that its steps leave open by so much.
+SettledSection open_orbit(double x, double open) {
+  return {{Regime::periodic, 1}, true, make_cloud(std::vector<CloudPoint>{{x, 0}}, {}, {2, 1}, 1, open)};
+}
+
 SettledSection noise(std::mt19937& random, double x) {
   std::normal_distribution<double> normal;
   std::vector<CloudPoint> points;
@@ -183,6 +188,16 @@ TEST_CASE("starts that settle on one orbit, or on one cloud, are one attractor")
   CHECK(cluster_starts({{{Regime::periodic, 3}, true, {}},
                         {{Regime::periodic, 3}, true, {}},
                         {{Regime::periodic, 4}, true, {}}}) == std::vector<int>{0, 0, 1});
+}
+
+TEST_CASE("cycles that are nearer than their steps place them are one, as far as either is open") {
+  // In units of the scale, 2: 0.05 apart, open by 0.04; half again as much is one.
+  const SettledSection sharp = open_orbit(0, 0), near = open_orbit(0.1, 0), open = open_orbit(0.1, 0.08);
+  CHECK(open.cloud.null == Approx(0.04));
+  CHECK(cluster_starts({sharp, near}) == std::vector<int>{0, 1});
+  CHECK(cluster_starts({sharp, open}) == std::vector<int>{0, 0});
+  CHECK(cluster_starts({open, sharp}) == std::vector<int>{0, 0});
+  CHECK(cluster_starts({open_orbit(0, 0.08), open_orbit(0.2, 0.08)}) == std::vector<int>{0, 1});
 }
 
 TEST_CASE("two attractors of one case never become one, however near another case puts one between them") {

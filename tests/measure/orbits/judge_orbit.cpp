@@ -239,6 +239,16 @@ TEST_CASE("a class is claimed where the step resolves it") {
   // Without impacts that rebound, what repeats is told to the last digit of the tolerance.
   CHECK(verdict(0.4 * left_open, 0).motion == MotionClass{Regime::periodic, 2});
   CHECK(orbit_period(alternating(0, u), plan).placed == Approx(u));
+  // A section is open until the motion has forgotten what a placed impact displaced: 1/(1 − r) periods.
+  const double period = 2 * std::acos(-1.0) / plan.pulsation;
+  const auto open = [&](double rate) {
+    return judge(alternating(0, u), plan, Interval{rate, rate, rate}).verdict.open;
+  };
+  CHECK(open(-std::log(2) / period) == Approx(2 * u));
+  CHECK(open(-std::log(10) / period) == Approx(u / 0.9));
+  CHECK(open(-1e-6 / period) == Approx(left_open));
+  CHECK(verdict(0, u).open == Approx(left_open));
+  CHECK(verdict(0, 0).open == 0);
   // However coarse the step, an orbit that differs by a twentieth of itself does not repeat.
   CHECK(orbit_period(alternating(0, 1), plan).tolerance <= 0.05 * 0.2 / 2 * 1.001);
 }

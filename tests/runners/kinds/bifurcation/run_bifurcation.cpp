@@ -3,6 +3,7 @@
 #include <set>
 
 #include "runners/kinds/bifurcation/bifurcation.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
 #include "tests/runners/kinds/sweep/sweep_case.hpp"
 
 using namespace ricochet;
@@ -300,4 +301,43 @@ TEST_CASE("bifurcation: what cannot be marched is a row with its reason") {
   const CaseRecord wild = run_sweep(text);
   CHECK(wild.status == Status::diverged);
   for (const Cell& status : of_values(wild, "status")) CHECK(status == "diverged");
+}
+
+TEST_CASE("bifurcation: two orbits that differ by where the step places their impacts are one motion") {
+  // A mass shaken above its resonance, stopped on one side: it hits once a period, or stays away from the stop.
+  Json text = oscillator_sweep({8.1, 8.2, 8.3, 9, 9.5, 10, 10.5, 11, 11.5, 12, 12.5, 13}, 0.7);
+  text["scene"]["structure"] = {{"type", "oscillator"}, {"mass", 1}, {"stiffness", 25}, {"damping", 0.2}};
+  text["scene"]["support"] = {{"amplitude", 0.02}, {"pulsation", 8}};
+  text["scene"]["stops"] = {{"upper", 0.02}, {"at", "tip"}};
+  text["parameter"]["pointer"] = "/scene/support/pulsation";
+  text["methods"]["time"] = {{"name", "moreau-jean"}, {"restitution", 0.7}};
+  text["steps_per_period"] = 2000;
+  text["start"] = {"rest", "up", "down"};
+  for (const int exponents : {0, 1}) {
+    CAPTURE(exponents);
+    text["exponents"] = exponents;
+    StudyResults results;
+    results.kind = "bifurcation";
+    results.study = text;
+    results.cases.push_back(run_sweep(text));
+    const CaseRecord& record = results.cases.front();
+    dynamics::StudyDiagram study = dynamics::read_diagram(results);
+    dynamics::find_attractors(study);
+    double apart = 0;
+    constexpr int coexist = 3;  // values at which both motions are met
+    for (int value = 0; value < coexist; ++value) {
+      const DiagramRun &rest = *study.diagram.run(0, value, 0), &up = *study.diagram.run(0, value, 1);
+      CHECK(rest.motion == MotionClass{Regime::periodic, 1});
+      CHECK(rest.attractor == up.attractor);
+      CHECK(study.diagram.run(0, value, 2)->motion == MotionClass{Regime::no_contact});
+      // The speed of 0.4 m/s turns round within a step of 4e-4 s.
+      CHECK(rest.open > 2e-4);
+      apart =
+          std::max(apart, cloud_distance(settled_section(study, 0, rest).cloud, settled_section(study, 0, up).cloud));
+    }
+    CHECK(study.diagram.attractors == 2);
+    // They are further apart than what settling leaves: without that the test says nothing.
+    CHECK(apart > kSameRun.cycle);
+    CHECK(record.status == Status::done);
+  }
 }
