@@ -99,6 +99,11 @@ void Marcher::open_gates(StageProgram& program, StageState& state, std::span<con
       const bool lower = gap <= lower_.at(i, lane) + slack, upper = gap >= upper_.at(i, lane) - slack;
       const double from_lower = speed > still ? -speed : -restitution * std::min(speed, 0.0);
       const double from_upper = speed < -still ? -speed : -restitution * std::max(speed, 0.0);
+      // Between two closed sides what is slow is still: neither may throw it beyond the other.
+      if (lower && upper && from_lower > from_upper) {
+        state.gate_lower.at(i, lane) = state.gate_upper.at(i, lane) = 0;
+        continue;
+      }
       state.gate_lower.at(i, lane) = lower ? from_lower : -infinity;
       state.gate_upper.at(i, lane) = upper ? from_upper : infinity;
     }

@@ -156,6 +156,29 @@ TEST_CASE("under a rigid law the nearest of the stops at a place is alone, on ev
     }
 }
 
+TEST_CASE("a place without play is held, whatever rebounds beside it") {
+  SceneSpec scene;
+  scene.structure = short_cantilever();
+  scene.initial.velocity = Formula("x^2*(x - 0.5)", "", "x");
+  scene.stops.named = {stop("held", at_place(0.5), 0, 0), stop("struck", at_place(1), -0.002, 0.002)};
+  for (const Choice& time :
+       {Choice{"newmark-dumont-paoli", {{"restitution", 0.5}}}, Choice{"moreau-jean", {{"restitution", 0.5}}}}) {
+    INFO(time.name);
+    Marcher made = marcher(scene, 4, {{"consistent"}, {"signorini"}, time}, 1e-5);
+    const MarchModel& model = *made.program().model;
+    EnergyAudit audit(made);
+    made.start(&audit);
+    double farthest = 0;
+    for (int k = 0; k < 400; ++k) {
+      made.march(10, &audit);
+      farthest = std::max(farthest, std::abs(model.times(model.contact(), 0, made.slot(0))));
+    }
+    REQUIRE(made.status(0).running);
+    CHECK(farthest < 1e-4 * 0.002);
+    CHECK(audit.contact(0).impacts > 0);
+  }
+}
+
 TEST_CASE("the two sides of a place rebound with restitutions of their own") {
   SceneSpec scene;
   scene.structure = OscillatorSpec{1, 0, 0, {}};
