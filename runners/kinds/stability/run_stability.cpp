@@ -23,6 +23,8 @@ namespace {
 // A growth per step that 3000 steps without contact show beyond doubt: by a factor of twenty.
 constexpr double plain_growth = 1e-3;
 
+constexpr const char* untouched_text = "not observed: the scene touches no stop";
+
 void append(std::string& reason, const std::string& sentence) {
   if (!sentence.empty()) reason += (reason.empty() ? "" : "; ") + sentence;
 }
@@ -35,7 +37,16 @@ struct Side {
   std::vector<std::optional<ObservedCell>> cells;
   StepLimit predicted;
   ObservedLimit observed;
+  bool untouched = false;  ///< closed: the scene stays bounded and touches no stop, so nothing of contact was observed
 
+  /// What scenes that touch no stop showed of contact: nothing.
+  void forget_untouched() {
+    const auto touches = [](const auto& cell) { return cell && (cell->touched || !cell->stable()); };
+    const auto marched = [](const auto& cell) { return cell.has_value(); };
+    untouched =
+        closed && std::any_of(cells.begin(), cells.end(), marched) && std::none_of(cells.begin(), cells.end(), touches);
+    if (untouched) std::fill(cells.begin(), cells.end(), std::nullopt);
+  }
   /// Marched somewhere, and stable nowhere.
   bool never_stable() const {
     const auto stable = [](const auto& cell) { return cell && cell->stable(); };
@@ -222,9 +233,14 @@ class StabilityRun {
 
   void observe(Side& side) {
     for (const double h : steps_) side.cells.push_back(march(side, h));
+    side.forget_untouched();
     // Below the range a scene would be cut short before anything happens in it.
     side.observed = observed_limit(
         steps_, side.cells, [&](double h) { return march(side, h); }, !side.closed);
+    if (side.untouched)
+      record_.notes.push_back(
+          "closed: the scene touches no stop at any step, so contact is predicted and not observed; give it an initial "
+          "state or a load that brings it there");
     if (spent())
       record_.notes.push_back(
           fmt::format("the budget of {:g} s was spent: some cells were not observed", budget_of(case_)));
@@ -253,7 +269,8 @@ class StabilityRun {
     }
     const auto& cell = observed ? side.cells[i] : std::optional<ObservedCell>();
     if (!cell) {
-      if (observed && status != "refused") append(reason, "not observed: the budget was spent");
+      if (observed && status != "refused")
+        append(reason, side.untouched ? untouched_text : "not observed: the budget was spent");
       return {status.empty() ? "failed" : status, reason};
     }
     const std::string seen = cell->behaviour == Behaviour::failed ? "failed" : cell->stable() ? "stable" : "unstable";
@@ -349,12 +366,17 @@ class StabilityRun {
     double predicted = none, observed = none, radius = -1, agreement = none;
     for (const Side& side : sides) {
       predicted = std::min(predicted, side.predicted.step.value_or(none));
-      observed = std::min(observed, side.observed.step.value_or(none));
       for (std::size_t i = 0; i < steps_.size(); ++i)
         if (const StepSpectrum* known = side.spectrum(i)) radius = std::max(radius, known->radius);
       const auto limit = expected(sides, side);
       if (limit && side.observed.step && !std::isfinite(agreement)) agreement = *side.observed.step / *limit;
     }
+    // An open limit is that of the scene unless contact is predicted to lower it.
+    const double open = sides.front().predicted.step.value_or(none);
+    const bool unseen =
+        sides.back().untouched && (predicted < (1 - limit_tolerance) * open || sides.back().predicted.below_range);
+    for (const Side& side : sides)
+      if (!unseen) observed = std::min(observed, side.observed.step.value_or(none));
     put_limit("limit_predicted", predicted, sides, false);
     put_limit("limit_observed", observed, sides, true);
     if (radius >= 0) put_measure(record_, "largest_radius", radius);
@@ -365,6 +387,10 @@ class StabilityRun {
   void put_limit(const char* name, double limit, const std::vector<Side>& sides, bool marched) {
     put_measure(record_, name, limit);
     if (std::isfinite(limit)) return;
+    if (marched && sides.back().untouched) {
+      record_.left_out.emplace_back(name, untouched_text);
+      return;
+    }
     if (std::all_of(sides.begin(), sides.end(), [&](const Side& side) { return side.always_stable(marched); }))
       record_.left_out.emplace_back(name, "every step of the range is stable");
     else if (marched && std::any_of(sides.begin(), sides.end(), [](const Side& side) { return side.never_stable(); }))

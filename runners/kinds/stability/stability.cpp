@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <ricochet/engine/compile.hpp>
 
 #include "runners/asks/kind_verbs.hpp"
 #include "runners/kinds/all_kinds.hpp"
@@ -183,6 +184,16 @@ std::vector<double> steps_of(const StudyCase& study_case) {
   return steps;
 }
 
+namespace {
+
+bool rests(const SceneSpec& scene, const SemiDiscrete& problem) {
+  const LaneSpec lane = scene_lane(problem, {});
+  return scene.load.is_zero() && scene.support.amplitude == 0 && !moves_by_histories(scene) &&
+         lane.position.isZero(0) && lane.velocity.isZero(0);
+}
+
+}  // namespace
+
 CasePlan plan_stability(const StudyCase& study_case, const Registry& registry) {
   CasePlan out;
   const auto law = make_law(study_case, registry);
@@ -208,6 +219,10 @@ CasePlan plan_stability(const StudyCase& study_case, const Registry& registry) {
   out.predicted_seconds = 1e-8 * n * n * n * static_cast<double>(std::min<std::size_t>(steps.size(), 40) + 20);
   if (!study_case.settings.value("observe", true)) return out;
   const bool touches = problem.points() > 0 && !law->absent();
+  if (touches && rests(study_case.scene, problem))
+    out.notes.emplace_back(
+        "closed: the scene is at rest, so what contact does is predicted and not observed; give it an initial state or "
+        "a load");
   for (const double h : steps) {
     out.steps += free_steps;
     if (touches && study_case.duration > 0)

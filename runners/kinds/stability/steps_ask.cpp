@@ -88,6 +88,9 @@ class StepsAsk {
     }
     out.figure = {{"form", "bars"}, {"measure", "largest step"}, {"unit", "s"},
                   {"rows", bars},   {"at", Json::array()},       {"log", true}};
+    if (const Members alone = members(predicted_alone); !alone.empty())
+      out.aside.push_back(
+          fmt::format("What contact allows is predicted and not marched in {} of {}.", alone.size(), limits_.size()));
     if (unlike > 0)
       out.aside.push_back(
           fmt::format("Marches have another limit than the spectrum with {} of {}: contacts open and close.", unlike,
@@ -110,6 +113,11 @@ class StepsAsk {
   static bool apart(const StepLimit& one) {
     const LimitRow& row = one.closed.id.empty() ? one.open : one.closed;
     return row.agrees == false;
+  }
+
+  /// Whether the open structure was marched, and no scene showed anything of contact.
+  static bool predicted_alone(const StepLimit& one) {
+    return !one.closed.prediction.empty() && one.closed.observation.empty() && !one.open.observation.empty();
   }
 
   void judge(StepLimit& out) const {
@@ -139,6 +147,7 @@ class StepsAsk {
           out.high = std::max(*step, *own.observed);
           parts.push_back(fmt::format("marched {} s", answers::short_number(*own.observed, 3)));
         }
+        if (predicted_alone(out)) parts.emplace_back("contact not marched");
         if (has_closed && open.predicted)
           parts.push_back(fmt::format("without contact {} s", answers::short_number(*open.predicted, 3)));
         if (!closed.id.empty() && closed.prediction.empty()) parts.emplace_back("the closed stop was not predicted");

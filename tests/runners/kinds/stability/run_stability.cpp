@@ -190,6 +190,38 @@ TEST_CASE("what cannot touch has open cells only") {
   CHECK(run(text).column("status", "closed").empty());
 }
 
+TEST_CASE("a scene that touches no stop observes nothing of contact") {
+  const Json spring = {{"name", "penalty"}, {"stiffness", 1e4}, {"evaluation", "explicit"}};
+  Json text = study_text("lumped", spring, "central-difference", 1e-4, 1e-1, 7);
+  const Result struck = run(text);
+  REQUIRE(struck.measure("limit_observed"));
+  text["scene"].erase("initial");
+  // A stop that is softer than the mesh does not bound the step: what is marched without contact tells it.
+  for (const double stiffness : {1e6, 1.0}) {
+    CAPTURE(stiffness);
+    text["methods"]["contact"]["stiffness"] = stiffness;
+    const Result rests = run(text);
+    CHECK(rests.noted("closed: the scene touches no stop at any step"));
+    for (const Cell& reason : rests.column("reason", "closed")) CHECK_THAT(reason.text(), Contains("not observed"));
+    CHECK(rests.column("impacts", "closed", "stability_observed").empty());
+    CHECK(rests.column("limit_observed", "closed").front().is_nothing());
+    const auto open = rests.column("limit_observed", "open").front().number();
+    REQUIRE(open);
+    if (stiffness > 1) {
+      CHECK_FALSE(rests.measure("limit_observed"));
+      REQUIRE(rests.record.left_out.size() == 1);
+      CHECK(rests.record.left_out.front().second == "not observed: the scene touches no stop");
+    } else {
+      CHECK(rests.measure("limit_observed") == open);
+    }
+  }
+  // One that lies on its stop from the start touches it.
+  text["scene"]["stops"] = {{"lower", 0}, {"upper", nullptr}, {"at", "tip"}};
+  text["scene"]["load"] = -1;
+  text["scene"]["initial"] = {{"equilibrium", true}};
+  CHECK_FALSE(run(text).noted("touches no stop"));
+}
+
 TEST_CASE("an explicit spring limits the step of the closed cells, and the scene blows up beyond") {
   const double stiffness = 1e4;
   const Json spring = {{"name", "penalty"}, {"stiffness", stiffness}, {"evaluation", "explicit"}};
@@ -353,6 +385,25 @@ TEST_CASE("a plan of a stability case counts its marches") {
   // Three free marches of 3000 steps, and 1 s at 1e-4, 1e-3 and 1e-2 (200 at least).
   CHECK(plan.steps == 9000 + 10000 + 1000 + 200);
   CHECK(plan.predicted_seconds > 0);
+}
+
+TEST_CASE("a plan says that a scene at rest shows nothing of contact") {
+  const auto notes = [](const Json& text) {
+    Study study;
+    const Registry& registry = opened(text, study);
+    std::string all;
+    for (const std::string& note : plan_stability(study.cases.front(), registry).notes) all += note + "\n";
+    return all;
+  };
+  Json text = study_text("consistent", "signorini", dumont_paoli(0.5), 1e-4, 1e-2, 3);
+  CHECK_THAT(notes(text), !Contains("the scene is at rest"));
+  text["scene"].erase("initial");
+  CHECK_THAT(notes(text), Contains("closed: the scene is at rest"));
+  text["scene"]["load"] = 1;
+  CHECK_THAT(notes(text), !Contains("the scene is at rest"));
+  text["scene"].erase("load");
+  text["methods"]["contact"] = "none";
+  CHECK_THAT(notes(text), !Contains("the scene is at rest"));
 }
 
 TEST_CASE("a clearance that is closed holds what two stops across each other hold") {
