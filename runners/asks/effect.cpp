@@ -28,6 +28,7 @@ struct Told {
   Verdict verdict = Verdict::open;
   std::string reason;
   bool between = false;  // open, for the size asked lies within its interval
+  bool applies = true;   // neither level is refused throughout
 };
 
 /// Whether the difference is as large as asked. Nothing in both is no agreement.
@@ -95,12 +96,13 @@ class EffectSpeaker {
     if (auto open = open_without_values(lines_, out)) return *open;
     std::vector<const Told*> yes, no, open;
     std::vector<char> shown(told_.size(), 0);
-    for (const std::size_t k : decides_) {
-      add_row(out, told_[k]);
-      shown[k] = 1;
-    }
+    // What decides comes first, what has no value last.
+    std::vector<std::size_t> order = decides_;
+    for (const std::size_t k : decides_) shown[k] = 1;
     for (std::size_t k = 0; k < told_.size(); ++k)
-      if (!shown[k]) add_row(out, told_[k]);
+      if (!shown[k]) order.push_back(k);
+    std::stable_partition(order.begin(), order.end(), [&](std::size_t k) { return told_[k].pair.has_value(); });
+    for (const std::size_t k : order) add_row(out, told_[k]);
     for (const Line& line : lines_.all) {
       VerdictRow row = lines_.row(line);
       row.verdict = "value";
@@ -125,12 +127,17 @@ class EffectSpeaker {
       one.lines.push_back(&line);
     }
     for (auto& [key, one] : std::move(all).list()) combinations_.push_back(std::move(one));
-    for (const Combination& one : combinations_) {
-      const std::size_t first = told_.size();
+    for (const Combination& one : combinations_)
       for (std::size_t a = 0; a < one.lines.size(); ++a)
         for (std::size_t b = a + 1; b < one.lines.size(); ++b)
           told_.push_back(told_of(one, *one.lines[a], *one.lines[b]));
-      if (told_.size() > first) decides_.push_back(deciding(first));
+    // What is refused is left out by name; it decides only where nothing else is there.
+    const bool any = std::any_of(told_.begin(), told_.end(), [](const Told& told) { return told.applies; });
+    for (std::size_t first = 0; first < told_.size();) {
+      std::size_t end = first;
+      while (end < told_.size() && told_[end].where == told_[first].where) ++end;
+      if (const auto found = deciding(first, end, any)) decides_.push_back(*found);
+      first = end;
     }
   }
 
@@ -138,6 +145,7 @@ class EffectSpeaker {
     Told told{&where, own_level(a), own_level(b), {}, Verdict::open, ""};
     for (const Line* line : {&a, &b})
       if (!line->known() && told.reason.empty()) told.reason = line->point.none;
+    told.applies = applies(a) && applies(b);
     if (!told.reason.empty()) return told;
     told.pair = pair_of(a.point, b.point);
     judge(told, from_);
@@ -148,6 +156,11 @@ class EffectSpeaker {
     return told;
   }
 
+  static bool applies(const Line& line) {
+    return std::any_of(line.point.cases.begin(), line.point.cases.end(),
+                       [](const CaseRecord* one) { return one->status != Status::refused; });
+  }
+
   /// Whether the choice has a part in contact alone: the law, restitution.
   bool acts_at_stops() const {
     return std::all_of(own_.begin(), own_.end(), [](const std::string& column) {
@@ -155,24 +168,21 @@ class EffectSpeaker {
     });
   }
 
-  static bool untouched(const Point& point) {
-    return std::all_of(point.behind.begin(), point.behind.end(),
-                       [](const CaseRecord* one) { return measure(*one, "contact_instants") == 0.0; });
-  }
-
   std::string own_level(const Line& line) const { return evidence_.level(line.point.first(), own_); }
 
-  /// The pair that decides, of those from `first` on: one that is a yes, else one that is open, else the largest.
-  std::size_t deciding(std::size_t first) const {
+  /// The pair that decides, of those from `first` to `end`: one that is a yes, else one that is open, else the largest.
+  /// Of those that apply alone where `applying`; nothing where none does.
+  std::optional<std::size_t> deciding(std::size_t first, std::size_t end, bool applying) const {
     const auto rank = [](const Told& told) {
       return std::pair(told.verdict == Verdict::yes    ? 2
                        : told.verdict == Verdict::open ? 1
                                                        : 0,
                        told.pair ? std::abs(told.pair->difference) : 0.0);
     };
-    const auto best = std::max_element(told_.begin() + static_cast<std::ptrdiff_t>(first), told_.end(),
-                                       [&](const Told& a, const Told& b) { return rank(a) < rank(b); });
-    return static_cast<std::size_t>(best - told_.begin());
+    std::optional<std::size_t> best;
+    for (std::size_t k = first; k < end; ++k)
+      if ((told_[k].applies || !applying) && (!best || rank(told_[*best]) < rank(told_[k]))) best = k;
+    return best;
   }
 
   void add_row(Answered& out, const Told& one) const {
@@ -260,7 +270,8 @@ class EffectSpeaker {
 
   /// The combinations of these, by name where they have one: " with stiffness 1e8 N/m", " in 2 of 6".
   std::string in_these(const std::vector<const Told*>& list, std::size_t all) const {
-    if (list.size() == all) return all == 1 ? "" : fmt::format(" in all {}", all);
+    if (list.size() == all)
+      return all == 1 ? "" : fmt::format(" in {}", all == 2 ? "both" : fmt::format("all {}", all));
     std::vector<const Line*> lines;
     for (const Told* one : list) lines.insert(lines.end(), one->where->lines.begin(), one->where->lines.end());
     if (const std::string name = set_name(lines_, lines); !name.empty() && lines.size() > 1) return " " + name;

@@ -32,6 +32,11 @@ std::string ending_key(const CaseRecord& record) {
   return key;
 }
 
+bool untouched(const Point& point) {
+  return std::all_of(point.behind.begin(), point.behind.end(),
+                     [](const CaseRecord* one) { return measure(*one, "contact_instants") == 0.0; });
+}
+
 namespace {
 
 const Json* axis_value(const CaseRecord& record, const std::string& column) {

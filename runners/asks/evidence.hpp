@@ -56,6 +56,9 @@ struct Point {
   const CaseRecord& first() const { return *cases.front(); }
 };
 
+/// Whether none of its cases touched a stop.
+bool untouched(const Point& point);
+
 /// Why cases are not behind a verdict.
 struct LeftOut {
   struct Reason {

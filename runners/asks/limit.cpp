@@ -15,6 +15,18 @@ struct Bounds {
   bool holds(double value) const { return (!below || value < *below) && (!above || value > *above); }
 };
 
+/// Whether nothing happened in runs that could not show it: no stop is touched, and each is doubtful.
+bool nothing_seen(const Point& point) {
+  return untouched(point) && std::all_of(point.behind.begin(), point.behind.end(),
+                                         [](const CaseRecord* one) { return !one->reasons.empty(); });
+}
+
+std::string why_open(const Line& line) {
+  if (!line.known()) return line.point.none;
+  if (nothing_seen(line.point)) return "no stop is touched, in a doubtful run";
+  return line.estimate().unknown().empty() ? "the limit lies within its interval" : line.estimate().unknown();
+}
+
 /// Yes where the interval and each draw hold; no where the interval, or a draw with what refinement leaves of it, is
 /// beyond.
 Verdict verdict_of(const Line& line, const Bounds& bounds) {
@@ -31,7 +43,7 @@ Verdict verdict_of(const Line& line, const Bounds& bounds) {
     all = all && bounds.holds(value - refinement) && bounds.holds(value + refinement);
     beyond = beyond || surely_beyond(value, refinement);
   }
-  return beyond ? Verdict::no : all ? Verdict::yes : Verdict::open;
+  return beyond ? Verdict::no : all && !nothing_seen(line.point) ? Verdict::yes : Verdict::open;
 }
 
 using Marked = std::vector<const Line*>;
@@ -85,9 +97,7 @@ void say_open(Answered& out, const Lines& lines, const Marked& open, const std::
   const bool plural = is_plural(lines.words.words);
   const auto known = std::find_if(open.begin(), open.end(), [](const Line* line) { return line->known(); });
   const Line& first = known == open.end() ? *open.front() : **known;
-  out.reason = first.known() ? (first.estimate().unknown().empty() ? "the limit lies within its interval"
-                                                                   : first.estimate().unknown())
-                             : first.point.none;
+  out.reason = why_open(first);
   const std::string which =
       open.size() < lines.all.size() ? fmt::format(" in {} of {}", open.size(), lines.all.size()) : "";
   const std::string found =
@@ -106,7 +116,7 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
     VerdictRow row = lines.row(line);
     const Verdict verdict = verdict_of(line, bounds);
     row.verdict = word(verdict);
-    if (verdict == Verdict::open && row.reason.empty()) row.reason = "the limit lies within its interval";
+    if (verdict == Verdict::open && row.reason.empty()) row.reason = why_open(line);
     out.rows.push_back(std::move(row));
     (verdict == Verdict::yes ? yes : verdict == Verdict::no ? no : open).push_back(&line);
   }

@@ -4,6 +4,23 @@
 #include <cmath>
 
 namespace ricochet::asks {
+namespace {
+
+/// u of a difference, at least `floor`. `both`: what is open of the two together; no difference is less sure than that,
+/// even one that still grows. Nothing where it is not known.
+std::optional<double> left_open(const Estimate& estimate, const std::optional<double>& both, double floor) {
+  if (!estimate.unknown().empty()) return std::nullopt;
+  // Of a single size on both sides, and nothing drawn, nothing is known.
+  std::optional<double> u = estimate.grows ? std::nullopt : std::optional(estimate.u().value_or(0));
+  if (both) u = std::min(u.value_or(*both), *both);
+  return u ? std::optional(std::max(*u, floor)) : std::nullopt;
+}
+
+std::string why_not(const Estimate& estimate) {
+  return estimate.grows ? "the difference grows without bound" : estimate.unknown();
+}
+
+}  // namespace
 
 std::optional<Pair> pair_of(const Point& first, const Point& second) {
   if (!first.finest || !second.finest) return std::nullopt;
@@ -35,16 +52,19 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
   }
   const double floor = std::max(first.floor, second.floor);
   const bool has_step = first.estimate && first.estimate->has_step;
+  const auto own_u = [&](const Point& point) -> std::optional<double> {
+    const bool there = point.finest == finest && point.estimate && point.estimate->has_interval();
+    return there ? point.estimate->u() : std::nullopt;
+  };
+  const std::optional<double> first_u = own_u(first), second_u = own_u(second);
+  const auto both = [&](double weight_of_first, double unit) -> std::optional<double> {
+    if (!first_u || !second_u) return std::nullopt;
+    return (*second_u + weight_of_first * *first_u) / unit;
+  };
   const Estimate estimate = estimate_of(differences, halves, *finest, limits_at(differences, *finest, floor), has_step);
   out.difference = estimate.value;
-  out.unknown = estimate.grows ? "the difference grows without bound" : estimate.unknown();
-  if (out.unknown.empty()) out.u = estimate.u();
-  // A single size on both sides, and nothing drawn: nothing is known of the difference.
-  if (out.unknown.empty() && !out.u && !has_step) out.u = floor;
-  if (out.u) *out.u = std::max(*out.u, floor);
-  // Never less sure than both together.
-  if (out.u && first.estimate && second.estimate && first.estimate->u() && second.estimate->u())
-    out.u = std::min(*out.u, std::max(floor, *first.estimate->u() + *second.estimate->u()));
+  out.u = left_open(estimate, both(1, 1), floor);
+  if (!out.u) out.unknown = why_not(estimate);
   if (std::abs(out.base) <= floor) return out;
   // Both may move with the step while one stays the same share of the other.
   std::map<Size, std::map<std::string, double>> shares, share_halves;
@@ -60,8 +80,8 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
   const double round_off = floor / std::abs(out.base);
   const Estimate share = estimate_of(shares, share_halves, *finest, limits_at(shares, *finest, round_off), has_step);
   out.share = share.value;
-  out.unknown = share.grows ? "the difference grows without bound" : share.unknown();
-  if (out.unknown.empty()) out.share_u = std::max(round_off, share.u().value_or(0));
+  out.share_u = left_open(share, both(1 + std::abs(share.value), std::abs(out.base)), round_off);
+  out.unknown = out.share_u ? "" : why_not(share);
   return out;
 }
 

@@ -41,6 +41,70 @@ Made random_methods(std::mt19937& random, std::size_t levels) {
   return made;
 }
 
+TEST_CASE("asks: what is refused is left out of an effect, and one without a limit is as sure as both its levels") {
+  // Levels agree within a thousandth; of the second scheme the third mass is refused.
+  Made made;
+  made.choices = {{"mass", {"m0", "m1", "m2"}}, {"time", {"t0", "t1"}}};
+  made.truth = [](const std::vector<std::size_t>& at) { return 1 + 3e-4 * static_cast<double>(at[0]); };
+  made.error = 1e-3;
+  StudyResults results = made.results();
+  std::size_t refused = 0;
+  for (CaseRecord& record : results.cases) {
+    if (record.axes[0].second != "m2" || record.axes[1].second != "t1") continue;
+    record.status = Status::refused;
+    record.reasons = {"m2 does not apply"};
+    record.measures.clear();
+    ++refused;
+  }
+  REQUIRE(refused == made.steps.size());
+  const Json ask = {{"effect", "mass"}, {"on", "impulse"}, {"from", 0.01}};
+  const Answered answered = answer_of(results, ask);
+  INFO(answered.sentence);
+  CHECK(answered.passes == Verdict::no);
+  CHECK(answered.left_out == refused);
+  // What has no value stands behind what has one.
+  bool without = false;
+  for (const VerdictRow& row : answered.rows) {
+    if (row.verdict == "value") continue;
+    CHECK_FALSE((row.value && without));
+    without = without || !row.value;
+  }
+  CHECK(without);
+  // One that fails is no such case: it is open.
+  for (CaseRecord& record : results.cases)
+    if (record.status == Status::refused) record.status = Status::failed;
+  CHECK(answer_of(results, ask).passes == Verdict::open);
+
+  // Differences of 1e-9, 3e-9 and 9e-9 have no limit; each level is known to a millionth.
+  Made growing;
+  growing.choices = {{"mass", {"m0", "m1"}}};
+  growing.steps = {4e-3, 2e-3, 1e-3};
+  const StudyResults apart = synthetic::full_factorial(
+      growing.choices, growing.steps,
+      [](const std::vector<std::size_t>& at, double h) {
+        return 1 + 0.1 * h * h + (at[0] == 0 ? 0 : 1e-9 * std::pow(3, std::log2(4e-3 / h)));
+      },
+      "impulse");
+  const Answered sure = answer_of(apart, ask);
+  INFO(sure.sentence);
+  CHECK(sure.passes == Verdict::no);
+}
+
+TEST_CASE("asks: a limit that holds since nothing happened in a doubtful run is open") {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 0.0; };
+  StudyResults results = made.results();
+  const auto passes = [&] { return answer_of(results, {{"limit", "impulse"}, {"below", 1}}).passes; };
+  for (CaseRecord& record : results.cases) record.measures.emplace_back("contact_instants", 0.0);
+  CHECK(passes() == Verdict::yes);
+  for (CaseRecord& record : results.cases) record.reasons = {"the run lasts a hundredth of the slowest period"};
+  CHECK(passes() == Verdict::open);
+  // Where a stop was touched, what is doubtful stands before the verdict.
+  for (CaseRecord& record : results.cases) record.measures.back().second = 1.0;
+  CHECK(passes() == Verdict::yes);
+}
+
 }  // namespace
 
 TEST_CASE("asks: a limit is never said to hold, or to be broken, against the truth") {
