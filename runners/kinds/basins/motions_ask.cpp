@@ -21,7 +21,7 @@ bool strikes(const MotionClass& motion) {
   return motion.repeats() || motion.regime == Regime::quasi_periodic || motion.regime == Regime::chaotic;
 }
 
-/// A share of the starts of one case, as the grid and what is undecided leave it.
+/// A share of all starts of one case; the interval holds what the grid and the undecided ones leave open.
 struct ShareOfStarts {
   double value = 0, low = 0, high = 0;
 };
@@ -37,7 +37,7 @@ struct CaseShares {
   ShareOfStarts share(std::size_t count) const {
     if (decided == 0) return {};
     const double all = static_cast<double>(decided + undecided), n = static_cast<double>(count);
-    return {n / static_cast<double>(decided), wilson_interval(n / all, all).low,
+    return {n / all, wilson_interval(n / all, all).low,
             wilson_interval((n + static_cast<double>(undecided)) / all, all).high};
   }
   ShareOfStarts share(const std::string& motion) const {
@@ -120,7 +120,7 @@ class MotionShares {
   void add_rows(asks::Answered& out, const CaseShares& one, Json& bars) const {
     const auto add = [&](const std::string& motion, const ShareOfStarts& share, std::size_t count, bool drawn) {
       asks::VerdictRow added = row(one, motion, share);
-      added.reason = fmt::format("{} of {} {}", count, one.decided, places());
+      added.reason = fmt::format("{} of {} {}", count, one.decided + one.undecided, places());
       if (drawn)
         bars.push_back({{"name", motion},
                         {"group", one.level},
