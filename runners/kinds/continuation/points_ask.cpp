@@ -376,17 +376,25 @@ class PointsAsk {
       out.sentence = asks::fitting({fmt::format("{}: no {} was met; {}.", inside ? "Open" : "No", asked, ends)});
       return;
     }
-    std::vector<const Told*> list;
-    for (const Told& told : first->points)
-      if (std::none_of(list.begin(), list.end(),
-                       [&](const Told* other) { return at_one_place(*told.point, *other->point); }))
-        list.push_back(&told);
+    // What a second case confirms is told; where nothing is, what there is.
+    std::vector<const Told*> confirmed, single;
+    for (const bool sure : {true, false})
+      for (const Told& told : first->points) {
+        const auto there = [&](const Told* other) { return at_one_place(*told.point, *other->point); };
+        if (told.half.has_value() == sure && std::none_of(confirmed.begin(), confirmed.end(), there) &&
+            std::none_of(single.begin(), single.end(), there))
+          (sure ? confirmed : single).push_back(&told);
+      }
+    const std::vector<const Told*>& list = confirmed.empty() ? single : confirmed;
+    const std::string unsure = confirmed.empty() ? ", which no second case confirms"
+                               : single.empty()  ? ""
+                                                 : fmt::format(", {} unconfirmed", single.size());
     std::vector<std::string> texts;
     const std::string who = methods_.size() > 1 ? "with " + study_.name(*first->record) + ", " : "";
     for (const bool named : {true, false})
       for (std::size_t count = list.size(); count > 0; --count) {
         if (named && count < list.size() && count < 2) continue;
-        texts.push_back(answers::capitalised((named ? who : "") + text(list, count) + "; " + ends + "."));
+        texts.push_back(answers::capitalised((named ? who : "") + text(list, count) + unsure + "; " + ends + "."));
       }
     out.sentence = asks::fitting(texts);
   }

@@ -58,6 +58,21 @@ TEST_CASE("points of the asked kinds have their value and interval, and every br
   CHECK_THAT(folds.sentence, Contains("branch"));
 }
 
+TEST_CASE("what a second case confirms is told before what one case alone has", "[asks]") {
+  const StudyResults all = with_tables(synthetic::points());
+  const asks::Answered several = ask(all, {"all"});
+  INFO(several.sentence);
+  for (const asks::VerdictRow& row : several.rows)
+    if (row.measure != "end of the branch" && !row.measure.starts_with("shift of"))
+      CHECK(row.low.has_value() != (row.reason.find("no second case confirms it") != std::string::npos));
+  CHECK_THAT(several.sentence, Contains(" ± ") && !Contains("no second case"));
+  StudyResults first = synthetic::points();
+  first.cases.resize(1);
+  const asks::Answered single = ask(with_tables(std::move(first)), {"all"});
+  INFO(single.sentence);
+  CHECK_THAT(single.sentence, Contains(", which no second case confirms;") && !Contains(" ± "));
+}
+
 TEST_CASE("a kind that was not met is no where branches went on, and open where they stopped", "[asks]") {
   const StudyResults all = with_tables(synthetic::points());
   const asks::Answered out = ask(all, {"flip"});
