@@ -19,10 +19,53 @@
 
 namespace ricochet {
 
+namespace {
+
+/// What the eight errors are: their measures are `error.NAME`, `floor.NAME` and `size.NAME`, in this unit.
+struct ErrorInfo {
+  std::string name;
+  const char *unit, *text, *words;
+  std::string error = "error." + name, floor = "floor." + name, size = "size." + name;
+};
+
+const std::vector<ErrorInfo>& error_infos() {
+  static const std::vector<ErrorInfo> all = {
+      {"tip-linf", "m", "Largest difference of the tip's displacement from the reference, over the samples.",
+       "the largest error of the tip"},
+      {"tip-l2", "m", "Root mean square over time of the difference of the tip's displacement.",
+       "the root mean square error of the tip"},
+      {"displacement-l2", "m^3/2",
+       "Root mean square over time of the L² norm along x of the difference of the displacement.",
+       "the error of the displacement"},
+      {"displacement-h2", "m^-1/2",
+       "Root mean square over time of the L² norm of the difference of the curvature (a bar: of the strain).",
+       "the error of the curvature"},
+      {"velocity-l2", "m^3/2/s", "Root mean square over time of the L² norm of the difference of the velocity.",
+       "the error of the velocity"},
+      {"energy", "J", "Mean over time of the modulus of the difference of the mechanical energy.",
+       "the error of the energy"},
+      {"impact-times", "s", "Largest distance from an impact of the reference to the nearest impact on the same side.",
+       "the error of the impact times"},
+      {"impulse", "N s", "Largest difference of the impulse so far: the contact force in the dual norm of W^{1,1}.",
+       "the error of the impulse"}};
+  return all;
+}
+
+}  // namespace
+
 const std::vector<std::string>& error_names() {
-  static const std::vector<std::string> names = {"tip-linf",    "tip-l2", "displacement-l2", "displacement-h2",
-                                                 "velocity-l2", "energy", "impact-times",    "impulse"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> out;
+    for (const ErrorInfo& one : error_infos()) out.push_back(one.name);
+    return out;
+  }();
   return names;
+}
+
+std::string error_words(const std::string& error) {
+  for (const ErrorInfo& one : error_infos())
+    if (one.name == error) return one.words;
+  return "the error of " + error;
 }
 
 std::vector<Field> comparison_keys() {
@@ -162,59 +205,22 @@ std::vector<MeasureInfo> comparison_measures() {
        "error is then the law's as well.",
        Of::computation},
       {"declared_order", "1", "Order in the step that the scheme declares for such a run.", Of::computation},
-      {"error.tip-linf", "m", "Largest difference of the tip's displacement from the reference, over the samples."},
-      {"error.tip-l2", "m", "Root mean square over time of the difference of the tip's displacement."},
-      {"error.displacement-l2", "m^3/2",
-       "Root mean square over time of the L² norm along x of the difference of the displacement."},
-      {"error.displacement-h2", "m^-1/2",
-       "Root mean square over time of the L² norm of the difference of the curvature (a bar: of the strain)."},
-      {"error.velocity-l2", "m^3/2/s", "Root mean square over time of the L² norm of the difference of the velocity."},
-      {"error.energy", "J", "Mean over time of the modulus of the difference of the mechanical energy."},
-      {"error.impact-times", "s",
-       "Largest distance from an impact of the reference to the nearest impact on the same side."},
-      {"error.impulse", "N s",
-       "Largest difference of the impulse so far: the contact force in the dual norm of W^{1,1}."},
-      {"floor.tip-linf", "m", "What the reference itself is uncertain by: below it the error says nothing.",
-       Of::computation},
-      {"floor.tip-l2", "m", "What the reference itself is uncertain by: below it the error says nothing.",
-       Of::computation},
-      {"floor.displacement-l2", "m^3/2", "What the reference itself is uncertain by: below it the error says nothing.",
-       Of::computation},
-      {"floor.displacement-h2", "m^-1/2", "What the reference itself is uncertain by: below it the error says nothing.",
-       Of::computation},
-      {"floor.velocity-l2", "m^3/2/s", "What the reference itself is uncertain by: below it the error says nothing.",
-       Of::computation},
-      {"floor.energy", "J", "What the reference itself is uncertain by: below it the error says nothing.",
-       Of::computation},
-      {"floor.impact-times", "s", "What the reference itself is uncertain by: below it the error says nothing.",
-       Of::computation},
-      {"floor.impulse", "N s", "What the reference itself is uncertain by: below it the error says nothing.",
-       Of::computation},
-      {"size.tip-linf", "m", "What this error would be of a motion at rest: errors over it are relative ones.",
-       Of::computation, true},
-      {"size.tip-l2", "m", "What this error would be of a motion at rest: errors over it are relative ones.",
-       Of::computation, true},
-      {"size.displacement-l2", "m^3/2",
-       "What this error would be of a motion at rest: errors over it are relative ones.", Of::computation, true},
-      {"size.displacement-h2", "m^-1/2",
-       "What this error would be of a motion at rest: errors over it are relative ones.", Of::computation, true},
-      {"size.velocity-l2", "m^3/2/s", "What this error would be of a motion at rest: errors over it are relative ones.",
-       Of::computation, true},
-      {"size.energy", "J", "What this error would be of a motion at rest: errors over it are relative ones.",
-       Of::computation, true},
-      {"size.impact-times", "s", "The horizon: errors over it are relative ones.", Of::computation, true},
-      {"size.impulse", "N s", "What this error would be of a motion at rest: errors over it are relative ones.",
-       Of::computation, true},
   };
-  for (MeasureInfo& one : all) {
-    one.of_each_size = true;
-    const std::string_view name = one.name, error = "error.";
-    if (!name.starts_with(error)) continue;
-    const std::string floor = "floor." + std::string(name.substr(error.size()));
-    const auto found =
-        std::find_if(all.begin(), all.end(), [&](const MeasureInfo& other) { return floor == other.name; });
-    if (found != all.end()) one.floor = found->name;
+  for (const ErrorInfo& one : error_infos()) {
+    MeasureInfo& error = all.emplace_back(MeasureInfo{one.error.c_str(), one.unit, one.text});
+    error.reading.words = one.words;
+    error.floor = one.floor.c_str();
   }
+  for (const ErrorInfo& one : error_infos())
+    all.push_back({one.floor.c_str(), one.unit,
+                   "What the reference itself is uncertain by: below it the error says nothing.", Of::computation});
+  for (const ErrorInfo& one : error_infos())
+    all.push_back({one.size.c_str(), one.unit,
+                   one.name == "impact-times"
+                       ? "The horizon: errors over it are relative ones."
+                       : "What this error would be of a motion at rest: errors over it are relative ones.",
+                   Of::computation, true});
+  for (MeasureInfo& one : all) one.of_each_size = true;
   return all;
 }
 

@@ -11,18 +11,6 @@
 
 namespace ricochet {
 
-std::string error_words(const std::string& error) {
-  if (error == "tip-linf") return "the largest error of the tip";
-  if (error == "tip-l2") return "the root mean square error of the tip";
-  if (error == "displacement-l2") return "the error of the displacement";
-  if (error == "displacement-h2") return "the error of the curvature";
-  if (error == "velocity-l2") return "the error of the velocity";
-  if (error == "impact-times") return "the error of the impact times";
-  if (error == "impulse") return "the error of the impulse";
-  if (error == "energy") return "the error of the energy";
-  return "the error of " + error;
-}
-
 std::string short_error_words(const std::string& error) {
   const std::string words = error_words(error), plain = "the error of ", the = "the ";
   const std::string rest = words.substr(words.starts_with(plain) ? plain.size() : 0);
