@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <functional>
@@ -364,9 +365,31 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
   return nearest.empty() ? std::string() : "; did you mean \"" + shortened(nearest) + "\"?";
 }
 
+namespace {
+
+/// Equal for names that differ in numbers alone: "third_octave_force_63Hz".
+std::string without_digits(const std::string& name) {
+  std::string out;
+  for (const char c : name)
+    if (std::isdigit(static_cast<unsigned char>(c)) == 0 && c != '.') out += c;
+  return out;
+}
+
+}  // namespace
+
 std::string quoted_list(const std::vector<std::string>& words) {
+  constexpr std::size_t few = 4;
+  const auto quoted = [](const std::string& word) { return "\"" + shortened(word) + "\""; };
   std::string result;
-  for (const std::string& word : words) result += (result.empty() ? "\"" : ", \"") + shortened(word) + "\"";
+  for (std::size_t k = 0; k < words.size();) {
+    const std::string family = without_digits(words[k]);
+    std::size_t end = k + 1;
+    while (end < words.size() && words[end] != words[k] && without_digits(words[end]) == family) ++end;
+    const bool run = !family.empty() && end - k > few;
+    if (!run) end = k + 1;
+    result += (result.empty() ? "" : ", ") + quoted(words[k]) + (run ? " … " + quoted(words[end - 1]) : "");
+    k = end;
+  }
   return result;
 }
 

@@ -80,7 +80,7 @@ std::string quote(const Json& value);
 /// "; did you mean "X"?" or "".
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
 
-/// "a", "b", "c".
+/// "a", "b", "c". Of five or more in a row that differ in numbers alone the first and the last: "p1" … "p9".
 std::string quoted_list(const std::vector<std::string>& words);
 
 }  // namespace ricochet

@@ -152,3 +152,13 @@ TEST_CASE("Messages quote long values cut short, at a character") {
   CHECK(cut.size() <= 80 * 2 + 4);
   CHECK_NOTHROW(Json::parse(cut.substr(0, cut.size() - 3) + "\""));
 }
+
+TEST_CASE("A list of names tells of many that differ in numbers alone the first and the last") {
+  CHECK(quoted_list({}).empty());
+  CHECK(quoted_list({"p1", "p2", "p3", "p4"}) == R"("p1", "p2", "p3", "p4")");
+  CHECK(quoted_list({"a", "p1", "p2", "p3", "p4", "p5", "q1"}) == R"("a", "p1" … "p5", "q1")");
+  CHECK(quoted_list({"at_0.5Hz", "at_1Hz", "at_1.5Hz", "at_2Hz", "at_10Hz"}) == R"("at_0.5Hz" … "at_10Hz")");
+  // Numbers alone are no family, nor is one name five times.
+  CHECK(quoted_list({"1", "2", "3", "4", "5"}) == R"("1", "2", "3", "4", "5")");
+  CHECK(quoted_list({"a", "a", "a", "a", "a"}) == R"("a", "a", "a", "a", "a")");
+}
