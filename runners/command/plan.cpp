@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <ostream>
+#include <set>
 
 #include "runners/asks/ask.hpp"
 #include "runners/command/command.hpp"
@@ -48,13 +49,14 @@ std::vector<AxisValues> axis_values(const Study& study) {
   std::vector<AxisValues> all;
   for (const std::string& name : study.columns) {
     AxisValues axis{name, {}};
+    std::set<std::string> seen;
     for (const StudyCase& study_case : study.cases) {
       if (!has_axis(study_case, name)) {
         axis.everywhere = false;
         continue;
       }
       const std::string value = shown(study_case, name);
-      if (std::find(axis.values.begin(), axis.values.end(), value) == axis.values.end()) axis.values.push_back(value);
+      if (seen.insert(value).second) axis.values.push_back(value);
     }
     all.push_back(std::move(axis));
   }

@@ -36,13 +36,6 @@ std::vector<double> steps_of(const Group& group) {
   return coarsest == finest ? std::vector<double>{coarsest} : std::vector<double>{coarsest, finest};
 }
 
-/// As tables of results write it, unless that has more digits than a person reads.
-std::string seconds(double h) {
-  constexpr std::size_t longest = 7;
-  const std::string text = Cell(h).text();
-  return (text.size() > longest ? fmt::format("{:.4g}", h) : text) + " s";
-}
-
 /// Three digits and no exponent, up to a million.
 std::string rounded(double value) {
   return value >= 1000 && value < 1e6 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
@@ -51,12 +44,12 @@ std::string rounded(double value) {
 std::string resolved_text(const StructurePhysics& physics, double h) {
   const int count = physics.resolved(h, enough_steps);
   const auto all = static_cast<int>(physics.pulsations.size());
-  if (count == 0) return fmt::format("h = {} resolves no mode", seconds(h));
+  if (count == 0) return fmt::format("h = {} resolves no mode", step_text(h));
   const std::string highest =
       rounded(physics.pulsations[static_cast<std::size_t>(count - 1)] / (2 * std::numbers::pi)) + " Hz";
-  if (all == 1) return fmt::format("h = {} resolves it", seconds(h));
-  if (count == all) return fmt::format("h = {} resolves all {} modes of this mesh, to {}", seconds(h), all, highest);
-  return fmt::format("h = {} resolves mode{} of {}, to {}", seconds(h),
+  if (all == 1) return fmt::format("h = {} resolves it", step_text(h));
+  if (count == all) return fmt::format("h = {} resolves all {} modes of this mesh, to {}", step_text(h), all, highest);
+  return fmt::format("h = {} resolves mode{} of {}, to {}", step_text(h),
                      count == 1 ? " 1" : fmt::format("s 1 to {}", count), all, highest);
 }
 
@@ -66,7 +59,7 @@ std::string modes_text(const StructurePhysics& physics, const std::vector<double
                            damping = {"damping ratio"};
   std::vector<std::vector<std::string>> periods;
   bool damped = false;
-  for (const double h : steps) periods.push_back({fmt::format("steps per period, h = {}", seconds(h))});
+  for (const double h : steps) periods.push_back({fmt::format("steps per period, h = {}", step_text(h))});
   for (std::size_t i = 0; i < shown; ++i) {
     const double omega = physics.pulsations[i];
     header.push_back(std::to_string(i + 1));

@@ -46,6 +46,9 @@ class CasePlanner {
   std::map<std::pair<std::string, std::string>, std::string> endless_;  ///< role and name → what was found
 };
 
+/// A step with its unit, as tables of results write it, unless that has more digits than a person reads.
+std::string step_text(double h);
+
 /// What a step makes of the contacts of compliant laws, a line for each law, scheme and step among these cases. A
 /// contact lasts half a period, π√(m/κ), of the law's spring κ on the mass m that moves in it. The line tells how many
 /// steps that is. It tells what share of its energy a bounce of m loses, over the instants of a step at which it may

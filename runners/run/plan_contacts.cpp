@@ -18,6 +18,12 @@
 #include "runners/table/text.hpp"
 
 namespace ricochet {
+
+std::string step_text(double h) {
+  constexpr std::size_t longest = 7;
+  const std::string text = Cell(h).text();
+  return (text.size() > longest ? fmt::format("{:.4g}", h) : text) + " s";
+}
 namespace {
 
 constexpr std::size_t most_contact_lines = 8;
@@ -186,8 +192,8 @@ std::string line_of(const StudyCase& given, const StopSpring& stop, double h, co
   const double half = std::numbers::pi / spring->pulsation;
   const double steps = half / h;
   std::string text = fmt::format(
-      "    {}{}; {}, h = {} s: half a period lasts {}: {} steps", stop.stop.empty() ? "" : "stop " + stop.stop + ", ",
-      law_text(one.contact, stop.stiffness), one.time.name, Cell(h).text(), duration_text(half), steps_text(steps));
+      "    {}{}; {}, h = {}: half a period lasts {}: {} steps", stop.stop.empty() ? "" : "stop " + stop.stop + ", ",
+      law_text(one.contact, stop.stiffness), one.time.name, step_text(h), duration_text(half), steps_text(steps));
   if (!std::holds_alternative<OscillatorSpec>(one.scene.structure))
     text += fmt::format(" ({:.3g} kg move)", spring->mass);
   text += left_out_text(one, stop, registry);
@@ -213,9 +219,9 @@ std::string swings_of(const StudyCase& one, double h, const Registry& registry) 
     const auto spring = contact_spring(*problem, 1 / gives_way, along);
     if (!spring) continue;
     const double swing = 2 * std::numbers::pi / spring->pulsation;
-    text += fmt::format("    stop {}, {} of {:.4g} N/m, h = {} s: held, it swings in {}, undamped: {} steps\n",
+    text += fmt::format("    stop {}, {} of {:.4g} N/m, h = {}: held, it swings in {}, undamped: {} steps\n",
                         problem->stops[static_cast<std::size_t>(point.point)], one.friction.name, 1 / gives_way,
-                        Cell(h).text(), duration_text(swing), steps_text(swing / h));
+                        step_text(h), duration_text(swing), steps_text(swing / h));
   }
   return text;
 }
