@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
@@ -279,6 +280,31 @@ void check_kind(const StudyKind& kind, const Json& resolved) {
     throw InputError("/scene/points", "a study of kind " + kind.name + " shows no points; expected kind trajectory");
 }
 
+/// Combinations of lists in the scene with the axes beside it, as parse_study() makes them. Too many are refused where
+/// the longest list stands.
+double count_cases(const std::vector<Axis>& lists, const std::vector<CaseAxis>& axes) {
+  constexpr std::array places = {"/methods/mass",
+                                 "/methods/contact",
+                                 "/methods/friction",
+                                 "/methods/time",
+                                 "/mesh",
+                                 "/step",
+                                 "/steps_per_period",
+                                 "/march",
+                                 "/mesh"};
+  Product everything;
+  std::size_t longest = 0;
+  std::string pointer;
+  const auto add = [&](std::size_t size, const std::string& where) {
+    everything.add(size);
+    if (size > longest) longest = size, pointer = where;
+  };
+  for (const Axis& list : lists) add(list.values.size(), list.pointer);
+  for (std::size_t k = 0; k < axes.size(); ++k) add(axes[k].levels.size(), places.at(k));
+  everything.refuse_above(largest_study, pointer);
+  return everything.count();
+}
+
 }  // namespace
 
 Study parse_study(const std::string& text, Catalogue& catalogue, Registry& registry,
@@ -324,10 +350,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
                  &StudyCase::steps_per_period),
       plain_axis("march", resolved.contains("march"), marches, &StudyCase::march),
       basis_axis(bases, resolved["mesh"], modal)};
-  Product everything;
-  for (const Axis& list : lists) everything.add(list.values.size());
-  for (const CaseAxis& axis : axes) everything.add(axis.levels.size());
-  everything.refuse_above(largest_study, "");
+  const double combinations = count_cases(lists, axes);
 
   const auto fewer = [](const MeshChoice& a, const MeshChoice& b) { return a.elements < b.elements; };
   const MeshChoice &finest = *std::max_element(meshes.begin(), meshes.end(), fewer),
@@ -339,7 +362,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   if (Json said = common.files->said(); !said.is_null())
     resolved["files"] = with_layout(std::move(said), scenes.front().scene);
   if (kind.check_methods)
-    kind.check_methods(resolved, common.settings, registry, everything.count(),
+    kind.check_methods(resolved, common.settings, registry, combinations,
                        make_space(scenes.front().scene.structure, coarse.elements).dofs);
 
   axes.insert(axes.begin(), scene_axis(scenes));

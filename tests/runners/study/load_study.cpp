@@ -307,6 +307,10 @@ TEST_CASE("Too many combinations are refused with their number, before they are 
   Json study = with("/scene/support", {{"amplitude", amplitudes}, {"pulsation", 10}});
   study["step"] = steps;
   CHECK_THAT(refusal(study), Contains("1000000 combinations") && Contains("at most 200000"));
+  // Where the longest list stands, whatever it is in.
+  CHECK_THAT(refusal(study), Catch::Matchers::StartsWith("/scene/support/amplitude: "));
+  study["step"].push_back(1e-3);
+  CHECK_THAT(refusal(study), Catch::Matchers::StartsWith("/step: "));
 }
 
 TEST_CASE("Every shipped study parses with the plugins of this build") {
