@@ -332,6 +332,7 @@ ObservedLimit observed_limit(const std::vector<double>& steps, const std::vector
     (cell->stable() ? low : high) = middle;
   }
   limit.step = std::sqrt(low * high);
+  limit.half = std::max(high - *limit.step, *limit.step - low);
   return limit;
 }
 

@@ -68,6 +68,7 @@ ObservedOrRefusal observe_scene(const std::shared_ptr<const SemiDiscrete>& probl
 /// The step between the last stable of `steps` (increasing) and the first unstable one after it, to 1 %.
 struct ObservedLimit {
   std::optional<double> step;
+  double half = 0;           ///< s: the limit lies within step ± half
   bool below_range = false;  ///< the first step is unstable already
   bool returns = false;      ///< a larger step of the range is stable again
 };

@@ -375,10 +375,13 @@ class StabilityRun {
     const double open = sides.front().predicted.step.value_or(none);
     const bool unseen =
         sides.back().untouched && (predicted < (1 - limit_tolerance) * open || sides.back().predicted.below_range);
+    double half = 0;
     for (const Side& side : sides)
-      if (!unseen) observed = std::min(observed, side.observed.step.value_or(none));
+      if (!unseen && side.observed.step.value_or(none) < observed)
+        observed = *side.observed.step, half = side.observed.half;
     put_limit("limit_predicted", predicted, sides, false);
     put_limit("limit_observed", observed, sides, true);
+    if (std::isfinite(observed)) put_measure(record_, "limit_resolution", half);
     if (radius >= 0) put_measure(record_, "largest_radius", radius);
     put_measure(record_, "agreement", agreement);
   }

@@ -285,8 +285,8 @@ Cases counted_open(const StudyResults& results) {
   Cases open = all_cases(results), out;
   std::erase_if(open, [](const CaseRecord* record) { return !step_range(*record, false); });
   for (const Cases& group : groups_of(open, others)) {
-    const auto done =
-        std::find_if(group.begin(), group.end(), [](const CaseRecord* record) { return record->status == Status::done; });
+    const auto done = std::find_if(group.begin(), group.end(),
+                                   [](const CaseRecord* record) { return record->status == Status::done; });
     out.push_back(done == group.end() ? group.front() : *done);
   }
   return out;

@@ -31,7 +31,7 @@ struct StepLimit {
   const CaseRecord* record = nullptr;
   LimitRow open, closed;
   Bound bound = Bound::unknown;
-  std::optional<double> step = {}, low = {}, high = {};  ///< s: allowed; the same as marched and as predicted
+  std::optional<double> step = {}, low = {}, high = {};  ///< s: allowed; from and to what is predicted and marched
   std::string reason = {};
 };
 
@@ -82,7 +82,9 @@ class StepsAsk {
       row.cases = 1;
       row.left_out = 0;
       bars.push_back({{"name", row.level}, {"group", row.verdict}});
-      if (one.step) bars.back().update({{"value", *one.step}, {"low", *one.low}, {"high", *one.high}});
+      if (one.step)
+        bars.back().update(
+            {{"value", *one.step}, {"low", one.low.value_or(*one.step)}, {"high", one.high.value_or(*one.step)}});
       out.rows.push_back(std::move(row));
       unlike += apart(one);
     }
@@ -141,7 +143,6 @@ class StepsAsk {
       out.step = step;
       if (step) {
         const LimitRow& own = has_closed ? closed : open;
-        out.low = out.high = step;
         if (own.observed) {
           out.low = std::min(*step, *own.observed);
           out.high = std::max(*step, *own.observed);

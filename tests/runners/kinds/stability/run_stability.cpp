@@ -110,6 +110,10 @@ TEST_CASE("central differences: the predicted limit, the observed one within 2 %
                observed = result.column("limit_observed", "open").front().number().value();
   CHECK(observed == Approx(predicted).epsilon(0.02));
   CHECK(*result.measure("agreement") == Approx(1).epsilon(0.02));
+  // A bisection that ends at 1 % leaves half of it open.
+  REQUIRE(result.measure("limit_resolution"));
+  CHECK(*result.measure("limit_resolution") > 1e-3 * observed);
+  CHECK(*result.measure("limit_resolution") < 0.0051 * observed);
   CHECK(*result.measure("limit_predicted") <= predicted);
   CHECK(*result.measure("largest_radius") > 1);
   const auto radius = result.column("radius", "open"), status = result.column("status", "open"),
