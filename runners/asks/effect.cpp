@@ -38,6 +38,14 @@ void judge(Told& told, double from) {
     return;
   }
   const Pair& pair = *told.pair;
+  if (pair.least) {
+    const bool larger = pair.share && std::abs(*pair.share) > from;
+    told.verdict = larger ? Verdict::yes : Verdict::open;
+    told.reason = !pair.share ? pair.unknown
+                  : larger    ? "at least, one lies beyond the range"
+                              : "one lies beyond the range";
+    return;
+  }
   const double floor = std::max(pair.first->floor, pair.second->floor);
   if (!pair.share) {
     if (std::abs(pair.base + pair.difference) <= floor) {
@@ -72,7 +80,7 @@ std::string share_text(const Pair& pair) {
   words.unit = "%";
   words.factor = per_cent;
   const std::string value = answers::with_uncertainty(words, std::abs(share), pair.share_u);
-  return (value.starts_with("0 ") ? "" : share < 0 ? "−" : "+") + value;
+  return (pair.least ? "at least " : "") + std::string(value.starts_with("0 ") ? "" : share < 0 ? "−" : "+") + value;
 }
 
 class EffectSpeaker {

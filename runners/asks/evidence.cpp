@@ -158,6 +158,11 @@ double Evidence::resolution(const std::string& name, const Point& point, bool by
   return steps * point.finest->first / over;
 }
 
+std::optional<double> least_of(const CaseRecord& record, const std::string& name) {
+  if (record.status != Status::done || measure(record, name)) return std::nullopt;
+  return measure(record, "least." + name);
+}
+
 std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cases& cases,
                                     const std::vector<std::string>& columns, bool shares) const {
   InOrderMet<std::string, Point> groups;
@@ -191,6 +196,12 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
         if (const auto scale = measure(*record, words.scale)) largest = std::max(largest, std::abs(*scale));
       point.floor = std::max(point.floor, 0x1p-52 * static_cast<double>(record->steps));
     }
+    if (point.behind.empty())
+      for (const CaseRecord* record : point.cases)
+        if (const auto least = least_of(*record, measure_of_all)) {
+          point.behind.push_back(record);
+          point.values[{1, mesh_chosen ? 1 : study_.elements(*record).value_or(1)}][""] = *least;
+        }
     point.floor *= share ? 1 : largest;
     round_off.push_back(point.floor);
     for (const auto& [size, value] : point.values)
@@ -212,6 +223,7 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
     if (!out[k].estimate) continue;
     Estimate& one = *out[k].estimate;
     if (std::abs(one.value) <= round_off[k]) one.value = 0;
+    one.beyond = least_of(*out[k].behind.front(), measure_of_all).has_value();
     // What nothing refines and nothing draws is known as it is.
     if (!one.has_step && !one.grows && !one.u()) one.step = out[k].floor;
   }
@@ -222,7 +234,7 @@ LeftOut Evidence::left_out(const std::string& name, const Cases& cases) const {
   InOrderMet<std::string, LeftOut::Reason> groups;  // reasons that differ in numbers alone are one
   LeftOut out;
   for (const CaseRecord* record : cases) {
-    if (record->status == Status::done && measure(*record, name)) continue;
+    if (record->status == Status::done && (measure(*record, name) || least_of(*record, name))) continue;
     ++out.count;
     std::string why, key;
     if (record->partial) {

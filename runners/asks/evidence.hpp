@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <map>
 #include <optional>
 #include <ricochet/measure/statistics/refinement.hpp>
@@ -25,6 +26,7 @@ struct Estimate {
   std::optional<double> order;       ///< in the step
   std::size_t steps = 1, meshes = 1, seeds = 1;
   bool has_step = true;  ///< whether its study has a step to refine
+  bool beyond = false;   ///< all that is known is that it lies above `value`, where the study stopped looking
   /// What is not known at all: "one step"; "" where u holds all.
   std::string unknown() const;
   /// The sum of what is known; nothing where it grows, or where nothing is known.
@@ -32,7 +34,7 @@ struct Estimate {
   /// Whether value ± u holds all that leaves it open.
   bool has_interval() const { return u() && unknown().empty(); }
   double low() const { return value - u().value_or(0); }
-  double high() const { return value + u().value_or(0); }
+  double high() const { return beyond ? INFINITY : value + u().value_or(0); }
 };
 
 /// A size of refinement: the step (1 where none varies), the elements (1 likewise).
@@ -71,6 +73,9 @@ struct LeftOut {
   /// A sentence each: "Left out: 12 refused: …."; of more than three reasons the two of most cases, and how many more.
   std::vector<std::string> told() const;
 };
+
+/// What a value is at least of which a case says no more (its measure `least.NAME`); nothing where it has the value.
+std::optional<double> least_of(const CaseRecord& record, const std::string& measure);
 
 /// The results of a study as verbs look at them.
 class Evidence {

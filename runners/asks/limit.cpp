@@ -33,6 +33,10 @@ Verdict verdict_of(const Line& line, const Bounds& bounds) {
   if (!line.known()) return Verdict::open;
   const Estimate& one = line.estimate();
   if (!one.has_interval()) return Verdict::open;
+  if (one.beyond)
+    return bounds.below && one.value >= *bounds.below                   ? Verdict::no
+           : !bounds.below && bounds.above && one.value > *bounds.above ? Verdict::yes
+                                                                        : Verdict::open;
   const double refinement = one.step.value_or(0) + one.mesh.value_or(0);
   bool all = bounds.holds(one.low()) && bounds.holds(one.high()), beyond = false;
   const auto surely_beyond = [&](double value, double u) {

@@ -27,6 +27,7 @@ std::vector<const Line*> Lines::known() const {
 }
 
 std::string Lines::text(const Estimate& estimate) const {
+  if (estimate.beyond) return "at least " + answers::value_text(words, estimate.value, {});
   return answers::with_uncertainty(words, estimate.value, estimate.u());
 }
 
@@ -48,11 +49,11 @@ VerdictRow Lines::row(const Line& line) const {
   }
   const Estimate& one = line.estimate();
   out.value = words.factor * one.value;
-  if (one.u()) {
+  if (one.u() && !one.beyond) {
     out.low = words.factor * one.low();
     out.high = words.factor * one.high();
   }
-  out.reason = one.grows ? one.motion : one.unknown();
+  out.reason = one.beyond ? "at least, beyond the range" : one.grows ? one.motion : one.unknown();
   return out;
 }
 

@@ -20,10 +20,27 @@ std::string why_not(const Estimate& estimate) {
   return estimate.grows ? "the difference grows without bound" : estimate.unknown();
 }
 
+/// Where one value or both lie beyond their ranges: by how much they differ at least.
+Pair pair_beyond(const Point& first, const Point& second) {
+  const Estimate &a = *first.estimate, &b = *second.estimate;
+  Pair out{&first, &second};
+  out.base = a.value;
+  out.difference = b.value - a.value;
+  out.least = true;
+  const Estimate &known = a.beyond ? b : a, &least = a.beyond ? a : b;
+  if (known.beyond || !(least.value > known.high()) || a.value <= 0)
+    out.unknown = known.beyond ? "both lie beyond the range" : "one lies beyond the range";
+  else
+    out.share = (a.beyond ? b.high() - a.value : b.value - a.high()) / a.value;
+  return out;
+}
+
 }  // namespace
 
 std::optional<Pair> pair_of(const Point& first, const Point& second) {
   if (!first.finest || !second.finest) return std::nullopt;
+  if (first.estimate && second.estimate && (first.estimate->beyond || second.estimate->beyond))
+    return pair_beyond(first, second);
   std::map<Size, std::map<std::string, double>> differences;
   std::optional<Size> finest;
   for (const auto& [size, by_seed] : first.values) {

@@ -37,8 +37,10 @@ Verdict state(const Line& line, const Condition& condition, bool counts) {
     }
   const Estimate& one = line.estimate();
   if (!one.unknown().empty() || one.grows) return Verdict::open;
+  if (one.beyond && condition.is) return one.value > *condition.is ? Verdict::no : Verdict::open;
   if (counts || condition.is) return holds == all ? Verdict::yes : holds == 0 ? Verdict::no : Verdict::open;
   const bool low = condition.holds(one.low()), high = condition.holds(one.high());
+  if (one.beyond) return low && high ? Verdict::yes : !low && !high ? Verdict::no : Verdict::open;
   return low && high ? Verdict::yes : !low && !high && !condition.holds(one.value) ? Verdict::no : Verdict::open;
 }
 

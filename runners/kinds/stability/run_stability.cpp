@@ -394,9 +394,10 @@ class StabilityRun {
       record_.left_out.emplace_back(name, untouched_text);
       return;
     }
-    if (std::all_of(sides.begin(), sides.end(), [&](const Side& side) { return side.always_stable(marched); }))
+    if (std::all_of(sides.begin(), sides.end(), [&](const Side& side) { return side.always_stable(marched); })) {
       record_.left_out.emplace_back(name, "every step of the range is stable");
-    else if (marched && std::any_of(sides.begin(), sides.end(), [](const Side& side) { return side.never_stable(); }))
+      put_measure(record_, std::string("least.") + name, *std::max_element(steps_.begin(), steps_.end()));
+    } else if (marched && std::any_of(sides.begin(), sides.end(), [](const Side& side) { return side.never_stable(); }))
       record_.left_out.emplace_back(name, "no step of the range is stable");
   }
 

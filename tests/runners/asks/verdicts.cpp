@@ -105,6 +105,43 @@ TEST_CASE("asks: a limit that holds since nothing happened in a doubtful run is 
   CHECK(passes() == Verdict::yes);
 }
 
+TEST_CASE("asks: a limit beyond the range is larger than what was found, and not told from another") {
+  // Of m0 the limit is known; of m1 and m2 every step of the range, up to 1e-2 s, is stable.
+  Made made;
+  made.choices = {{"mass", {"m0", "m1", "m2"}}};
+  made.steps = {1e-3};
+  made.measure = "limit_observed";
+  made.truth = [](const std::vector<std::size_t>&) { return 1e-4; };
+  StudyResults results = made.results();
+  results.kind = "stability";
+  std::erase(results.columns, "step");
+  for (CaseRecord& record : results.cases) {
+    std::erase_if(record.axes, [](const auto& axis) { return axis.first == "step"; });
+    if (record.axes[0].second == "m0") continue;
+    record.measures = {{"least.limit_observed", 1e-2}};
+    record.left_out.emplace_back("limit_observed", "every step of the range is stable");
+  }
+  const auto told = [&](Json ask) {
+    const Answered answered = answer_of(results, ask);
+    UNSCOPED_INFO(answered.sentence);
+    return answered;
+  };
+  const Answered rank = told({{"rank", "limit_observed"}, {"over", "mass"}});
+  REQUIRE(rank.rows.size() == 3);
+  CHECK(rank.rows[0].verdict == "1 to 2");
+  CHECK(rank.rows[2].verdict == "3");
+  CHECK(rank.rows[2].level == "m0");
+  CHECK(rank.left_out == 0);
+  const Answered effect = told({{"effect", "mass"}, {"on", "limit_observed"}, {"from", 10}});
+  CHECK(effect.verdict == "yes");
+  CHECK(effect.sentence.find("to at least 0.01 s") != std::string::npos);
+  CHECK(told({{"effect", "mass"}, {"on", "limit_observed"}, {"from", 100}}).passes == Verdict::open);
+  CHECK(told({{"limit", "limit_observed"}, {"above", 5e-5}}).passes == Verdict::yes);
+  CHECK(told({{"limit", "limit_observed"}, {"below", 5e-3}}).passes == Verdict::no);
+  CHECK(told({{"limit", "limit_observed"}, {"below", 5e-2}}).passes == Verdict::open);
+  CHECK(told({{"value", "limit_observed"}}).sentence.find("at least 0.01 s") != std::string::npos);
+}
+
 }  // namespace
 
 TEST_CASE("asks: a limit is never said to hold, or to be broken, against the truth") {

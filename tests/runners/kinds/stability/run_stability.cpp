@@ -182,6 +182,7 @@ TEST_CASE("where every step is stable the case says so in the place of a limit")
     const auto& why = result.record.left_out;
     CHECK(std::find(why.begin(), why.end(),
                     std::pair<std::string, std::string>(name, "every step of the range is stable")) != why.end());
+    CHECK(result.measure(std::string("least.") + name) == 1e-2);
   }
 }
 
