@@ -12,6 +12,7 @@
 #include <ricochet/scene/stop_parameters.hpp>
 
 #include "runners/kinds/stability/stability.hpp"
+#include "runners/kinds/stability/stability_side.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
@@ -20,60 +21,11 @@
 namespace ricochet {
 namespace {
 
-// A growth per step that 3000 steps without contact show beyond doubt: by a factor of twenty.
-constexpr double plain_growth = 1e-3;
-
 constexpr const char* untouched_text = "not observed: the scene touches no stop";
 
 void append(std::string& reason, const std::string& sentence) {
   if (!sentence.empty()) reason += (reason.empty() ? "" : "; ") + sentence;
 }
-
-// One contact state over the whole range.
-struct Side {
-  bool closed = false;
-  const char* name() const { return closed ? "closed" : "open"; }
-  std::vector<std::optional<SpectrumOrRefusal>> spectra;
-  std::vector<std::optional<ObservedCell>> cells;
-  StepLimit predicted;
-  ObservedLimit observed;
-  bool untouched = false;  ///< closed: the scene stays bounded and touches no stop, so nothing of contact was observed
-
-  /// What scenes that touch no stop showed of contact: nothing.
-  void forget_untouched() {
-    const auto touches = [](const auto& cell) { return cell && (cell->touched || !cell->stable()); };
-    const auto marched = [](const auto& cell) { return cell.has_value(); };
-    untouched =
-        closed && std::any_of(cells.begin(), cells.end(), marched) && std::none_of(cells.begin(), cells.end(), touches);
-    if (untouched) std::fill(cells.begin(), cells.end(), std::nullopt);
-  }
-  /// Marched somewhere, and stable nowhere.
-  bool never_stable() const {
-    const auto stable = [](const auto& cell) { return cell && cell->stable(); };
-    const auto marched = [](const auto& cell) { return cell.has_value(); };
-    return std::any_of(cells.begin(), cells.end(), marched) && std::none_of(cells.begin(), cells.end(), stable);
-  }
-  /// Marched, or with a spectrum, at every step, and stable at all of them.
-  bool always_stable(bool marched) const {
-    const auto bounded = [](const auto& cell) { return cell && cell->stable(); };
-    const auto inside = [](const auto& one) {
-      const auto* known = one ? std::get_if<StepSpectrum>(&*one) : nullptr;
-      return known && known->stable();
-    };
-    return marched ? !cells.empty() && std::all_of(cells.begin(), cells.end(), bounded)
-                   : !spectra.empty() && std::all_of(spectra.begin(), spectra.end(), inside);
-  }
-  /// Without contact a step is linear: it does what its spectrum says, or the plan is not what is marched.
-  bool contradicts(std::size_t i) const {
-    const StepSpectrum* known = spectrum(i);
-    if (closed || !known || cells.size() <= i || !cells[i]) return false;
-    if (cells[i]->stable()) return known->radius > 1 + plain_growth && cells[i]->steps >= free_steps;
-    return known->stable() && known->marginal.empty();
-  }
-  const StepSpectrum* spectrum(std::size_t i) const {
-    return spectra[i] ? std::get_if<StepSpectrum>(&*spectra[i]) : nullptr;
-  }
-};
 
 class StabilityRun {
  public:
@@ -102,16 +54,16 @@ class StabilityRun {
     record_.notes.insert(record_.notes.end(), predictor_->notes().begin(), predictor_->notes().end());
     if (const auto refusal = refused_everywhere()) return refused(*refusal);
 
-    std::vector<Side> sides(touches_ ? 2 : 1);
+    std::vector<StabilitySide> sides(touches_ ? 2 : 1);
     if (touches_) sides[1].closed = true;
-    for (Side& side : sides) predict(side);
+    for (StabilitySide& side : sides) predict(side);
     if (touches_ && !law->reads()) say_restitution();
     record_.setup_seconds = thread_seconds() - begin_;
     const bool observe = case_.settings.value("observe", true);
     if (observe) {
       say_horizon();
       try {
-        for (Side& side : sides) this->observe(side);
+        for (StabilitySide& side : sides) this->observe(side);
       } catch (const IndefiniteStep& wrong) {
         name_indefinite(wrong, case_, registry_);
       }
@@ -161,7 +113,7 @@ class StabilityRun {
   }
   bool spent() const { return thread_seconds() - begin_ > budget_of(case_); }
 
-  SpectrumOrRefusal spectrum(const Side& side, double h, Detail detail) const {
+  SpectrumOrRefusal spectrum(const StabilitySide& side, double h, Detail detail) const {
     check_stop();
     const auto made = plan(h);
     if (const auto* refusal = std::get_if<Refusal>(&made)) return *refusal;
@@ -169,7 +121,7 @@ class StabilityRun {
     return side.closed ? predictor_->worst_closed(step, h, detail) : predictor_->open(step, h, detail);
   }
 
-  void predict(Side& side) const {
+  void predict(StabilitySide& side) const {
     for (const double h : steps_)
       side.spectra.push_back(spent() ? std::nullopt : std::optional(spectrum(side, h, Detail::full)));
     // The limit is searched with radii alone; the spectrum beyond it is told whole.
@@ -209,7 +161,7 @@ class StabilityRun {
             : std::string()));
   }
 
-  std::optional<ObservedCell> march(const Side& side, double h) {
+  std::optional<ObservedCell> march(const StabilitySide& side, double h) {
     check_stop();
     const auto made = plan(h);
     if (spent() || std::holds_alternative<Refusal>(made)) return std::nullopt;
@@ -231,7 +183,7 @@ class StabilityRun {
     return whole ? std::optional(*cell) : std::nullopt;
   }
 
-  void observe(Side& side) {
+  void observe(StabilitySide& side) {
     for (const double h : steps_) side.cells.push_back(march(side, h));
     side.forget_untouched();
     // Below the range a scene would be cut short before anything happens in it.
@@ -248,7 +200,8 @@ class StabilityRun {
 
   // Status and reason of one row: the prediction, what was seen, and whether they agree. A scene is open now and then:
   // what grows there grows in it.
-  static std::pair<std::string, std::string> verdict(const Side& open, const Side& side, std::size_t i, bool observed) {
+  static std::pair<std::string, std::string> verdict(const StabilitySide& open, const StabilitySide& side,
+                                                     std::size_t i, bool observed) {
     std::string status, reason;
     bool grows = false;
     if (const StepSpectrum* known = side.spectrum(i)) {
@@ -285,11 +238,11 @@ class StabilityRun {
     return {status, reason};
   }
 
-  void tabulate(const std::vector<Side>& sides, bool observed) {
+  void tabulate(const std::vector<StabilitySide>& sides, bool observed) {
     std::vector<StabilityRow> rows;
     std::vector<ObservedRow> seen;
     std::vector<RootRow> roots;
-    for (const Side& side : sides)
+    for (const StabilitySide& side : sides)
       for (std::size_t i = 0; i < steps_.size(); ++i) {
         const StepSpectrum* known = side.spectrum(i);
         if (known) add_roots(roots, side.closed, steps_[i], steps_.size(), *known);
@@ -314,11 +267,11 @@ class StabilityRun {
     record_.tables.push_back(stability_type().with(rows));
     record_.tables.push_back(stability_roots_type().with(roots));
     if (observed) record_.tables.push_back(stability_observed_type().with(seen));
-    for (const Side& side : sides) say_limits(sides, side, observed);
+    for (const StabilitySide& side : sides) say_limits(sides, side, observed);
     if (observed) say_contradictions(sides.front());
   }
 
-  void say_contradictions(const Side& open) {
+  void say_contradictions(const StabilitySide& open) {
     std::vector<double> where;
     for (std::size_t i = 0; i < steps_.size(); ++i)
       if (open.contradicts(i)) where.push_back(steps_[i]);
@@ -331,12 +284,12 @@ class StabilityRun {
   }
 
   // The smaller of what is predicted for the contact state and, for scenes, for the open structure.
-  static std::optional<double> expected(const std::vector<Side>& sides, const Side& side) {
+  static std::optional<double> expected(const std::vector<StabilitySide>& sides, const StabilitySide& side) {
     const auto &own = side.predicted.step, &open = sides.front().predicted.step;
     return own && open ? std::optional(std::min(*own, *open)) : own ? own : open;
   }
 
-  void say_limits(const std::vector<Side>& sides, const Side& side, bool observed) {
+  void say_limits(const std::vector<StabilitySide>& sides, const StabilitySide& side, bool observed) {
     const auto say = [&](std::string sentence) { record_.notes.push_back(std::string(side.name()) + ": " + sentence); };
     if (const auto& limit = side.predicted.step)
       say(fmt::format(
@@ -361,10 +314,10 @@ class StabilityRun {
     if (side.observed.returns) say("beyond the observed limit some steps are stable again");
   }
 
-  void measure(const std::vector<Side>& sides) {
+  void measure(const std::vector<StabilitySide>& sides) {
     const double none = std::numeric_limits<double>::infinity();
     double predicted = none, observed = none, radius = -1, agreement = none;
-    for (const Side& side : sides) {
+    for (const StabilitySide& side : sides) {
       predicted = std::min(predicted, side.predicted.step.value_or(none));
       for (std::size_t i = 0; i < steps_.size(); ++i)
         if (const StepSpectrum* known = side.spectrum(i)) radius = std::max(radius, known->radius);
@@ -376,7 +329,7 @@ class StabilityRun {
     const bool unseen =
         sides.back().untouched && (predicted < (1 - limit_tolerance) * open || sides.back().predicted.below_range);
     double half = 0;
-    for (const Side& side : sides)
+    for (const StabilitySide& side : sides)
       if (!unseen && side.observed.step.value_or(none) < observed)
         observed = *side.observed.step, half = side.observed.half;
     put_limit("limit_predicted", predicted, sides, false);
@@ -387,21 +340,24 @@ class StabilityRun {
   }
 
   // Or why there is none.
-  void put_limit(const char* name, double limit, const std::vector<Side>& sides, bool marched) {
+  void put_limit(const char* name, double limit, const std::vector<StabilitySide>& sides, bool marched) {
     put_measure(record_, name, limit);
     if (std::isfinite(limit)) return;
     if (marched && sides.back().untouched) {
       record_.left_out.emplace_back(name, untouched_text);
       return;
     }
-    if (std::all_of(sides.begin(), sides.end(), [&](const Side& side) { return side.always_stable(marched); })) {
+    if (std::all_of(sides.begin(), sides.end(), [&](const StabilitySide& side) {
+          return marched ? side.marched_stably() : side.predicted_stable();
+        })) {
       record_.left_out.emplace_back(name, "every step of the range is stable");
       put_measure(record_, std::string("least.") + name, *std::max_element(steps_.begin(), steps_.end()));
-    } else if (marched && std::any_of(sides.begin(), sides.end(), [](const Side& side) { return side.never_stable(); }))
+    } else if (marched &&
+               std::any_of(sides.begin(), sides.end(), [](const StabilitySide& side) { return side.never_stable(); }))
       record_.left_out.emplace_back(name, "no step of the range is stable");
   }
 
-  void compare_declared(const Side& open) {
+  void compare_declared(const StabilitySide& open) {
     const StepLimit& limit = open.predicted;
     const bool unstable = limit.below_range || open.observed.below_range || open.never_stable();
     const double growing = limit.beyond ? limit.beyond->pulsation : 0;
