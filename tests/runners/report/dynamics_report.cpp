@@ -9,6 +9,7 @@
 #include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/table/table_reader.hpp"
 #include "tests/runners/report/rendered.hpp"
 #include "tests/runners/report/synthetic_dynamics.hpp"
 
@@ -191,9 +192,10 @@ TEST_CASE("what the script knows of an orbit is its row of values", "[report]") 
   const CaseRecord& record = results.cases[1];
   const nlohmann::ordered_json& one = data["cases"][record.id];
   const Table& table = record.tables[0];
+  const std::size_t evidence = TableReader(table).column("evidence");
   for (size_t row = 0; row < table.rows.size(); ++row) {
     CHECK(one["columns"]["parameter"][row] == json_of(table.rows[row][0]));
-    CHECK(one["columns"]["evidence"][row] == json_of(table.rows[row][21]));
+    CHECK(one["columns"]["evidence"][row] == json_of(table.rows[row][evidence]));
     CHECK(one["from"][row].get<double>() < table.rows[row][0].number().value());
     CHECK(one["to"][row].get<double>() > table.rows[row][0].number().value());
   }

@@ -66,11 +66,31 @@ inline CaseRecord dynamics_case(const std::string& time, double beta, const Dyna
       const double a = 1.2 + 1.75 * (amplitude - 0.07) / 0.03 + (beta < 0.3 ? 0.06 : 0);
       const bool refused = shape.refused && amplitude > 0.0995;
       if (refused) {
-        values.rows.push_back(
-            {amplitude, shape.starts[s], "failed", nullptr, nullptr,   nullptr,
-             nullptr,   nullptr,         nullptr,  "",      nullptr,   "",
-             nullptr,   nullptr,         nullptr,  nullptr, nullptr,   nullptr,
-             nullptr,   nullptr,         nullptr,  "",      "refused", "the support passes the <stop> at 0.0995 m"});
+        values.rows.push_back({amplitude,
+                               shape.starts[s],
+                               "failed",
+                               nullptr,
+                               nullptr,
+                               nullptr,
+                               nullptr,
+                               nullptr,
+                               nullptr,
+                               "",
+                               nullptr,
+                               "",
+                               nullptr,
+                               nullptr,
+                               nullptr,
+                               nullptr,
+                               nullptr,
+                               nullptr,
+                               nullptr,
+                               nullptr,
+                               nullptr,
+                               nullptr,
+                               "",
+                               "refused",
+                               "the support passes the <stop> at 0.0995 m"});
         continue;
       }
       const bool still = shape.starts[s] == "rest" && amplitude < 0.0791792;
@@ -110,6 +130,7 @@ inline CaseRecord dynamics_case(const std::string& time, double beta, const Dyna
                              true,
                              false,
                              0.1,
+                             0.0,
                              "recurs with period " + std::to_string(orbit.period) + " to 1e-9 of the scale",
                              "done",
                              ""});
