@@ -278,7 +278,8 @@ class IsolatedCases::Coordinator {
       if (told_to_stop && seconds_since(*told_to_stop) > patience) worker.kill();
       quiet += std::min(seconds_since(heard_at), 2 * poll_interval);
       heard_at = Clock::now();
-      if (state == Channel::Heard::silence) {
+      // One that was killed for its silence may take a while to end, and is then no longer seen as stopped.
+      if (state == Channel::Heard::silence && !silent) {
         const bool stopped = quiet > 2 * alive_every && worker.stopped();
         silent = quiet > (stopped ? longest_stop_of(find_case(context_.study, id)) : lost_after);
         if (silent) worker.kill();
