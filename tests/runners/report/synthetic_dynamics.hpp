@@ -66,31 +66,9 @@ inline CaseRecord dynamics_case(const std::string& time, double beta, const Dyna
       const double a = 1.2 + 1.75 * (amplitude - 0.07) / 0.03 + (beta < 0.3 ? 0.06 : 0);
       const bool refused = shape.refused && amplitude > 0.0995;
       if (refused) {
-        values.rows.push_back({amplitude,
-                               shape.starts[s],
-                               "failed",
-                               nullptr,
-                               nullptr,
-                               nullptr,
-                               nullptr,
-                               nullptr,
-                               nullptr,
-                               "",
-                               nullptr,
-                               "",
-                               nullptr,
-                               nullptr,
-                               nullptr,
-                               nullptr,
-                               nullptr,
-                               nullptr,
-                               nullptr,
-                               nullptr,
-                               nullptr,
-                               nullptr,
-                               "",
-                               "refused",
-                               "the support passes the <stop> at 0.0995 m"});
+        auto& row = values.rows.emplace_back(values.columns.size(), Cell(nullptr));
+        row[0] = amplitude, row[1] = shape.starts[s], row[2] = "failed";
+        row[row.size() - 2] = "refused", row.back() = "the support passes the <stop> at 0.0995 m";
         continue;
       }
       const bool still = shape.starts[s] == "rest" && amplitude < 0.0791792;
