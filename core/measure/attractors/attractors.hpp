@@ -103,7 +103,6 @@ class ScaleOfPoints {
 /// What one start settled on.
 struct SettledSection {
   MotionClass motion;  ///< sections of different classes are different attractors
-  bool cycle = false;  ///< a finite set of points
   SectionCloud cloud;
 };
 

@@ -39,7 +39,7 @@ void fill_by_neighbours(BasinGrid& grid) {
     const auto same = std::find_if(grid.ends.begin(), grid.ends.end(),
                                    [&](const SettledSection& end) { return end.motion == cell.motion; });
     cell.end = static_cast<int>(same - grid.ends.begin());
-    if (same == grid.ends.end()) grid.ends.push_back({cell.motion, true, {}});
+    if (same == grid.ends.end()) grid.ends.push_back({cell.motion, {}});
     front.push_back(place);
     flood(grid, front);
   }

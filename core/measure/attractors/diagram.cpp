@@ -85,7 +85,7 @@ struct OwnAttractor {
 /// A motion without contact is the linear response: of one scene there is one, told by its class.
 SettledSection for_matching(const SettledSection& section, bool linear) {
   if (!linear) return section;
-  return {section.motion, true, {}};
+  return {section.motion, {}};
 }
 
 std::vector<OwnAttractor> own_attractors(const Diagram& diagram, const ValueSections& sections, int value) {

@@ -163,11 +163,11 @@ class BasinCases {
   }
 
   SettledSection section_at(const Image& image, std::size_t place, const MotionClass& motion) const {
-    if (motion.regime == Regime::no_contact) return {motion, true, {}};
+    if (motion.regime == Regime::no_contact) return {motion, {}};
     const std::size_t row = image.row_of[place];
     const SectionReadings readings = image.sections.read(static_cast<double>(row), "");
     const int cycle = cycle_of(motion, image.rows[row].period);
-    return {motion, cycle > 0, make_cloud(readings.points, readings.opposite, scale_, cycle)};
+    return {motion, make_cloud(readings.points, readings.opposite, scale_, cycle)};
   }
 
   /// Over all cases, from 0; −1: not decided.

@@ -117,14 +117,14 @@ std::vector<CellEnd> cell_ends(const std::string& bytes) {
 
 SettledSection settled_section(const CellEnd& end, const SectionPlan& plan) {
   // A motion without contact is the linear response, told by its class.
-  if (end.motion.regime == Regime::no_contact) return {end.motion, true, {}};
+  if (end.motion.regime == Regime::no_contact) return {end.motion, {}};
   std::vector<CloudPoint> run, opposite;
   for (std::size_t i = 0; i < end.section.size(); ++i) {
     run.push_back({end.displacements[i], end.section[i].velocity});
     opposite.push_back({end.section[i].opposite_displacement, end.section[i].opposite_velocity});
   }
   const int cycle = cycle_of(end.motion, end.period);
-  return {end.motion, cycle > 0,
+  return {end.motion,
           make_cloud(run, opposite, {plan.scale, plan.scale * plan.pulsation}, cycle, end.open * plan.scale)};
 }
 

@@ -152,7 +152,7 @@ SettledSection settled_section(const StudyDiagram& study, std::size_t case_index
   const SectionReadings readings = study.sources[case_index].sections.read(
       run.parameter, study.diagram.starts[static_cast<std::size_t>(run.start)].name);
   const int cycle = run.cycle();
-  SettledSection out{run.motion, cycle > 0, {}};
+  SettledSection out{run.motion, {}};
   if (cycle == 0 || study.strobed) {
     out.cloud = make_cloud(readings.points, readings.opposite, study.scale, cycle, run.open);
     return out;

@@ -155,19 +155,19 @@ TEST_CASE("the scale is the spread, and never zero") {
 namespace {
 
 SettledSection orbit(double x, int period = 1) {
-  return {{Regime::periodic, period}, true, make_cloud(std::vector<CloudPoint>{{x, 0}}, {}, {1, 1}, 1)};
+  return {{Regime::periodic, period}, make_cloud(std::vector<CloudPoint>{{x, 0}}, {}, {1, 1}, 1)};
 }
 
 /// One that its steps leave open by so much.
 SettledSection open_orbit(double x, double open) {
-  return {{Regime::periodic, 1}, true, make_cloud(std::vector<CloudPoint>{{x, 0}}, {}, {2, 1}, 1, open)};
+  return {{Regime::periodic, 1}, make_cloud(std::vector<CloudPoint>{{x, 0}}, {}, {2, 1}, 1, open)};
 }
 
 SettledSection noise(std::mt19937& random, double x) {
   std::normal_distribution<double> normal;
   std::vector<CloudPoint> points;
   for (int k = 0; k < 300; ++k) points.push_back({x + normal(random), normal(random)});
-  return {{Regime::chaotic}, false, make_cloud(points, {}, {1, 1}, 0)};
+  return {{Regime::chaotic}, make_cloud(points, {}, {1, 1}, 0)};
 }
 
 }  // namespace
@@ -185,9 +185,8 @@ TEST_CASE("starts that settle on one orbit, or on one cloud, are one attractor")
   CHECK(split <= 2);
   CHECK(cluster_starts({}).empty());
   // Unknown sections: the class alone.
-  CHECK(cluster_starts({{{Regime::periodic, 3}, true, {}},
-                        {{Regime::periodic, 3}, true, {}},
-                        {{Regime::periodic, 4}, true, {}}}) == std::vector<int>{0, 0, 1});
+  CHECK(cluster_starts({{{Regime::periodic, 3}, {}}, {{Regime::periodic, 3}, {}}, {{Regime::periodic, 4}, {}}}) ==
+        std::vector<int>{0, 0, 1});
 }
 
 TEST_CASE("cycles that are nearer than their steps place them are one, as far as either is open") {

@@ -33,7 +33,7 @@ Diagram diagram_of(const std::vector<std::vector<MotionClass>>& classes) {
 
 SettledSection section_of(const DiagramRun& run) {
   const double x = run.motion.regime == Regime::chaotic ? 3 : run.motion.period;
-  return {run.motion, true, make_cloud(std::vector<CloudPoint>(8, {x, x}), {}, {1, 1}, 1)};
+  return {run.motion, make_cloud(std::vector<CloudPoint>(8, {x, x}), {}, {1, 1}, 1)};
 }
 
 Diagram with_attractors(const std::vector<std::vector<MotionClass>>& classes) {

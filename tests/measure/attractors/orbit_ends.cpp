@@ -12,7 +12,6 @@ namespace {
 /// A periodic end at a place of the plane, with its mirror image at another.
 SettledSection cycle(double x, double v, double image_x, double image_v, int period = 1) {
   return {{Regime::periodic, period},
-          true,
           make_cloud(std::vector<CloudPoint>(20, {x, v}), std::vector<CloudPoint>(20, {image_x, image_v}), {1, 1}, 1)};
 }
 
@@ -23,7 +22,7 @@ SettledSection noise(std::mt19937& random, double x, Regime regime) {
     run.push_back({x + normal(random), normal(random)});
     opposite.push_back({9 + normal(random), normal(random)});
   }
-  return {{regime}, false, make_cloud(run, opposite, {1, 1}, 0)};
+  return {{regime}, make_cloud(run, opposite, {1, 1}, 0)};
 }
 
 }  // namespace
@@ -35,11 +34,11 @@ TEST_CASE("orbit ends: one orbit, or its mirror image, is one end, another orbit
   CHECK(ends.label(cycle(-0.2, 0.4, 0.3, 0.7)) == 0);                // the image
   CHECK(ends.label(cycle(0.3, 0.9, -0.2, 0.1)) == 1);
   CHECK(ends.label(cycle(0.3, 0.7, -0.2, 0.4, 2)) == 2);
-  CHECK(ends.label({{Regime::no_contact}, true, {}}) == 3);
-  CHECK(ends.label({{Regime::no_contact}, true, {}}) == 3);
+  CHECK(ends.label({{Regime::no_contact}, {}}) == 3);
+  CHECK(ends.label({{Regime::no_contact}, {}}) == 3);
   // One at rest where another orbit passes by, and one at rest elsewhere.
   const auto resting = [](double x) {
-    return SettledSection{{Regime::at_rest}, true, make_cloud(std::vector<CloudPoint>(20, {x, 0}), {}, {1, 1}, 1)};
+    return SettledSection{{Regime::at_rest}, make_cloud(std::vector<CloudPoint>(20, {x, 0}), {}, {1, 1}, 1)};
   };
   CHECK(ends.label(cycle(0.5, 0, -0.5, 0)) == 4);
   CHECK(ends.label(resting(0.5)) == 5);
