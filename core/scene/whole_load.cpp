@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/whole_load.hpp>
@@ -38,6 +39,12 @@ LoadSpec whole_load(const SceneSpec& scene) {
     term.place->body = body;
   }
   return load;
+}
+
+bool is_driven(const SceneSpec& scene) {
+  if (!scene.load.is_zero() || scene.support.amplitude != 0 || moves_by_histories(scene)) return true;
+  const std::vector<HarmonicForce> forces = harmonic_forces(scene);
+  return std::any_of(forces.begin(), forces.end(), [](const HarmonicForce& one) { return one.force.amplitude != 0; });
 }
 
 }  // namespace ricochet

@@ -18,4 +18,8 @@ std::vector<HarmonicForce> harmonic_forces(const SceneSpec& scene);
 /// The load of a scene with the forces of its oscillators, each as one more term.
 LoadSpec whole_load(const SceneSpec& scene);
 
+/// Whether anything but its initial state moves a scene: a load, the force of an oscillator, supports or stops that
+/// move.
+bool is_driven(const SceneSpec& scene);
+
 }  // namespace ricochet

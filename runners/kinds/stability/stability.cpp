@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <ricochet/engine/compile.hpp>
+#include <ricochet/scene/whole_load.hpp>
 
 #include "runners/asks/kind_verbs.hpp"
 #include "runners/kinds/all_kinds.hpp"
@@ -196,8 +197,7 @@ namespace {
 
 bool rests(const SceneSpec& scene, const SemiDiscrete& problem) {
   const LaneSpec lane = scene_lane(problem, {});
-  return scene.load.is_zero() && scene.support.amplitude == 0 && !moves_by_histories(scene) &&
-         lane.position.isZero(0) && lane.velocity.isZero(0);
+  return !is_driven(scene) && lane.position.isZero(0) && lane.velocity.isZero(0);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <ricochet/measure/contact/stop_contacts.hpp>
 #include <ricochet/measure/contact/stop_places.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
+#include <ricochet/scene/whole_load.hpp>
 
 #include "runners/kinds/trajectory/outputs.hpp"
 #include "runners/kinds/trajectory/snapshot_taker.hpp"
@@ -307,11 +308,9 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   plan.coarsest_step = plan.finest_step = study_case.step;
   plan.operator_name = operator_name(prepared.program->kind);
   plan.left_out = left_out_pairs(prepared.program->left_out);
-  const bool driven = !study_case.scene.load.is_zero() || study_case.scene.support.amplitude != 0 ||
-                      moves_by_histories(study_case.scene);
-  const double beside = !prepared.program->flight                  ? audit_seconds_per_step
-                        : driven && prepared.problem->points() > 0 ? held_seconds_per_step
-                                                                   : 0;
+  const double beside = !prepared.program->flight                                       ? audit_seconds_per_step
+                        : is_driven(study_case.scene) && prepared.problem->points() > 0 ? held_seconds_per_step
+                                                                                        : 0;
   plan.predicted_seconds = prepared.program->predicted_setup_seconds +
                            static_cast<double>(prepared.steps) * (prepared.program->predicted_step_seconds + beside);
   plan.bytes = bytes_of_row + bytes_of_sample * study_case.samples;

@@ -409,6 +409,14 @@ TEST_CASE("a plan says that a scene at rest shows nothing of contact") {
   text["scene"].erase("load");
   text["methods"]["contact"] = "none";
   CHECK_THAT(notes(text), !Contains("the scene is at rest"));
+  // An oscillator may have a force of its own.
+  Json pushed = study_text("consistent", "signorini", dumont_paoli(0.5), 1e-4, 1e-2, 3);
+  pushed.erase("mesh");
+  pushed["scene"].erase("initial");
+  pushed["scene"]["structure"] = {{"type", "oscillator"}, {"mass", 1}, {"stiffness", 1}};
+  CHECK_THAT(notes(pushed), Contains("closed: the scene is at rest"));
+  pushed["scene"]["structure"]["force"] = {{"amplitude", 1}, {"pulsation", 2}};
+  CHECK_THAT(notes(pushed), !Contains("the scene is at rest"));
 }
 
 TEST_CASE("a clearance that is closed holds what two stops across each other hold") {
