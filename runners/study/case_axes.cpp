@@ -13,11 +13,12 @@ using About = CaseAxis::About;
 
 }  // namespace
 
-CaseAxis method_axis(const std::vector<MethodOption>& options, MethodChoice StudyCase::*member) {
+CaseAxis method_axis(const std::vector<MethodOption>& options, MethodChoice StudyCase::*member, std::string pointer) {
   CaseAxis axis{About::methods, {}, {}, [&options, member](StudyCase& one, std::size_t level) {
                   one.*member = options[level].choice;
                   one.starts_beyond = one.starts_beyond || options[level].starts_beyond;
                 }};
+  axis.pointer = std::move(pointer);
   for (const MethodOption& option : options) {
     axis.levels.push_back(option.axes);
     for (const auto& [name, ignored] : option.axes)
@@ -33,6 +34,7 @@ CaseAxis mesh_axis(const std::vector<MeshChoice>& meshes, StudyFiles& files) {
                     one.scene = read_scene(one.scene_json = with_meshes(one.scene_json, mesh), &files);
                   one.scene = on_mesh(std::move(one.scene), one.elements);
                 }};
+  axis.pointer = "/mesh";
   for (const MeshChoice& mesh : meshes) axis.levels.push_back({{"elements", mesh.elements}});
   return axis;
 }
@@ -48,6 +50,7 @@ CaseAxis basis_axis(const std::vector<std::optional<BasisSpec>>& bases, const Js
                   one.scene_json["basis"] = {{"modes", basis->modes}, {"residual", residual(basis)}};
                   if (!basis->of_bodies.empty()) one.scene_json["basis"]["of_bodies"] = basis->of_bodies;
                 }};
+  axis.pointer = "/mesh";
   const bool modes = mesh.contains("modes"), residuals = mesh.contains("residual");
   if (modes) axis.columns.emplace_back("modes");
   if (residuals) axis.columns.emplace_back(residual_axis);
@@ -65,6 +68,7 @@ CaseAxis scene_axis(const std::vector<SceneOption>& scenes) {
                   one.scene = scenes[level].scene;
                   one.scene_json = scenes[level].json;
                 }};
+  axis.pointer = "/scene";
   for (const auto& [name, ignored] : scenes.front().axes) axis.columns.push_back(name);
   for (const SceneOption& scene : scenes) axis.levels.push_back(scene.axes);
   return axis;

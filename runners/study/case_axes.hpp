@@ -25,6 +25,7 @@ struct CaseAxis {
   std::vector<std::string> columns;  ///< none where the study does not speak of it
   std::vector<AxisValues> levels;    ///< the values of the columns, of a level that has some
   std::function<void(StudyCase& study_case, std::size_t level)> put;
+  std::string pointer = {};  ///< where the study gives its levels
 };
 
 /// Values of one member of a case. `told`: whether the study speaks of it.
@@ -33,6 +34,7 @@ CaseAxis plain_axis(const char* column, bool told, const std::vector<Value>& val
   CaseAxis axis{CaseAxis::About::time, {}, {}, [values, member](StudyCase& one, std::size_t level) {
                   one.*member = values[level];
                 }};
+  axis.pointer = std::string("/") + column;
   if (told) axis.columns = {column};
   for (const Value& value : values) axis.levels.push_back(told ? AxisValues{{column, value}} : AxisValues());
   return axis;
@@ -40,7 +42,8 @@ CaseAxis plain_axis(const char* column, bool told, const std::vector<Value>& val
 
 // What these are given must outlive them.
 
-CaseAxis method_axis(const std::vector<MethodOption>& options, MethodChoice StudyCase::*member);
+/// Of one role, whose methods stand at `pointer`.
+CaseAxis method_axis(const std::vector<MethodOption>& options, MethodChoice StudyCase::*member, std::string pointer);
 /// Comes after the scene.
 CaseAxis mesh_axis(const std::vector<MeshChoice>& meshes, StudyFiles& files);
 /// Modes and residuals, which `mesh` may name. Comes after the mesh.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <ricochet/scene/bodies.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
@@ -280,18 +279,8 @@ void check_kind(const StudyKind& kind, const Json& resolved) {
     throw InputError("/scene/points", "a study of kind " + kind.name + " shows no points; expected kind trajectory");
 }
 
-/// Combinations of lists in the scene with the axes beside it, as parse_study() makes them. Too many are refused where
-/// the longest list stands.
+/// Combinations of lists in the scene with the axes beside it. Too many are refused where the longest list stands.
 double count_cases(const std::vector<Axis>& lists, const std::vector<CaseAxis>& axes) {
-  constexpr std::array places = {"/methods/mass",
-                                 "/methods/contact",
-                                 "/methods/friction",
-                                 "/methods/time",
-                                 "/mesh",
-                                 "/step",
-                                 "/steps_per_period",
-                                 "/march",
-                                 "/mesh"};
   Product everything;
   std::size_t longest = 0;
   std::string pointer;
@@ -300,7 +289,7 @@ double count_cases(const std::vector<Axis>& lists, const std::vector<CaseAxis>& 
     if (size > longest) longest = size, pointer = where;
   };
   for (const Axis& list : lists) add(list.values.size(), list.pointer);
-  for (std::size_t k = 0; k < axes.size(); ++k) add(axes[k].levels.size(), places.at(k));
+  for (const CaseAxis& axis : axes) add(axis.levels.size(), axis.pointer);
   everything.refuse_above(largest_study, pointer);
   return everything.count();
 }
@@ -340,10 +329,10 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   // Beside the scenes. A kind without a step goes through a range of them within each case (stability), or counts steps
   // per forcing period.
   std::vector<CaseAxis> axes = {
-      method_axis(methods[0].options, &StudyCase::mass),
-      method_axis(methods[1].options, &StudyCase::contact),
-      method_axis(methods[2].options, &StudyCase::friction),
-      method_axis(methods[3].options, &StudyCase::time),
+      method_axis(methods[0].options, &StudyCase::mass, "/methods/mass"),
+      method_axis(methods[1].options, &StudyCase::contact, "/methods/contact"),
+      method_axis(methods[2].options, &StudyCase::friction, "/methods/friction"),
+      method_axis(methods[3].options, &StudyCase::time, "/methods/time"),
       mesh_axis(meshes, *common.files),
       plain_axis("step", resolved.contains("step"), values_of(resolved, "step", 0.0), &StudyCase::step),
       plain_axis("steps_per_period", resolved.contains("steps_per_period"), values_of(resolved, "steps_per_period", 0),
