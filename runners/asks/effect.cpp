@@ -278,8 +278,7 @@ class EffectSpeaker {
 
   /// The combinations of these, by name where they have one: " with stiffness 1e8 N/m", " in 2 of 6".
   std::string in_these(const std::vector<const Told*>& list, std::size_t all) const {
-    if (list.size() == all)
-      return all == 1 ? "" : fmt::format(" in {}", all == 2 ? "both" : fmt::format("all {}", all));
+    if (list.size() == all) return all == 1 ? "" : " in " + all_text(all);
     std::vector<const Line*> lines;
     for (const Told* one : list) lines.insert(lines.end(), one->where->lines.begin(), one->where->lines.end());
     if (const std::string name = set_name(lines_, lines); !name.empty() && lines.size() > 1) return " " + name;

@@ -33,7 +33,7 @@ struct Estimate {
   std::optional<double> u() const;
   /// Whether value ± u holds all that leaves it open.
   bool has_interval() const { return u() && unknown().empty(); }
-  double low() const { return value - u().value_or(0); }
+  double low() const { return beyond ? value : value - u().value_or(0); }
   double high() const { return beyond ? INFINITY : value + u().value_or(0); }
 };
 

@@ -33,20 +33,16 @@ Verdict verdict_of(const Line& line, const Bounds& bounds) {
   if (!line.known()) return Verdict::open;
   const Estimate& one = line.estimate();
   if (!one.has_interval()) return Verdict::open;
-  if (one.beyond)
-    return bounds.below && one.value >= *bounds.below                   ? Verdict::no
-           : !bounds.below && bounds.above && one.value > *bounds.above ? Verdict::yes
-                                                                        : Verdict::open;
-  const double refinement = one.step.value_or(0) + one.mesh.value_or(0);
-  bool all = bounds.holds(one.low()) && bounds.holds(one.high()), beyond = false;
-  const auto surely_beyond = [&](double value, double u) {
-    return (bounds.below && value - u >= *bounds.below) || (bounds.above && value + u <= *bounds.above);
+  bool all = true, beyond = false;
+  const auto look = [&](double low, double high) {
+    all = all && bounds.holds(low) && bounds.holds(high);
+    beyond = beyond || (bounds.below && low >= *bounds.below) || (bounds.above && high <= *bounds.above);
   };
-  beyond = surely_beyond(one.value, *one.u());
-  for (const auto& [seed, value] : line.point.values.at(*line.point.finest)) {
-    all = all && bounds.holds(value - refinement) && bounds.holds(value + refinement);
-    beyond = beyond || surely_beyond(value, refinement);
-  }
+  look(one.low(), one.high());
+  const double refinement = one.step.value_or(0) + one.mesh.value_or(0);
+  if (!one.beyond)
+    for (const auto& [seed, value] : line.point.values.at(*line.point.finest))
+      look(value - refinement, value + refinement);
   return beyond ? Verdict::no : all && !nothing_seen(line.point) ? Verdict::yes : Verdict::open;
 }
 

@@ -113,6 +113,10 @@ Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& meas
   return out;
 }
 
+std::string all_text(std::size_t count) {
+  return count == 2 ? "both" : fmt::format("all {}", count);
+}
+
 bool is_plural(const std::string& words) {
   const std::string first = words.substr(0, words.find(' '));
   return first.ends_with("s") && !first.ends_with("ss") && !first.ends_with("us") && !first.ends_with("rms");

@@ -59,6 +59,9 @@ std::string nothing_known(const Lines& lines);
 /// Whether the words of a measure are of several: "impacts at end".
 bool is_plural(const std::string& words);
 
+/// "both", "all 3".
+std::string all_text(std::size_t count);
+
 /// A reason without what its first colon explains: "2 refused".
 std::string short_reason(const std::string& reason);
 

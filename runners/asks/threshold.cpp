@@ -40,7 +40,6 @@ Verdict state(const Line& line, const Condition& condition, bool counts) {
   if (one.beyond && condition.is) return one.value > *condition.is ? Verdict::no : Verdict::open;
   if (counts || condition.is) return holds == all ? Verdict::yes : holds == 0 ? Verdict::no : Verdict::open;
   const bool low = condition.holds(one.low()), high = condition.holds(one.high());
-  if (one.beyond) return low && high ? Verdict::yes : !low && !high ? Verdict::no : Verdict::open;
   return low && high ? Verdict::yes : !low && !high && !condition.holds(one.value) ? Verdict::no : Verdict::open;
 }
 
@@ -61,7 +60,7 @@ struct Series {
 };
 
 std::string with_all(std::size_t methods) {
-  return methods == 2 ? ", with both methods" : fmt::format(", with all {} methods", methods);
+  return ", with " + all_text(methods) + " methods";
 }
 
 void find_change(Series& series) {
