@@ -262,7 +262,7 @@ Table curves_head(const StudyResults& results) {
 
 Table write_curve_table(const std::filesystem::path& folder, const StudyResults& results) {
   Table curves = curves_head(results);
-  curves.columns.insert(curves.columns.begin(), case_column());
+  curves.columns = joined({case_column()}, curves.columns);
   FileWriter file(folder / "curves.csv");
   file.write(csv_line(csv_head(curves.columns)));
   for (const CaseRecord& record : results.cases)

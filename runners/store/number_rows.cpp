@@ -1,6 +1,5 @@
 #include "runners/store/number_rows.hpp"
 
-#include <SQLiteCpp/Column.h>
 #include <SQLiteCpp/Statement.h>
 #include <SQLiteCpp/Transaction.h>
 #include <fmt/format.h>
@@ -18,6 +17,12 @@
 
 namespace ricochet {
 
+std::vector<double> doubles_of(const SQLite::Column& blob) {
+  std::vector<double> numbers(static_cast<std::size_t>(blob.getBytes()) / sizeof(double));
+  if (!numbers.empty()) std::memcpy(numbers.data(), blob.getBlob(), numbers.size() * sizeof(double));
+  return numbers;
+}
+
 std::vector<double> read_piece(SQLite::Database& database, const StoredPiece& piece) {
   const bool curve = piece.of == StoredPiece::Of::curves;
   SQLite::Statement row(database,
@@ -26,18 +31,11 @@ std::vector<double> read_piece(SQLite::Database& database, const StoredPiece& pi
   row.bind(1, piece.case_id);
   row.bind(2, piece.position);
   if (!curve) row.bind(3, piece.part);
-  std::vector<double> found;
-  bool there = row.executeStep();
-  if (there) {
-    const SQLite::Column blob = row.getColumn(0);
-    found.resize(static_cast<std::size_t>(blob.getBytes()) / sizeof(double));
-    if (!found.empty()) std::memcpy(found.data(), blob.getBlob(), found.size() * sizeof(double));
-    there = found.size() == piece.size;
-  }
-  if (!there)
-    throw StoreError(fmt::format("{}: the case {} changed while it was read; run the command again",
-                                 database.getFilename(), piece.case_id));
-  return found;
+  if (std::vector<double> found = row.executeStep() ? doubles_of(row.getColumn(0)) : std::vector<double>{};
+      found.size() == piece.size)
+    return found;
+  throw StoreError(fmt::format("{}: the case {} changed while it was read; run the command again",
+                               database.getFilename(), piece.case_id));
 }
 
 Series StoredSeries::series(std::vector<StoredPiece> pieces) {

@@ -1,10 +1,12 @@
 #pragma once
+#include <SQLiteCpp/Column.h>
 #include <SQLiteCpp/Database.h>
 #include <SQLiteCpp/Statement.h>
 
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,8 +20,12 @@ struct StoredPiece {
   Of of = Of::curves;
   std::string case_id;
   int position = 0, part = 0;
-  std::size_t size = 0;  ///< numbers
+  std::size_t size = 0;                             ///< numbers
+  std::optional<std::vector<double>> numbers = {};  ///< where they are read already
 };
+
+/// The doubles of a blob.
+std::vector<double> doubles_of(const SQLite::Column& blob);
 
 /// Reads it. Throws StoreError where it is no longer there.
 std::vector<double> read_piece(SQLite::Database& database, const StoredPiece& piece);

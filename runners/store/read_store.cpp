@@ -31,6 +31,13 @@ using Json = nlohmann::ordered_json;
 struct ReadCases {
   std::map<std::string, CaseRecord*> records;
   std::set<std::string> damaged = {};
+  std::map<std::vector<std::string>, Columns> columns = {};  // by their names: most cases have the same
+
+  Columns named(const std::vector<std::string>& names) {
+    const auto [place, added] = columns.try_emplace(names);
+    if (added) place->second = named_columns(names);
+    return place->second;
+  }
 };
 
 /// A text of a column, as it may be shown.
@@ -66,8 +73,8 @@ struct BadRow : std::runtime_error {
 /// Calls `row(record, statement)` for each row of these columns of `table`, in the order of `order`: of all cases, or
 /// of the only one.
 template <class Row>
-void per_case(SQLite::Database& database, ReadCases& cases, const char* columns, const char* table, const char* order,
-              Row row) {
+void per_case(SQLite::Database& database, ReadCases& cases, const std::string& columns, const char* table,
+              const char* order, Row row) {
   const bool only = cases.records.size() == 1;
   SQLite::Statement statement(database, fmt::format("SELECT case_id, {} FROM {}{} ORDER BY case_id, {}", columns, table,
                                                     only ? " WHERE case_id = ?" : "", order));
@@ -138,6 +145,7 @@ std::optional<CaseRecord> case_of(SQLite::Statement& row) {
 
 Series series_of(SQLite::Database& database, const CaseRecord& record, std::vector<StoredPiece> pieces,
                  StoredSeries* later) {
+  if (pieces.size() == 1 && pieces.front().numbers) return std::move(*pieces.front().numbers);
   if (later && !record.partial) return later->series(std::move(pieces));
   std::vector<double> values;
   for (const StoredPiece& piece : pieces) {
@@ -147,58 +155,78 @@ Series series_of(SQLite::Database& database, const CaseRecord& record, std::vect
   return values;
 }
 
-std::size_t count_of_numbers(const SQLite::Column& bytes) {
-  return static_cast<std::size_t>(bytes.getInt64()) / sizeof(double);
+// What is short is read with its row: to ask for it later costs more than its numbers.
+constexpr const char* kStoredSeries = "length(series), CASE WHEN length(series) <= 1024 THEN series END";
+
+// The piece whose length, and numbers, stand from this column on.
+StoredPiece piece_of(StoredPiece::Of of, const CaseRecord& record, int position, int part, SQLite::Statement& row,
+                     int column) {
+  StoredPiece piece{of, record.id, position, part,
+                    static_cast<std::size_t>(row.getColumn(column).getInt64()) / sizeof(double)};
+  if (const SQLite::Column blob = row.getColumn(column + 1); !blob.isNull()) piece.numbers = doubles_of(blob);
+  return piece;
 }
 
 void read_curves(SQLite::Database& database, ReadCases& cases, StoredSeries* later) {
-  per_case(database, cases, "position, name, length(series)", "curves", "position",
+  per_case(database, cases, fmt::format("position, name, {}", kStoredSeries), "curves", "position",
            [&](CaseRecord& record, SQLite::Statement& row) {
              record.curve.names.push_back(text_in(row.getColumn(2)));
-             record.curve.columns.push_back(series_of(database, record,
-                                                      {{StoredPiece::Of::curves, record.id, row.getColumn(1).getInt(),
-                                                        0, count_of_numbers(row.getColumn(3))}},
-                                                      later));
+             record.curve.columns.push_back(
+                 series_of(database, record,
+                           {piece_of(StoredPiece::Of::curves, record, row.getColumn(1).getInt(), 0, row, 3)}, later));
            });
 }
 
+/// The columns of one table of numbers while its pieces are read.
+struct ReadColumns {
+  std::vector<std::string> names;
+  std::vector<std::vector<StoredPiece>> pieces;  // of each column
+};
+
 void read_numbers(SQLite::Database& database, ReadCases& cases, StoredSeries* later) {
-  std::map<CaseRecord*, std::vector<std::vector<std::vector<StoredPiece>>>> pieces;  // of each table, of each column
-  per_case(database, cases, "position, part, name, exported, column_name, words, length(series)", "case_numbers",
-           "position, part", [&](CaseRecord& record, SQLite::Statement& row) {
-             auto& tables = pieces[&record];
+  CaseRecord* of = nullptr;
+  std::vector<ReadColumns> read;  // of each of its tables
+  const auto end_case = [&] {
+    for (std::size_t t = 0; t < read.size(); ++t) {
+      NumberTable& table = of->numbers[t];
+      table.columns = cases.named(read[t].names);
+      for (std::vector<StoredPiece>& column : read[t].pieces)
+        table.values.push_back(series_of(database, *of, std::move(column), later));
+      // A piece that is lost: the columns of a table are equally long.
+      for (const Series& column : table.values)
+        if (table.exported && column.size() != table.rows()) cases.damaged.insert(of->id);
+    }
+    read.clear();
+  };
+  per_case(database, cases, fmt::format("position, part, name, exported, column_name, words, {}", kStoredSeries),
+           "case_numbers", "position, part", [&](CaseRecord& record, SQLite::Statement& row) {
+             if (of != &record) {
+               end_case();
+               of = &record;
+             }
              const int number = row.getColumn(2).getInt();
              const auto part = static_cast<std::size_t>(number);
              const std::string name = row.getColumn(3).getString();
-             const std::size_t known = record.numbers.empty() ? 0 : record.numbers.back().columns.size();
-             const bool next = part == 0 || (known > 0 && part <= known && record.numbers.back().name == name);
-             if (number < 0 || !next || !is_table_name(name)) throw BadRow();
-             if (part == 0 && (record.numbers.empty() || record.numbers.back().name != name)) {
+             const std::size_t known = read.empty() ? 0 : read.back().names.size();
+             const bool same = known > 0 && record.numbers.back().name == name;
+             if (number < 0 || (part > 0 && (!same || part > known)) || !is_table_name(name)) throw BadRow();
+             if (part == 0 && !same) {
                NumberTable& first = record.numbers.emplace_back();
                first.name = name;
                first.exported = row.getColumn(4).getInt() != 0;
-               tables.emplace_back();
+               read.emplace_back();
              }
-             NumberTable& table = record.numbers.back();
-             if (part == table.columns.size()) {
-               tables.back().emplace_back();
-               table.columns.push_back({text_in(row.getColumn(5)), "", ""});
+             if (part == read.back().names.size()) {
+               read.back().pieces.emplace_back();
+               read.back().names.push_back(text_in(row.getColumn(5)));
                if (!row.getColumn(6).isNull())
-                 table.words.emplace_back(table.columns.back().name,
-                                          json_in(row.getColumn(6)).get<std::vector<std::string>>());
+                 record.numbers.back().words.emplace_back(read.back().names.back(),
+                                                          json_in(row.getColumn(6)).get<std::vector<std::string>>());
              }
-             tables.back()[part].push_back({StoredPiece::Of::case_numbers, record.id, row.getColumn(1).getInt(),
-                                            static_cast<int>(part), count_of_numbers(row.getColumn(7))});
+             read.back().pieces[part].push_back(
+                 piece_of(StoredPiece::Of::case_numbers, record, row.getColumn(1).getInt(), number, row, 7));
            });
-  for (auto& [record, tables] : pieces) {
-    for (std::size_t t = 0; t < tables.size(); ++t)
-      for (std::vector<StoredPiece>& column : tables[t])
-        record->numbers[t].values.push_back(series_of(database, *record, std::move(column), later));
-    // A piece that is lost: the columns of a table are equally long.
-    for (const NumberTable& table : record->numbers)
-      for (const Series& column : table.values)
-        if (table.exported && column.size() != table.rows()) cases.damaged.insert(record->id);
-  }
+  end_case();
 }
 
 /// A text with the places of its numbers, [[begin, size], …].
@@ -235,7 +263,7 @@ void read_rows(SQLite::Database& database, ReadCases& cases, StoredSeries* later
   per_case(database, cases, "note", "notes", "position",
            [](CaseRecord& record, Statement& row) { record.notes.push_back(text_in(row.getColumn(1))); });
   read_curves(database, cases, later);
-  per_case(database, cases, "name, content", "case_tables", "position", [](CaseRecord& record, Statement& row) {
+  per_case(database, cases, "name, content", "case_tables", "position", [&](CaseRecord& record, Statement& row) {
     // What the columns mean is not stored: the kind of study declares it.
     const Json content = json_in(row.getColumn(2));
     const std::string name = row.getColumn(1).getString();
@@ -243,7 +271,7 @@ void read_rows(SQLite::Database& database, ReadCases& cases, StoredSeries* later
     if (record.tables.empty() || record.tables.back().name != name) {
       Table& first = record.tables.emplace_back();
       first.name = name;
-      first.columns = named_columns(content.at("columns").get<std::vector<std::string>>());
+      first.columns = cases.named(content.at("columns").get<std::vector<std::string>>());
     }
     Table& table = record.tables.back();
     for (const Json& cells : content.at("rows")) {

@@ -139,6 +139,31 @@ Table table_of_cases(const StudyResults& results, const Table& own) {
   return table_of_cases(results, own.name, own.text, own.columns);
 }
 
+void describe(std::vector<CaseRecord>& cases, const std::vector<Table>& tables,
+              const std::vector<NumberTable>& numbers) {
+  struct Described {
+    Columns before, after;  // of the last table: most cases have the same
+  };
+  std::map<std::string_view, Described> known;
+  const auto describe_all = [&](auto& own, const auto& heads) {
+    for (auto& table : own)
+      for (const auto& head : heads) {
+        if (head.name != table.name) continue;
+        table.text = head.text;
+        Described& last = known[head.name];
+        if (!last.before.same(table.columns)) {
+          last.before = last.after = table.columns;
+          describe(last.after, head.columns);
+        }
+        table.columns = last.after;
+      }
+  };
+  for (CaseRecord& record : cases) {
+    describe_all(record.tables, tables);
+    describe_all(record.numbers, numbers);
+  }
+}
+
 Cell cell_of(const nlohmann::ordered_json& value) {
   if (value.is_null()) return {};
   if (value.is_string()) return value.get_ref<const std::string&>();

@@ -61,6 +61,10 @@ Table table_of_cases(const StudyResults& results, std::string name, std::string 
 /// The same of a table that has these alone.
 Table table_of_cases(const StudyResults& results, const Table& own);
 
+/// Takes from those of the same name what tables of cases mean: what is stored of a column is its name.
+void describe(std::vector<CaseRecord>& cases, const std::vector<Table>& tables,
+              const std::vector<NumberTable>& numbers = {});
+
 /// A value of a study or of a store as a cell. What is neither a word, a number nor a truth value is its JSON text.
 Cell cell_of(const nlohmann::ordered_json& value);
 /// The same cell as it is stored.

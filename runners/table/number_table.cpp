@@ -98,7 +98,7 @@ const std::vector<std::string>* NumberTable::words_of(std::string_view column) c
   return found == words.end() ? nullptr : &found->second;
 }
 
-NumberTable number_table(std::string name, std::vector<Column> columns) {
+NumberTable number_table(std::string name, Columns columns) {
   NumberTable table;
   table.name = std::move(name);
   table.values.resize(columns.size());

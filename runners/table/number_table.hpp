@@ -73,7 +73,7 @@ class Series {
 /// NaN is an absent number (an empty field).
 struct NumberTable {
   std::string name;
-  std::vector<Column> columns;
+  Columns columns;
   std::vector<Series> values;  ///< of each of the columns
   /// Columns that hold words: column name, and the words; the numbers are indices into them.
   std::vector<std::pair<std::string, std::vector<std::string>>> words = {};
@@ -92,7 +92,7 @@ struct NumberTable {
 };
 
 /// An empty table of these columns.
-NumberTable number_table(std::string name, std::vector<Column> columns);
+NumberTable number_table(std::string name, Columns columns);
 
 /// The table of this name; null where there is none.
 const NumberTable* find_table(const std::vector<NumberTable>& tables, std::string_view name);

@@ -56,7 +56,7 @@ inline constexpr CellForm cell_form = {[](const void* value) { return Cell(*stat
 /// The columns of a table, and where in a record each finds its value, whatever the type of the record is.
 class RowFields {
  public:
-  const std::vector<Column>& columns() const { return columns_; }
+  const Columns& columns() const { return columns_; }
 
  protected:
   struct Field {
@@ -75,7 +75,7 @@ class RowFields {
   static void read(const Row& row, const Places& places, void* record);
 
  private:
-  std::vector<Column> columns_;
+  Columns columns_;
   std::vector<Field> fields_;
   std::vector<std::pair<std::string, Field>> in_front_;
 };

@@ -56,8 +56,18 @@ std::optional<std::size_t> find_column(const std::vector<Column>& columns, std::
   return static_cast<std::size_t>(found - columns.begin());
 }
 
-void describe(std::vector<Column>& columns, const std::vector<Column>& declared) {
-  for (Column& column : columns)
+const std::vector<Column>& Columns::get() const {
+  static const std::vector<Column> none;
+  return shared_ ? *shared_ : none;
+}
+
+std::vector<Column>& Columns::own() {
+  if (!shared_ || shared_.use_count() > 1) shared_ = std::make_shared<std::vector<Column>>(get());
+  return *shared_;
+}
+
+void describe(Columns& columns, const Columns& declared) {
+  for (Column& column : columns.own())
     if (const auto known = find_column(declared, column.name)) column = declared[*known];
 }
 

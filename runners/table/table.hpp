@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -120,6 +121,34 @@ struct Column {
   std::string text;  ///< what the cells mean, one sentence
 };
 
+/// Columns in order, which their copies share: each of ten thousand cases has tables of the same columns.
+class Columns {
+ public:
+  Columns() = default;
+  Columns(std::vector<Column> columns) : shared_(std::make_shared<std::vector<Column>>(std::move(columns))) {}
+  Columns(std::initializer_list<Column> columns) : Columns(std::vector<Column>(columns)) {}
+
+  const std::vector<Column>& get() const;
+  operator const std::vector<Column>&() const { return get(); }
+  std::size_t size() const { return get().size(); }
+  bool empty() const { return get().empty(); }
+  const Column& operator[](std::size_t place) const { return get()[place]; }
+  const Column& at(std::size_t place) const { return get().at(place); }
+  const Column& front() const { return get().front(); }
+  const Column& back() const { return get().back(); }
+  std::vector<Column>::const_iterator begin() const { return get().begin(); }
+  std::vector<Column>::const_iterator end() const { return get().end(); }
+
+  /// To be changed: its own, and no longer shared.
+  std::vector<Column>& own();
+  void push_back(Column column) { own().push_back(std::move(column)); }
+  /// Whether both are copies of one, neither changed since.
+  bool same(const Columns& other) const { return shared_ == other.shared_; }
+
+ private:
+  std::shared_ptr<std::vector<Column>> shared_;
+};
+
 /// The column that names a case, the key of cases.csv.
 inline constexpr char case_name[] = "case";
 
@@ -133,7 +162,7 @@ std::vector<Column> joined(std::vector<Column> first, const std::vector<Column>&
 struct Table {
   std::string name;
   std::string text;  ///< what a row stands for, one sentence
-  std::vector<Column> columns;
+  Columns columns;
   std::vector<Row> rows;  ///< each as long as `columns`
 };
 
@@ -141,7 +170,7 @@ struct Table {
 std::optional<std::size_t> find_column(const std::vector<Column>& columns, std::string_view name);
 
 /// Takes unit and meaning of each column from those that are declared; a column that is not stays as it is.
-void describe(std::vector<Column>& columns, const std::vector<Column>& declared);
+void describe(Columns& columns, const Columns& declared);
 /// The same for a whole table, with what its rows stand for.
 void describe(Table& table, const Table& declared);
 

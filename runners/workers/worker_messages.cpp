@@ -133,6 +133,16 @@ void serialize(Archive& archive, Column& column) {
 }
 
 template <class Archive>
+void save(Archive& archive, const Columns& columns) {
+  archive(columns.get());
+}
+
+template <class Archive>
+void load(Archive& archive, Columns& columns) {
+  archive(columns.own());
+}
+
+template <class Archive>
 void serialize(Archive& archive, Table& table) {
   archive(table.name, table.text, table.columns, table.rows);
 }

@@ -164,12 +164,8 @@ TableType<TurnRow> turns_type(const SweptColumns& swept) {
 
 void describe_continuation(std::vector<CaseRecord>& cases, const SweptColumns& swept) {
   constexpr int most_multipliers = 64;
-  const Table heads[] = {branches_type(most_multipliers, swept).head(), special_points_type(swept).head(),
-                         turns_type(swept).head()};
-  for (CaseRecord& record : cases)
-    for (Table& table : record.tables)
-      for (const Table& head : heads)
-        if (head.name == table.name) describe(table, head);
+  describe(cases, {branches_type(most_multipliers, swept).head(), special_points_type(swept).head(),
+                   turns_type(swept).head()});
 }
 
 }  // namespace ricochet

@@ -92,7 +92,7 @@ CaseRunner SweepKind::start(const RunContext& context) const {
 
 Analysis SweepKind::analysis(StudyResults& results, const answers::Compared&) const {
   const SweptColumns swept = swept_columns(results);
-  for (CaseRecord& record : results.cases) describe_sweep(record, swept);
+  describe_sweep(results.cases, swept);
   collect_tables(results, derived_as_dynamics);
   return derive(results);
 }

@@ -370,21 +370,16 @@ TableType<UncertaintyRow> basin_uncertainty_type() {
   return {"basin_uncertainty", "One case: how rough the boundary of its basins is.", rows};
 }
 
-void describe_sweep(CaseRecord& record, const SweptColumns& swept) {
-  for (Table& table : record.tables) {
-    const int columns = static_cast<int>(table.columns.size());
-    for (const Table& head : {values_head(columns, swept), bifurcations_head(swept), cells_type(swept).head()})
-      if (head.name == table.name) describe(table, head);
-  }
+void describe_sweep(std::vector<CaseRecord>& cases, const SweptColumns& swept) {
+  std::size_t columns = 0;  // more than there are exponents
+  for (const CaseRecord& record : cases)
+    if (const Table* values = find_table(record.tables, values_name))
+      columns = std::max(columns, values->columns.size());
   NumberTable impacts = impacts_type(swept).head();
   impacts.columns.push_back(stop_column);
-  for (NumberTable& table : record.numbers)
-    for (const NumberTable& head : {points_type(swept).head(), impacts, portraits_type(swept).head(),
-                                    entries_type(swept).head(), cell_points_type().head(), contact_law_type().head()})
-      if (head.name == table.name) {
-        table.text = head.text;
-        describe(table.columns, head.columns);
-      }
+  describe(cases, {values_head(static_cast<int>(columns), swept), bifurcations_head(swept), cells_type(swept).head()},
+           {points_type(swept).head(), impacts, portraits_type(swept).head(), entries_type(swept).head(),
+            cell_points_type().head(), contact_law_type().head()});
 }
 
 }  // namespace ricochet

@@ -197,7 +197,7 @@ TableType<UncertaintyRow> basin_uncertainty_type();
 extern const Column attractor_column;
 
 /// Gives the tables that a case of a sweep left their units and meanings.
-void describe_sweep(CaseRecord& record, const SweptColumns& swept);
+void describe_sweep(std::vector<CaseRecord>& cases, const SweptColumns& swept);
 
 // What the orbits of a bifurcation study come to, over values and starts.
 

@@ -152,7 +152,7 @@ void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher
     if (one.friction) known.friction = one.friction;
   }
   const std::vector<Column> readings = stop_reading_columns(known);
-  stops.columns.insert(stops.columns.end(), readings.begin(), readings.end());
+  stops.columns = joined(stops.columns, readings);
   double peak = 0, time = 0;
   for (int point = 0; point < list.count(); ++point) {
     if (named)
@@ -191,23 +191,12 @@ void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher
 }
 
 void describe_contact(std::vector<CaseRecord>& records) {
-  Table stops = stops_head();
+  std::vector<Table> heads = stop_table_heads();
+  heads.push_back(stops_head());
+  heads.back().columns = joined(joined(heads.back().columns, {stop_column}), all_stop_reading_columns());
   NumberTable impacts = impacts_head();
-  stops.columns.push_back(stop_column);
-  for (const Column& column : all_stop_reading_columns()) stops.columns.push_back(column);
-  for (const Column& column : {stop_column, tangent_speed_column, shock_column}) impacts.columns.push_back(column);
-  // Of a study of many cases in which nothing is hit, what they mean would be the largest part.
-  bool stops_told = false, impacts_told = false;
-  for (CaseRecord& record : records) {
-    describe_stop_tables(record);
-    for (Table& table : record.tables)
-      if (table.name == stops.name && (!table.rows.empty() || !std::exchange(stops_told, true))) describe(table, stops);
-    for (NumberTable& table : record.numbers)
-      if (table.name == impacts.name && (table.rows() > 0 || !std::exchange(impacts_told, true))) {
-        table.text = impacts.text;
-        describe(table.columns, impacts.columns);
-      }
-  }
+  impacts.columns = joined(impacts.columns, {stop_column, tangent_speed_column, shock_column});
+  describe(records, heads, {impacts, shocks_type().head(), spectra_type().head(), orbits_type().head()});
 }
 
 namespace {

@@ -328,18 +328,10 @@ void add_stop_tables(CaseRecord& record, const SemiDiscrete& problem, const Stop
   if (!outputs.spectra().empty()) add_spectra(record, outputs);
 }
 
-void describe_stop_tables(CaseRecord& record) {
+std::vector<Table> stop_table_heads() {
   Table parts = parts_head({});
-  for (const Column& column : all_stop_reading_columns()) parts.columns.push_back(column);
-  for (const Table& head : {histogram_head(), parts, third_octaves_head()})
-    for (Table& table : record.tables)
-      if (table.name == head.name) describe(table, head);
-  for (const NumberTable& head : {shocks_type().head(), spectra_type().head(), orbits_type().head()})
-    for (NumberTable& table : record.numbers)
-      if (table.name == head.name) {
-        table.text = head.text;
-        describe(table.columns, head.columns);
-      }
+  parts.columns = joined(parts.columns, all_stop_reading_columns());
+  return {histogram_head(), parts, third_octaves_head()};
 }
 
 }  // namespace ricochet

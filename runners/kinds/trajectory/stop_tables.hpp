@@ -41,8 +41,8 @@ std::vector<Shock> shocks_in_order(const ShockRecorder& recorder);
 /// of the measures of each stop.
 void add_stop_tables(CaseRecord& record, const SemiDiscrete& problem, const StopWatches& watches);
 
-/// Units and meanings of these tables, for records that come from a store.
-void describe_stop_tables(CaseRecord& record);
+/// Those of these tables that are no numbers alone, with all columns that they may have.
+std::vector<Table> stop_table_heads();
 
 /// The contacts of lane 0, as the record keeps them. `impacts` has a row per impact. `stops` has a row per contact
 /// point, or clearance, and side that ever closed. Beside them are the measures impacts, peak_contact_force and
