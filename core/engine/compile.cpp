@@ -318,8 +318,9 @@ WayOrRefusal choose_way(Program& program, const CompileOptions& options) {
     program.kind = OperatorKind::modal;
   else if (program.kind != OperatorKind::modal && problem.damping.by_modes())
     return Refusal{
-        "damping ratios are those of modes, by which at most 1000 degrees of freedom march: use mesh.modes, or α and "
-        "η"};
+        said("damping ratios are those of modes, by which at most {} degrees of freedom march: use mesh.modes, or α "
+             "and η",
+             most_marched_by_modes)};
   else if (!kind_applies(program.kind, problem))
     return Refusal{std::string("the ") + operator_name(program.kind) + " operator does not apply to this structure"};
   const Cost cost = predict_cost(program.kind, problem, work, program.width);

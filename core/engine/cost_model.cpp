@@ -123,7 +123,8 @@ double visit_seconds(const SemiDiscrete& problem, const StepWork& work) {
 bool kind_applies(OperatorKind kind, const SemiDiscrete& problem) {
   // The modal form divides by φᵀKφ; the dense eigenproblem is cubic.
   if (kind == OperatorKind::modal)
-    return problem.dofs() <= 1000 && !problem.damping.matrix && (problem.held || problem.asks_for_modes());
+    return problem.dofs() <= most_marched_by_modes && !problem.damping.matrix &&
+           (problem.held || problem.asks_for_modes());
   return !problem.damping.by_modes();
 }
 

@@ -32,7 +32,10 @@ double predict_flights(const SemiDiscrete& problem, const StepWork& work, long l
 /// counts on a beam with six impacts a period.
 double predict_visits(const SemiDiscrete& problem, const StepWork& work, double steps);
 
-/// The cheapest kind that applies for `steps` steps. Modal needs K SPD and few enough dofs for a dense eigenproblem.
+/// A dense eigenproblem of more is not solved to march by modes.
+inline constexpr int most_marched_by_modes = 1000;
+
+/// The cheapest kind that applies for `steps` steps. Modal needs K SPD and at most most_marched_by_modes.
 OperatorKind cheapest_kind(const SemiDiscrete& problem, const StepWork& work, int width, long long steps);
 
 /// Whether the kind can represent the problem at all.

@@ -32,8 +32,11 @@ std::string why_grounded(const Program& program, const CompileOptions& options) 
   if (program.load && !program.load_constant) return "the load depends on time";
   if (!program.problem->motions.empty()) return "supports or stops move by histories";
   if (program.problem->damping.own()) return "the damping is not made of K and M";
-  if (!program.problem->held || !kind_applies(OperatorKind::modal, *program.problem))
-    return "the structure has no modes to fly by: it is not held, or has more than 1000 degrees of freedom";
+  if (!program.problem->held)
+    return program.problem->dofs() == 1 ? "a single degree of freedom is marched"
+                                        : "the structure is not held, and has no modes to fly by";
+  if (!kind_applies(OperatorKind::modal, *program.problem))
+    return fmt::format("beyond {} degrees of freedom there are no modes to fly by", most_marched_by_modes);
   if (options.kind != OperatorKind::automatic && options.kind != OperatorKind::modal)
     return "another operator than the modal one is asked for";
   const double needed = flight_bytes(program.problem->dofs(), static_cast<int>(program.plan.slots.size()),
