@@ -54,6 +54,8 @@ struct Tail {
   double rest(double order, double factor = 1) const {
     return factor * std::abs(last) / (std::pow(v2.size / v3.size, order) - 1);
   }
+  /// What first order leaves of the difference before the last, times a factor.
+  double first_order_rest(double factor) const { return factor * std::abs(before) * v3.size / (v1.size - v2.size); }
 };
 
 /// To zero, in the order that its sizes show.
@@ -76,16 +78,20 @@ std::optional<Limit> vanishing(const Tail& t, Limit out, double floor) {
   return out;
 }
 
-/// By an order that three sizes show; two orders that agree are needed for less than the last difference.
+/// By an order that three sizes show; two orders that agree are needed for less than the last difference. One that
+/// turned, or fell more steeply than schemes do, is small by chance.
 Limit settling(const Tail& t, const std::vector<SizedValue>& values, const std::vector<double>& d, double order,
                Limit out, double floor) {
   const double last = std::abs(t.last), rest = t.rest(order, safety);
   double u = std::max(last, rest);
+  if (t.before * t.last < 0 || order > steepest_order) u = std::max(u, t.first_order_rest(safety));
   if (const std::size_t n = values.size(); n >= 4 && t.before * t.last > 0 && d[n - 4] * t.before > 0) {
     const auto earlier = order_of(values[n - 4].size, t.v1.size, t.v2.size, d[n - 4], t.before);
     if (earlier && std::abs(order - *earlier) <= orders_agree && order <= steepest_order) {
       out.order = order;
-      u = std::max(0.1 * last, rest);
+      // An order that still changes may fall as much again.
+      const double low = std::max(lowest_order, order - std::abs(order - *earlier));
+      u = std::max(0.1 * last, t.rest(low, safety));
     }
   }
   set(out, LimitStatus::settles, std::max(u, floor));

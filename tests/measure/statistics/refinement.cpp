@@ -46,6 +46,36 @@ TEST_CASE("a sequence with an order settles on its limit within its uncertainty"
     }
 }
 
+TEST_CASE("an interval holds the limit of what impacts leave within a step, and of two powers together") {
+  // v = 1 + c h, c anew at each size: impacts are placed somewhere within a step. And v = 1 + c h + d h², whose order
+  // changes on the way.
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> anywhere(-1, 1);
+  const auto held = [&](int sizes, bool by_chance) {
+    int settled = 0, inside = 0;
+    for (int k = 0; k < 4000; ++k) {
+      std::vector<SizedValue> values;
+      const double c = anywhere(random), d = anywhere(random);
+      for (int size = 0; size < sizes; ++size) {
+        const double h = std::pow(2.0, -size);
+        values.push_back({h, 1 + h * (by_chance ? anywhere(random) : c + d * h)});
+      }
+      const auto limit = limit_of(values, 1e-15);
+      REQUIRE(limit);
+      if (limit->status != LimitStatus::settles) continue;
+      ++settled;
+      inside += std::abs(limit->value - 1) <= *limit->uncertainty ? 1 : 0;
+    }
+    REQUIRE(settled > 1000);
+    return static_cast<double>(inside) / settled;
+  };
+  // The last difference alone holds 2 of 3 by chance.
+  CHECK(held(3, true) > 0.82);
+  CHECK(held(4, true) > 0.82);
+  CHECK(held(3, false) > 0.88);
+  CHECK(held(5, false) > 0.88);
+}
+
 TEST_CASE("statuses: one, same, two, moves, wanders, blows up, vanishes, reaches the truth") {
   const auto status = [](std::vector<double> values, std::optional<double> truth = {}, double floor = 1e-14) {
     std::vector<SizedValue> sized;
