@@ -63,7 +63,7 @@ class StabilityRun {
     if (observe) {
       say_horizon();
       try {
-        for (StabilitySide& side : sides) this->observe(side);
+        for (StabilitySide& side : sides) this->observe(side, sides.front());
       } catch (const IndefiniteStep& wrong) {
         name_indefinite(wrong, case_, registry_);
       }
@@ -183,15 +183,16 @@ class StabilityRun {
     return whole ? std::optional(*cell) : std::nullopt;
   }
 
-  void observe(StabilitySide& side) {
+  void observe(StabilitySide& side, const StabilitySide& open) {
     for (const double h : steps_) side.cells.push_back(march(side, h));
-    side.forget_untouched();
+    side.forget_untouched(open.cells);
     // Below the range a scene would be cut short before anything happens in it.
     side.observed = observed_limit(
         steps_, side.cells, [&](double h) { return march(side, h); }, !side.closed);
     if (side.untouched)
       record_.notes.push_back(
-          "closed: the scene touches no stop at any step, so contact is predicted and not observed; give it an initial "
+          "closed: the scene touches no stop at any stable step, so contact is predicted and not observed; give it an "
+          "initial "
           "state or a load that brings it there");
     if (spent())
       record_.notes.push_back(

@@ -156,7 +156,7 @@ class StabilityKind final : public Kind {
     return runner;
   }
   Analysis analysis(StudyResults& results, const answers::Compared&) const override {
-    for (CaseRecord& record : results.cases) describe_stability(record);
+    describe_stability(results.cases);
     collect_tables(results);
     const auto limits = std::make_shared<const std::vector<LimitRow>>(step_limit_rows(results));
     results.derived.push_back(step_limits_table(results, *limits));

@@ -24,12 +24,17 @@ struct StabilitySide {
   ObservedLimit observed;
   bool untouched = false;  ///< closed: the scene stays bounded and touches no stop, so nothing of contact was observed
 
-  /// What scenes that touch no stop showed of contact: nothing.
-  void forget_untouched() {
-    const auto touches = [](const auto& cell) { return cell && (cell->touched || !cell->stable()); };
-    const auto marched = [](const auto& cell) { return cell.has_value(); };
-    untouched =
-        closed && std::any_of(cells.begin(), cells.end(), marched) && std::none_of(cells.begin(), cells.end(), touches);
+  /// What scenes that touch no stop showed of contact: nothing. One that grows without contact too, as `open` does at
+  /// the same step, meets the stop in the end.
+  void forget_untouched(const std::vector<std::optional<ObservedCell>>& open) {
+    bool marched = false, touches = false;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      if (!cells[k]) continue;
+      marched = true;
+      const bool grows_open = k < open.size() && open[k] && !open[k]->stable();
+      touches = touches || (cells[k]->stable() ? cells[k]->touched : !grows_open);
+    }
+    untouched = closed && marched && !touches;
     if (untouched) std::fill(cells.begin(), cells.end(), std::nullopt);
   }
   /// Marched somewhere, and stable nowhere.

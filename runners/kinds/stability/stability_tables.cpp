@@ -83,17 +83,17 @@ TableType<RestitutionRow> restitution_type() {
           rows};
 }
 
-void describe_stability(CaseRecord& record) {
-  for (Table& table : record.tables)
-    for (const Table& head : {stability_type().head(), stability_observed_type().head(), stability_roots_type().head(),
-                              restitution_type().head()}) {
-      if (head.name != table.name) continue;
-      if (const auto contact = find_column(table.columns, "contact")) {
-        table.columns[*contact].name = "closed";
-        for (Row& row : table.rows) row.at(*contact) = row.at(*contact) == "closed";
-      }
-      describe(table, head);
+void describe_stability(std::vector<CaseRecord>& cases) {
+  const std::vector<Table> heads = {stability_type().head(), stability_observed_type().head(),
+                                    stability_roots_type().head(), restitution_type().head()};
+  for (CaseRecord& record : cases)
+    for (Table& table : record.tables) {
+      const auto contact = find_column(table.columns, "contact");
+      if (!contact || !find_table(heads, table.name)) continue;
+      table.columns.own()[*contact].name = "closed";
+      for (Row& row : table.rows) row.at(*contact) = row.at(*contact) == "closed";
     }
+  describe(cases, heads);
 }
 
 namespace {
@@ -117,7 +117,7 @@ const std::vector<Column> range_columns = {{"case", "", "Identity of the case: i
 
 Table table_of_ranges(std::string name, std::string text, const std::vector<Column>& columns) {
   Table out{std::move(name), std::move(text), range_columns, {}};
-  out.columns.insert(out.columns.end(), columns.begin(), columns.end());
+  out.columns = joined(out.columns, columns);
   return out;
 }
 

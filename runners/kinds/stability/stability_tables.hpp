@@ -50,7 +50,7 @@ TableType<RestitutionRow> restitution_type();
 
 /// Gives the tables that a case of a stability study left their units and meanings, and today's column names. Older
 /// stores say the contact state in the words of a column `contact`.
-void describe_stability(CaseRecord& record);
+void describe_stability(std::vector<CaseRecord>& cases);
 
 // The cells that a case of kind `stability` left, as a range of steps.
 

@@ -20,10 +20,10 @@ namespace {
 constexpr const char* no_bound = "none";
 
 /// What bounds the step of a case.
-enum class Bound { stop, mesh, none, everywhere, unknown };
+enum class Bound { stop, mesh, marched, none, everywhere, unknown };
 
 const char* bound_word(Bound bound) {
-  constexpr const char* words[] = {"the stop", "the mesh", "no limit", "no step is stable", "open"};
+  constexpr const char* words[] = {"the stop", "the mesh", "marches alone", "no limit", "no step is stable", "open"};
   return words[static_cast<int>(bound)];
 }
 
@@ -31,7 +31,8 @@ struct StepLimit {
   const CaseRecord* record = nullptr;
   LimitRow open, closed;
   Bound bound = Bound::unknown;
-  std::optional<double> step = {}, low = {}, high = {};  ///< s: allowed; from and to what is predicted and marched
+  /// s: allowed, the predicted one or a smaller one beyond which marches grow; from and to these two.
+  std::optional<double> step = {}, low = {}, high = {};
   std::string reason = {};
 };
 
@@ -95,8 +96,7 @@ class StepsAsk {
           fmt::format("What contact allows is predicted and not marched in {} of {}.", alone.size(), limits_.size()));
     if (unlike > 0)
       out.aside.push_back(
-          fmt::format("Marches have another limit than the spectrum with {} of {}: contacts open and close.", unlike,
-                      limits_.size()));
+          fmt::format("Marches have another limit than the spectrum with {} of {}.", unlike, limits_.size()));
     say_mesh(out);
     say_gains(out);
     if (!double_roots_.empty())
@@ -140,13 +140,20 @@ class StepsAsk {
         if (!step || by_the_stop(*step, *closed.predicted)) out.bound = Bound::stop;
         step = step ? std::min(*step, *closed.predicted) : *closed.predicted;
       }
-      out.step = step;
-      if (step) {
-        const LimitRow& own = has_closed ? closed : open;
+      const LimitRow& own = has_closed ? closed : open;
+      if (!step && own.observed) {
+        // No spectrum grows, and yet the scene does.
+        out.bound = Bound::marched;
+        out.step = own.observed;
+        parts.push_back(
+            fmt::format("every spectrum is stable; marches are to {} s", answers::short_number(*own.observed, 3)));
+      } else if (step) {
+        out.step = own.observed && own.agrees == false ? std::min(*step, *own.observed) : *step;
         if (own.observed) {
           out.low = std::min(*step, *own.observed);
           out.high = std::max(*step, *own.observed);
-          parts.push_back(fmt::format("marched {} s", answers::short_number(*own.observed, 3)));
+          parts.push_back(fmt::format("predicted {} s, marched {} s", answers::short_number(*step, 3),
+                                      answers::short_number(*own.observed, 3)));
         }
         if (predicted_alone(out)) parts.emplace_back("contact not marched");
         if (has_closed && open.predicted)
@@ -252,6 +259,9 @@ class StepsAsk {
             parts.push_back(fmt::format("{}{}{} ({})", bound == Bound::stop ? "the closed stop" : "the mesh", verb, who,
                                         steps(of)));
             verb.clear();
+            break;
+          case Bound::marched:
+            parts.push_back(fmt::format("marches grow{} beyond {}, though no spectrum does", who, steps(of)));
             break;
           case Bound::none:
             parts.push_back(fmt::format("no limit{} from {}", who, range_));

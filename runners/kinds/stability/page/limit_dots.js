@@ -24,7 +24,7 @@
       };
     });
     const counted = ricochet.distinct(data.rows("step_limits")
-                                          .filter((row) => row.counted && data.byId.has(row.case))
+                                          .filter((row) => row.counted && !row.refused && data.byId.has(row.case))
                                           .map((row) => data.byId.get(row.case))),
           without = counted.filter((one) => !cases.includes(one));
     // Only where each row is one method.
