@@ -42,6 +42,7 @@ struct Followed {
 struct Told {
   const StudyPoint* point = nullptr;
   double value = 0;
+  double known = 0;                    ///< half the interval in which its own case has it
   std::optional<double> half = {};     ///< nothing where no second case refines it
   std::string below = {}, above = {};  ///< stable orbits on each side
 };
@@ -152,25 +153,27 @@ class PointsAsk {
       }
       if (!is_point_kind(point.kind) || std::isnan(point.parameter) || !(all_ || kinds_.contains(point.kind))) continue;
       if (point.kind == "fold" && point.name < 0 && point.prominence < least) continue;
-      Told told{&point, point.parameter};
+      Told told{&point, point.parameter, point.half};
+      // An interval that reaches farther on one side has its middle elsewhere.
+      if (const auto& low = point.row.low, &high = point.row.high; low && high) {
+        told.value = 0.5 * (*low + *high);
+        told.known = 0.5 * (*high - *low);
+      }
       if (point.name >= 0) refine(told, owner, point);
       out.points.push_back(std::move(told));
     }
     std::stable_sort(out.points.begin(), out.points.end(), [](const Told& a, const Told& b) {
       return std::pair(a.point->branch, a.point->arc) < std::pair(b.point->branch, b.point->arc);
     });
-    for (Told& told : out.points) {
-      constexpr double beside = 0.005;  // of the range; further than the point is uncertain by
-      const double away = std::max(beside * of_.points.range(), 2 * told.point->half);
-      told.below = stable_at(out, told.point->parameter - away);
-      told.above = stable_at(out, told.point->parameter + away);
-    }
+    for (Told& told : out.points)
+      for (const int side : {-1, 1})
+        (side < 0 ? told.below : told.above) = stable_at(out, told.value + side * beside(told, owner, side));
   }
 
   /// What step and mesh leave of a point; a stiffness of a law is a level of its own. One case alone leaves what it
   /// leaves open unknown.
   void refine(Told& told, std::size_t owner, const StudyPoint& point) const {
-    double open = point.half;
+    double open = told.known;
     for (const PointConvergence::Along& along : of_.points.convergence(owner, point.name).along) {
       if (!answers::is_refinement(of_.points.axes()[along.axis].column) || !along.limit.open) continue;
       told.value += along.limit.correction;
@@ -179,9 +182,22 @@ class PointsAsk {
     }
   }
 
+  /// How far beside a point its stable orbits are read: 0.5 % of the range, or as far as it is uncertain, but no
+  /// farther than half way to the next point of its case.
+  double beside(const Told& told, std::size_t owner, int side) const {
+    constexpr double share = 0.005;
+    double away = std::max(share * of_.points.range(), 2 * told.known);
+    for (const StudyPoint& other : of_.points.points()) {
+      const double gap = side * (other.parameter - told.value);
+      if (other.owner == owner && is_point_kind(other.kind) && gap > told.known + other.half)
+        away = std::min(away, 0.5 * gap);
+    }
+    return std::max(away, told.known);
+  }
+
   /// The stable orbits that branches have at a value of the parameter: "period 1 and period 2"; "none", or "" where no
   /// branch goes.
-  static std::string stable_at(const Followers& one, double value) {
+  std::string stable_at(const Followers& one, double value) const {
     std::set<std::string> stable;
     bool any = false;
     for (const Followed& branch : one.branches)
@@ -190,9 +206,23 @@ class PointsAsk {
         const auto [low, high] = std::minmax(*a.parameter, *b.parameter);
         if (value < low || value > high || !a.stable || !b.stable) continue;
         any = true;
-        if (*a.stable && *b.stable) stable.insert(fmt::format("period {}", a.period));
+        if (*a.stable == *b.stable ? *a.stable : stable_between(one, branch, a, b, value))
+          stable.insert(fmt::format("period {}", a.period));
       }
     return stable.empty() ? (any ? "none" : "") : fmt::format("{}", fmt::join(stable, " and "));
+  }
+
+  /// Between a stable and an unstable row of a branch: on the side of the point between them, else of their middle.
+  bool stable_between(const Followers& one, const Followed& branch, const BranchRow& a, const BranchRow& b,
+                      double value) const {
+    double turn = 0.5 * (*a.parameter + *b.parameter);
+    const auto [low, high] = std::minmax(*a.parameter, *b.parameter);
+    for (const StudyPoint& point : of_.points.points())
+      if (point.owner == one.owner && point.row.branch == branch.name && is_point_kind(point.kind) &&
+          low <= point.parameter && point.parameter <= high)
+        turn = point.parameter;
+    const BranchRow& own = (value < turn) == (*a.parameter < *b.parameter) ? a : b;
+    return *own.stable;
   }
 
   void add_point(asks::Answered& out, const Followers& one, const Told& told) const {

@@ -116,7 +116,6 @@ void StudyPoints::read(const CaseRecord& record) {
                     row.prominence.value_or(0)}};
     for (const auto& end : {row.low, row.high})
       if (end) one.half = std::max(one.half, std::abs(*end - at));
-    if (row.low && row.high && *row.low <= at && at <= *row.high) one.half = 0.5 * (*row.high - *row.low);
     const auto branch = std::find_if(own.begin(), own.end(), [&](const Branch& of) { return of.name == row.branch; });
     if (branch != own.end()) {
       one.branch = static_cast<int>(branch - own.begin());
