@@ -17,7 +17,7 @@ namespace {
 
 constexpr double parameter_difference = 1e-6, first_step = 1e-3;  // of the range
 constexpr int easy = 4, hard = 7, most = 12;                      // iterations
-constexpr double growth = 1.5;
+constexpr double growth = 1.5, most_steps = 10;
 
 }  // namespace
 
@@ -280,12 +280,16 @@ StepFollower::Verdict StepFollower::judge(Step& step) {
   const auto [secant, far] = secant_to(step.to);
   const double cosine = overlap(secant, along_);
   // Nearer than impacts are placed neither directions nor multipliers say anything.
-  const double told = 5 * step.image.rebounds;
+  const BranchCorner& last = trace_.corners.back();
+  const double told = unresolved * step.image.rebounds;
+  if (far > std::max(most_steps * step_, unresolved * last.rebounds)) {
+    failure_ = "the next orbit is farther than a step";
+    return Verdict::failed;
+  }
   if (cosine < sharpest && !(far < told && cosine > 0)) {
     failure_ = "the branch turns by more than 45 degrees within a step";
     return Verdict::failed;
   }
-  const BranchCorner& last = trace_.corners.back();
   const bool crosses =
       outside(step.multipliers).total != last.raw.outside.total || (limits_.smooth && step.image.runs != last.runs);
   return crosses && step_ > std::max(limits_.located * range(), told) ? Verdict::crosses : Verdict::taken;

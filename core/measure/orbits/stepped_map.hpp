@@ -32,6 +32,9 @@ class FollowedMap {
   virtual Image march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool derivative = false) = 0;
 };
 
+/// Orbits that give back speed and are nearer than so many of their rebounds are not told apart.
+inline constexpr double unresolved = 5;
+
 /// P(x, λ) of programs that differ from value to value: steps, matrices, laws. The state x has the coordinates of one
 /// of them; displacements and velocities of the others are carried there. Derivatives are those of tangent columns,
 /// with the jumps of impacts with inertia (impact_jump.hpp). One lane.

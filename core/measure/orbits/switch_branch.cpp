@@ -34,6 +34,14 @@ std::optional<VectorXd> critical_vector(const Eigen::MatrixXd& derivative,
   return VectorXd(modes.vectors.col(nearest).real());
 }
 
+/// How far two orbits have to be apart to be two, m: farther than impacts that rebound are placed.
+double told_apart(const PeriodicMap&, const MapMarch&) {
+  return 0;
+}
+double told_apart(const SteppedMap&, const FollowedMap::Image& image) {
+  return unresolved * image.rebounds;
+}
+
 }  // namespace
 
 Eigen::MatrixXd derivative_at(PeriodicMap& map, const ShotOrbit& orbit, const MapClock& clock) {
@@ -62,12 +70,16 @@ std::optional<SwitchedOrbit> switch_branch(Map& map, const MapClock& clock, cons
       auto v = critical_vector(derivative_at(map, own, clock), massless(map, clock));
       if (!v) continue;
       *v /= map.metric().size(*v);
-      for (const double amplitude : {1e-3, 3e-3, 1e-2})
+      // Where impacts rebound an orbit of a small amplitude is not told from the one that it leaves.
+      const double told = told_apart(map, map.march(own.x, parameter, clock)),
+                   apart = std::max(same_orbit * scale, told);
+      for (const double amplitude : {1e-3, 3e-3, 1e-2, 3e-2, 0.1})
         for (const double way : {1.0, -1.0}) {
+          if (amplitude > 1e-2 && told == 0) continue;
           ShotOrbit other = shoot(map, own.x + way * amplitude * scale * *v, parameter, doubled, tolerance);
           if (!other.found) continue;
           const auto once = map.march(other.x, parameter, clock);
-          if (once.end || map.metric().size(once.image - other.x) < same_orbit * scale) continue;
+          if (once.end || map.metric().size(once.image - other.x) < apart) continue;
           return SwitchedOrbit{std::move(other), doubled};
         }
     }
