@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ricochet/measure/motion/motion_errors.hpp>
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/numbers_in_words.hpp"
@@ -45,8 +46,33 @@ std::optional<Sentence> say_unmoved(const Compared& study) {
 
 }  // namespace
 
+namespace {
+
+/// Where every case is compared with a reference, and neither touches a stop.
+std::optional<Sentence> say_no_contact(const Compared& study) {
+  bool any = false, several = false;
+  std::string law;
+  for (const CaseRecord& record : study.results().cases) {
+    if (record.status != Status::done) continue;
+    if (std::none_of(record.left_out.begin(), record.left_out.end(),
+                     [](const auto& one) { return one.second == no_contact; }))
+      return std::nullopt;
+    const std::string name = study.level(record, "contact");
+    several = several || (any && name != law);
+    law = name;
+    any = true;
+  }
+  if (!any) return std::nullopt;
+  return Sentence{std::string("No stop was touched by the motions and by their references") +
+                      (several ? "; contact laws are not compared." : "."),
+                  {Clause{.form = "status", .status = "untouched"}}};
+}
+
+}  // namespace
+
 std::optional<Sentence> say_untouched(const Compared& study) {
   if (auto unmoved = say_unmoved(study)) return unmoved;
+  if (auto untouched = say_no_contact(study)) return untouched;
   double gap = 0, largest = 0;
   bool any = false, several = false;
   std::string law;

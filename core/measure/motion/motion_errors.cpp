@@ -55,7 +55,7 @@ class Comparison {
       };
       if (none(a_) && none(b_)) {
         error.value.reset();
-        error.reason = "neither motion touches a stop";
+        error.reason = no_contact;
       }
     } else if (name == "impact-times") {
       impact_times(error);
@@ -101,23 +101,58 @@ class Comparison {
     }));
   }
 
+  static const char* name_of(int side) { return side < 0 ? "lower" : "upper"; }
+
+  /// From when to when a motion touches the stops.
+  struct Touch {
+    int side = 0;
+    double from = 0, to = 0;
+  };
+  static std::vector<Touch> touches(const SampledMotion& motion) {
+    std::vector<Touch> all;
+    for (const ContactEvent& event : motion.events) {
+      if (event.begins) {
+        all.push_back({event.side, event.time, event.time});
+        continue;
+      }
+      const auto last =
+          std::find_if(all.rbegin(), all.rend(), [&](const Touch& one) { return one.side == event.side; });
+      if (last != all.rend()) last->to = event.time;
+    }
+    return all;
+  }
+
+  // Each impact of the reference has to be met, and each of the motion to be one of the reference.
   void impact_times(MotionError& error) const {
+    const std::vector<Touch> found = touches(a_), expected = touches(b_);
     double most = -1;
-    for (const ContactEvent& expected : b_.events) {
-      if (!expected.begins || expected.time > horizon_) continue;
+    for (const Touch& one : expected) {
+      if (one.from > horizon_) continue;
       double nearest = std::numeric_limits<double>::infinity();
-      for (const ContactEvent& found : a_.events)
-        if (found.begins && found.side == expected.side)
-          nearest = std::min(nearest, std::abs(found.time - expected.time));
+      for (const Touch& other : found)
+        if (other.side == one.side) nearest = std::min(nearest, std::abs(other.from - one.from));
       if (std::isinf(nearest)) {
         error.reason = fmt::format("no impact on the {} stop, which the reference first hits at t = {:.6g} s",
-                                   expected.side < 0 ? "lower" : "upper", expected.time);
+                                   name_of(one.side), one.from);
+        return;
+      }
+      most = std::max(most, nearest);
+    }
+    for (const Touch& one : found) {
+      if (one.from > horizon_) continue;
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Touch& other : expected)
+        if (other.side == one.side)
+          nearest = std::min(nearest, std::max({0.0, other.from - one.from, one.from - other.to}));
+      if (std::isinf(nearest)) {
+        error.reason = fmt::format("an impact on the {} stop at t = {:.6g} s, which the reference never hits",
+                                   name_of(one.side), one.from);
         return;
       }
       most = std::max(most, nearest);
     }
     if (most < 0)
-      error.reason = "the reference has no impact within the horizon";
+      error.reason = no_contact;
     else
       error.value = most;
   }

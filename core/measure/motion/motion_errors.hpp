@@ -15,15 +15,19 @@ namespace ricochet {
 ///     displacement-h2  (1/T ∫∫ (Δu'')² dx dt)^½; a bar: Δu'            m^{-1/2}; m^{½}
 ///     velocity-l2      (1/T ∫∫ (Δu_t)² dx dt)^½                        m^{3/2}/s
 ///     energy           1/T ∫ |ΔE| dt                                   J
-///     impact-times     max over the reference's impacts of the distance to the nearest impact on the same side   s
+///     impact-times     max over the impacts of both of the distance to the nearest of the other on that side   s
 ///     impulse          max_t |∫₀ᵗ Δ(Σp) dτ|: the contact force in the dual norm W^{-1,∞}(0,T)                    N s
 ///
+/// An impact of the motion while the reference is in contact is at distance 0, one after it at that from its release.
 /// For an oscillator the integrals over x are the values of its one point (m, m/s), and there is no strain.
 struct MotionError {
   std::string name;
   std::optional<double> value;  ///< none: `reason` says why
   std::string reason;
 };
+
+/// The reason of errors that speak of contact where there is none.
+inline constexpr const char* no_contact = "neither motion touches a stop";
 
 /// The errors named (those above, others throw std::logic_error), in that order. Times beyond the horizon, or beyond
 /// what the motion reached, do not count; a motion that ended early has no errors but a reason.

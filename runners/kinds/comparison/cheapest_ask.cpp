@@ -55,6 +55,7 @@ class CheapestAsk {
     for (const CaseRecord* one : cases_) out.cases += share(*one).has_value();
     out.left_out = cases_.size() - out.cases;
     out.aside = evidence_.left_out("error." + error_, cases_).told();
+    for (std::string& one : reference_words(cases_)) out.aside.push_back(std::move(one));
     std::vector<const Reach*> there, never;
     for (const Reach& one : methods_) (one.first ? there : never).push_back(&one);
     std::stable_sort(there.begin(), there.end(),
@@ -233,7 +234,9 @@ class CheapestAsk {
                             named ? names.of(missed) : fmt::format("{} of {} methods", missed.size(), methods_.size()));
       return answers::capitalised(text) + ".";
     };
-    out.sentence = asks::fitting({add(true), add(false), answers::capitalised(got) + "."});
+    const std::string as_fast = tied.empty() ? "" : fmt::format("; {} more within its noise", tied.size());
+    out.sentence = asks::fitting(
+        {add(true), add(false), answers::capitalised(got) + as_fast + ".", answers::capitalised(got) + "."});
   }
 
   Json figure() const {

@@ -44,7 +44,9 @@ const std::vector<ErrorInfo>& error_infos() {
        "the error of the velocity"},
       {"energy", "J", "Mean over time of the modulus of the difference of the mechanical energy.",
        "the error of the energy"},
-      {"impact-times", "s", "Largest distance from an impact of the reference to the nearest impact on the same side.",
+      {"impact-times", "s",
+       "Largest distance from an impact of either motion to the nearest of the other on the same side. One while the "
+       "reference is in contact is at none.",
        "the error of the impact times"},
       {"impulse", "N s", "Largest difference of the impulse so far: the contact force in the dual norm of W^{1,1}.",
        "the error of the impulse"}};

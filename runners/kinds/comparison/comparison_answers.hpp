@@ -32,6 +32,10 @@ std::vector<MethodRun> runs_of(const answers::Compared& study, const std::string
 std::string error_words(const std::string& error);
 std::string short_error_words(const std::string& error);
 
+/// What of the cases is in their errors beside the time scheme: the law, where references have rigid stops, or not the
+/// mesh. A sentence each.
+std::vector<std::string> reference_words(const Cases& cases);
+
 /// What answers `order` and `cheapest`.
 asks::Answered order_ask(const asks::Ask& ask, const asks::Evidence& evidence);
 asks::Answered cheapest_ask(const asks::Ask& ask, const asks::Evidence& evidence);

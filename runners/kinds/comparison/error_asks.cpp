@@ -17,6 +17,23 @@ std::string short_error_words(const std::string& error) {
   return rest.starts_with(the) ? rest.substr(the.size()) : rest;
 }
 
+std::vector<std::string> reference_words(const Cases& cases) {
+  std::size_t of_the_mesh = 0, of_rigid_stops = 0, done = 0;
+  for (const CaseRecord* one : cases) {
+    if (one->status != Status::done) continue;
+    ++done;
+    of_the_mesh += measure(*one, "reference_of_mesh").value_or(0) > 0 ? 1 : 0;
+    of_rigid_stops += measure(*one, "reference_of_law").value_or(1) > 0 ? 0 : 1;
+  }
+  std::vector<std::string> out;
+  if (of_rigid_stops > 0)
+    out.push_back(fmt::format("Errors{} are against rigid stops: what the springs of the law add is in them.",
+                              of_rigid_stops < done ? fmt::format(" of {} of {} cases", of_rigid_stops, done) : ""));
+  if (of_the_mesh > 0)
+    out.emplace_back("Errors are against the same mesh and mass: the error of the mesh is not in them.");
+  return out;
+}
+
 std::string error_name(std::string asked) {
   if (asked.starts_with("error.")) asked.erase(0, 6);
   std::replace(asked.begin(), asked.end(), '_', '-');

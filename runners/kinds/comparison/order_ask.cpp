@@ -21,17 +21,17 @@ using answers::short_number;
 using Run = OrderRun::Verdict;
 
 /// What is found of one method.
-enum class Found { clean, none, unclear, hidden };
+enum class Found { clean, none, unclear, hidden, absent };
 
 const char* found_word(Found found) {
-  constexpr const char* words[] = {"clean", "none", "unclear", "hidden"};
+  constexpr const char* words[] = {"clean", "none", "unclear", "hidden", "no error"};
   return words[static_cast<int>(found)];
 }
 
 struct Method {
   const CaseRecord* first = nullptr;
   std::optional<MethodRun> run = {};  ///< nothing where no two sizes have an error
-  Found found = Found::hidden;
+  Found found = Found::absent;
   std::string reason = {};
 };
 
@@ -81,7 +81,7 @@ class OrderAsk {
                                                          : asks::Verdict::open);
         if (one == refined.front()) add_series(series, method);
       }
-      said.push_back(texts(methods, one));
+      said.push_back(texts(methods, one, refined.size() > 1));
     }
     if (said.empty()) {
       out.reason = "no three sizes have an error";
@@ -93,16 +93,11 @@ class OrderAsk {
         for (const auto& one : said) text += (text.empty() ? "" : " ") + one[k];
         sentences.push_back(std::move(text));
       }
-      // Of several refinements the step stands first, the mesh in the rows.
-      if (said.size() > 1) sentences.push_back(said.front().back());
       out.sentence = asks::fitting(sentences);
     }
     out.passes = verdicts.empty() ? asks::Verdict::open : asks::all_of(verdicts);
     out.verdict = words.empty() ? "open" : words.size() == 1 ? *words.begin() : "in part";
-    if (std::any_of(cases_.begin(), cases_.end(), [](const CaseRecord* one) {
-          return one->status == Status::done && measure(*one, "reference_of_mesh").value_or(0) > 0;
-        }))
-      out.aside.emplace_back("Errors are against the same mesh and mass: the error of the mesh is not in them.");
+    for (std::string& one : reference_words(cases_)) out.aside.push_back(std::move(one));
     if (!refined.empty()) {
       const bool step = refined.front() == "step";
       out.figure = {{"form", "curves"},
@@ -218,7 +213,7 @@ class OrderAsk {
   }
 
   /// The sentence on one refinement, the fullest first.
-  std::vector<std::string> texts(const std::vector<Method>& methods, const std::string& refined) const {
+  std::vector<std::string> texts(const std::vector<Method>& methods, const std::string& refined, bool of_two) const {
     Cases firsts;
     std::map<double, Members, std::greater<>> orders;
     std::map<Found, Members> others;
@@ -249,8 +244,9 @@ class OrderAsk {
       const bool counted = brief == 2 || (brief == 1 && of.size() == largest && of.size() > 1);
       return " with " + (counted ? fmt::format("{} of {} methods", of.size(), methods.size()) : names.of(of));
     };
-    const std::string subject =
-        answers::capitalised(short_error_words(error_)) + (refined == "step" ? "" : ", in the mesh");
+    const std::string subject = answers::capitalised(short_error_words(error_)) + (refined != "step" ? ", in the mesh"
+                                                                                   : of_two          ? ", in the step"
+                                                                                                     : "");
     std::vector<std::string> out;
     for (const int brief : {0, 1, 2}) {
       std::vector<std::string> parts;
@@ -261,7 +257,9 @@ class OrderAsk {
       for (const auto& [found, of] : others)
         clauses.push_back((found == Found::none      ? "no order"
                            : found == Found::unclear ? "unclear"
-                                                     : "the floor or too few sizes hide it") +
+                           : found == Found::hidden  ? "the floor or too few sizes hide it"
+                           : brief == 0              ? "no error (" + methods[of.front()].reason + ")"
+                                                     : "no error") +
                           who(of, brief));
       out.push_back(fmt::format("{}: {}.", subject, fmt::join(clauses, "; ")));
     }
@@ -274,6 +272,9 @@ class OrderAsk {
           fmt::format("a clean order with {} of {} methods, {}", clean.size(), methods.size(), range(clean)));
     for (const auto& [found, of] : others) counts.push_back(fmt::format("{} with {}", found_word(found), of.size()));
     out.push_back(fmt::format("{}: {}.", subject, fmt::join(counts, "; ")));
+    // Of two refinements the subject once, and of each what is clean.
+    out.push_back(fmt::format("{}a clean order with {} of {} methods.",
+                              refined == "step" ? subject + ": " : "In the mesh: ", clean.size(), methods.size()));
     return out;
   }
 

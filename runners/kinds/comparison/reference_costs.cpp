@@ -230,11 +230,11 @@ std::variant<ReferenceProblem, Refusal> seen_by_reference(const StudyCase& study
         "a compliant law meets the circle of a clearance, and references know stops along rows: use the reference "
         "self"};
   ReferenceProblem problem = reference_problem(study_case, registry);
-  if (of_the_mesh) return problem;
+  if (of_the_mesh || problem.structure == "oscillator") return problem;
+  // A continuum meets rigid stops; its point of contact has no mass, and no coefficient acts on it.
   problem.contact_stiffness = 0;
   problem.contact_nonlinear = false;
-  // A continuum's point of contact has no mass: no coefficient acts on it.
-  if (problem.structure != "oscillator") problem.restitution = 0;
+  problem.restitution = 0;
   return problem;
 }
 

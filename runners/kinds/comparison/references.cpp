@@ -155,7 +155,11 @@ std::string References::key(const StudyCase& study_case, const MethodChoice& cho
   } else {
     const ReferenceProblem problem = reference_problem(study_case, registry_);
     content["absent"] = problem.contact_absent;
-    if (problem.structure == "oscillator") content["restitution"] = problem.restitution;
+    if (problem.structure == "oscillator") {
+      content["restitution"] = problem.restitution;
+      if (problem.contact_stiffness > 0) content["stiffness"] = problem.contact_stiffness;
+      if (problem.contact_nonlinear) content["contact"] = content_of(study_case.contact);
+    }
   }
   return content_hash(content.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

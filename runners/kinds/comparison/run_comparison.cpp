@@ -50,14 +50,14 @@ void compare(CaseRecord& record, const SampledMotion& motion, const ReferenceSet
   for (std::size_t i = 1; i < set.applicable.size(); ++i) raise(set.applicable[i]->found.motion);
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (!found[i].value) {
-      record.notes.push_back(fmt::format("no error {}: {}", names[i], found[i].reason));
+      record.left_out.emplace_back("error." + names[i], found[i].reason);
       continue;
     }
     if (sizes[i].size > 0 && sizes[i].size <= not_observed * sizes[i].resolution) {
-      record.notes.push_back(
-          fmt::format("no error {}: not observed, for it is at most {:.2g} in the reference itself, "
-                      "which is round-off of a motion of this size",
-                      names[i], sizes[i].size));
+      record.left_out.emplace_back(
+          "error." + names[i],
+          fmt::format("at most {:.2g} in the reference itself, which is round-off of a motion of this size",
+                      sizes[i].size));
       continue;
     }
     put_measure(record, "error." + names[i], *found[i].value);
@@ -115,7 +115,8 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   put_measure(record, "steps_visited", static_cast<double>(marcher.steps_visited()));
   const bool of_the_mesh = set.applicable.front()->of_the_mesh;
   put_measure(record, "reference_of_mesh", of_the_mesh ? 1 : 0);
-  put_measure(record, "reference_of_law", rigid || of_the_mesh ? 1 : 0);
+  const bool oscillator = std::holds_alternative<OscillatorSpec>(study_case.scene.structure);
+  put_measure(record, "reference_of_law", rigid || of_the_mesh || oscillator ? 1 : 0);
   recorder.finish(marcher);
   contacts.finish();
   add_contact(record, contacts, marcher);
