@@ -227,7 +227,8 @@ class EffectSpeaker {
   /// Whether a share says it: not of what is nothing, nor of what is many times as large.
   static bool as_share(const Told& one) {
     constexpr double times = 10, nearly_all = 0.9;
-    return one.pair && one.pair->share && std::abs(*one.pair->share)<times&& * one.pair->share> - nearly_all;
+    const std::optional<double> share = one.pair ? one.pair->share : std::nullopt;
+    return share && -nearly_all < *share && *share < times;
   }
 
   const Line& line_of(const Combination& combination, const std::string& level) const {
@@ -253,9 +254,8 @@ class EffectSpeaker {
     });
     if (one_pair) {
       const std::string which = fmt::format(" ({} against {})", list.front()->second, list.front()->first);
-      return list.size() == 1
-                 ? "by " + share_text(*list.front()->pair) + which
-                 : fmt::format("by {} to {}{}", share_text(*(*least)->pair), share_text(*(*most)->pair), which);
+      const std::string low = share_text(*(*least)->pair), high = share_text(*(*most)->pair);
+      return low == high ? "by " + low + which : fmt::format("by {} to {}{}", low, high, which);
     }
     const Told& largest = std::abs(*(*least)->pair->share) > std::abs(*(*most)->pair->share) ? **least : **most;
     return fmt::format("by up to {} ({} against {}{})", share_text(*largest.pair), largest.second, largest.first,
@@ -367,9 +367,7 @@ class EffectSpeaker {
 void check_effect(const Ask& ask, const Study& study) {
   check_choice(ask, study, "effect", ask.subject());
   check_measure(ask, study, "on", ask.text("on"));
-  if (ask.subject() == seed_axis)
-    throw InputError(ask.pointer(), "seeds are draws of one load, and no choice; ask {\"value\": \"" + ask.text("on") +
-                                        "\"}, whose interval holds them");
+  refuse_seeds(ask, "effect", "are no choice", ask.text("on"));
   if (ask.has("from") && ask.has("within"))
     throw InputError(ask.pointer("within"), "does not go together with \"from\"; expected one of them");
 }

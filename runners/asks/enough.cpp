@@ -79,7 +79,9 @@ class Enough {
       return counts(a) != counts(b) ? counts(b) : width(*a.first) < width(*b.first);
     });
     const auto& [line, need] = *worst;
-    const std::string found = fmt::format("{} is known to ± {}", lines_.words.words, answers::percent(width(*line)));
+    const std::string found =
+        is_zero(*line) ? lines_.words.words + " is zero"
+                       : fmt::format("{} is known to ± {}", lines_.words.words, answers::percent(width(*line)));
     if (*out.passes == Verdict::yes)
       out.sentence = in_thirty_words(fmt::format("Yes: {}, within the {} asked", found, answers::percent(within_)),
                                      {{less_would_do(*line, need)}});
@@ -100,14 +102,26 @@ class Enough {
   }
 
  private:
+  /// Whether it is zero but for round-off.
+  static bool is_zero(const Line& line) {
+    const Estimate& one = line.estimate();
+    return one.value == 0 && one.u() && *one.u() <= line.point.floor;
+  }
+
   static double width(const Line& line) {
     const Estimate& one = line.estimate();
+    if (is_zero(line)) return 0;
     return one.u() && one.value != 0 ? *one.u() / std::abs(one.value) : INFINITY;
   }
 
   Need need_of(const Line& line) const {
     const Estimate& one = line.estimate();
     Need out;
+    if (is_zero(line)) {
+      out.enough = true;
+      out.why = "it is zero";
+      return out;
+    }
     if (one.grows || one.value == 0 || !one.u()) {
       out.known = false;
       out.why = one.grows               ? one.motion
@@ -145,9 +159,9 @@ class Enough {
     if (step > of_step) {
       constexpr double halves = 1;
       const double order = std::max(0.5, one.order.value_or(halves));
-      if (!one.motion.empty()) {
+      if (!one.motion.empty() || one.vanishes) {
         out.known = false;
-        out.why = "it " + one.motion;
+        out.why = one.vanishes ? "it falls to zero with the step" : "it " + one.motion;
       } else
         out.step = two_digits_below(line.point.finest->first * std::pow(of_step / step, 1 / order));
     }
@@ -167,6 +181,11 @@ class Enough {
       out.seeds = n < large ? static_cast<double>(n) : std::ceil(static_cast<double>(n) * beyond * beyond);
     }
     if (evidence_.window() > 0) out.duration = longer * evidence_.window();
+    // A longer window of a load that repeats holds nothing new.
+    if (out.duration && *out.duration > evidence_.repeats_after()) {
+      out.duration.reset();
+      if (one.seeds == 1) out.seeds = std::ceil(longer);
+    }
   }
 
   /// "28 seeds, or windows of 4.8 s".
@@ -196,7 +215,7 @@ class Enough {
   void add_rows(Answered& out, const Line& line, const Need& need, Verdict verdict) const {
     VerdictRow row = lines_.row(line);
     row.verdict = word(verdict);
-    if (!need.known) row.reason = need.why;
+    if (!need.why.empty()) row.reason = need.why;
     out.rows.push_back(row);
     VerdictRow width_row;
     width_row.measure = line.measure;

@@ -113,6 +113,7 @@ Estimate estimate_of(const std::map<Size, BySeed>& values, const std::map<Size, 
                                                   : "wanders") +
                    " with the " + what;
   if (out.grows) out.motion = "grows without bound";
+  out.vanishes = limits.step && limits.step->status == LimitStatus::vanishes;
   out.order = limits.step ? limits.step->order : std::nullopt;
   const auto own = halves.find(finest);
   out.sampling = sampling_of(draws, own == halves.end() ? nullptr : &own->second);

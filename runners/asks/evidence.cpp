@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/limits.hpp"
@@ -142,6 +143,20 @@ double Evidence::window() const {
   return study.value("duration", 0.0);
 }
 
+double Evidence::repeats_after() const {
+  double soonest = INFINITY;
+  const std::function<void(const Json&)> look = [&](const Json& value) {
+    if (!value.is_structured()) return;
+    // A spectrum by its lines: after 1/Δf its sum is the same.
+    if (value.is_object() && value.contains("lines") && value.contains("from") && value.contains("to"))
+      if (const double band = value["to"].get<double>() - value["from"].get<double>(); band > 0)
+        soonest = std::min(soonest, value["lines"].get<double>() / band);
+    for (const Json& one : value) look(one);
+  };
+  if (const Json& study = results().study; study.is_object()) look(study.value("scene", Json::object()));
+  return soonest;
+}
+
 double Evidence::resolution(const std::string& name, const Point& point, bool by_steps) const {
   const MeasureInfo* info = measure_info(name);
   if (!info || !point.finest) return 0;
@@ -174,6 +189,7 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
   std::vector<Point> out;
   std::vector<std::optional<Limits>> limits;
   std::vector<double> round_off;
+  double largest_of_all = 0;
   const auto words = answers::measure_words(measure_of_all);
   const bool share = shares || words.scale == "1";
   for (auto& [key, point] : std::move(groups).list()) {
@@ -203,13 +219,19 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
           point.values[{1, mesh_chosen ? 1 : study_.elements(*record).value_or(1)}][""] = *least;
         }
     point.floor *= share ? 1 : largest;
-    round_off.push_back(point.floor);
+    largest_of_all = std::max(largest_of_all, largest);
     for (const auto& [size, value] : point.values)
       if (!point.finest || finer(size, *point.finest)) point.finest = size;
-    point.floor = std::max(point.floor, resolution(measure_of_all, point, !steps_chosen));
-    limits.push_back(point.finest ? std::optional(limits_at(point.values, *point.finest, point.floor)) : std::nullopt);
     if (!point.finest) point.none = left_out(measure_of_all, point.cases).reasons.front().said();
     out.push_back(std::move(point));
+  }
+  for (Point& point : out) {
+    // Beside what others have of it, a value that is all round-off is none.
+    constexpr double nothing = 1e-15;
+    if (!share) point.floor = std::max(point.floor, nothing * largest_of_all);
+    round_off.push_back(point.floor);
+    point.floor = std::max(point.floor, resolution(measure_of_all, point, !steps_chosen));
+    limits.push_back(point.finest ? std::optional(limits_at(point.values, *point.finest, point.floor)) : std::nullopt);
   }
   std::vector<Limit*> all;
   for (auto& one : limits)

@@ -22,6 +22,7 @@ struct Estimate {
   std::optional<double> step, mesh;  ///< what each refinement leaves; nothing of a single size
   std::optional<double> sampling;    ///< half the 95 % interval of a mean; nothing where none is drawn
   bool grows = false;                ///< without bound as it is refined
+  bool vanishes = false;             ///< falls to zero with the step
   std::string motion;                ///< "still falls with the step" of what is not settled
   std::optional<double> order;       ///< in the step
   std::size_t steps = 1, meshes = 1, seeds = 1;
@@ -115,6 +116,8 @@ class Evidence {
 
   /// s over which means are taken: the window, else the run.
   double window() const;
+  /// s after which the random loads of the scene say the same again, the soonest; ∞ of none.
+  double repeats_after() const;
 
  private:
   /// What a value is off by beside round-off, in the unit of its measure: what its floor says, and of a time that is

@@ -19,7 +19,7 @@ const Verb& cheapest_verb() {
       "Which method reaches an error for the least time.",
       {keys::of_form(Field::Form::text, "cheapest", std::nullopt, "The error."),
        keys::of_form(Field::Form::share, "within", std::nullopt, "The error to reach, as a share of the reference.")},
-      "only one that has a reference can: kind work-precision"};
+      "only one that times methods against a reference can: kind work-precision"};
   return verb;
 }
 
@@ -88,7 +88,8 @@ Ask ask_at(const Json& keys, const std::string& pointer) {
 std::function<void(const Json&, const std::string&, const std::string&)> measures_alone(
     const std::vector<MeasureInfo>& measures) {
   std::vector<std::string> names;
-  for (const MeasureInfo& one : measures) names.emplace_back(one.name);
+  for (const MeasureInfo& one : measures)
+    if (std::find(names.begin(), names.end(), one.name) == names.end()) names.emplace_back(one.name);
   return [names](const Json&, const std::string& measure, const std::string& pointer) {
     if (std::find(names.begin(), names.end(), measure) == names.end())
       throw InputError(pointer, "cases of this kind have no measure " + quote(measure) +

@@ -21,29 +21,49 @@ bool nothing_seen(const Point& point) {
                                          [](const CaseRecord* one) { return !one->reasons.empty(); });
 }
 
-std::string why_open(const Line& line) {
+std::string why_open(const Line& line, const Bounds& bounds) {
   if (!line.known()) return line.point.none;
   if (nothing_seen(line.point)) return "no stop is touched, in a doubtful run";
-  return line.estimate().unknown().empty() ? "the limit lies within its interval" : line.estimate().unknown();
+  const Estimate& one = line.estimate();
+  if (!one.unknown().empty()) return one.unknown();
+  const bool all = one.has_interval() && bounds.holds(one.low()) && bounds.holds(one.high());
+  return all ? "one seed is too near to it" : "the limit lies within its interval";
 }
 
-/// Yes where the interval and each draw hold; no where the interval, or a draw with what refinement leaves of it, is
-/// beyond.
-Verdict verdict_of(const Line& line, const Bounds& bounds) {
-  if (!line.known()) return Verdict::open;
+/// What of a line keeps to its bounds.
+struct Kept {
+  Verdict verdict = Verdict::open;
+  std::size_t draws = 0, beyond = 0;  ///< of seeds, where each has to keep to them
+};
+
+/// Yes where the interval holds; no where it is beyond. A mean over a window is one number, of which seeds are draws.
+/// Of what is no mean, as a peak, each seed has to hold, with what refinement leaves of it.
+Kept kept(const Line& line, const Bounds& bounds) {
+  Kept out;
+  if (!line.known() || !line.estimate().has_interval()) return out;
   const Estimate& one = line.estimate();
-  if (!one.has_interval()) return Verdict::open;
-  bool all = true, beyond = false;
-  const auto look = [&](double low, double high) {
-    all = all && bounds.holds(low) && bounds.holds(high);
-    beyond = beyond || (bounds.below && low >= *bounds.below) || (bounds.above && high <= *bounds.above);
+  const auto holds = [&](double low, double high) { return bounds.holds(low) && bounds.holds(high); };
+  const auto breaks = [&](double low, double high) {
+    return (bounds.below && low >= *bounds.below) || (bounds.above && high <= *bounds.above);
   };
-  look(one.low(), one.high());
-  const double refinement = one.step.value_or(0) + one.mesh.value_or(0);
-  if (!one.beyond)
-    for (const auto& [seed, value] : line.point.values.at(*line.point.finest))
-      look(value - refinement, value + refinement);
-  return beyond ? Verdict::no : all && !nothing_seen(line.point) ? Verdict::yes : Verdict::open;
+  bool all = holds(one.low(), one.high()), beyond = breaks(one.low(), one.high());
+  if (const auto& draws = line.point.values.at(*line.point.finest); draws.size() > 1 && line.point.halves.empty()) {
+    const double refinement = one.step.value_or(0) + one.mesh.value_or(0);
+    out.draws = draws.size();
+    for (const auto& [seed, value] : draws) {
+      all = all && holds(value - refinement, value + refinement);
+      out.beyond += breaks(value - refinement, value + refinement) ? 1 : 0;
+    }
+    beyond = beyond || out.beyond > 0;
+  }
+  out.verdict = beyond ? Verdict::no : all && !nothing_seen(line.point) ? Verdict::yes : Verdict::open;
+  return out;
+}
+
+/// "2 of 8 seeds are beyond"; "" where none is, or the limit does not speak of each.
+std::string beyond_text(const Kept& one) {
+  if (one.beyond == 0) return "";
+  return fmt::format("{} of {} seeds {} beyond", one.beyond, one.draws, one.beyond == 1 ? "is" : "are");
 }
 
 using Marked = std::vector<const Line*>;
@@ -81,7 +101,8 @@ std::string kept_sentence(const Lines& lines, const Line& worst, const Bounds& b
                          {{worst.place()}});
 }
 
-std::string broken_sentence(const Lines& lines, const Marked& no, const Line& worst, const std::string& range) {
+std::string broken_sentence(const Lines& lines, const Marked& no, const Line& worst, const std::string& range,
+                            const std::string& seeds) {
   const bool plural = is_plural(lines.words.words), some = no.size() < lines.all.size();
   const std::string where = set_name(lines, no);
   const std::string in_these = !some           ? ""
@@ -89,15 +110,15 @@ std::string broken_sentence(const Lines& lines, const Marked& no, const Line& wo
                                                : " " + where;
   return in_thirty_words(fmt::format("No: {} {} not {}{}; {} {}", lines.words.words, plural ? "are" : "is", range,
                                      in_these, plural ? "they are" : "it is", lines.text(worst.estimate())),
-                         {{no.size() == 1 ? "" : worst.place()}});
+                         {{no.size() == 1 ? "" : worst.place()}, {seeds.empty() ? "" : ", and " + seeds}});
 }
 
 /// Reason and sentence.
-void say_open(Answered& out, const Lines& lines, const Marked& open, const std::string& range) {
+void say_open(Answered& out, const Lines& lines, const Marked& open, const Bounds& bounds, const std::string& range) {
   const bool plural = is_plural(lines.words.words);
   const auto known = std::find_if(open.begin(), open.end(), [](const Line* line) { return line->known(); });
   const Line& first = known == open.end() ? *open.front() : **known;
-  out.reason = why_open(first);
+  out.reason = why_open(first, bounds);
   const std::string which =
       open.size() < lines.all.size() ? fmt::format(" in {} of {}", open.size(), lines.all.size()) : "";
   const std::string found =
@@ -114,9 +135,11 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
   Marked yes, no, open;
   for (const Line& line : lines.all) {
     VerdictRow row = lines.row(line);
-    const Verdict verdict = verdict_of(line, bounds);
+    const Kept found = kept(line, bounds);
+    const Verdict verdict = found.verdict;
     row.verdict = word(verdict);
-    if (verdict == Verdict::open && row.reason.empty()) row.reason = why_open(line);
+    if (verdict == Verdict::no && row.reason.empty()) row.reason = beyond_text(found);
+    if (verdict == Verdict::open && row.reason.empty()) row.reason = why_open(line, bounds);
     out.rows.push_back(std::move(row));
     (verdict == Verdict::yes ? yes : verdict == Verdict::no ? no : open).push_back(&line);
   }
@@ -135,11 +158,12 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
   if (*out.passes == Verdict::yes)
     out.sentence = kept_sentence(lines, nearest(yes, bounds), bounds, range);
   else if (*out.passes == Verdict::no)
-    out.sentence = broken_sentence(lines, no, nearest(no, bounds), range);
+    out.sentence =
+        broken_sentence(lines, no, nearest(no, bounds), range, beyond_text(kept(nearest(no, bounds), bounds)));
   else if (auto without = open_without_values(lines, out))
     return *without;
   else
-    say_open(out, lines, open, range);
+    say_open(out, lines, open, bounds, range);
   return out;
 }
 

@@ -90,6 +90,7 @@ Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& meas
   }
   double largest = 0;
   std::set<std::string> told;
+  std::set<const CaseRecord*> behind;  // of several stops a case stands behind each
   for (const std::string& name : names) {
     for (Point& point : evidence.points(name, cases, columns, shares)) {
       Line line{split_measure(name).first, split_measure(name).second, "", std::move(point)};
@@ -97,13 +98,14 @@ Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& meas
       for (const std::string& column : columns) line.attributes.push_back(evidence.level(line.point.first(), {column}));
       line.attributes.push_back(line.stop);
       if (line.known()) largest = std::max(largest, std::abs(line.estimate().value));
-      out.cases += line.point.behind.size();
-      out.left_out += line.point.cases.size() - line.point.behind.size();
+      behind.insert(line.point.behind.begin(), line.point.behind.end());
       out.all.push_back(std::move(line));
     }
     for (const std::string& line : evidence.left_out(name, cases).told())
       if (told.insert(line).second) out.aside.push_back(line);
   }
+  out.cases = behind.size();
+  out.left_out = cases.size() - behind.size();
   // One stop needs no name.
   if (names.size() == 1) {
     out.words.words = answers::measure_words(names.front()).words;
@@ -230,6 +232,12 @@ void check_choice(const Ask& ask, const Study& study, const std::string& key, co
                                            (ask.has("where") ? "the cases of \"where\"" : "this study") + expected);
   throw InputError(ask.pointer(key),
                    "no choice of this study is called " + quote(choice) + expected + did_you_mean(choice, varying));
+}
+
+void refuse_seeds(const Ask& ask, const std::string& key, const std::string& why, const std::string& measure) {
+  if (ask.text(key.c_str()) == seed_axis)
+    throw InputError(ask.pointer(key), "seeds are draws of one load and " + why + "; ask {\"value\": \"" + measure +
+                                           "\"}, whose interval holds them");
 }
 
 Planned planned(const Study& study) {

@@ -75,6 +75,9 @@ void check_subject(const Ask& ask, const Study& study);
 /// Refuses a choice or an axis that does not vary.
 void check_choice(const Ask& ask, const Study& study, const std::string& key, const std::string& choice);
 
+/// Refuses seeds, which are draws, as the choice after a key: they `why`.
+void refuse_seeds(const Ask& ask, const std::string& key, const std::string& why, const std::string& measure);
+
 /// Steps, meshes and seeds of a study, as they were planned.
 struct Planned {
   std::size_t steps = 0, meshes = 0, seeds = 0;

@@ -79,7 +79,7 @@ class Ranking {
       return out;
     }
     for (const auto& [key, order] : orders_) add_rows(out, order);
-    const Order& first = orders_.front().second;
+    const Order& first = told();
     const bool firm = first.groups.size() == first.lines.size();
     bool all_firm = true, any_told = false;
     std::size_t surely_first = 0;
@@ -91,24 +91,36 @@ class Ranking {
                                                                                                                     : 0;
     }
     const auto [turned, turned_to] = turns();
+    out.passes = !turned.empty() ? Verdict::no : all_firm ? Verdict::yes : Verdict::open;
     out.verdict = !turned.empty() ? "turned round" : all_firm ? "told apart" : any_told ? "in part" : "not told apart";
     if (!firm && !first.lines.empty()) out.reason = first.lines.front()->estimate().unknown();
     std::vector<std::vector<std::string>> rest;
     if (!out.reason.empty()) rest.push_back({"; " + out.reason, "; " + short_reason(out.reason)});
     if (orders_.size() > 1)
-      rest.push_back({!turned.empty() ? fmt::format("; {} is first with {}", turned_to, some_of(turned, 1))
-                      : surely_first == orders_.size()
-                          ? fmt::format("; the same first in all {} combinations", surely_first)
-                      : surely_first > 0 ? fmt::format("; {} is surely first in {} of {} combinations",
-                                                       first.names.front(), surely_first, orders_.size())
-                                         : "; in no combination one is surely first",
-                      !turned.empty() ? fmt::format("; {} is first with others", turned_to)
-                                      : fmt::format("; surely first in {} of {}", surely_first, orders_.size())});
+      rest.push_back(
+          {!turned.empty()                  ? fmt::format("; {} is first with {}", turned_to, some_of(turned, 1))
+           : surely_first == orders_.size() ? fmt::format("; the same first in all {} combinations", surely_first)
+           : surely_first > 0 ? fmt::format("; {} is surely first in {} of {} combinations", first.names.front(),
+                                            surely_first, orders_.size())
+                              : "; in no combination one is surely first",
+           !turned.empty() ? fmt::format("; {} is first in {} of {}", turned_to, turned.size(), orders_.size())
+                           : fmt::format("; surely first in {} of {}", surely_first, orders_.size())});
     out.sentence = in_thirty_words(capitalised_order(first), rest);
     return out;
   }
 
  private:
+  /// The first combination with the most frequent largest.
+  const Order& told() const {
+    const auto times = [&](const Order& of) {
+      return std::count_if(orders_.begin(), orders_.end(),
+                           [&](const auto& one) { return one.second.names.front() == of.names.front(); });
+    };
+    return std::max_element(orders_.begin(), orders_.end(),
+                            [&](const auto& a, const auto& b) { return times(a.second) < times(b.second); })
+        ->second;
+  }
+
   /// All else, "HRZ, end"; what is ranked.
   std::string level_of(const Line& line) const {
     const std::string level = evidence_.level(line.point.first(), others_), stop = over_ == over_stops ? "" : line.stop;
@@ -152,7 +164,7 @@ class Ranking {
   /// The levels of all else with which another is surely the largest, and which one is so with the first of them.
   std::pair<std::vector<std::string>, std::string> turns() const {
     std::pair<std::vector<std::string>, std::string> out;
-    const Order& first = orders_.front().second;
+    const Order& first = told();
     for (const auto& keyed : orders_) {
       const Order& order = keyed.second;
       if (order.names.front() == first.names.front()) continue;
@@ -205,10 +217,11 @@ void check_rank(const Ask& ask, const Study& study) {
     return;
   }
   check_subject(ask, study);
+  if (study.resolved.at("scene").at("stops").is_array() && did_you_mean(over, {over_stops}) != "")
+    throw InputError(ask.pointer("over"),
+                     "no choice of this study is called " + quote(over) + did_you_mean(over, {over_stops}));
   check_choice(ask, study, "over", over);
-  if (over == seed_axis)
-    throw InputError(ask.pointer("over"), "seeds are draws of one load and are not ranked; ask {\"value\": \"" +
-                                              ask.subject() + "\"}, whose interval holds them");
+  refuse_seeds(ask, "over", "are not ranked", ask.subject());
 }
 
 std::string doubt_rank(const Ask&, const Study& study) {

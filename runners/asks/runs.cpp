@@ -68,13 +68,17 @@ Answered answer_runs(const Ask& ask, const Evidence& evidence) {
   return out;
 }
 
+void check_runs(const Ask& ask, const Study&) {
+  if (!ask.keys.at("runs").get<bool>()) throw InputError(ask.pointer(), "false asks nothing; expected true");
+}
+
 }  // namespace
 
 const Verb& runs_verb() {
   static const Verb verb = [] {
     Field key = keys::of_form(Field::Form::scalar, "runs", std::nullopt, "true.");
     key.spec.type = ParameterSpec::Type::boolean;
-    return Verb{"runs", "What becomes of the cases, and why.", {std::move(key)}, "", {}, {}, answer_runs};
+    return Verb{"runs", "What becomes of the cases, and why.", {std::move(key)}, "", check_runs, {}, answer_runs};
   }();
   return verb;
 }

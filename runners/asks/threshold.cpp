@@ -131,6 +131,7 @@ class Threshold {
              (one.stop.empty() ? "" : " at " + one.stop);
     };
     if (!not_monotone.empty()) {
+      out.passes = Verdict::no;
       out.verdict = "not monotone";
       out.sentence =
           fmt::format("Not monotone: {} {} in several ranges of {}{}{}.", lines_.words.words, what, axis_words(),
@@ -140,18 +141,24 @@ class Threshold {
     }
     if (with.empty()) return say_unchanged(out, without, what, place);
     double low = with.front()->between->first, high = with.front()->between->second;
-    bool one_bracket = true;
+    // Thresholds differ where one bracket ends before another begins, or one turns the other way.
+    double first_end = high, last_begin = low;
+    bool differ = false;
     for (const Series* one : with) {
-      one_bracket = one_bracket && one->between == with.front()->between && one->becomes == with.front()->becomes;
+      differ = differ || one->becomes != with.front()->becomes;
       low = std::min(low, one->between->first);
       high = std::max(high, one->between->second);
+      last_begin = std::max(last_begin, one->between->first);
+      first_end = std::min(first_end, one->between->second);
     }
+    differ = differ || first_end <= last_begin;
+    out.passes = without.empty() ? Verdict::yes : Verdict::open;
     out.verdict = without.empty() ? "told" : "in part";
     const Series& first = *with.front();
     std::vector<std::vector<std::string>> rest;
-    if (!without.empty()) rest.push_back({fmt::format("; {} of {} have no threshold", without.size(), judged)});
-    if (one_bracket && with.size() > 1) rest.push_back({with_all(with.size())});
-    if (!one_bracket)
+    if (!without.empty()) rest.push_back({unchanged(without, judged, place), unchanged(without, judged, nullptr)});
+    if (!differ && with.size() > 1) rest.push_back({with_all(with.size())});
+    if (differ)
       rest.push_back({fmt::format("; methods differ: {} and {}{}", x_text(first.between->first),
                                   x_text(first.between->second), place(first)),
                       "; methods differ"});
@@ -162,6 +169,22 @@ class Threshold {
   }
 
  private:
+  /// "; always with penalty; not told with 3 of 6": what those without a threshold are.
+  static std::string unchanged(const std::vector<const Series*>& without, std::size_t judged,
+                               const std::function<std::string(const Series&)>& place) {
+    std::string text;
+    for (const char* what : {"always", "never", "not told"}) {
+      const Series* first = nullptr;
+      std::size_t count = 0;
+      for (const Series* one : without)
+        if (one->what == what) first = count++ == 0 ? one : first;
+      if (count == 0) continue;
+      const std::string where = count == 1 && place ? place(*first) : "";
+      text += fmt::format("; {}{}", what, where.empty() ? fmt::format(" with {} of {}", count, judged) : where);
+    }
+    return text;
+  }
+
   /// Of series that see no change.
   Answered say_unchanged(Answered out, const std::vector<const Series*>& without, const std::string& what,
                          const std::function<std::string(const Series&)>& place) const {
@@ -261,12 +284,15 @@ void check_threshold(const Ask& ask, const Study& study) {
   check_subject(ask, study);
   const std::string along = ask.text("along");
   check_choice(ask, study, "along", along);
+  refuse_seeds(ask, "along", "have no order", ask.subject());
   for (const StudyCase& one : study.cases)
     for (const auto& [axis, value] : one.axes)
       if (axis == along && !value.is_number())
         throw InputError(ask.pointer("along"), quote(along) + " has words as levels; a threshold lies between numbers");
   const int given = (ask.has("is") ? 1 : 0) + (ask.has("below") ? 1 : 0) + (ask.has("above") ? 1 : 0);
-  if (given != 1) throw InputError(ask.pointer(), "a threshold needs one of \"is\", \"below\" and \"above\"");
+  if (given != 1)
+    throw InputError(ask.pointer(), fmt::format("a threshold needs one of \"is\", \"below\" and \"above\"{}",
+                                                given > 1 ? ", not several" : ""));
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
     out.sentence = fmt::format("No case has a value of {}: {}.", lines.words.words, out.reason);
     return out;
   }
+  out.passes = unsettled + without == 0 && known.size() == lines.all.size() ? Verdict::yes : Verdict::open;
   out.verdict = unsettled > 0 ? "not settled" : without > 0 ? "open" : "known";
   constexpr std::size_t few = 3;
   std::string said;

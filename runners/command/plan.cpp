@@ -200,7 +200,9 @@ StudyPlan plan_study(const Study& study, CasePlanner& planner) {
 /// What each ask could leave open, known before anything runs.
 void print_doubts(const Study& study, std::ostream& out) {
   for (const asks::Ask& ask : asks::asks_of(study.resolved)) {
-    const std::string doubt = ask.verb->doubt ? ask.verb->doubt(ask, study) : "";
+    // Motions are told by their classes and periods, not by intervals.
+    const bool by_values = asks::verb_of_kind(ask) == ask.verb->name;
+    const std::string doubt = by_values && ask.verb->doubt ? ask.verb->doubt(ask, study) : "";
     if (doubt.empty()) continue;
     const std::string subject = ask.subject();
     out << fmt::format("ask {} ({}{}): {}\n", ask.number, ask.verb->name, subject.empty() ? "" : " " + subject, doubt);

@@ -40,7 +40,11 @@ std::string value_cell(const VerdictRow& row) {
   constexpr double lopsided = 0.05;
   const double half = 0.5 * (*row.high - *row.low), middle = 0.5 * (*row.high + *row.low);
   if (std::abs(*row.value - middle) > lopsided * half && half > 0) {
-    const auto said = [&](double value) { return answers::value_text(words, value, half, false); };
+    // Two digits at least, however wide the interval.
+    constexpr double two_digits = 0.05;
+    const auto said = [&](double value) {
+      return answers::value_text(words, value, value == 0 ? half : std::min(half, two_digits * std::abs(value)), false);
+    };
     const std::string value = said(*row.value), low = said(*row.low), high = said(*row.high);
     return low == high ? value : fmt::format("{} ({} to {})", value, low, high);
   }

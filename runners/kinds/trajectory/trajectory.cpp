@@ -306,8 +306,10 @@ StudyKind trajectory_format(const std::vector<MeasureInfo>& measures) {
     check_observed_stops(study);
   };
   // A measure of stops may stand without a name, for all of them.
-  format.check_measure = [observe = format.keys.back()](const Json& study, const std::string& measure,
-                                                        const std::string& pointer) {
+  std::vector<std::string> names = measure_names(measures);
+  for (const std::string& one : measures_of_stops()) names.push_back(one);
+  format.check_measure = [observe = format.keys.back(), names](const Json& study, const std::string& measure,
+                                                               const std::string& pointer) {
     const auto& of_stops = observe.of_each;
     const Json& stops = study.at("scene").at("stops");
     if (stops.is_array() && !stops.empty() && std::find(of_stops.begin(), of_stops.end(), measure) != of_stops.end()) {
@@ -320,7 +322,8 @@ StudyKind trajectory_format(const std::vector<MeasureInfo>& measures) {
     try {
       check_object(form, {{"observe", measure}}, "", none);
     } catch (const InputError& error) {
-      throw InputError(pointer, error.what());
+      const std::string near = did_you_mean(measure, names);
+      throw InputError(pointer, near.empty() ? error.what() : "no measure is called " + quote(measure) + near);
     }
     check_stop_measure(study, measure, pointer);
   };
