@@ -142,10 +142,12 @@ std::map<std::string, std::string> read_sums(const fs::path& file, const std::st
   constexpr std::size_t digits = 64;
   for (std::string line; std::getline(lines, line);) {
     if (line.size() <= digits + 2 || line.substr(digits, 2) != "  " ||
-        line.find_first_not_of("0123456789abcdef") != digits ||
-        !sums.emplace(line.substr(digits + 2), line.substr(0, digits)).second)
+        line.find_first_not_of("0123456789abcdef") != digits)
       throw InputError("", fmt::format("{}: {} has a line that is none: \"{}\"", file.string(), packed::sums,
                                        plain_text(line.substr(0, digits))));
+    if (const std::string name = line.substr(digits + 2); !sums.emplace(name, line.substr(0, digits)).second)
+      throw InputError(
+          "", fmt::format("{}: {} names the part \"{}\" twice", file.string(), packed::sums, plain_text(name)));
   }
   return sums;
 }

@@ -3,6 +3,7 @@
 #include <archive.h>
 #include <archive_entry.h>
 #include <fmt/format.h>
+#include <locale.h>
 
 #include <fstream>
 #include <memory>
@@ -15,6 +16,26 @@
 
 namespace ricochet {
 namespace fs = std::filesystem;
+
+namespace {
+
+/// While it lives, names are UTF-8 for this thread, whatever the locale: so they are marked, and so they are read.
+class NamesInUtf8 {
+ public:
+  NamesInUtf8() : utf8_(newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr)), before_(utf8_ ? uselocale(utf8_) : nullptr) {}
+  NamesInUtf8(const NamesInUtf8&) = delete;
+  NamesInUtf8& operator=(const NamesInUtf8&) = delete;
+  ~NamesInUtf8() {
+    if (!utf8_) return;
+    uselocale(before_);
+    freelocale(utf8_);
+  }
+
+ private:
+  locale_t utf8_, before_;
+};
+
+}  // namespace
 
 struct ZipWriter::Body {
   explicit Body(const fs::path& to) : name(to), file(to) {}
@@ -58,6 +79,7 @@ ZipWriter::~ZipWriter() {
 }
 
 void ZipWriter::begin(const std::string& name, long long size) {
+  const NamesInUtf8 utf8;
   const std::unique_ptr<archive_entry, decltype(&archive_entry_free)> entry(archive_entry_new(), archive_entry_free);
   archive_entry_set_pathname(entry.get(), name.c_str());
   archive_entry_set_size(entry.get(), size);
@@ -129,6 +151,7 @@ class ZipReader {
   }
 
   void read() {
+    const NamesInUtf8 utf8;
     archive_entry* entry = nullptr;
     for (;;) {
       const int code = archive_read_next_header(zip_.get(), &entry);
@@ -142,6 +165,7 @@ class ZipReader {
         refuse(quoted + " is a link, a folder or a device; expected files alone");
       if (archive_entry_is_encrypted(entry)) refuse(quoted + " is encrypted");
       if (!names_.insert(name).second) refuse(quoted + " stands twice");
+      if (is_folder_too(name)) refuse(quoted + " is a file, and the folder of another or in one");
       visitor_.begin(name);
       for (;;) {
         const la_ssize_t size = archive_read_data(zip_.get(), piece_.data(), piece_.size());
@@ -159,6 +183,14 @@ class ZipReader {
  private:
   [[noreturn]] void refuse(const std::string& cause) const {
     throw InputError("", fmt::format("{}: {}", file_.string(), cause));
+  }
+  /// Whether a name that stands already lies in this one as in a folder, or this one in it.
+  bool is_folder_too(const std::string& name) const {
+    const auto inside = names_.lower_bound(name + "/");
+    if (inside != names_.end() && inside->starts_with(name + "/")) return true;
+    for (std::size_t slash = name.find('/'); slash != std::string::npos; slash = name.find('/', slash + 1))
+      if (names_.contains(name.substr(0, slash))) return true;
+    return false;
   }
   void check(la_ssize_t code) const {
     if (code >= ARCHIVE_OK) return;
