@@ -100,7 +100,7 @@ Commands study_commands() {
 Commands method_commands() {
   const Option plugin = plugin_option();
   return {
-      {"list", "[mass|contact|time|reference]", "List the methods found.", 0, 1, {plugin}, command_list},
+      {"list", "[mass|contact|friction|time|reference]", "List the methods found.", 0, 1, {plugin}, command_list},
       {"describe",
        "NAME|PLAN.json",
        "Show the manual of a method, a structure, a kind of study, an ask, a measure or an error; or of a scheme "
@@ -110,7 +110,7 @@ Commands method_commands() {
        {plugin},
        command_describe},
       {"new",
-       "plan|time|contact|mass|reference NAME",
+       "plan|time|contact|friction|mass|reference NAME",
        "Make a folder with a working method to start from: a plan in JSON, or source and build file; a study.",
        2,
        2,
