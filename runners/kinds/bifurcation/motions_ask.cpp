@@ -218,11 +218,15 @@ class MotionsAlong {
     out.rows.push_back(std::move(row));
   }
 
-  /// Whether another method has the same change: of the same motions, at values that are not apart.
+  /// Whether two changes may be one: of the same motions, at values that overlap. Where the intervals only touch, one
+  /// method has changed where the other has not yet.
+  static bool same_change(const MotionChange& a, const MotionChange& b) {
+    const bool at_one = a.low == b.low && a.high == b.high;
+    return a.from == b.from && a.to == b.to && (at_one || (a.low < b.high && b.low < a.high));
+  }
   static bool has(const CaseMotions& one, const MotionChange& change) {
-    return std::any_of(one.changes.begin(), one.changes.end(), [&](const MotionChange& other) {
-      return other.from == change.from && other.to == change.to && other.low <= change.high && change.low <= other.high;
-    });
+    return std::any_of(one.changes.begin(), one.changes.end(),
+                       [&](const MotionChange& other) { return same_change(other, change); });
   }
 
   static std::string change_text(const MotionChange& change, const std::string& unit) {
@@ -246,10 +250,8 @@ class MotionsAlong {
     for (const CaseMotions* one : heads_)
       others += static_cast<std::size_t>(
           std::count_if(one->changes.begin(), one->changes.end(), [&](const MotionChange& change) {
-            return std::none_of(shared.begin(), shared.end(), [&](const MotionChange& of_all) {
-              return of_all.from == change.from && of_all.to == change.to && of_all.low <= change.high &&
-                     change.low <= of_all.high;
-            });
+            return std::none_of(shared.begin(), shared.end(),
+                                [&](const MotionChange& of_all) { return same_change(of_all, change); });
           }));
     return others;
   }
