@@ -47,7 +47,7 @@ std::string asked_html(const AskedAnswers& asked) {
   std::string out;
   std::set<std::string> told;
   const auto line = [&](const std::string& text) {
-    if (told.insert(text).second) out += "<p class=\"warns\">" + emphasised(text) + "</p>\n";
+    if (told.insert(text).second) out += "<p class=\"warns\">" + unbroken(text) + "</p>\n";
   };
   for (const std::string& one : asked.first) line(one);
   const std::size_t own = with_own_chart(asked.parts);
@@ -56,7 +56,7 @@ std::string asked_html(const AskedAnswers& asked) {
     for (const std::string& one : part.aside) line(one);
     const std::string table = table_html(part.table), figure = figure_svg(part.figure);
     out += fmt::format("<div class=\"asked\" id=\"ask-{}\">\n<p class=\"headline\">{}</p>\n<div class=\"told\">\n{}",
-                       part.number, emphasised(part.sentence), table);
+                       part.number, unbroken(part.sentence), table);
     if (!figure.empty()) out += "<div class=\"scroll drawn\">" + figure + "</div>\n";
     if (k == own) out += "<div id=\"answer-figure\"></div>\n";
     out += "</div></div>\n";

@@ -110,7 +110,9 @@ void Drawing::text(double x, double y, const std::string& words, const std::stri
 }
 
 void Drawing::sign(double x, double y, std::size_t series, const std::string& title) {
-  const std::string classes = fmt::format("dot s{}", series % colours);
+  // Eight colours, four signs, and all of them hollow.
+  const bool hollow = series / (4 * colours) % 2 == 1;
+  const std::string classes = fmt::format("dot s{}{}", series % colours, hollow ? " hollow" : "");
   const double d = dot;
   switch ((series + series / colours) % 4) {
     case 0:

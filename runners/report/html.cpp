@@ -65,28 +65,9 @@ std::string escape(std::string_view text) {
   return out;
 }
 
-namespace {
-
-std::string with_whole_numbers(const std::string& html) {
-  static const std::regex number("[0-9]+(?:[.][0-9]+)?e-[0-9]+");
-  return std::regex_replace(html, number, "<span class=\"whole\">$&</span>");
-}
-
-}  // namespace
-
 std::string unbroken(const std::string& text) {
-  return with_whole_numbers(escape(text));
-}
-
-std::string emphasised(const std::string& sentence) {
-  static const std::string digits = "(?:−|[+])?[0-9]+(?:[.][0-9]+)?(?:e-?[0-9]+)?",
-                           unit = "(?:%|times|N s|m/s|rad/s|N/m|ms|µs|s|m|N|J|W|mW|µW|mm|µm)";
-  static const std::regex number("(^|[ (])(" + digits + "(?: ± " + digits + ")?(?: to " + digits + ")?(?: " + unit +
-                                 "(?![A-Za-z/]))?)(?=[ ,;:)]|[.](?![0-9])|$)");
-  // The numbers of orders and parameters are no results.
-  static const std::regex plain("(order |= )<strong>([^<]*)</strong>");
-  return with_whole_numbers(
-      std::regex_replace(std::regex_replace(escape(sentence), number, "$1<strong>$2</strong>"), plain, "$1$2"));
+  static const std::regex number("[0-9]+(?:[.][0-9]+)?e-[0-9]+");
+  return std::regex_replace(escape(text), number, "<span class=\"whole\">$&</span>");
 }
 
 std::string script_json(const nlohmann::ordered_json& value) {

@@ -19,8 +19,6 @@ std::string filled(std::string_view name, const Fill& with);
 /// Text as HTML text or as a quoted attribute: & < > " ' escaped, bytes that are no UTF-8 replaced by U+FFFD.
 std::string escape(std::string_view text);
 
-/// A sentence as HTML with its numbers in bold, so that the eye finds them.
-std::string emphasised(const std::string& sentence);
 /// Text, escaped, in which no line ends within a number: a page breaks lines behind the "-" of "1e-4".
 std::string unbroken(const std::string& text);
 

@@ -42,6 +42,8 @@
     const step = roundStep((high - low) / 5);
     return new Interval(step * Math.floor(low / step + 1e-9), step * Math.ceil(high / step - 1e-9));
   }
+  // A span below which differences are not worth their look: 0.2 % of the largest.
+  const leastSpan = ({low, high}) => 2e-3 * Math.max(Math.abs(low), Math.abs(high)) || 2e-3;
   // Rounded outwards to whole decades; needs 0 < low.
   function wholeDecades(interval) {
     const low = Math.floor(Math.log10(interval.low) + 1e-9), high = Math.ceil(Math.log10(interval.high) - 1e-9);
@@ -147,6 +149,7 @@
     Interval,
     Scale,
     roundOutwards,
+    leastSpan,
     wholeDecades,
     cellEdges,
     sharedFrames,

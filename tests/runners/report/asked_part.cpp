@@ -43,11 +43,11 @@ TEST_CASE("what warns stands above the sentence that it touches, once", "[report
   asked.parts[1].aside.push_back("Left out: 3 refused.");
   const std::string html = asked_html(asked);
   const auto at = [&](const std::string& text) { return html.find(text); };
-  CHECK(at("Nothing touched") < at("Left out: <strong>2</strong>"));
-  CHECK(at("Left out: <strong>2</strong>") < at("sentence <strong>1</strong>"));
-  CHECK(at("sentence <strong>1</strong>") < at("Left out: <strong>3</strong>"));
-  CHECK(at("Left out: <strong>3</strong>") < at("sentence <strong>2</strong>"));
-  CHECK(count(html, "<strong>2</strong> diverged") == 1);
+  CHECK(at("Nothing touched") < at("Left out: 2"));
+  CHECK(at("Left out: 2") < at("sentence 1"));
+  CHECK(at("sentence 1") < at("Left out: 3"));
+  CHECK(at("Left out: 3") < at("sentence 2"));
+  CHECK(count(html, "2 diverged") == 1);
   CHECK_THAT(html, Contains("&lt;b&gt;"));
 }
 

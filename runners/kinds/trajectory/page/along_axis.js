@@ -67,8 +67,9 @@
       const {quantity, logarithmic} = value,
                        counts = facet.curves.every(
                            (curve) => this.rows(curve.cases, value).every((row) => Number.isInteger(row.height)));
-      const y = logarithmic ? ricochet.logAxis(quantity, frame.range) :
-                              ricochet.heightAxis(quantity, ricochet.roundOutwards(frame.range, counts ? 4 : 2e-3));
+      const least = counts ? 4 : ricochet.leastSpan(frame.range),
+            y = logarithmic ? ricochet.logAxis(quantity, frame.range) :
+                              ricochet.heightAxis(quantity, ricochet.roundOutwards(frame.range, least));
       const whole = ricochet.logarithmicAxis(this.xRange),
             x = ricochet.axisOf(whole, this.x, whole ? this.xRange : ricochet.roundOutwards(this.xRange, 1e-12));
       const out = ricochet.view(this.x, quantity, x, [y, ricochet.gutterAxis()]), mark = ricochet.outcomeMarks(),
