@@ -310,6 +310,109 @@ TEST_CASE("asks: a method without any value is neither always nor never") {
   REQUIRE(answered.aside.size() == 1);
 }
 
+TEST_CASE("asks: seeds widen the interval of a mean, and each of them has to keep a peak below its limit") {
+  // Six draws about 1 that scatter by a tenth.
+  Made made;
+  made.choices = {{seed_axis, {"1", "2", "3", "4", "5", "6"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.scatter = 0.1;
+  StudyResults results = made.results();
+  std::vector<double> draws;
+  for (const CaseRecord& record : results.cases) draws.push_back(record.measures.front().second);
+  const double largest = *std::max_element(draws.begin(), draws.end());
+  const Json ask = {{"limit", "impulse"}, {"below", 0.999 * largest}};
+  const Answered peak = answer_of(results, ask);
+  INFO(peak.sentence);
+  CHECK(peak.passes == Verdict::no);
+  CHECK(peak.sentence.find("1 of 6 seeds is beyond") != std::string::npos);
+  REQUIRE(peak.rows.front().high);
+  CHECK(*peak.rows.front().high < 0.999 * largest);
+  // Known with half-widths of their own: windows of one mean.
+  for (CaseRecord& record : results.cases) record.measures.emplace_back("confidence.impulse", 0.2);
+  const Answered mean = answer_of(results, ask);
+  INFO(mean.sentence);
+  CHECK(mean.passes == Verdict::yes);
+}
+
+TEST_CASE("asks: what is round-off beside its neighbours is zero, and known") {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1"}}};
+  made.truth = [](const std::vector<std::size_t>& at) { return at[0] == 0 ? 1.0 : 0.0; };
+  made.error = 0.01;
+  StudyResults results = made.results();
+  int k = 0;
+  for (CaseRecord& record : results.cases)
+    if (record.axes[0].second == "m1") record.measures.front().second = ++k % 2 == 0 ? 2e-19 : -3e-19;
+  const Answered answered = answer_of(results, {{"enough", "impulse"}, {"within", 0.05}});
+  INFO(answered.sentence);
+  CHECK(answered.passes == Verdict::yes);
+  CHECK(answered.sentence.find("zero") == std::string::npos);
+}
+
+TEST_CASE("asks: what falls to zero with the step is not known better by a smaller one") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  const StudyResults results = synthetic::full_factorial(
+      made.choices, {4e-3, 2e-3, 1e-3}, [](const std::vector<std::size_t>&, double h) { return 7 * h; }, "impulse");
+  const Answered answered = answer_of(results, {{"enough", "impulse"}, {"within", 0.01}});
+  INFO(answered.sentence);
+  CHECK(answered.passes == Verdict::open);
+  CHECK(answered.sentence.find("falls to zero with the step") != std::string::npos);
+}
+
+TEST_CASE("asks: without a threshold is always, never or not told, and overlapping brackets do not differ") {
+  // m0 changes between 2 and 3, m1 between 2 and 4 with 3 open, m2 is always and m3 never below 1.
+  Made made;
+  made.choices = {{"mass", {"m0", "m1", "m2", "m3"}}, {"stops.upper", {"1", "2", "3", "4"}}};
+  made.truth = [](const std::vector<std::size_t>& at) {
+    const double levels[4][4] = {{2, 2, 0.5, 0.5}, {2, 2, 1, 0.5}, {0.5, 0.5, 0.5, 0.5}, {2, 2, 2, 2}};
+    return levels[at[0]][at[1]];
+  };
+  made.error = 0.01;
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) {
+    record.axes[1].second = std::stod(record.axes[1].second.get<std::string>());
+    // The last value of the open one lies beside 1 within what its steps leave.
+    if (record.axes[0].second == "m1" && record.axes[1].second == 3.0)
+      record.measures.front().second = 1 + (record.measures.front().second - 1) * 0.5;
+  }
+  const Json ask = {{"threshold", "impulse"}, {"below", 1.001}, {"along", "stops.upper"}};
+  const Answered answered = answer_of(results, ask);
+  INFO(answered.sentence);
+  CHECK(answered.sentence.find("always") != std::string::npos);
+  CHECK(answered.sentence.find("never") != std::string::npos);
+  CHECK(answered.sentence.find("differ") == std::string::npos);
+  CHECK(answered.sentence.find("no threshold") == std::string::npos);
+}
+
+TEST_CASE("asks: a ranking tells the most frequent order first, and where it is turned round") {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1"}}, {"time", {"t0", "t1", "t2"}}};
+  made.truth = [](const std::vector<std::size_t>& at) { return at[1] == 0 ? 2.0 - at[0] : 1.0 + at[0]; };
+  made.error = 0.001;
+  const Answered answered = answer_of(made.results(), {{"rank", "impulse"}, {"over", "mass"}});
+  INFO(answered.sentence);
+  CHECK(answered.verdict == "turned round");
+  CHECK(answered.passes == Verdict::no);
+  CHECK(answered.sentence.find("t1") != std::string::npos);
+  CHECK(answered.sentence.find("m0 is first with t0") != std::string::npos);
+}
+
+TEST_CASE("asks: a case stands behind a verdict once, whatever the number of its stops") {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.measure = "peak_force[a]";
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) record.measures.emplace_back("peak_force[b]", 2.0);
+  results.cases.back().measures.clear();
+  const Answered answered = answer_of(results, {{"value", "peak_force"}});
+  INFO(answered.sentence);
+  CHECK(answered.rows.size() == 4);
+  CHECK(answered.cases == results.cases.size() - 1);
+  CHECK(answered.left_out == 1);
+}
+
 TEST_CASE("asks: the seeds that would do give the half-width asked, and one fewer does not") {
   std::mt19937 random(14);
   for (int k = 0; k < tries / 10; ++k) {

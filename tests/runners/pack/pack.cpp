@@ -391,4 +391,40 @@ TEST_CASE("pack: a folder that cannot be packed is refused with its cause") {
   CHECK_THAT(here.run("unpack nowhere.zip full").err, Contains("not an empty folder"));
 }
 
+TEST_CASE("pack: a part that is the folder of another is refused, and a part that is named twice") {
+  const Folder here;
+  make_results(here);
+  REQUIRE(here.run("pack made").code == 0);
+  const Parts packed = parts_of(here / "rod.ricochet.zip");
+  for (const bool inner_first : {false, true}) {
+    Parts parts = packed;
+    add_part(parts, inner_first ? "results/own/x" : "results/own", "1");
+    add_part(parts, inner_first ? "results/own" : "results/own/x", "2");
+    write_parts(here / "both.zip", parts);
+    const Outcome both = here.run("verify both.zip");
+    CHECK(both.code == 2);
+    CHECK_THAT(both.err, Contains("is a file, and the folder of another"));
+  }
+  Parts twice = packed;
+  twice.front().second += twice.front().second.substr(0, twice.front().second.find('\n') + 1);
+  write_parts(here / "twice.zip", twice);
+  const Outcome named = here.run("verify twice.zip");
+  CHECK(named.code == 2);
+  CHECK_THAT(named.err, Contains("twice"));
+}
+
+TEST_CASE("pack: names beyond ASCII are marked as UTF-8 and read as such") {
+  const Folder here;
+  const std::string name = "study/donn\u00e9es/sol.csv";
+  write_parts(here / "names.zip", {{name, "x"}, {"plain", "y"}});
+  const Parts read = parts_of(here / "names.zip");
+  REQUIRE(read.size() == 2);
+  CHECK(read.front().first == name);
+  // The flag of the header: bit 11 of the two bytes behind signature and version.
+  std::ifstream file(here / "names.zip", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  REQUIRE(bytes.size() > 8);
+  CHECK((static_cast<unsigned char>(bytes[7]) & 0x08) != 0);
+}
+
 }  // namespace command_tests

@@ -180,4 +180,33 @@ TEST_CASE("a crossing by chance reaches nothing, and an unknown reference tells 
   CHECK(out.left_out == 1);
 }
 
+TEST_CASE("an error that no case has is none, and no floor hides it", "[asks]") {
+  StudyResults results = study_of({{"a", powers(2, 4)}, {"b", powers(2, 4)}});
+  for (CaseRecord& record : results.cases) {
+    record.measures.clear();
+    record.left_out = {{"error.impulse", "neither motion touches a stop"}};
+  }
+  const asks::Answered out = ask(results, {{"order", "impulse"}});
+  INFO(out.sentence);
+  CHECK(out.verdict == "no error");
+  CHECK_THAT(out.sentence, Contains("no error (") && Contains("neither motion touches a stop") && !Contains("floor"));
+  REQUIRE(out.aside.size() == 1);
+}
+
+TEST_CASE("errors against rigid stops are said to hold the springs of the law", "[asks]") {
+  StudyResults results = study_of({{"a", powers(2, 4)}});
+  const auto told = [&](const Json& keys) {
+    const asks::Answered out = ask(results, keys);
+    return std::any_of(out.aside.begin(), out.aside.end(),
+                       [](const std::string& one) { return one.find("rigid stops") != std::string::npos; });
+  };
+  for (const Json& keys : {Json{{"order", "impulse"}}, Json{{"cheapest", "impulse"}, {"within", 0.5}}}) {
+    for (CaseRecord& record : results.cases) record.measures.emplace_back("reference_of_law", 0.0);
+    CHECK(told(keys));
+    for (CaseRecord& record : results.cases) record.measures.back().second = 1;
+    CHECK_FALSE(told(keys));
+    for (CaseRecord& record : results.cases) record.measures.pop_back();
+  }
+}
+
 }  // namespace ricochet::tests_of_error_asks

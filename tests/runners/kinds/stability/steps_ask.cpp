@@ -4,6 +4,7 @@
 
 #include "runners/asks/kind_verbs.hpp"
 #include "runners/kinds/stability/stability.hpp"
+#include "runners/kinds/stability/stability_side.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 
 namespace ricochet::tests_of_steps_asks {
@@ -101,6 +102,52 @@ TEST_CASE("of groups as large as each other one alone goes without its name", "[
   const std::size_t first = out.sentence.find("elsewhere");
   CHECK((first == std::string::npos || out.sentence.find("elsewhere", first + 1) == std::string::npos));
   CHECK_THAT(out.sentence, Contains("8 of 24 cases") || Contains("elsewhere"));
+}
+
+TEST_CASE("a step beyond which marches grow is not allowed, whatever the spectrum says", "[asks]") {
+  // No spectrum grows; marches do from 3e-4 s on.
+  asks::Answered out = ask({{4, 1e-4, 1e-3}}, [](LimitRow& open, LimitRow& closed) {
+    open.prediction = closed.prediction = open.observation = "none";
+    open.predicted = closed.predicted = open.observed = {};
+    closed.observed = 3e-4;
+    closed.agrees.reset();
+  });
+  INFO(out.sentence);
+  CHECK(out.rows.front().verdict == "marches alone");
+  CHECK(*out.rows.front().value == 3e-4);
+  CHECK(out.sentence == "Marches grow beyond 3e-4 s, though no spectrum does.");
+  // Of two limits that disagree the smaller one, of two that agree the predicted one.
+  for (const bool agrees : {false, true}) {
+    out = ask({{4, 2.3e-4, 3.5e-5}}, [&](LimitRow&, LimitRow& closed) {
+      closed.observed = 0.9 * *closed.predicted;
+      closed.agrees = agrees;
+    });
+    const double predicted = 1 / std::sqrt(1 / (2.3e-4 * 2.3e-4) + 1 / (3.5e-5 * 3.5e-5));
+    CHECK(*out.rows.front().value == Approx((agrees ? 1 : 0.9) * predicted).epsilon(1e-12));
+    CHECK(*out.rows.front().low == Approx(0.9 * predicted).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a scene that meets the stop only as it grows without contact shows nothing of contact", "[stability]") {
+  const auto cell = [](bool stable, bool touched) {
+    ObservedCell one;
+    one.behaviour = stable ? Behaviour::stable : Behaviour::unstable;
+    one.touched = touched;
+    return std::optional(one);
+  };
+  const std::vector<std::optional<ObservedCell>> open = {cell(true, false), cell(true, false), cell(false, false)};
+  const auto untouched = [&](std::vector<std::optional<ObservedCell>> cells) {
+    StabilitySide side;
+    side.closed = true;
+    side.cells = std::move(cells);
+    side.forget_untouched(open);
+    return side.untouched;
+  };
+  CHECK(untouched({cell(true, false), cell(true, false), cell(false, true)}));
+  // It touches while it is stable, or grows where it does not without contact.
+  CHECK_FALSE(untouched({cell(true, true), cell(true, true), cell(false, true)}));
+  CHECK_FALSE(untouched({cell(true, false), cell(false, true), cell(false, true)}));
+  CHECK_FALSE(untouched({std::nullopt, std::nullopt, std::nullopt}));
 }
 
 }  // namespace ricochet::tests_of_steps_asks
