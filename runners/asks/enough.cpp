@@ -80,8 +80,9 @@ class Enough {
     });
     const auto& [line, need] = *worst;
     const std::string found =
-        is_zero(*line) ? lines_.words.words + " is zero"
-                       : fmt::format("{} is known to ± {}", lines_.words.words, answers::percent(width(*line)));
+        is_zero(*line) ? lines_.words.words + (is_plural(lines_.words.words) ? " are zero" : " is zero")
+                       : fmt::format("{} {} known to ± {}", lines_.words.words,
+                                     is_plural(lines_.words.words) ? "are" : "is", answers::percent(width(*line)));
     if (*out.passes == Verdict::yes)
       out.sentence = in_thirty_words(fmt::format("Yes: {}, within the {} asked", found, answers::percent(within_)),
                                      {{less_would_do(*line, need)}});

@@ -123,7 +123,8 @@ class Ranking {
 
   /// All else, "HRZ, end"; what is ranked.
   std::string level_of(const Line& line) const {
-    const std::string level = evidence_.level(line.point.first(), others_), stop = over_ == over_stops ? "" : line.stop;
+    const std::string level = evidence_.level(line.point.first(), others_),
+                      stop = over_ == over_stops || line.one_stop ? "" : line.stop;
     return level + (stop.empty() ? "" : (level.empty() ? "" : ", ") + stop);
   }
   std::string name_of(const Line& line) const {

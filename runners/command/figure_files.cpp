@@ -10,7 +10,10 @@
 #include <set>
 #include <string>
 
+#include "runners/report/ask_figure.hpp"
+#include "runners/run/analysed_results.hpp"
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/store.hpp"
 #include "runners/store/temporary_folder.hpp"
 #include "runners/table/text.hpp"
 
@@ -91,6 +94,12 @@ std::size_t write_figures(const fs::path& report, const fs::path& folder) {
     write_file(file.string() + ".svg", figure.at("svg").get_ref<const std::string&>());
     write_file(file.string() + ".csv", figure.at("csv").get_ref<const std::string&>());
   }
+  // The figures of answers by all digits of their numbers: the page has them as text.
+  const AnalysedResults results(read_what_is_whole(report.parent_path()));
+  for (std::size_t k = 0; k < results.asked.all.size(); ++k)
+    if (const fs::path file = folder / fmt::format("ask-{}.csv", k + 1); fs::exists(file))
+      if (const std::string text = report::figure_csv(results.asked.all[k].second.figure); !text.empty())
+        write_file(file, text);
   if (figures.empty()) return 0;
   const fs::path sheets = folder / "figures.pdf";
   std::error_code ignored;

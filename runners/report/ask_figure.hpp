@@ -21,4 +21,8 @@ namespace ricochet::report {
 /// row without a value says so.
 std::string figure_svg(const nlohmann::ordered_json& figure);
 
+/// The numbers of such a figure as CSV, a row for each mark: all of its digits, units in the head; ends of intervals in
+/// columns of their own. Lines across are rows of their own, `at`. "" where nothing is drawn.
+std::string figure_csv(const nlohmann::ordered_json& figure);
+
 }  // namespace ricochet::report

@@ -340,9 +340,11 @@ class PointsAsk {
     const Followed *first = nullptr, *stopped = nullptr;  ///< of all; of those that stop inside the range
   };
 
-  Ends ends() const {
+  /// Of all methods, or of one.
+  Ends ends(const Followers* of = nullptr) const {
     Ends ends;
     for (const Followers& one : methods_) {
+      if (of && &one != of) continue;
       ends.points += one.points.size();
       for (const Followed& branch : one.branches) {
         if (ends.branches++ == 0) ends.first = &branch;
@@ -420,11 +422,13 @@ class PointsAsk {
                                : single.empty()  ? ""
                                                  : fmt::format(", {} unconfirmed", single.size());
     std::vector<std::string> texts;
+    const std::string own_ends = text(this->ends(&*first));
     const std::string who = methods_.size() > 1 ? "with " + study_.name(*first->record) + ", " : "";
     for (const bool named : {true, false})
       for (std::size_t count = list.size(); count > 0; --count) {
         if (named && count < list.size() && count < 2) continue;
-        texts.push_back(answers::capitalised((named ? who : "") + text(list, count) + unsure + "; " + ends + "."));
+        texts.push_back(answers::capitalised((named ? who : "") + text(list, count) + unsure + "; " +
+                                             (named ? own_ends : ends) + "."));
       }
     out.sentence = asks::fitting(texts);
   }

@@ -27,7 +27,7 @@
     "A₀": "support.amplitude",
     "ω": "support.pulsation",
     "steps/T": "steps_per_period",
-    "κ": "stiffness of the contact",
+    "κ": "stiffness of the law",
     e: "restitution",
     N: "elements",
     h: "step",

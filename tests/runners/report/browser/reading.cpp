@@ -455,6 +455,10 @@ TEST_CASE("figures are written as SVG and CSV, and as pages of one PDF", "[repor
   }
   CHECK(drawings > 4);
   CHECK(tables == drawings);
+  // The answer's figure by all digits, the ends of its intervals in columns.
+  const std::string steps = read_text(out / "ask-1.csv");
+  CHECK_THAT(steps, Catch::Matchers::StartsWith("name,group"));
+  CHECK_THAT(steps, Contains("value (s)") && !Contains("±"));
   CHECK_THAT(words_of("pdfinfo '" + (out / "figures.pdf").string() + "'"),
              Contains(std::regex_replace("Pages:           N", std::regex("N"), std::to_string(drawings))));
   // Where there is no browser the sentence says what to install.
