@@ -88,6 +88,11 @@ void check_stops(const Ask& ask, const Study& study) {
           known.empty() ? std::string("the scene has no stops with names")
                         : "no stop " + quote(name) + "; there is: " + quoted_list(known) + did_you_mean(name, known));
   }
+  const std::string measure = split_measure(ask.has("on") ? ask.text("on") : ask.subject()).first;
+  for (const Field& key : find_study_kind(study.kind)->keys)
+    if (const auto& of = key.of_each; !of.empty() && std::find(of.begin(), of.end(), measure) == of.end())
+      throw InputError(ask.pointer("stops"),
+                       quote(measure) + " is no measure of single stops; leave this out, or ask one that is");
 }
 
 bool matches(const StudyCase& one, const std::string& column, const Json& level) {

@@ -206,7 +206,7 @@ class MotionShares {
   }
 
   static std::string in(const std::string& motion) {
-    return motion == "no contact" ? "without contact" : "in " + motion;
+    return motion == "no contact" ? "without contact" : "in " + motion + (motion == "quasi-periodic" ? " motion" : "");
   }
 
   void say(asks::Answered& out) const {

@@ -272,9 +272,13 @@ class OrderAsk {
           fmt::format("a clean order with {} of {} methods, {}", clean.size(), methods.size(), range(clean)));
     for (const auto& [found, of] : others) counts.push_back(fmt::format("{} with {}", found_word(found), of.size()));
     out.push_back(fmt::format("{}: {}.", subject, fmt::join(counts, "; ")));
-    // Of two refinements the subject once, and of each what is clean.
-    out.push_back(fmt::format("{}a clean order with {} of {} methods.",
-                              refined == "step" ? subject + ": " : "In the mesh: ", clean.size(), methods.size()));
+    // Of two refinements the subject once, and of each what is clean and what is none.
+    std::string brief = fmt::format("{}clean with {} of {}",
+                                    refined == "step" ? subject + ": " : "In the mesh: ", clean.size(), methods.size());
+    if (!clean.empty()) brief += ", " + range(clean);
+    if (const auto none = others.find(Found::none); none != others.end())
+      brief += fmt::format("; none with {}", none->second.size());
+    out.push_back(brief + ".");
     return out;
   }
 

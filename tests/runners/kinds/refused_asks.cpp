@@ -100,12 +100,16 @@ TEST_CASE("cases without a motion of their own have no measures of motions", "[a
   for (const char* kind : {"bifurcation", "basins", "stability"}) {
     INFO(kind);
     const Json study = oscillator(kind);
-    for (const Json& ask : {Json({{"value", "impulse"}}), Json({{"limit", "impulse"}, {"below", 1}}),
-                            Json({{"enough", "impulse"}, {"within", 0.1}}), Json({{"effect", "time"}, {"on", "impulse"}})})
-      CHECK_THAT(refused(study, ask), Contains("cases of this kind have no measure \"impulse\", which other kinds have; expected one of \""));
+    for (const Json& ask :
+         {Json({{"value", "impulse"}}), Json({{"limit", "impulse"}, {"below", 1}}),
+          Json({{"enough", "impulse"}, {"within", 0.1}}), Json({{"effect", "time"}, {"on", "impulse"}})})
+      CHECK_THAT(
+          refused(study, ask),
+          Contains("cases of this kind have no measure \"impulse\", which other kinds have; expected one of \""));
   }
   CHECK(refused(oscillator("bifurcation"), {{"value", "share_periodic"}}) == "");
-  CHECK_THAT(refused(oscillator("stability"), {{"value", "limit_observd"}}), Contains("did you mean \"limit_observed\"?"));
+  CHECK_THAT(refused(oscillator("stability"), {{"value", "limit_observd"}}),
+             Contains("did you mean \"limit_observed\"?"));
 }
 
 TEST_CASE("a choice that where leaves one level of is refused", "[asks]") {
@@ -124,6 +128,22 @@ TEST_CASE("points and steps are asked of their kinds alone", "[asks]") {
   CHECK(refused(oscillator("bifurcation"), {{"effect", "time"}, {"on", "motions"}, {"from", "10 %"}}) == "");
   CHECK_THAT(refused(oscillator("stability"), {{"points", "all"}}), Contains("kind continuation"));
   CHECK_THAT(refused(oscillator("convergence"), {{"steps", "limit"}}), Contains("kind stability"));
+}
+
+TEST_CASE("asks of stops, seeds and nothing are refused with what is meant", "[asks]") {
+  Json study = oscillator("trajectory");
+  study["scene"]["stops"] = {{{"name", "left"}, {"at", {{"x", 0}}}, {"upper", 0.5}},
+                             {{"name", "right"}, {"at", {{"x", 0}}}, {"lower", -0.5}}};
+  CHECK(refused(study, {{"value", "peak_force"}, {"stops", {"left"}}}) == "");
+  CHECK_THAT(refused(study, {{"value", "energy_left"}, {"stops", {"left"}}}),
+             Contains("/ask/0/stops: ") && Contains("no measure of single stops"));
+  CHECK_THAT(refused(study, {{"value", "peak_forse"}}), Contains("did you mean \"peak_force\""));
+  CHECK_THAT(refused(study, {{"rank", "peak_force"}, {"over", "stop"}}), Contains("did you mean \"stops\""));
+  CHECK_THAT(refused(study, {{"runs", false}}), Contains("expected true"));
+  CHECK_THAT(refused(study, {{"threshold", "impulse"}, {"along", "step"}, {"is", 1}, {"below", 2}}),
+             Contains("not several"));
+  CHECK_THAT(refused(oscillator("convergence"), {{"cheapest", "impulse"}, {"within", 0.1}}),
+             Contains("times methods against a reference"));
 }
 
 }  // namespace ricochet::tests_of_refused_asks

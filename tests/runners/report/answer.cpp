@@ -21,11 +21,11 @@ std::string answer_of(StudyResults results) {
 
 TEST_CASE("an answer is a sentence with its rows and its figure, below what warns", "[report]") {
   const std::string answer = answer_of(synthetic::results());
-  CHECK_THAT(answer, Contains("<p class=\"headline\">The energy left: ") && Contains("<strong>") &&
-                         Contains("<table class=\"verdicts\">") && Contains("<svg class=\"ask-figure\""));
+  CHECK_THAT(answer, Contains("<p class=\"headline\">The energy left: ") && Contains("<table class=\"verdicts\">") &&
+                         Contains("<svg class=\"ask-figure\""));
   const std::size_t headline = answer.find("<p class=\"headline\">");
   for (const char* const warning :
-       {"Energy is made with the consistent and the lumped mass", "</strong> diverged", "</strong> refused"}) {
+       {"Energy is made with the consistent and the lumped mass", "2 diverged", "6 refused"}) {
     INFO(warning);
     CHECK(answer.find(warning) < headline);
   }
@@ -36,7 +36,7 @@ TEST_CASE("other measurements, another answer", "[report]") {
   for (CaseRecord& record : results.cases)
     for (auto& [name, value] : record.measures)
       if (name == "energy_left") value = CaseView::text(record, "mass") == "consistent" ? 1 : 0.5;
-  CHECK_THAT(answer_of(results), Contains("from <strong>50 %</strong> to <strong>100 %</strong>"));
+  CHECK_THAT(answer_of(results), Contains("from 50 % to 100 %"));
 }
 
 TEST_CASE("where nothing is brought in there is no ratio, and none is made up", "[report]") {

@@ -61,7 +61,7 @@ TEST_CASE("an interval that is not symmetric is given by its ends, a bracket wit
   answered.rows[2].value = answered.rows[2].low = answered.rows[2].high = std::nullopt;
   answered.rows[2].reason = "no case is done";
   const report::AskedTable table = asked_rows(answered);
-  CHECK(values_of(table) == Texts{"0.6 (0.5 to 0.9)", "8e-4 to 0.001", ""});
+  CHECK(values_of(table) == Texts{"0.56 (0.50 to 0.90)", "8e-4 to 0.001", ""});
   CHECK(table.rows[2].back() == "no value: no case is done");
 }
 

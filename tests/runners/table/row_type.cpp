@@ -28,7 +28,7 @@ TableType<Measured> measured_type() {
 // As a derived table has it: the case, an axis of the study, then the declared columns.
 Table of_cases() {
   Table table = measured_type().head();
-  table.columns.insert(table.columns.begin(), {{case_name, "", ""}, {"step", "s", ""}});
+  table.columns = joined({{case_name, "", ""}, {"step", "s", ""}}, table.columns);
   table.rows = {{"a", 1e-3, "first", 1, 0.5, nullptr, true}, {"b", 1e-4, nullptr, 2, nullptr, 0.25, false}};
   return table;
 }
@@ -50,6 +50,6 @@ TEST_CASE("row type: columns are found by name, whatever stands between them, an
   Table table = of_cases();
   CHECK(type.rows.read(table)[1].id == "b");
   CHECK(type.rows.read(table)[1].limit == 0.25);
-  table.columns[5].name = "another";
+  table.columns.own()[5].name = "another";
   CHECK_FALSE(type.rows.read(table)[1].limit.has_value());
 }

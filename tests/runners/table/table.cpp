@@ -63,6 +63,18 @@ TEST_CASE("a table as CSV") {
   CHECK(table_csv(sample()) == "step,closed,why\n1e-04,true,\"a, b\"\n2,false,\n,,\n");
 }
 
+TEST_CASE("copies share their columns until one of them is changed") {
+  Table one = sample();
+  Table other = one;
+  CHECK(other.columns.same(one.columns));
+  other.columns.push_back({"more", "1", ""});
+  CHECK_FALSE(other.columns.same(one.columns));
+  CHECK(one.columns.size() + 1 == other.columns.size());
+  one.columns.own().front().name = "first";
+  CHECK(other.columns.front().name != "first");
+  CHECK(Columns().empty());
+}
+
 TEST_CASE("columns that were read back are described by those that are declared") {
   Table stored{"limits", "", named_columns({"why", "step", "more"}), {}};
   describe(stored, sample());

@@ -206,7 +206,7 @@ TEST_CASE("a scene that touches no stop observes nothing of contact") {
     CAPTURE(stiffness);
     text["methods"]["contact"]["stiffness"] = stiffness;
     const Result rests = run(text);
-    CHECK(rests.noted("closed: the scene touches no stop at any step"));
+    CHECK(rests.noted("closed: the scene touches no stop at any stable step"));
     for (const Cell& reason : rests.column("reason", "closed")) CHECK_THAT(reason.text(), Contains("not observed"));
     CHECK(rests.column("impacts", "closed", "stability_observed").empty());
     CHECK(rests.column("limit_observed", "closed").front().is_nothing());

@@ -64,8 +64,8 @@ TEST_CASE("the stop bounds the step where it alone has the smaller limit, and th
 
 TEST_CASE("what has no limit, no stable step or another limit in marches is told so", "[asks]") {
   asks::Answered out = ask({{4, 1e-4, 1e-3}}, [](LimitRow& open, LimitRow& closed) {
-    open.prediction = closed.prediction = "none";
-    open.predicted = closed.predicted = {};
+    open.prediction = closed.prediction = open.observation = closed.observation = "none";
+    open.predicted = closed.predicted = open.observed = closed.observed = {};
   });
   CHECK(out.rows.front().verdict == "no limit");
   CHECK_FALSE(out.rows.front().value);
@@ -83,7 +83,8 @@ TEST_CASE("what has no limit, no stable step or another limit in marches is told
     closed.observed = 0.5 * *closed.predicted;
     closed.agrees = false;
   });
-  CHECK(*out.rows.front().low == Approx(0.5 * *out.rows.front().value));
+  CHECK(*out.rows.front().value == *out.rows.front().low);
+  CHECK(*out.rows.front().high == Approx(2 * *out.rows.front().low));
   REQUIRE_FALSE(out.aside.empty());
   CHECK_THAT(out.aside.front(), Contains("another limit"));
 }
@@ -95,8 +96,8 @@ TEST_CASE("of groups as large as each other one alone goes without its name", "[
   int number = 0;
   const asks::Answered out = ask(springs, [&](LimitRow& open, LimitRow& closed) {
     if (number++ % 3 != 2) return;
-    open.prediction = closed.prediction = "none";
-    open.predicted = closed.predicted = {};
+    open.prediction = closed.prediction = open.observation = closed.observation = "none";
+    open.predicted = closed.predicted = open.observed = closed.observed = {};
   });
   INFO(out.sentence);
   const std::size_t first = out.sentence.find("elsewhere");
@@ -131,7 +132,7 @@ TEST_CASE("a step beyond which marches grow is not allowed, whatever the spectru
 TEST_CASE("a scene that meets the stop only as it grows without contact shows nothing of contact", "[stability]") {
   const auto cell = [](bool stable, bool touched) {
     ObservedCell one;
-    one.behaviour = stable ? Behaviour::stable : Behaviour::unstable;
+    one.behaviour = stable ? Behaviour::stable : Behaviour::growing;
     one.touched = touched;
     return std::optional(one);
   };

@@ -132,9 +132,9 @@ TEST_CASE("tables of contact come back from a store with units and meanings, und
   StudyResults results = results_of(tube_study());
   for (CaseRecord& record : results.cases) {
     for (NumberTable& table : record.numbers)
-      for (Column& column : table.columns) column.unit = column.text = "";
+      for (Column& column : table.columns.own()) column.unit = column.text = "";
     for (Table& table : record.tables)
-      for (Column& column : table.columns) column.unit = column.text = "";
+      for (Column& column : table.columns.own()) column.unit = column.text = "";
   }
   find_kind("trajectory")->analysis(results, answers::Compared(results));
   std::vector<Table> tables = number_heads(results);
