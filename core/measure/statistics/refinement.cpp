@@ -83,7 +83,7 @@ std::optional<Limit> vanishing(const Tail& t, Limit out, double floor) {
 Limit settling(const Tail& t, const std::vector<SizedValue>& values, const std::vector<double>& d, double order,
                Limit out, double floor) {
   const double last = std::abs(t.last), rest = t.rest(order, safety);
-  double u = std::max(last, rest);
+  double u = std::max(safety * last, rest);
   if (t.before * t.last < 0 || order > steepest_order) u = std::max(u, t.first_order_rest(safety));
   if (const std::size_t n = values.size(); n >= 4 && t.before * t.last > 0 && d[n - 4] * t.before > 0) {
     const auto earlier = order_of(values[n - 4].size, t.v1.size, t.v2.size, d[n - 4], t.before);
