@@ -178,6 +178,22 @@ std::optional<double> least_of(const CaseRecord& record, const std::string& name
   return measure(record, "least." + name);
 }
 
+namespace {
+
+/// Beside what others have of a measure, values that are all round-off are zero.
+void drop_round_off(Point& point, double largest_of_all) {
+  constexpr double nothing = 1e-15;
+  double largest = 0;
+  for (const auto& [size, by_seed] : point.values)
+    for (const auto& [seed, value] : by_seed) largest = std::max(largest, std::abs(value));
+  if (largest > nothing * largest_of_all) return;
+  for (auto& [size, by_seed] : point.values)
+    for (auto& [seed, value] : by_seed) value = 0;
+  point.floor = 0;
+}
+
+}  // namespace
+
 std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cases& cases,
                                     const std::vector<std::string>& columns, bool shares) const {
   InOrderMet<std::string, Point> groups;
@@ -226,9 +242,7 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
     out.push_back(std::move(point));
   }
   for (Point& point : out) {
-    // Beside what others have of it, a value that is all round-off is none.
-    constexpr double nothing = 1e-15;
-    if (!share) point.floor = std::max(point.floor, nothing * largest_of_all);
+    if (!share) drop_round_off(point, largest_of_all);
     round_off.push_back(point.floor);
     point.floor = std::max(point.floor, resolution(measure_of_all, point, !steps_chosen));
     limits.push_back(point.finest ? std::optional(limits_at(point.values, *point.finest, point.floor)) : std::nullopt);
