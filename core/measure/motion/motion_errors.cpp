@@ -122,39 +122,46 @@ class Comparison {
     return all;
   }
 
+  /// The largest distance from an impact within the horizon to the nearest of `among` on its side; −1 of no impact,
+  /// infinite where that side has none, and then `lonely` is the impact.
+  template <class Distance>
+  double farthest(const std::vector<Touch>& impacts, const std::vector<Touch>& among, Touch& lonely,
+                  Distance distance) const {
+    double most = -1;
+    for (const Touch& one : impacts) {
+      if (one.from > horizon_) continue;
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Touch& other : among)
+        if (other.side == one.side) nearest = std::min(nearest, distance(one, other));
+      most = std::max(most, nearest);
+      if (!std::isinf(nearest)) continue;
+      lonely = one;
+      break;
+    }
+    return most;
+  }
+
   // Each impact of the reference has to be met, and each of the motion to be one of the reference.
   void impact_times(MotionError& error) const {
     const std::vector<Touch> found = touches(a_), expected = touches(b_);
-    double most = -1;
-    for (const Touch& one : expected) {
-      if (one.from > horizon_) continue;
-      double nearest = std::numeric_limits<double>::infinity();
-      for (const Touch& other : found)
-        if (other.side == one.side) nearest = std::min(nearest, std::abs(other.from - one.from));
-      if (std::isinf(nearest)) {
-        error.reason = fmt::format("no impact on the {} stop, which the reference first hits at t = {:.6g} s",
-                                   name_of(one.side), one.from);
-        return;
-      }
-      most = std::max(most, nearest);
+    Touch lonely;
+    const double missed = farthest(
+        expected, found, lonely, [](const Touch& one, const Touch& other) { return std::abs(other.from - one.from); });
+    if (std::isinf(missed)) {
+      error.reason = fmt::format("no impact on the {} stop, which the reference first hits at t = {:.6g} s",
+                                 name_of(lonely.side), lonely.from);
+      return;
     }
-    for (const Touch& one : found) {
-      if (one.from > horizon_) continue;
-      double nearest = std::numeric_limits<double>::infinity();
-      for (const Touch& other : expected)
-        if (other.side == one.side)
-          nearest = std::min(nearest, std::max({0.0, other.from - one.from, one.from - other.to}));
-      if (std::isinf(nearest)) {
-        error.reason = fmt::format("an impact on the {} stop at t = {:.6g} s, which the reference never hits",
-                                   name_of(one.side), one.from);
-        return;
-      }
-      most = std::max(most, nearest);
-    }
-    if (most < 0)
-      error.reason = no_contact;
-    else
+    const double added = farthest(found, expected, lonely, [](const Touch& one, const Touch& other) {
+      return std::max({0.0, other.from - one.from, one.from - other.to});
+    });
+    if (std::isinf(added))
+      error.reason = fmt::format("an impact on the {} stop at t = {:.6g} s, which the reference never hits",
+                                 name_of(lonely.side), lonely.from);
+    else if (const double most = std::max(missed, added); most >= 0)
       error.value = most;
+    else
+      error.reason = found.empty() && expected.empty() ? no_contact : "neither motion has an impact within the horizon";
   }
 
   const SampledMotion& a_;
