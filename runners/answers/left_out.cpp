@@ -44,27 +44,24 @@ std::optional<Sentence> say_unmoved(const Compared& study) {
                   {clause}};
 }
 
-}  // namespace
+/// How a sentence on these cases ends, in which no contact law did anything.
+const char* end_of(const Compared& study, const Cases& cases) {
+  const bool several = std::any_of(cases.begin(), cases.end(), [&](const CaseRecord* one) {
+    return study.level(*one, "contact") != study.level(*cases.front(), "contact");
+  });
+  return several ? "; contact laws are not compared." : ".";
+}
 
-namespace {
-
-/// Where every case is compared with a reference, and neither touches a stop.
+/// Where every case with a contact law is compared with a reference, and neither touches a stop.
 std::optional<Sentence> say_no_contact(const Compared& study) {
-  bool any = false, several = false;
-  std::string law;
-  for (const CaseRecord& record : study.results().cases) {
-    if (record.status != Status::done) continue;
-    if (std::none_of(record.left_out.begin(), record.left_out.end(),
-                     [](const auto& one) { return one.second == no_contact; }))
-      return std::nullopt;
-    const std::string name = study.level(record, "contact");
-    several = several || (any && name != law);
-    law = name;
-    any = true;
-  }
-  if (!any) return std::nullopt;
-  return Sentence{std::string("No stop was touched by the motions and by their references") +
-                      (several ? "; contact laws are not compared." : "."),
+  Cases done = with_status(all_cases(study.results()), Status::done);
+  std::erase_if(done, [](const CaseRecord* one) { return !measure(*one, "contact_time"); });
+  const bool none = !done.empty() && std::all_of(done.begin(), done.end(), [](const CaseRecord* one) {
+    return std::any_of(one->left_out.begin(), one->left_out.end(),
+                       [](const auto& item) { return item.second == no_contact; });
+  });
+  if (!none) return std::nullopt;
+  return Sentence{std::string("No stop was touched by the motions and by their references") + end_of(study, done),
                   {Clause{.form = "status", .status = "untouched"}}};
 }
 
@@ -74,21 +71,17 @@ std::optional<Sentence> say_untouched(const Compared& study) {
   if (auto unmoved = say_unmoved(study)) return unmoved;
   if (auto untouched = say_no_contact(study)) return untouched;
   double gap = 0, largest = 0;
-  bool any = false, several = false;
-  std::string law;
+  Cases looked;
   for (const CaseRecord& record : study.results().cases) {
     const auto own = measure(record, "smallest_gap");
     if (record.status != Status::done || !own) continue;
     const auto instants = measure(record, "contact_instants"), tip = measure(record, "largest_tip_displacement");
     if (!instants || *instants > 0 || !tip) return std::nullopt;
     // Of the case that comes nearest.
-    if (!any || *tip * gap > largest * *own) gap = *own, largest = *tip;
-    const std::string name = study.level(record, "contact");
-    several = several || (any && name != law);
-    law = name;
-    any = true;
+    if (looked.empty() || *tip * gap > largest * *own) gap = *own, largest = *tip;
+    looked.push_back(&record);
   }
-  if (!any) return std::nullopt;
+  if (looked.empty()) return std::nullopt;
   std::string text = "No stop was touched: the largest displacement of the tip";
   const double times = largest > 0 ? gap / largest : 0;
   constexpr double few = 1.5;
@@ -96,7 +89,7 @@ std::optional<Sentence> say_untouched(const Compared& study) {
           : times > few
               ? fmt::format(", {} m, is 1/{} of the smallest gap", short_number(largest, 2), short_number(times, 2))
               : fmt::format(", {} m, is {} of the smallest gap", short_number(largest, 2), percent(largest / gap));
-  text += several ? "; contact laws are not compared." : ".";
+  text += end_of(study, looked);
   Clause clause{.form = "status", .measure = "largest_tip_displacement"};
   clause.value = largest;
   clause.high = gap;

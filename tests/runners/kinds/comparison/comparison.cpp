@@ -134,6 +134,12 @@ TEST_CASE("a comparison without contact says so first") {
   const AnalysedResults results(run.results());
   REQUIRE(!results.asked.first.empty());
   CHECK(results.asked.first.front().find("No stop was touched") == 0);
+  // Without a contact law nothing was to be touched.
+  Run linear;
+  study["methods"]["contact"] = "none";
+  CHECK(linear.go(study) == 0);
+  const AnalysedResults without(linear.results());
+  for (const std::string& one : without.asked.first) CHECK(one.find("No stop") == std::string::npos);
 }
 
 TEST_CASE("a comparison is asked what its cases measure, and nothing that only a trajectory observes") {
