@@ -210,6 +210,10 @@ ReferenceProblem reference_problem(const StudyCase& study_case, const Registry& 
   return problem;
 }
 
+bool meets_own_stops(const StudyCase& study_case, bool of_the_mesh) {
+  return of_the_mesh || std::holds_alternative<OscillatorSpec>(study_case.scene.structure);
+}
+
 std::variant<ReferenceProblem, Refusal> seen_by_reference(const StudyCase& study_case, const Registry& registry,
                                                           bool of_the_mesh) {
   if (!of_the_mesh && study_case.scene.load.has_point_forces())
@@ -230,7 +234,7 @@ std::variant<ReferenceProblem, Refusal> seen_by_reference(const StudyCase& study
         "a compliant law meets the circle of a clearance, and references know stops along rows: use the reference "
         "self"};
   ReferenceProblem problem = reference_problem(study_case, registry);
-  if (of_the_mesh || problem.structure == "oscillator") return problem;
+  if (meets_own_stops(study_case, of_the_mesh)) return problem;
   // A continuum meets rigid stops; its point of contact has no mass, and no coefficient acts on it.
   problem.contact_stiffness = 0;
   problem.contact_nonlinear = false;

@@ -113,6 +113,9 @@ SampleGrid comparison_grid(const SceneSpec& scene, double duration, int samples)
 /// been discretised.
 ReferenceProblem reference_problem(const StudyCase& study_case, const Registry& registry);
 
+/// Whether a reference meets the case's own stops: one of the mesh, and any of an oscillator. Of others stops are rigid.
+bool meets_own_stops(const StudyCase& study_case, bool of_the_mesh);
+
 /// The same as one of the scene sees it, with rigid stops, or one of the mesh; or why no reference knows the scene.
 std::variant<ReferenceProblem, Refusal> seen_by_reference(const StudyCase& study_case, const Registry& registry,
                                                           bool of_the_mesh);
