@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "runners/answers/set_names.hpp"
 #include "runners/asks/lines.hpp"
@@ -67,6 +68,10 @@ class Ranking {
       order.groups = grouped(order.lines);
     }
     std::erase_if(orders_, [](const auto& one) { return one.second.lines.empty(); });
+    std::map<std::string, std::size_t> times;
+    for (const auto& [key, order] : orders_) ++times[order.names.front()];
+    for (std::size_t k = 1; k < orders_.size(); ++k)
+      if (times[orders_[k].second.names.front()] > times[orders_[told_].second.names.front()]) told_ = k;
   }
 
   Answered answer() const {
@@ -79,7 +84,7 @@ class Ranking {
       return out;
     }
     for (const auto& [key, order] : orders_) add_rows(out, order);
-    const Order& first = told();
+    const Order& first = orders_[told_].second;
     const bool firm = first.groups.size() == first.lines.size();
     bool all_firm = true, any_told = false;
     std::size_t surely_first = 0;
@@ -110,17 +115,6 @@ class Ranking {
   }
 
  private:
-  /// The first combination with the most frequent largest.
-  const Order& told() const {
-    const auto times = [&](const Order& of) {
-      return std::count_if(orders_.begin(), orders_.end(),
-                           [&](const auto& one) { return one.second.names.front() == of.names.front(); });
-    };
-    return std::max_element(orders_.begin(), orders_.end(),
-                            [&](const auto& a, const auto& b) { return times(a.second) < times(b.second); })
-        ->second;
-  }
-
   /// All else, "HRZ, end"; what is ranked.
   std::string level_of(const Line& line) const {
     const std::string level = evidence_.level(line.point.first(), others_),
@@ -165,7 +159,7 @@ class Ranking {
   /// The levels of all else with which another is surely the largest, and which one is so with the first of them.
   std::pair<std::vector<std::string>, std::string> turns() const {
     std::pair<std::vector<std::string>, std::string> out;
-    const Order& first = told();
+    const Order& first = orders_[told_].second;
     for (const auto& keyed : orders_) {
       const Order& order = keyed.second;
       if (order.names.front() == first.names.front()) continue;
@@ -199,6 +193,7 @@ class Ranking {
   std::vector<std::string> own_, others_;
   Lines lines_;
   std::vector<std::pair<std::string, Order>> orders_;
+  std::size_t told_ = 0;  // of these: the first with the most frequent largest
 };
 
 void check_rank(const Ask& ask, const Study& study) {
