@@ -63,9 +63,8 @@ std::string figure_csv(const Json& figure) {
     return key == "value"                  ? y
            : key == "low" || key == "high" ? unit_behind(key, figure, "unit")
            : key == "x"                    ? x
-           : key == "from" || key == "to" || (plane && key == "tip")
-               ? unit_behind(key, figure, plane ? "y_unit" : "x_unit")
-               : key;
+           : key == "from" || key == "to"  ? unit_behind(key, figure, "x_unit")
+                                           : key;
   };
   for (const Json& row : figure.value("rows", Json::array())) {
     std::vector<std::pair<std::string, Json>> cells;
