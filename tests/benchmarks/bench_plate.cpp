@@ -19,7 +19,6 @@
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
-#include <ricochet/measure/statistics/quantiles.hpp>
 #include <ricochet/scene/basis/modal_basis.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
@@ -27,6 +26,7 @@
 #include "tests/benchmarks/fair_plate.hpp"
 #include "tests/benchmarks/held_bytes.hpp"
 #include "tests/benchmarks/reference_beam.hpp"
+#include "tests/benchmarks/shown_range.hpp"
 #include "tests/benchmarks/thread_clock.hpp"
 
 using namespace ricochet;
@@ -210,12 +210,6 @@ FairResult ours(const Scene& scene, Registry& registry, long long steps, Operato
   return out;
 }
 
-std::string shown(std::vector<double> values, double unit) {
-  for (double& value : values) value *= unit;
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  return fmt::format("{:.3g} ({:.3g} to {:.3g})", median(values), *least, *most);
-}
-
 void race(const Plate& made, int rounds, long long steps, int modes, Registry& registry) {
   const Scene scene = scene_of(made);
   const FairScene partner = fair(scene);
@@ -239,7 +233,7 @@ void race(const Plate& made, int rounds, long long steps, int modes, Registry& r
     if (median(step[k]) < median(step[best])) best = k;
   for (std::size_t k = 0; k < 4; ++k)
     fmt::print("  {:<20} step {} µs, set-up {} ms, {:.1f} MB; {} steps in contact, impulse {:.9g}, end {:.9g}\n",
-               k < 3 ? names[k] : operator_name(kind), shown(step[k], 1e6), shown(setup[k], 1e3), last[k].bytes / 1e6,
+               k < 3 ? names[k] : operator_name(kind), shown_range(step[k], 1e6), shown_range(setup[k], 1e3), last[k].bytes / 1e6,
                last[k].pushed, last[k].impulse, last[k].end);
   fmt::print("  against the fastest ({}): step {:.2f}, set-up {:.2f}, memory {:.2f}\n", names[best],
              median(step[3]) / median(step[best]), median(setup[3]) / median(setup[best]),
@@ -255,8 +249,8 @@ void race(const Plate& made, int rounds, long long steps, int modes, Registry& r
       apart = std::max(apart, std::abs(found.squares[k] / squares[static_cast<std::size_t>(k)] - 1));
   }
   if (modes > 0)
-    fmt::print("  {} modes {} ms, Lanczos beside {} ms: {:.2f}; squares {:.1e} apart\n", modes, shown(own, 1e3),
-               shown(theirs, 1e3), median(own) / median(theirs), apart);
+    fmt::print("  {} modes {} ms, Lanczos beside {} ms: {:.2f}; squares {:.1e} apart\n", modes, shown_range(own, 1e3),
+               shown_range(theirs, 1e3), median(own) / median(theirs), apart);
   std::fflush(stdout);
 }
 

@@ -15,10 +15,10 @@
 #include <ricochet/kernels/lane_kernels.hpp>
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/measure/orbits/section_march.hpp>
-#include <ricochet/measure/statistics/quantiles.hpp>
 
 #include "tests/benchmarks/fair_sweep.hpp"
 #include "tests/benchmarks/reference_beam.hpp"
+#include "tests/benchmarks/shown_range.hpp"
 #include "tests/benchmarks/thread_clock.hpp"
 
 using namespace ricochet;
@@ -127,12 +127,6 @@ struct FairInput {
   }
 };
 
-std::string shown(std::vector<double> values) {
-  for (double& value : values) value *= 1e9;
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  return fmt::format("{:.1f} ({:.1f} to {:.1f})", median(values), *least, *most);
-}
-
 void race(const Sweep& sweep, int lanes, const Setting& setting) {
   auto transient = sweep.block(lanes, false), kept = sweep.block(lanes, true);
   const double lane_steps = 1.0 * setting.periods * sweep.steps_per_period * lanes;
@@ -160,7 +154,7 @@ void race(const Sweep& sweep, int lanes, const Setting& setting) {
   fmt::print(
       "  {:2} lanes: beside {}, ours {}, kept {} ns; ratio {:.2f}, kept {:.2f}; {:.1f} % in contact; ends {:.9g}, "
       "{:.9g}\n",
-      lanes, shown(theirs), shown(ours), shown(watched), median(ratio), median(watched_ratio),
+      lanes, shown_range(theirs, 1e9), shown_range(ours, 1e9), shown_range(watched, 1e9), median(ratio), median(watched_ratio),
       100.0 * static_cast<double>(last.pushed) / lane_steps, last.end, end);
   std::fflush(stdout);
 }

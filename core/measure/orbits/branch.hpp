@@ -83,6 +83,9 @@ struct Piece {
 /// An orbit (of shoot()), and the way: +1 towards larger λ.
 BranchState branch_start(Eigen::VectorXd x, double parameter, SetSequence sets, int way);
 
+/// Pieces between which the derivative is made of that of the piece before; then it is made of its steps again.
+inline constexpr long long pieces_updated = 64;
+
 /// Follows a branch of −P½(x, λ) = x or P^p(x, λ) = x, P piecewise affine and continuous, piece by piece. On a piece
 /// the contact sets stay and the branch is a line, x + s t with [P' − 1, P_λ] t = 0. The piece ends at the least s > 0
 /// at which an effort or the distance to a bound vanishes. There the point changes its set in that step, and the new
@@ -90,7 +93,8 @@ BranchState branch_start(Eigen::VectorXd x, double parameter, SetSequence sets, 
 /// once change one after the other, the earlier step and the lower row first. The pieces between them have no length.
 class PieceFollower {
  public:
-  /// From an orbit (branch_start()), or from the entry of another follower: both then go on alike, bit for bit.
+  /// From an orbit (branch_start()), or from the entry of another follower. Where that has made a multiple of
+  /// `pieces_updated`, both go on alike, bit for bit.
   /// `round_off`: that of the map, m.
   PieceFollower(PeriodicMap& map, const MapClock& clock, BranchState entry, double round_off);
 

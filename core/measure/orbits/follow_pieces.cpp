@@ -20,7 +20,11 @@ BranchState branch_start(VectorXd x, double parameter, SetSequence sets, int way
 }
 
 PieceFollower::PieceFollower(PeriodicMap& map, const MapClock& clock, BranchState entry, double round_off)
-    : map_(&map), clock_(clock), entry_(std::move(entry)), round_off_(round_off) {
+    : map_(&map),
+      clock_(clock),
+      entry_(std::move(entry)),
+      derivative_(map.derivative(entry_.sets, clock)),
+      round_off_(round_off) {
   enter();
 }
 
@@ -37,7 +41,6 @@ void PieceFollower::enter() {
 // The null direction of [P' − 1, P_λ], bordered by the direction before it.
 void PieceFollower::new_direction() {
   const Index D = map_->size();
-  derivative_ = map_->derivative(state_.sets, clock_);
   std::vector<PeriodicMap::Column> column = {{VectorXd::Zero(D), 1.0, true}};
   map_->sweep(state_.sets, clock_, column);
   by_parameter_ = std::move(column.front().x);
@@ -171,8 +174,12 @@ void PieceFollower::go(const Piece& piece) {
   }
   entry_.change = piece.change;
   ++entry_.pieces;
-  int& set = entry_.sets[static_cast<std::size_t>(piece.change.step)];
+  const auto step = static_cast<std::size_t>(piece.change.step);
+  int& set = entry_.sets[step];
   set = map_->sets().toggled(set, piece.change.row, piece.change.upper);
+  derivative_ = entry_.pieces % pieces_updated == 0
+                    ? map_->derivative(entry_.sets, clock_)
+                    : map_->blended(std::move(derivative_), state_.sets, clock_, {{step, set, 1.0}});
   enter();
 }
 

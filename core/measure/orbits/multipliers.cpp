@@ -61,8 +61,8 @@ double margin(const PeriodicMap& map, const SetStep& step, int row, double value
 
 }  // namespace
 
-MatrixXd half_step_derivative(PeriodicMap& map, const SetSequence& sets, const MapClock& clock, double parameter,
-                              const PeriodicMap::Measures& measures) {
+MatrixXd half_step_derivative(PeriodicMap& map, MatrixXd frozen, const SetSequence& sets, const MapClock& clock,
+                              double parameter, const PeriodicMap::Measures& measures) {
   const auto rows = static_cast<std::size_t>(map.sets().measure_rows()), n = sets.size();
   std::vector<SetBlend> blends;
   // Step 0 follows the last one, of a half map with the sides exchanged: A is that of the same points.
@@ -90,7 +90,7 @@ MatrixXd half_step_derivative(PeriodicMap& map, const SetSequence& sets, const M
     }
   }
   std::stable_sort(blends.begin(), blends.end(), [](const SetBlend& a, const SetBlend& b) { return a.step < b.step; });
-  return map.derivative(sets, clock, blends);
+  return map.blended(std::move(frozen), sets, clock, blends);
 }
 
 std::vector<std::complex<double>> massless_roots(const Program& program, const SetSteps& sets) {

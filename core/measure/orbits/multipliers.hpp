@@ -36,10 +36,10 @@ Outside outside(const std::vector<std::complex<double>>& multipliers);
 ///     θ ≥ ½: the first step after it      (θ − ½) old + (3/2 − θ) new
 ///
 /// is that of the frozen sets at θ = ½ and continuous where a change moves from step to step. Of a step that both ends
-/// of a run would blend the later one counts. Step 0 follows the last one. `measures`: of the sweep that the sets
-/// belong to.
-Eigen::MatrixXd half_step_derivative(PeriodicMap& map, const SetSequence& sets, const MapClock& clock, double parameter,
-                                     const PeriodicMap::Measures& measures);
+/// of a run would blend the later one counts. Step 0 follows the last one. `frozen`: the derivative with the sets as
+/// they are. `measures`: of the sweep that they belong to.
+Eigen::MatrixXd half_step_derivative(PeriodicMap& map, Eigen::MatrixXd frozen, const SetSequence& sets,
+                                     const MapClock& clock, double parameter, const PeriodicMap::Measures& measures);
 
 /// Roots of modulus 1 (to 1e-7) that the step of a program has on displacements without mass, all points open: M φ = 0.
 /// `sets`: of that program.

@@ -97,7 +97,7 @@ MapMarch PeriodicMap::march(const VectorXd& x, double parameter, const MapClock&
   return made;
 }
 
-MatrixXd PeriodicMap::derivative(const SetSequence& sets, const MapClock& clock, const std::vector<SetBlend>& blends) {
+MatrixXd PeriodicMap::product(const SetSequence& sets, const MapClock& clock, const std::vector<SetBlend>& blends) {
   MatrixXd product = MatrixXd::Identity(size(), size());
   auto blend = blends.begin();
   for (std::size_t begin = 0; begin < sets.size();) {
@@ -119,6 +119,73 @@ MatrixXd PeriodicMap::derivative(const SetSequence& sets, const MapClock& clock,
     begin = end;
   }
   return clock.sign() * product;
+}
+
+// Over the steps from one up to another, or their transposes back from there.
+void PeriodicMap::carry(const SetSequence& sets, std::size_t from, std::size_t to, MatrixXd& columns, bool transposed) {
+  if (columns.cols() == 0) return;
+  for (std::size_t made = 0; made < to - from;) {
+    const auto at = [&](std::size_t k) { return sets[transposed ? to - 1 - k : from + k]; };
+    std::size_t end = made;
+    while (end < to - from && at(end) == at(made)) ++end;
+    const auto count = static_cast<long long>(end - made);
+    transposed ? sets_.apply_transposed(at(made), count, columns) : sets_.apply(at(made), count, columns);
+    made = end;
+  }
+}
+
+MatrixXd PeriodicMap::blended(MatrixXd derivative, const SetSequence& sets, const MapClock& clock,
+                              const std::vector<SetBlend>& blends) {
+  const Index D = size(), count = std::ssize(blends);
+  if (2 * count > D) return product(sets, clock, blends);
+  // B − A = b cᵀ of each blend.
+  MatrixXd moved(D, count), read(D, count), links = MatrixXd::Zero(count, count);
+  for (Index j = 0; j < count; ++j) {
+    const SetBlend& blend = blends[static_cast<std::size_t>(j)];
+    const MatrixXd change =
+        sets_[blend.other].state.topRows(D) - sets_[sets[blend.step]].state.topRows(D);
+    Index row = 0, column = 0;
+    const double largest = change.cwiseAbs().maxCoeff(&row, &column);
+    read.col(j) = change.row(row).transpose();
+    moved.col(j) = largest > 0 ? VectorXd(change.col(column) / change(row, column)) : VectorXd::Zero(D);
+  }
+  const auto step_of = [&](Index j) { return blends[static_cast<std::size_t>(j)].step; };
+  // b over the steps behind each blend, and what later blends read of it.
+  MatrixXd columns(D, 0);
+  std::size_t at = 0;
+  for (Index j = 0; j < count;) {
+    const std::size_t step = step_of(j);
+    carry(sets, at, step, columns, false);
+    const Index before = j;
+    for (; j < count && step_of(j) == step; ++j) links.row(j).head(before) = read.col(j).transpose() * columns;
+    carry(sets, step, step + 1, columns, false);
+    columns.conservativeResize(Eigen::NoChange, j);
+    columns.rightCols(j - before) = moved.middleCols(before, j - before);
+    at = step + 1;
+  }
+  carry(sets, at, sets.size(), columns, false);
+  // c over the steps before it.
+  MatrixXd rows(D, 0);
+  at = sets.size();
+  for (Index j = count; j > 0;) {
+    const std::size_t step = step_of(j - 1);
+    carry(sets, step, at, rows, true);
+    Index first = j;
+    while (first > 0 && step_of(first - 1) == step) --first;
+    MatrixXd more(D, count - first);
+    more << read.middleCols(first, j - first), rows;
+    rows = std::move(more);
+    at = step;
+    j = first;
+  }
+  carry(sets, 0, at, rows, true);
+  for (Index j = 0; j < count; ++j) {
+    for (Index i = 0; i < j; ++i)
+      rows.col(j) += blends[static_cast<std::size_t>(i)].weight * links(j, i) * rows.col(i);
+    derivative.noalias() +=
+        (clock.sign() * blends[static_cast<std::size_t>(j)].weight * columns.col(j)) * rows.col(j).transpose();
+  }
+  return derivative;
 }
 
 void PeriodicMap::set_period(int steps_per_period) {
@@ -158,71 +225,91 @@ double PeriodicMap::bound(int row, bool upper, double parameter, bool direction)
   return origin[point] + (parameter - lanes_.at) * slope[point] + (upper ? -layer : layer);
 }
 
-// What the bounds bring into a step with this set.
-VectorXd PeriodicMap::constant_drive(int set, const Column& column) const {
+// What the bounds of closed points bring into 2^k steps, and into their measures.
+struct PeriodicMap::Constant {
+  VectorXd state, measured;
+};
+
+PeriodicMap::Constant PeriodicMap::constant_drive(int set, std::size_t power, const Column& column) {
   const DriveLayout& layout = sets_.layout();
-  const SetStep& step = sets_[set];
-  VectorXd sum = VectorXd::Zero(step.drive.rows());
-  for (const SetPoint& one : step.closed)
-    sum += bound(sets_.row_of(one), one.upper, column.parameter, column.direction) *
-           step.drive.col(one.upper ? layout.upper(one.point) : layout.lower(one.point));
+  const SetStrides& strides = sets_.strides(set, power);
+  const Index shown = Index{sets_.measure_rows()} << power;
+  Constant sum{VectorXd::Zero(size()), VectorXd::Zero(shown)};
+  for (const SetPoint& one : sets_[set].closed) {
+    const double value = bound(sets_.row_of(one), one.upper, column.parameter, column.direction);
+    const Index at = one.upper ? layout.upper(one.point) : layout.lower(one.point);
+    sum.state += value * strides.drive[power].col(at);
+    sum.measured += value * strides.measured_drive.col(at).head(shown);
+  }
   return sum;
 }
 
 namespace {
 
-// y = E x for one or two columns, E rows × D by columns.
+// y = E x for one or two columns: the first rows of E, D columns of `stride` numbers each.
+struct Factor {
+  const double* E;
+  Index stride, rows, D;
+};
+
 template <int Columns>
-inline __attribute__((always_inline)) void multiply_body(const MatrixXd& E, const double* const* x, double* const* y) {
-  const Index rows = E.rows(), D = E.cols();
-  for (int c = 0; c < Columns; ++c) std::fill_n(y[c], rows, 0.0);
+inline __attribute__((always_inline)) void multiply_body(const Factor& of, const double* const* x, double* const* y) {
+  for (int c = 0; c < Columns; ++c) std::fill_n(y[c], of.rows, 0.0);
   Index j = 0;
-  for (; j + 4 <= D; j += 4) {
-    const double *e0 = E.data() + j * rows, *e1 = e0 + rows, *e2 = e1 + rows, *e3 = e2 + rows;
+  for (; j + 4 <= of.D; j += 4) {
+    const double *e0 = of.E + j * of.stride, *e1 = e0 + of.stride, *e2 = e1 + of.stride, *e3 = e2 + of.stride;
     for (int c = 0; c < Columns; ++c) {
       const double a = x[c][j], b = x[c][j + 1], d = x[c][j + 2], f = x[c][j + 3];
       double* __restrict out = y[c];
-      for (Index i = 0; i < rows; ++i) out[i] += (a * e0[i] + b * e1[i]) + (d * e2[i] + f * e3[i]);
+      for (Index i = 0; i < of.rows; ++i) out[i] += (a * e0[i] + b * e1[i]) + (d * e2[i] + f * e3[i]);
     }
   }
-  for (; j < D; ++j)
+  for (; j < of.D; ++j)
     for (int c = 0; c < Columns; ++c) {
-      const double* e = E.data() + j * rows;
+      const double* e = of.E + j * of.stride;
       const double a = x[c][j];
       double* __restrict out = y[c];
-      for (Index i = 0; i < rows; ++i) out[i] += a * e[i];
+      for (Index i = 0; i < of.rows; ++i) out[i] += a * e[i];
     }
 }
 
 template <int Columns>
-void multiply_anywhere(const MatrixXd& E, const double* const* x, double* const* y) {
-  multiply_body<Columns>(E, x, y);
+void multiply_anywhere(const Factor& of, const double* const* x, double* const* y) {
+  multiply_body<Columns>(of, x, y);
 }
 
 // Nothing is fused: the numbers are those of any other processor.
 template <int Columns>
-RICOCHET_AVX2_ALONE void multiply_by_fours(const MatrixXd& E, const double* const* x, double* const* y) {
-  multiply_body<Columns>(E, x, y);
+RICOCHET_AVX2_ALONE void multiply_by_fours(const Factor& of, const double* const* x, double* const* y) {
+  multiply_body<Columns>(of, x, y);
 }
 
 template <int Columns>
-void multiply(const MatrixXd& E, const double* const* x, double* const* y) {
-  has_avx2() ? multiply_by_fours<Columns>(E, x, y) : multiply_anywhere<Columns>(E, x, y);
+void multiply(const Factor& of, const double* const* x, double* const* y) {
+  has_avx2() ? multiply_by_fours<Columns>(of, x, y) : multiply_anywhere<Columns>(of, x, y);
+}
+
+// The first rows of E, times one or two columns.
+void multiply(const MatrixXd& E, Index rows, const std::vector<VectorXd>& x, std::vector<VectorXd>& y) {
+  const Factor of{E.data(), E.rows(), rows, E.cols()};
+  const double* in[2] = {x[0].data(), x.size() > 1 ? x[1].data() : nullptr};
+  double* out[2] = {y[0].data(), y.size() > 1 ? y[1].data() : nullptr};
+  x.size() > 1 ? multiply<2>(of, in, out) : multiply<1>(of, in, out);
 }
 
 }  // namespace
 
+// Steps with equal sets are made 2^k at once, where no load makes each of them its own.
 void PeriodicMap::sweep(const SetSequence& sets, const MapClock& clock, std::vector<Column>& columns,
                         Measures* measures) {
   set_period(clock.steps_per_period);
-  const Index D = size(), rows = sets_.measure_rows(), all = D + rows;
-  const std::size_t count = columns.size();
-  std::vector<std::vector<VectorXd>> constants(static_cast<std::size_t>(sets_.count()));
-  std::vector<VectorXd> now(count), next(count, VectorXd::Zero(all));
+  const Index D = size(), rows = sets_.measure_rows();
+  const DriveLayout& layout = sets_.layout();
+  const std::size_t count = columns.size(), longest = layout.loads > 0 ? 0 : sets_.longest_stride();
+  std::vector<VectorXd> now(count), next(count, VectorXd(D)), seen(count, VectorXd(rows << longest));
   std::vector<double> amplitude(count);
   for (std::size_t c = 0; c < count; ++c) {
-    now[c] = VectorXd::Zero(all);
-    now[c].head(D) = columns[c].x;
+    now[c] = columns[c].x;
     amplitude[c] = columns[c].direction
                        ? columns[c].parameter * lanes_.amplitude
                        : lanes_.origin.amplitude + (columns[c].parameter - lanes_.at) * lanes_.amplitude;
@@ -231,35 +318,49 @@ void PeriodicMap::sweep(const SetSequence& sets, const MapClock& clock, std::vec
     measures->value.resize(sets.size() * static_cast<std::size_t>(rows));
     measures->slope.resize(measures->value.size());
   }
-  const bool support = program().support;
-  const DriveLayout& layout = sets_.layout();
-  for (std::size_t k = 0; k < sets.size(); ++k) {
-    const SetStep& step = sets_[sets[k]];
-    std::vector<VectorXd>& constant = constants[static_cast<std::size_t>(sets[k])];
+  // By set, power and column.
+  std::vector<std::vector<std::vector<Constant>>> constants(static_cast<std::size_t>(sets_.count()));
+  for (std::size_t k = 0, end = 0, made = 1; k < sets.size(); k += made) {
+    if (k == end)
+      while (end < sets.size() && sets[end] == sets[k]) ++end;
+    std::size_t power = 0;
+    while (power < longest && (std::size_t{2} << power) <= end - k) ++power;
+    made = std::size_t{1} << power;
+    auto& known = constants[static_cast<std::size_t>(sets[k])];
+    known.resize(longest + 1);
+    std::vector<Constant>& constant = known[power];
     if (constant.empty())
-      for (const Column& column : columns) constant.push_back(constant_drive(sets[k], column));
+      for (const Column& column : columns) constant.push_back(constant_drive(sets[k], power, column));
+    const SetStrides& strides = sets_.strides(sets[k], power);
     const auto at = static_cast<Index>(k % static_cast<std::size_t>(clock.steps_per_period));
-    const double* x[2] = {now[0].data(), count > 1 ? now[1].data() : nullptr};
-    double* y[2] = {next[0].data(), count > 1 ? next[1].data() : nullptr};
-    count > 1 ? multiply<2>(step.state, x, y) : multiply<1>(step.state, x, y);
+    const Index shown = measures ? rows << power : 0;
+    multiply(strides.state[power], D, now, next);
+    if (shown > 0) multiply(strides.measured, shown, now, seen);
     for (std::size_t c = 0; c < count; ++c) {
-      next[c] += constant[c];
-      if (support)
-        next[c] += amplitude[c] * (sine_[static_cast<std::size_t>(at)] * step.drive.col(0) +
-                                   cosine_[static_cast<std::size_t>(at)] * step.drive.col(1));
+      next[c] += constant[c].state;
+      if (shown > 0) seen[c].head(shown) += constant[c].measured;
+      if (program().support) {
+        const double sine = sine_[static_cast<std::size_t>(at)], cosine = cosine_[static_cast<std::size_t>(at)];
+        const MatrixXd &state = strides.drive[power], &measured = strides.measured_drive;
+        next[c] += amplitude[c] * (sine * state.col(0) + cosine * state.col(1));
+        if (shown > 0)
+          seen[c].head(shown) += amplitude[c] * (sine * measured.col(0) + cosine * measured.col(1)).head(shown);
+      }
       if (layout.loads == 0) continue;
       VectorXd load = (columns[c].parameter - (columns[c].direction ? 0 : lanes_.at)) * load_slopes_.col(at);
       if (!columns[c].direction) load += loads_.col(at);
-      next[c] += step.drive.rightCols(layout.loads) * load;
+      const MatrixXd& loaded = sets_[sets[k]].drive;
+      next[c] += loaded.topRightCorner(D, layout.loads) * load;
+      if (shown > 0) seen[c].head(shown) += loaded.bottomRightCorner(rows, layout.loads) * load;
     }
-    if (measures) {
+    if (shown > 0) {
       const auto from = static_cast<std::ptrdiff_t>(k) * rows;
-      std::copy_n(next[0].data() + D, rows, measures->value.begin() + from);
-      if (count > 1) std::copy_n(next[1].data() + D, rows, measures->slope.begin() + from);
+      std::copy_n(seen[0].data(), shown, measures->value.begin() + from);
+      if (count > 1) std::copy_n(seen[1].data(), shown, measures->slope.begin() + from);
     }
     std::swap(now, next);
   }
-  for (std::size_t c = 0; c < count; ++c) columns[c].x = clock.sign() * now[c].head(D);
+  for (std::size_t c = 0; c < count; ++c) columns[c].x = clock.sign() * now[c];
 }
 
 StrobeTip march_over(Marcher& marcher, const MapClock& clock, const Observers& observers) {

@@ -89,8 +89,12 @@ class PeriodicMap {
   Marcher& begin(const Eigen::VectorXd& x, double parameter);
   /// Marches from x. `read`: tip and penetration are wanted too.
   MapMarch march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool read = false);
-  /// ∂(sign·P)/∂x with these sets, of which `blends` changes some, in the order of steps.
-  Eigen::MatrixXd derivative(const SetSequence& sets, const MapClock& clock, const std::vector<SetBlend>& blends = {});
+  /// ∂(sign·P)/∂x with these sets.
+  Eigen::MatrixXd derivative(const SetSequence& sets, const MapClock& clock) { return product(sets, clock, {}); }
+  /// The same with blends, in the order of steps, from that without. Steps that differ in one row differ by a matrix of
+  /// rank one: as long as blends are few, vectors alone are carried over the steps.
+  Eigen::MatrixXd blended(Eigen::MatrixXd derivative, const SetSequence& sets, const MapClock& clock,
+                          const std::vector<SetBlend>& blends);
 
   /// One column that goes over the steps: of states (drives at λ) or of directions (drives per λ, times `parameter`).
   struct Column {
@@ -113,7 +117,10 @@ class PeriodicMap {
 
  private:
   class Recorder;
-  Eigen::VectorXd constant_drive(int set, const Column& column) const;
+  Eigen::MatrixXd product(const SetSequence& sets, const MapClock& clock, const std::vector<SetBlend>& blends);
+  void carry(const SetSequence& sets, std::size_t from, std::size_t to, Eigen::MatrixXd& columns, bool transposed);
+  struct Constant;
+  Constant constant_drive(int set, std::size_t power, const Column& column);
   Marcher& marcher_at(double parameter);
 
   Marcher marcher_;

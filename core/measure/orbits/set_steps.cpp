@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <ricochet/measure/orbits/set_steps.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 
@@ -203,7 +204,10 @@ SetStep SetSteps::make(const ContactSet& set) const {
 
 int SetSteps::number(const ContactSet& set) {
   const auto [place, added] = numbers_.try_emplace(set, count());
-  if (added) steps_.push_back(make(set));
+  if (added) {
+    steps_.push_back(make(set));
+    strides_.emplace_back();
+  }
   return place->second;
 }
 
@@ -227,15 +231,60 @@ bool SetSteps::mirrors(int one, int other) const {
 }
 
 const MatrixXd& SetSteps::power(int number, std::size_t k) {
-  SetStep& step = steps_[static_cast<std::size_t>(number)];
-  if (step.powers.empty()) step.powers.push_back(step.state.topRows(size_));
-  while (step.powers.size() <= k) step.powers.push_back(step.powers.back() * step.powers.back());
-  return step.powers[k];
+  std::vector<MatrixXd>& powers = strides_[static_cast<std::size_t>(number)].state;
+  if (powers.empty()) powers.push_back((*this)[number].state.topRows(size_));
+  while (powers.size() <= k) powers.push_back(powers.back() * powers.back());
+  return powers[k];
+}
+
+std::size_t SetSteps::longest_stride() const {
+  constexpr std::size_t most = 6;
+  std::size_t k = 0;
+  while (k < most && (measure_rows() << (k + 1)) <= size_) ++k;
+  return k;
+}
+
+// B r so many steps later, over r now.
+MatrixXd SetSteps::turned(MatrixXd drive, long long steps) const {
+  const double angle = program_->problem->support.pulsation * (static_cast<double>(steps) * program_->h);
+  const double c = std::cos(angle), s = std::sin(angle);
+  const Eigen::VectorXd sine = drive.col(0), cosine = drive.col(1);
+  drive.col(0) = c * sine - s * cosine;
+  drive.col(1) = s * sine + c * cosine;
+  return drive;
+}
+
+const SetStrides& SetSteps::strides(int number, std::size_t k) {
+  power(number, k);
+  SetStrides& out = strides_[static_cast<std::size_t>(number)];
+  const SetStep& step = (*this)[number];
+  const Index rows = measure_rows(), bounds = layout_.load();
+  if (out.drive.empty()) {
+    out.drive.push_back(step.drive.topLeftCorner(size_, bounds));
+    out.measured = step.state.bottomRows(rows);
+    out.measured_drive = step.drive.bottomLeftCorner(rows, bounds);
+  }
+  while (out.drive.size() <= k) {
+    const std::size_t last = out.drive.size() - 1;
+    const MatrixXd &A = out.state[last], &B = out.drive[last];
+    MatrixXd measured(2 * out.measured.rows(), size_), measured_drive(2 * out.measured.rows(), bounds);
+    measured << out.measured, out.measured * A;
+    measured_drive << out.measured_drive, out.measured * B + turned(out.measured_drive, 1LL << last);
+    out.measured = std::move(measured);
+    out.measured_drive = std::move(measured_drive);
+    out.drive.push_back(A * B + turned(B, 1LL << last));
+  }
+  return out;
 }
 
 void SetSteps::apply(int number, long long count, MatrixXd& columns) {
   for (std::size_t k = 0; (count >> k) != 0; ++k)
     if ((count >> k) & 1) columns = power(number, k) * columns;
+}
+
+void SetSteps::apply_transposed(int number, long long count, MatrixXd& columns) {
+  for (std::size_t k = 0; (count >> k) != 0; ++k)
+    if ((count >> k) & 1) columns = power(number, k).transpose() * columns;
 }
 
 }  // namespace ricochet

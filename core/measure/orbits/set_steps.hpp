@@ -50,8 +50,19 @@ struct SetStep {
   /// Per closed row what one newton moves the measure by, the point alone being free to move, m/N. The free measure is
   /// beyond the bound by that times the effort.
   std::vector<double> give;
-  std::vector<int> side;                ///< per row: 0 open, −1 closed by the lower stop, 1 by the upper one
-  std::vector<Eigen::MatrixXd> powers;  ///< A, A², A⁴, …
+  std::vector<int> side;  ///< per row: 0 open, −1 closed by the lower stop, 1 by the upper one
+};
+
+/// Steps with one contact set, 2^k of them at once, loads apart:
+///
+///     X ← A^{2^k} X + B_k r,     v_j = Y A^j X + Z_j r,  j = 0 … 2^k − 1
+///
+/// r is that of the first of them: sine and cosine turn by ωh a step.
+struct SetStrides {
+  std::vector<Eigen::MatrixXd> state;  ///< A, A², A⁴, …: D × D
+  std::vector<Eigen::MatrixXd> drive;  ///< B_0, B_1, …: D × (2 + 2 points)
+  Eigen::MatrixXd measured;            ///< Y A^j, one below the other
+  Eigen::MatrixXd measured_drive;      ///< Z_j
 };
 
 /// The steps of a program by contact set, made when first asked for. They are told apart by numbers; 0 is the open set.
@@ -85,8 +96,13 @@ class SetSteps {
   bool mirrors(int one, int other) const;
   /// A^{2^k} of a set.
   const Eigen::MatrixXd& power(int number, std::size_t k);
-  /// M ← A^count M.
+  /// Those of a set, up to 2^k steps and measured rows at least.
+  const SetStrides& strides(int number, std::size_t k);
+  /// The largest k for which 2^k steps at once cost less than they do in two halves, measured rows included; at most 6.
+  std::size_t longest_stride() const;
+  /// M ← A^count M; M ← (A^count)ᵀ M.
   void apply(int number, long long count, Eigen::MatrixXd& columns);
+  void apply_transposed(int number, long long count, Eigen::MatrixXd& columns);
 
  private:
   struct Stage {
@@ -102,6 +118,7 @@ class SetSteps {
   Eigen::MatrixXd closing_efforts(std::size_t k, const std::vector<Eigen::Index>& closed,
                                   const Eigen::MatrixXd& measured, Eigen::Index first, SetStep& step) const;
   Eigen::MatrixXd combine(const Combination& c, const Eigen::MatrixXd& now, const Eigen::MatrixXd& z) const;
+  Eigen::MatrixXd turned(Eigen::MatrixXd drive, long long steps) const;
 
   const Program* program_;
   int rows_ = 0, slots_ = 0, size_ = 0, past_ = 0;
@@ -110,6 +127,7 @@ class SetSteps {
   Eigen::MatrixXd contact_;   // H
   std::vector<Stage> stages_;
   std::deque<SetStep> steps_;  // which stay where they are
+  std::deque<SetStrides> strides_;
   std::map<ContactSet, int> numbers_;
 };
 

@@ -86,8 +86,8 @@ BranchPoint by_pieces(PeriodicMap& map, const ContinuationPlan& plan, const MapC
   const SetSequence& sets = follower.state().sets;
   PeriodicMap::Measures measures = follower.measures();
   for (std::size_t k = 0; k < measures.value.size(); ++k) measures.value[k] += along * measures.slope[k];
-  point.half_step =
-      roots_at(multipliers_of(map, clock, half_step_derivative(map, sets, clock, there.parameter, measures)));
+  point.half_step = roots_at(multipliers_of(
+      map, clock, half_step_derivative(map, follower.derivative(), sets, clock, there.parameter, measures)));
   const long long pieces = follower.state().pieces;
   point.way = pieces == 0 && along == 0 ? "a kept orbit"
                                         : fmt::format("on piece {} behind the kept orbit at an arc of {} m", pieces + 1,

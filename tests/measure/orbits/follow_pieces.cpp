@@ -116,6 +116,30 @@ TEST_CASE("a branch followed back ends where it began") {
     CHECK(b[i].parameter == Approx(a[a.size() - 1 - i].parameter).margin(1e-10));
 }
 
+TEST_CASE("the derivative along a branch is that of its steps, and a follower in its place goes on alike") {
+  Started from(500, true, 0.08);
+  PieceFollower follower(from.map, from.clock,
+                         branch_start(from.orbit.x, from.orbit.parameter, from.orbit.sets, 1), round_off);
+  std::optional<PieceFollower> other;
+  double apart = 0, size = 0;
+  for (long long piece = 1; piece < pieces_updated + 40; ++piece) {
+    follower.go(follower.end_of_piece(0.06, 0.2));
+    if (other) {
+      other->go(other->end_of_piece(0.06, 0.2));
+      REQUIRE(other->state().x == follower.state().x);
+      REQUIRE(other->derivative() == follower.derivative());
+    }
+    if (piece == pieces_updated) other.emplace(from.map, from.clock, follower.entry(), round_off);
+    const Eigen::MatrixXd made = from.map.derivative(follower.state().sets, from.clock);
+    apart = std::max(apart, (made - follower.derivative()).cwiseAbs().maxCoeff());
+    size = std::max(size, made.cwiseAbs().maxCoeff());
+  }
+  REQUIRE(other);
+  CHECK(apart > 0);
+  // Round-off of as many updates.
+  CHECK(apart < 1e-11 * size);
+}
+
 TEST_CASE("turns are paired from the smallest on") {
   BranchTrace trace;
   const std::vector<double> path = {0, 1, 0.5, 0.6, 0.2, 2};
@@ -175,7 +199,8 @@ TEST_CASE("multipliers by the half-step rule do not depend on where the period b
       return from.map.sets().number(closed);
     };
     const auto multiplier = [&] {
-      return multipliers_of(half_step_derivative(from.map, sets, from.clock, 0.08, measures)).front();
+      const Eigen::MatrixXd frozen = from.map.derivative(sets, from.clock);
+      return multipliers_of(half_step_derivative(from.map, frozen, sets, from.clock, 0.08, measures)).front();
     };
     const std::complex<double> expected = multiplier();
     int changes = 0;

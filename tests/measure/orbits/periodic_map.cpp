@@ -40,6 +40,79 @@ TEST_CASE("integration over contacts is the composition of affine steps by its c
   }
 }
 
+TEST_CASE("measures do not depend on how many steps are made at once") {
+  const int steps = 200;
+  for (const Methods& methods : {tube_methods(), spring_methods("implicit")}) {
+    INFO(methods.contact.name);
+    PeriodicMap map = tube_map(steps, 5, methods);
+    REQUIRE(map.sets().longest_stride() > 2);
+    const Eigen::VectorXd x = settled_tube(map, 0.09, steps, 20, 5, methods);
+    const MapClock clock{steps, 1, false};
+    const MapMarch made = map.march(x, 0.09, clock);
+    const std::vector<PeriodicMap::Column> columns = {{x, 0.09, false}, {x, 0.02, true}};
+    auto whole = columns;
+    PeriodicMap::Measures expected, measures;
+    map.sweep(made.sets, clock, whole, &expected);
+    const auto rows = static_cast<std::size_t>(map.sets().measure_rows());
+    double value = 0, slope = 0, largest = 0, steepest = 0;
+    for (std::size_t count = 1; count <= made.sets.size(); ++count) {
+      auto some = columns;
+      map.sweep({made.sets.begin(), made.sets.begin() + static_cast<std::ptrdiff_t>(count)}, clock, some, &measures);
+      for (std::size_t at = (count - 1) * rows; at < count * rows; ++at) {
+        // Efforts are larger than distances by what a step's force moves.
+        const double give = map.sets()[made.sets[count - 1]].give[at % rows], unit = give > 0 ? give : 1;
+        value = std::max(value, unit * std::abs(measures.value[at] - expected.value[at]));
+        slope = std::max(slope, unit * std::abs(measures.slope[at] - expected.slope[at]));
+        largest = std::max(largest, unit * std::abs(expected.value[at]));
+        steepest = std::max(steepest, unit * std::abs(expected.slope[at]));
+      }
+    }
+    // Round-off of some hundred steps.
+    CHECK(value < 1e-11 * largest);
+    CHECK(slope < 1e-11 * steepest);
+  }
+}
+
+TEST_CASE("blends change the derivative as a product of their steps does") {
+  const int steps = 200;
+  PeriodicMap map = tube_map(steps, 5);
+  const Eigen::VectorXd x = settled_tube(map, 0.09, steps, 20, 5);
+  const Eigen::Index D = map.size();
+  for (const bool half : {false, true}) {
+    const MapClock clock{steps, 1, half};
+    const SetSequence sets = map.march(x, 0.09, clock).sets;
+    const auto last = sets.size() - 1;
+    const auto blend = [&](std::size_t step, bool upper, double weight) {
+      return SetBlend{step, map.sets().toggled(sets[step], 0, upper), weight, 0};
+    };
+    std::vector<SetBlend> blends;
+    for (const std::size_t step : {std::size_t{0}, std::size_t{1}, std::size_t{40}, last - 30, last})
+      for (const bool upper : {false, true}) {
+        blends.push_back(blend(step, upper, upper ? 0.3 : 0.45));
+        if (upper && blends[blends.size() - 2].other == blends.back().other) blends.pop_back();
+      }
+    // More of them than vectors are carried for.
+    std::vector<SetBlend> many;
+    for (std::size_t step = 0; step <= last && 2 * std::ssize(many) <= D; ++step)
+      many.push_back(blend(step, false, 0.01));
+    REQUIRE(2 * std::ssize(blends) < D);
+    REQUIRE(2 * std::ssize(many) > D);
+    for (const auto& some : {std::vector<SetBlend>{}, {blend(57, true, 1.0)}, blends, many}) {
+      Eigen::MatrixXd expected = Eigen::MatrixXd::Identity(D, D);
+      for (std::size_t k = 0; k < sets.size(); ++k) {
+        Eigen::MatrixXd step = map.sets()[sets[k]].state.topRows(D);
+        const Eigen::MatrixXd own = step;
+        for (const SetBlend& one : some)
+          if (one.step == k) step += one.weight * (map.sets()[one.other].state.topRows(D) - own);
+        expected = step * expected;
+      }
+      expected *= clock.sign();
+      const Eigen::MatrixXd made = map.blended(map.derivative(sets, clock), sets, clock, some);
+      CHECK((made - expected).cwiseAbs().maxCoeff() < 1e-11 * expected.cwiseAbs().maxCoeff());
+    }
+  }
+}
+
 TEST_CASE("the parameter's column is the difference of two marches with the same contact sets") {
   const int steps = 200;
   PeriodicMap map = tube_map(steps, 5);
