@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <ricochet/contact_solvers/circle_solver.hpp>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
@@ -120,19 +121,26 @@ bool has_factor(const SparseMatrix& stiffness) {
 }  // namespace
 
 Equilibrium equilibrium(const SemiDiscrete& problem, const VectorXd& load, const VectorXd& lift, ContactLaw* law) {
-  constexpr double epsilon = 1e-3;
-  constexpr int most_steps = 2000;
   ContactLaw* acting = law && !law->absent() ? law : nullptr;
   const bool held = (problem.held || problem.in_modes()) && has_factor(problem.stiffness);
-  Balance balance(problem, lift, acting, held ? 0 : epsilon);
   VectorXd q = VectorXd::Zero(problem.stiffness.rows());
   const double size = load.norm();
-  for (int k = 0; k < (held ? 1 : most_steps); ++k) {
-    q = balance.step(load, q);
-    const VectorXd residual = problem.stiffness * q - load - problem.measured().transpose() * balance.effort();
-    constexpr double balanced = 1e-12;
-    if (held || residual.norm() <= balanced * std::max(size, (problem.stiffness * q).norm()))
-      return {q, problem.measured().transpose() * balance.effort()};
+  constexpr double balanced = 1e-12, units = 8 * std::numeric_limits<double>::epsilon();
+  // The slowest motion takes diag(D)/k times as many steps, k its stiffness: of many elements with a smaller D. That
+  // one goes down to what K q is rounded to.
+  bool first = true;
+  for (const double shift : held ? std::vector{0.0} : std::vector{1e-3, 1e-6, 1e-9}) {
+    constexpr int most_steps = 2000;
+    Balance balance(problem, lift, acting, shift);
+    for (int k = 0; k < (held ? 1 : most_steps); ++k) {
+      q = balance.step(load, q);
+      const VectorXd pushed = problem.measured().transpose() * balance.effort();
+      const double left = (problem.stiffness * q - load - pushed).norm(),
+                   rounded = first ? 0 : units * (problem.stiffness.cwiseAbs() * q.cwiseAbs()).norm();
+      if (held || left <= std::max(balanced * std::max(size, (problem.stiffness * q).norm()), rounded))
+        return {q, pushed};
+    }
+    first = false;
   }
   throw InputError(said_at,
                    "no stop balances what pushes a structure that nothing holds; expected supports, or stops against "

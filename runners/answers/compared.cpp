@@ -61,9 +61,31 @@ constexpr AxisWords scene_words[] = {{"structure.damping.stiffness", "viscosity"
                                      {"steps_per_period", "", " steps per period"},
                                      {"march", "", ""}};
 
+/// What its values are called by.
+std::string word_of(const std::string& column) {
+  for (const AxisWords& words : scene_words)
+    if (column == words.column) return std::string(words.before) + words.after;
+  return report::in_words(last_part(column));
+}
+
 /// A table of rows: too long for a sentence.
 bool is_table(const std::string& value) {
   return value.starts_with("[[");
+}
+
+/// "plate" of stops.0.upper, "strap" of bodies.strap.stiffness, "contact" of contact.stiffness; "" of one part.
+std::string owner_of(const std::string& column, const Json& study) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0, dot = 0; dot != std::string::npos; at = dot + 1) {
+    dot = column.find('.', at);
+    parts.push_back(column.substr(at, dot == std::string::npos ? dot : dot - at));
+  }
+  if (parts.size() < 2) return "";
+  if (parts.front() == "bodies") return parts[1];
+  const auto stop = number_in(parts[1]);
+  if (parts.front() != "stops" || !stop) return report::in_words(parts[parts.size() - 2]);
+  const Json::json_pointer name("/scene/stops/" + parts[1] + "/name");
+  return study.contains(name) ? study.at(name).get<std::string>() : "stop " + short_number(*stop + 1);
 }
 
 /// Words of a key as they are said: "every step" of "every-step".
@@ -170,7 +192,26 @@ const std::vector<double>& Compared::numbers_of(const std::string& column) const
   return found == numbers_.end() ? none : found->second;
 }
 
+std::string Compared::owner(const std::string& column) const {
+  const std::string word = word_of(column);
+  const bool alone = std::none_of(varying_.begin(), varying_.end(),
+                                  [&](const std::string& other) { return other != column && word_of(other) == word; });
+  return alone ? "" : owner_of(column, results_.study);
+}
+
+std::string Compared::spoken(const std::string& choice) const {
+  const std::string own = owner_of(choice, results_.study);
+  if (choice.starts_with("bodies.")) return "the " + report::in_words(last_part(choice)) + " of " + own;
+  const std::string words = answers::spoken(choice);
+  return choice.starts_with("stops.") && !owner(choice).empty() ? words + " at " + own : words;
+}
+
 std::string Compared::value_words(const std::string& column, const std::string& value) const {
+  const std::string own = owner(column);
+  return (own.empty() ? "" : own + " ") + own_words(column, value);
+}
+
+std::string Compared::own_words(const std::string& column, const std::string& value) const {
   const std::string role = axis_role(column);
   if (column == role && is_method_role(role)) return method_words(role, value);
   const auto number = number_in(value);

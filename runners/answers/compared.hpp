@@ -48,8 +48,11 @@ class Compared {
   /// The case's values of these columns, those of one role together: "singular P1, stiffness 1e8 N/m".
   std::string words(const CaseRecord& record, const std::vector<std::string>& columns) const;
 
-  /// A value of a column in words: "β = ½", "stiffness 1e6 N/m", "viscosity 1e-4 s", "implicit".
+  /// A value of a column in words: "β = ½", "stiffness 1e6 N/m", "viscosity 1e-4 s", "implicit"; "strap stiffness
+  /// 1e4 N/m" where another choice has the same word.
   std::string value_words(const std::string& column, const std::string& value) const;
+  /// A choice in a sentence, with the stop or the body that it is of: "the upper stop at plate".
+  std::string spoken(const std::string& choice) const;
   /// A table by its number among those of the study: "unloading table 2"; of one alone, "unloading table".
   std::string table_words(const std::string& column, const std::string& value) const;
   /// A method's or a mass matrix's own word: "rigid stops" of "signorini".
@@ -75,6 +78,9 @@ class Compared {
   std::string step_words(double step) const;
 
  private:
+  std::string owner(const std::string& column) const;
+  std::string own_words(const std::string& column, const std::string& value) const;
+
   const StudyResults& results_;
   std::string asked_;
   std::vector<std::string> varying_, columns_, choices_;

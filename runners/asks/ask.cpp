@@ -88,7 +88,11 @@ void check_stops(const Ask& ask, const Study& study) {
           known.empty() ? std::string("the scene has no stops with names")
                         : "no stop " + quote(name) + "; there is: " + quoted_list(known) + did_you_mean(name, known));
   }
-  const std::string measure = split_measure(ask.has("on") ? ask.text("on") : ask.subject()).first;
+  const auto [measure, stop] = split_measure(ask.has("on") ? ask.text("on") : ask.subject());
+  if (!stop.empty() && std::find(known.begin(), known.end(), stop) != known.end() &&
+      std::find(asked.begin(), asked.end(), stop) == asked.end())
+    throw InputError(ask.pointer("stops"), "leaves out " + quote(stop) + ", of which the measure is; expected " +
+                                               quote(measure) + " or this stop");
   for (const Field& key : find_study_kind(study.kind)->keys)
     if (const auto& of = key.of_each; !of.empty() && std::find(of.begin(), of.end(), measure) == of.end())
       throw InputError(ask.pointer("stops"),

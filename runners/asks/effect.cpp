@@ -64,11 +64,13 @@ void judge(Told& told, double from) {
     told.reason = pair.unknown;
     return;
   }
-  const double size = std::abs(*pair.share), u = *pair.share_u;
-  if (size - u > from)
+  const double size = std::abs(*pair.share), u = *pair.share_u, most = *pair.share_most;
+  if (size - most > from)
     told.verdict = Verdict::yes;
-  else if (size + u < from)
+  else if (size + most < from)
     told.verdict = Verdict::no;
+  else if (size - u > from || size + u < from)
+    told.reason = "it " + pair.motion;
   else
     told.reason = "that lies within what is open of it", told.between = true;
 }
@@ -157,10 +159,12 @@ class EffectSpeaker {
     if (!told.reason.empty()) return told;
     told.pair = pair_of(a.point, b.point);
     judge(told, from_);
-    if (told.verdict == Verdict::no && acts_at_stops() && untouched(a.point) && untouched(b.point)) {
-      told.verdict = Verdict::open;
+    if (told.verdict != Verdict::no) return told;
+    if (acts_at_stops() && untouched(a.point) && untouched(b.point))
       told.reason = "no stop is touched";
-    }
+    else if (doubtful(a.point) || doubtful(b.point))
+      told.reason = "the runs are doubtful";
+    if (!told.reason.empty()) told.verdict = Verdict::open;
     return told;
   }
 
@@ -176,7 +180,7 @@ class EffectSpeaker {
     });
   }
 
-  std::string own_level(const Line& line) const { return evidence_.level(line.point.first(), own_); }
+  std::string own_level(const Line& line) const { return or_none(evidence_.level(line.point.first(), own_)); }
 
   /// The pair that decides, of those from `first` to `end`: one that is a yes, else one that is open, else the largest.
   /// Of those that apply alone where `applying`; nothing where none does.
@@ -257,6 +261,8 @@ class EffectSpeaker {
       const std::string low = share_text(*(*least)->pair), high = share_text(*(*most)->pair);
       return low == high ? "by " + low + which : fmt::format("by {} to {}{}", low, high, which);
     }
+    if (*(*least)->pair->share < 0 && *(*most)->pair->share > 0)
+      return fmt::format("by {} to {}", share_text(*(*least)->pair), share_text(*(*most)->pair));
     const Told& largest = std::abs(*(*least)->pair->share) > std::abs(*(*most)->pair->share) ? **least : **most;
     return fmt::format("by up to {} ({} against {}{})", share_text(*largest.pair), largest.second, largest.first,
                        place(largest).empty() ? "" : "," + place(largest));
@@ -270,10 +276,12 @@ class EffectSpeaker {
     if (odd != list.end())
       return fmt::format("from {} to {}", lines_.text(line_of(*(*odd)->where, (*odd)->first).estimate()),
                          lines_.text(line_of(*(*odd)->where, (*odd)->second).estimate()));
-    const auto largest = std::max_element(list.begin(), list.end(), [](const Told* a, const Told* b) {
-      return std::abs(*a->pair->share) < std::abs(*b->pair->share);
-    });
-    return (list.size() == 1 ? "by " : "by up to ") + share_text(*(*largest)->pair);
+    const auto by_share = [](const Told* a, const Told* b) { return *a->pair->share < *b->pair->share; };
+    const auto [least, most] = std::minmax_element(list.begin(), list.end(), by_share);
+    const Pair &low = *(*least)->pair, &high = *(*most)->pair;
+    if (*low.share < 0 && *high.share > 0) return fmt::format("by {} to {}", share_text(low), share_text(high));
+    return (list.size() == 1 ? "by " : "by up to ") +
+           share_text(std::abs(*low.share) > std::abs(*high.share) ? low : high);
   }
 
   /// The combinations of these, by name where they have one: " with stiffness 1e8 N/m", " in 2 of 6".
@@ -287,7 +295,7 @@ class EffectSpeaker {
 
   void say(Answered& out, const std::vector<const Told*>& yes, const std::vector<const Told*>& no,
            const std::vector<const Told*>& open) const {
-    const std::string choice = answers::spoken(ask_.subject()), measure = lines_.words.words,
+    const std::string choice = evidence_.study().spoken(ask_.subject()), measure = lines_.words.words,
                       least = answers::percent(from_);
     const std::size_t all = yes.size() + no.size() + open.size();
     const std::string rest = !open.empty() && !yes.empty() ? fmt::format("; open in {} of {}", open.size(), all)

@@ -14,7 +14,7 @@ namespace {
 
 /// What one line would need for its parts of u to be within a share of its value.
 struct Need {
-  std::optional<double> seeds, duration, step;
+  std::optional<double> seeds, duration, periods, step;
   bool enough = false, known = true;
   std::string why;
 };
@@ -23,6 +23,12 @@ struct Need {
 double two_digits_below(double value) {
   const double digit = std::pow(10, std::floor(std::log10(value)) - 1);
   return to_digits(std::floor(value / digit) * digit, 2);
+}
+
+/// The whole number of two digits that is no less.
+double two_digits_above(double value) {
+  const double digit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::round(std::ceil(value / digit) * digit);
 }
 
 /// Whether the last change of the step lies within the draws: of each with itself, its mean is not told from zero. Such
@@ -95,9 +101,12 @@ class Enough {
     } else {
       const auto open = std::count_if(needs.begin(), needs.end(), [](const auto& one) { return !one.second.known; });
       const std::string rest = open > 0 ? fmt::format("; open in {} of {}", open, needs.size()) : "";
-      out.sentence =
-          in_thirty_words(fmt::format("No: {}; {} would do for {}", found, remedy(need), answers::percent(within_)),
-                          {{line->place() + rest, rest, line->place()}});
+      const std::string what = remedy(need);
+      out.reason = need.why;
+      out.sentence = in_thirty_words(
+          fmt::format("No: {}; {}", found,
+                      need.why.empty() ? fmt::format("{} would do for {}", what, answers::percent(within_)) : need.why),
+          {{line->place() + rest, rest, line->place()}});
     }
     return out;
   }
@@ -132,10 +141,12 @@ class Enough {
       return out;
     }
     const double asked = within_ * std::abs(one.value);
-    out.enough = *one.u() <= asked && one.unknown().empty();
-    if (*one.u() <= asked && !one.unknown().empty()) {
-      out.known = false;
-      out.why = one.unknown();
+    out.enough = *one.u() <= asked;
+    if (out.enough && (!one.unknown().empty() || one.doubt * *one.u() > asked || doubtful(line.point))) {
+      out.known = out.enough = false;
+      out.why = !one.unknown().empty()         ? one.unknown()
+                : one.doubt * *one.u() > asked ? "it " + one.motion
+                                               : "the runs are doubtful";
       return out;
     }
     const double mesh = one.mesh.value_or(0), step = one.step.value_or(0), sampling = one.sampling.value_or(0);
@@ -144,7 +155,6 @@ class Enough {
       return out;
     }
     if (mesh >= asked) {
-      out.known = false;
       out.why = "the mesh alone leaves " + answers::percent(mesh / std::abs(one.value));
       return out;
     }
@@ -161,7 +171,7 @@ class Enough {
       constexpr double halves = 1;
       const double order = std::max(0.5, one.order.value_or(halves));
       if (!one.motion.empty() || one.vanishes) {
-        out.known = false;
+        out.known = !one.vanishes;
         out.why = one.vanishes ? "it falls to zero with the step" : "it " + one.motion;
       } else
         out.step = two_digits_below(line.point.finest->first * std::pow(of_step / step, 1 / order));
@@ -179,9 +189,10 @@ class Enough {
       std::size_t n = fewest;
       while (n < large && scatter * half_interval_over_scatter(n) > half) ++n;
       const double beyond = scatter * half_interval_over_scatter(n) / half;
-      out.seeds = n < large ? static_cast<double>(n) : std::ceil(static_cast<double>(n) * beyond * beyond);
+      out.seeds = n < large ? static_cast<double>(n) : two_digits_above(static_cast<double>(n) * beyond * beyond);
     }
     if (evidence_.window() > 0) out.duration = longer * evidence_.window();
+    if (const double kept = evidence_.kept_periods(); kept > 0) out.periods = two_digits_above(longer * kept);
     // A longer window of a load that repeats holds nothing new.
     if (out.duration && *out.duration > evidence_.repeats_after()) {
       out.duration.reset();
@@ -199,6 +210,7 @@ class Enough {
   std::string remedy(const Need& need) const {
     std::vector<std::string> parts;
     if (need.seeds || need.duration) parts.push_back(draws_words(need));
+    if (need.periods) parts.push_back(fmt::format("{:.0f} kept periods", *need.periods));
     if (need.step) parts.push_back(evidence_.study().step_words(*need.step));
     return some_of(parts);
   }
@@ -237,6 +249,7 @@ class Enough {
     };
     add(need.seeds, "seeds that would do", "1");
     add(need.duration, "window that would do", "s");
+    add(need.periods, "kept periods that would do", "1");
     add(need.step, "step that would do", "s");
   }
 

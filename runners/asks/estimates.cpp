@@ -106,12 +106,17 @@ Estimate estimate_of(const std::map<Size, BySeed>& values, const std::map<Size, 
   out.mesh = left_by(limits.mesh);
   for (const auto& one : {limits.step, limits.mesh})
     out.grows = out.grows || (one && one->status == LimitStatus::blows_up);
-  for (const auto& [limit, what] : {std::pair(limits.step, "step"), std::pair(limits.mesh, "mesh")})
-    if (limit && limit->restless() && out.motion.empty())
+  // What moves one way goes on, what wanders stays about where it is.
+  constexpr double of_moving = 10, of_wandering = 2;
+  for (const auto& [limit, what] : {std::pair(limits.step, "step"), std::pair(limits.mesh, "mesh")}) {
+    if (!limit || !limit->restless()) continue;
+    out.doubt = std::max(out.doubt, limit->status == LimitStatus::moves ? of_moving : of_wandering);
+    if (out.motion.empty())
       out.motion = std::string(limit->trend > 0   ? "still rises"
                                : limit->trend < 0 ? "still falls"
                                                   : "wanders") +
                    " with the " + what;
+  }
   if (out.grows) out.motion = "grows without bound";
   out.vanishes = limits.step && limits.step->status == LimitStatus::vanishes;
   out.order = limits.step ? limits.step->order : std::nullopt;

@@ -38,6 +38,11 @@ bool untouched(const Point& point) {
                      [](const CaseRecord* one) { return measure(*one, "contact_instants") == 0.0; });
 }
 
+bool doubtful(const Point& point) {
+  return std::all_of(point.behind.begin(), point.behind.end(),
+                     [](const CaseRecord* one) { return !one->reasons.empty(); });
+}
+
 namespace {
 
 const Json* axis_value(const CaseRecord& record, const std::string& column) {
@@ -83,11 +88,15 @@ std::vector<std::string> Evidence::measures(const Ask& ask, const std::string& n
       for (const auto& [item, why] : record.left_out) add(item);
     }
   };
-  // Of a measure that all stops have together, that one, where no stop is named.
-  const bool by_stop = !stops.empty() || ask.text("over") == "stops";
-  if (!by_stop) gather(true);
-  if (out.empty()) gather(false);
-  if (out.empty() && by_stop) gather(true);
+  // Each stop for itself: what several stops have together is a sum that no stop has.
+  gather(false);
+  if (const bool by_stop = !stops.empty() || ask.text("over") == "stops"; !by_stop && out.size() < 2) {
+    const std::vector<std::string> single = std::move(out);
+    out.clear();
+    gather(true);
+    if (out.empty()) out = single;
+  }
+  if (out.empty()) gather(true);
   if (out.empty()) out.push_back(name);
   // In the order of the study's stops where it names them.
   if (!stops.empty())
@@ -141,6 +150,11 @@ double Evidence::window() const {
   if (study.contains("window") && study["window"].is_object())
     return study["window"]["to"].get<double>() - study["window"]["from"].get<double>();
   return study.value("duration", 0.0);
+}
+
+double Evidence::kept_periods() const {
+  const Json& study = results().study;
+  return study.is_object() && study.contains("keep") && study["keep"].is_number() ? study["keep"].get<double>() : 0;
 }
 
 double Evidence::repeats_after() const {

@@ -24,6 +24,7 @@ struct Estimate {
   bool grows = false;                ///< without bound as it is refined
   bool vanishes = false;             ///< falls to zero with the step
   std::string motion;                ///< "still falls with the step" of what is not settled
+  double doubt = 1;                  ///< of what is not settled: so many times u may be between it and its limit
   std::optional<double> order;       ///< in the step
   std::size_t steps = 1, meshes = 1, seeds = 1;
   bool has_step = true;  ///< whether its study has a step to refine
@@ -36,6 +37,9 @@ struct Estimate {
   bool has_interval() const { return u() && unknown().empty(); }
   double low() const { return beyond ? value : value - u().value_or(0); }
   double high() const { return beyond ? INFINITY : value + u().value_or(0); }
+  /// The same by which a yes or a no is told.
+  double least() const { return beyond ? value : value - doubt * u().value_or(0); }
+  double most() const { return beyond ? INFINITY : value + doubt * u().value_or(0); }
 };
 
 /// A size of refinement: the step (1 where none varies), the elements (1 likewise).
@@ -61,6 +65,8 @@ struct Point {
 
 /// Whether none of its cases touched a stop.
 bool untouched(const Point& point);
+/// Whether each of its cases is doubtful: too short, a load between its steps.
+bool doubtful(const Point& point);
 
 /// Why cases are not behind a verdict.
 struct LeftOut {
@@ -88,8 +94,8 @@ class Evidence {
 
   /// The cases that an ask speaks of: those of its `where`, without references.
   Cases cases(const Ask& ask) const;
-  /// The measures of an ask by name, "peak_force[gap]": of a measure of stops one for each stop that it names, or all.
-  /// The name as it is where no case has any.
+  /// The measures of an ask by name, "peak_force[gap]": of a measure of stops one for each stop that it names, or for
+  /// all. The name as it is where one stop alone has it, and where no case has any.
   std::vector<std::string> measures(const Ask& ask, const std::string& name) const;
   /// Columns that vary among these cases, refinements and seeds among them.
   std::vector<std::string> varying(const Cases& cases) const;
@@ -116,6 +122,8 @@ class Evidence {
 
   /// s over which means are taken: the window, else the run.
   double window() const;
+  /// Periods of each orbit that exponents are means over; 0 of kinds without orbits.
+  double kept_periods() const;
   /// s after which the random loads of the scene say the same again, the soonest; ∞ of none.
   double repeats_after() const;
 

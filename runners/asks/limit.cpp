@@ -15,10 +15,9 @@ struct Bounds {
   bool holds(double value) const { return (!below || value < *below) && (!above || value > *above); }
 };
 
-/// Whether nothing happened in runs that could not show it: no stop is touched, and each is doubtful.
+/// Whether nothing happened in runs that could not show it.
 bool nothing_seen(const Point& point) {
-  return untouched(point) && std::all_of(point.behind.begin(), point.behind.end(),
-                                         [](const CaseRecord* one) { return !one->reasons.empty(); });
+  return untouched(point) && doubtful(point);
 }
 
 std::string why_open(const Line& line, const Bounds& bounds) {
@@ -26,7 +25,9 @@ std::string why_open(const Line& line, const Bounds& bounds) {
   if (nothing_seen(line.point)) return "no stop is touched, in a doubtful run";
   const Estimate& one = line.estimate();
   if (!one.unknown().empty()) return one.unknown();
-  const bool all = one.has_interval() && bounds.holds(one.low()) && bounds.holds(one.high());
+  const bool all = one.has_interval() && bounds.holds(one.least()) && bounds.holds(one.most());
+  const bool within = !bounds.holds(one.low()) || !bounds.holds(one.high());
+  if (!all && !within) return "it " + one.motion;
   return all ? "one seed is too near to it" : "the limit lies within its interval";
 }
 
@@ -46,9 +47,9 @@ Kept kept(const Line& line, const Bounds& bounds) {
   const auto breaks = [&](double low, double high) {
     return (bounds.below && low >= *bounds.below) || (bounds.above && high <= *bounds.above);
   };
-  bool all = holds(one.low(), one.high()), beyond = breaks(one.low(), one.high());
+  bool all = holds(one.least(), one.most()), beyond = breaks(one.least(), one.most());
   if (const auto& draws = line.point.values.at(*line.point.finest); draws.size() > 1 && line.point.halves.empty()) {
-    const double refinement = one.step.value_or(0) + one.mesh.value_or(0);
+    const double refinement = one.doubt * (one.step.value_or(0) + one.mesh.value_or(0));
     out.draws = draws.size();
     for (const auto& [seed, value] : draws) {
       all = all && holds(value - refinement, value + refinement);

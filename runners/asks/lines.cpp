@@ -88,21 +88,29 @@ Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& meas
     out.words.factor = 1;
     out.words.unit = info ? info->unit : "";
   }
+  // Levels are said in the study's order, whatever is asked of them.
+  std::vector<std::string> ordered;
+  for (const std::string& column : evidence.results().columns)
+    if (std::find(columns.begin(), columns.end(), column) != columns.end()) ordered.push_back(column);
   double largest = 0;
   std::set<std::string> told;
   std::set<const CaseRecord*> behind;  // of several stops a case stands behind each
   for (const std::string& name : names) {
     for (Point& point : evidence.points(name, cases, columns, shares)) {
       Line line{split_measure(name).first, split_measure(name).second, "", std::move(point)};
-      line.level = evidence.level(line.point.first(), columns);
-      for (const std::string& column : columns) line.attributes.push_back(evidence.level(line.point.first(), {column}));
+      line.level = evidence.level(line.point.first(), ordered);
+      for (const std::string& column : ordered) line.attributes.push_back(evidence.level(line.point.first(), {column}));
       line.attributes.push_back(line.stop);
       if (line.known()) largest = std::max(largest, std::abs(line.estimate().value));
       behind.insert(line.point.behind.begin(), line.point.behind.end());
       out.all.push_back(std::move(line));
     }
-    for (const std::string& line : evidence.left_out(name, cases).told())
+    const LeftOut left = evidence.left_out(name, cases);
+    for (const std::string& line : left.told())
       if (told.insert(line).second) out.aside.push_back(line);
+    for (const LeftOut::Reason& one : left.reasons)
+      if (std::find(out.without.begin(), out.without.end(), one.said()) == out.without.end())
+        out.without.push_back(one.said());
   }
   out.cases = behind.size();
   out.left_out = cases.size() - behind.size();
@@ -117,6 +125,10 @@ Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& meas
 
 std::string all_text(std::size_t count) {
   return count == 2 ? "both" : fmt::format("all {}", count);
+}
+
+std::string or_none(const std::string& level) {
+  return level.empty() ? "none" : level;
 }
 
 bool is_plural(const std::string& words) {
@@ -170,10 +182,7 @@ Answered begin_answer(const Lines& lines) {
 
 std::string nothing_known(const Lines& lines) {
   if (!lines.known().empty()) return "";
-  std::vector<std::string> reasons;
-  for (const Line& line : lines.all)
-    if (std::find(reasons.begin(), reasons.end(), line.point.none) == reasons.end()) reasons.push_back(line.point.none);
-  return some_of(reasons);
+  return lines.without.empty() ? "no case has come to its end" : some_of(lines.without);
 }
 
 std::optional<Answered> open_without_values(const Lines& lines, Answered begun) {
@@ -198,6 +207,7 @@ std::string some_of(const std::vector<std::string>& names, std::size_t most) {
 void check_measure(const Ask& ask, const Study& study, const std::string& key, const std::string& measure) {
   const StudyKind& kind = *find_study_kind(study.kind);
   const std::string pointer = ask.pointer(key);
+  if (measure == "status") throw InputError(pointer, "how cases ended is no measure; ask {\"runs\": true}");
   if (kind.check_measure) {
     kind.check_measure(study.resolved, measure, pointer);
     return;

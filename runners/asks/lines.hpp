@@ -26,7 +26,8 @@ struct Lines {
   answers::MeasureWords words;  ///< of the measure without its stops
   std::vector<Line> all;
   std::size_t cases = 0, left_out = 0;
-  std::vector<std::string> aside;  ///< what is left out, by reason
+  std::vector<std::string> aside;    ///< what is left out, by reason
+  std::vector<std::string> without;  ///< why cases have no value: "2 refused: …"
 
   std::vector<const Line*> known() const;
   /// A value of this measure in words, with its unit.
@@ -61,6 +62,8 @@ bool is_plural(const std::string& words);
 
 /// "both", "all 3".
 std::string all_text(std::size_t count);
+/// A level in words; "none" of null.
+std::string or_none(const std::string& level);
 
 /// A reason without what its first colon explains: "2 refused".
 std::string short_reason(const std::string& reason);

@@ -8,10 +8,11 @@ namespace {
 
 /// u of a difference, at least `floor`. `both`: what is open of the two together; no difference is less sure than that,
 /// even one that still grows. Nothing where it is not known.
-std::optional<double> left_open(const Estimate& estimate, const std::optional<double>& both, double floor) {
+std::optional<double> left_open(const Estimate& estimate, const std::optional<double>& both, double floor,
+                                double doubt = 1) {
   if (!estimate.unknown().empty()) return std::nullopt;
   // Of a single size on both sides, and nothing drawn, nothing is known.
-  std::optional<double> u = estimate.grows ? std::nullopt : std::optional(estimate.u().value_or(0));
+  std::optional<double> u = estimate.grows ? std::nullopt : std::optional(doubt * estimate.u().value_or(0));
   if (both) u = std::min(u.value_or(*both), *both);
   return u ? std::optional(std::max(*u, floor)) : std::nullopt;
 }
@@ -74,15 +75,17 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
     return there ? point.estimate->u() : std::nullopt;
   };
   const std::optional<double> first_u = own_u(first), second_u = own_u(second);
-  const auto both = [&](double weight_of_first, double unit) -> std::optional<double> {
+  const auto both = [&](double weight_of_first, double unit, bool doubted = false) -> std::optional<double> {
     if (!first_u || !second_u) return std::nullopt;
-    return (*second_u + weight_of_first * *first_u) / unit;
+    const auto doubt = [&](const Point& point) { return doubted ? point.estimate->doubt : 1; };
+    return (doubt(second) * *second_u + weight_of_first * doubt(first) * *first_u) / unit;
   };
   const Estimate estimate = estimate_of(differences, halves, *finest, limits_at(differences, *finest, floor), has_step);
   out.difference = estimate.value;
   out.u = left_open(estimate, both(1, 1), floor);
   if (!out.u) out.unknown = why_not(estimate);
-  if (std::abs(out.base) <= floor) return out;
+  // What is not told from zero is no base of shares.
+  if (std::abs(out.base) <= std::max(floor, first_u.value_or(0))) return out;
   // Both may move with the step while one stays the same share of the other.
   std::map<Size, std::map<std::string, double>> shares, share_halves;
   for (const auto& [size, by_seed] : differences) {
@@ -98,6 +101,9 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
   const Estimate share = estimate_of(shares, share_halves, *finest, limits_at(shares, *finest, round_off), has_step);
   out.share = share.value;
   out.share_u = left_open(share, both(1 + std::abs(share.value), std::abs(out.base)), round_off);
+  out.share_most = left_open(share, both(1 + std::abs(share.value), std::abs(out.base), true), round_off, share.doubt);
+  for (const Estimate* one : {&share, &*first.estimate, &*second.estimate})
+    if (out.motion.empty() && !one->motion.empty()) out.motion = one->motion;
   out.unknown = out.share_u ? "" : why_not(share);
   return out;
 }

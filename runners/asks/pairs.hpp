@@ -19,7 +19,9 @@ struct Pair {
   /// The difference as a share of the first at the same step and mesh, and what is open of that; nothing where the
   /// first is zero or round-off.
   std::optional<double> share = {}, share_u = {};
-  bool least = false;  ///< one of the two lies beyond its range: the difference is larger than this
+  std::optional<double> share_most = {};  ///< what is open of it where a yes or a no is told (Estimate::doubt)
+  std::string motion = {};                ///< of what is not settled: "still rises with the step"
+  bool least = false;                     ///< one of the two lies beyond its range: the difference is larger than this
 };
 
 /// What refinement and draws leave of the difference of two points: what moves both alike cancels. Seeds are paired.

@@ -32,13 +32,13 @@ std::vector<std::vector<std::size_t>> grouped(const std::vector<const Line*>& li
   std::vector<double> highest_from(lines.size() + 1, -INFINITY);
   for (std::size_t k = lines.size(); k-- > 0;)
     highest_from[k] =
-        std::max(highest_from[k + 1], lines[k]->estimate().has_interval() ? lines[k]->estimate().high() : INFINITY);
+        std::max(highest_from[k + 1], lines[k]->estimate().has_interval() ? lines[k]->estimate().most() : INFINITY);
   std::vector<std::vector<std::size_t>> groups;
   double lowest = INFINITY;
   for (std::size_t k = 0; k < lines.size(); ++k) {
     if (k == 0 || lowest > highest_from[k]) groups.emplace_back();
     groups.back().push_back(k);
-    lowest = std::min(lowest, lines[k]->estimate().has_interval() ? lines[k]->estimate().low() : -INFINITY);
+    lowest = std::min(lowest, lines[k]->estimate().has_interval() ? lines[k]->estimate().least() : -INFINITY);
   }
   return groups;
 }
@@ -67,7 +67,10 @@ class Ranking {
       for (const Line* line : order.lines) order.names.push_back(name_of(*line));
       order.groups = grouped(order.lines);
     }
-    std::erase_if(orders_, [](const auto& one) { return one.second.lines.empty(); });
+    // Where the axis says nothing, as of a stiffness beside rigid stops, nothing is ranked.
+    std::erase_if(orders_, [](const auto& one) {
+      return one.second.lines.empty() || one.second.names == std::vector{or_none("")};
+    });
     std::map<std::string, std::size_t> times;
     for (const auto& [key, order] : orders_) ++times[order.names.front()];
     for (std::size_t k = 1; k < orders_.size(); ++k)
@@ -109,7 +112,8 @@ class Ranking {
                                             surely_first, orders_.size())
                               : "; in no combination one is surely first",
            !turned.empty() ? fmt::format("; {} is first in {} of {}", turned_to, turned.size(), orders_.size())
-                           : fmt::format("; surely first in {} of {}", surely_first, orders_.size())});
+                           : fmt::format("; surely first in {} of {}", surely_first, orders_.size()),
+           !turned.empty() ? "; another elsewhere" : ""});
     out.sentence = in_thirty_words(capitalised_order(first), rest);
     return out;
   }
@@ -122,7 +126,7 @@ class Ranking {
     return level + (stop.empty() ? "" : (level.empty() ? "" : ", ") + stop);
   }
   std::string name_of(const Line& line) const {
-    return over_ == over_stops ? line.stop : evidence_.level(line.point.first(), own_);
+    return over_ == over_stops ? line.stop : or_none(evidence_.level(line.point.first(), own_));
   }
 
   /// A group of bars for each combination of all else.
@@ -160,14 +164,13 @@ class Ranking {
   std::pair<std::vector<std::string>, std::string> turns() const {
     std::pair<std::vector<std::string>, std::string> out;
     const Order& first = orders_[told_].second;
+    if (first.groups.front().size() > 1) return out;
     for (const auto& keyed : orders_) {
       const Order& order = keyed.second;
       if (order.names.front() == first.names.front()) continue;
-      const auto place = std::find(order.names.begin(), order.names.end(), first.names.front());
-      const bool together = place != order.names.end() &&
-                            std::any_of(order.groups.front().begin(), order.groups.front().end(),
-                                        [&](std::size_t k) { return order.names[k] == first.names.front(); });
-      if (together) continue;
+      // Nothing is turned round where the first is not there, or not told from others.
+      const bool there = std::find(order.names.begin(), order.names.end(), first.names.front()) != order.names.end();
+      if (!there || order.groups.front().size() > 1) continue;
       if (out.first.empty()) out.second = order.names.front();
       out.first.push_back(order.level);
     }

@@ -16,13 +16,18 @@ namespace {
 /// What is asked of the measure.
 struct Condition {
   std::optional<double> is, below, above;
-  bool holds(double value) const { return is ? value == *is : below ? value < *below : value > *above; }
+  bool passes = false;  // asked where it is a value that it passes: what is no count is that on no level
+  bool holds(double value) const {
+    return passes ? value > *is : is ? value == *is : below ? value < *below : value > *above;
+  }
   /// "is always below 3 N".
   std::string text(const Lines& lines, const std::string& adverb = "") const {
     return (is_plural(lines.words.words) ? "are " : "is ") + adverb +
-           (is      ? lines.number(*is)
-            : below ? "below " + lines.number(*below)
-                    : "above " + lines.number(*above));
+           (passes && adverb.empty() ? lines.number(*is)
+            : passes                 ? "above " + lines.number(*is)
+            : is                     ? lines.number(*is)
+            : below                  ? "below " + lines.number(*below)
+                                     : "above " + lines.number(*above));
   }
 };
 
@@ -37,9 +42,10 @@ Verdict state(const Line& line, const Condition& condition, bool counts) {
     }
   const Estimate& one = line.estimate();
   if (!one.unknown().empty() || one.grows) return Verdict::open;
-  if (one.beyond && condition.is) return one.value > *condition.is ? Verdict::no : Verdict::open;
-  if (counts || condition.is) return holds == all ? Verdict::yes : holds == 0 ? Verdict::no : Verdict::open;
-  const bool low = condition.holds(one.low()), high = condition.holds(one.high());
+  if (one.beyond && condition.is && !condition.passes) return one.value > *condition.is ? Verdict::no : Verdict::open;
+  if (counts || (condition.is && !condition.passes))
+    return holds == all ? Verdict::yes : holds == 0 ? Verdict::no : Verdict::open;
+  const bool low = condition.holds(one.least()), high = condition.holds(one.most());
   return low && high ? Verdict::yes : !low && !high && !condition.holds(one.value) ? Verdict::no : Verdict::open;
 }
 
@@ -59,8 +65,8 @@ struct Series {
   }
 };
 
-std::string with_all(std::size_t methods) {
-  return ", with " + all_text(methods) + " methods";
+std::string in_all(std::size_t series) {
+  return ", in " + all_text(series);
 }
 
 void find_change(Series& series) {
@@ -93,10 +99,12 @@ class Threshold {
     columns.push_back(along_);
     lines_ = lines_of(ask, evidence, ask.subject(), columns, true);
     unit_ = evidence.study().unit_of(along_);
+    axis_words_ = evidence.study().spoken(along_);
     bool counts = true;
     for (const Line& line : lines_.all)
       for (const auto& [size, by_seed] : line.point.values)
         for (const auto& [seed, value] : by_seed) counts = counts && std::floor(value) == value;
+    condition_.passes = condition_.is && !counts;
     InOrderMet<std::string, Series> all;
     for (const Line& line : lines_.all) {
       const std::string level = evidence.level(line.point.first(), others);
@@ -157,14 +165,16 @@ class Threshold {
     const Series& first = *with.front();
     std::vector<std::vector<std::string>> rest;
     if (!without.empty()) rest.push_back({unchanged(without, judged, place), unchanged(without, judged, nullptr)});
-    if (!differ && with.size() > 1) rest.push_back({with_all(with.size())});
+    if (!differ && with.size() > 1 && without.empty()) rest.push_back({in_all(with.size())});
     if (differ)
-      rest.push_back({fmt::format("; methods differ: {} and {}{}", x_text(first.between->first),
+      rest.push_back({fmt::format("; levels differ: {} and {}{}", x_text(first.between->first),
                                   x_text(first.between->second), place(first)),
-                      "; methods differ"});
-    out.sentence = in_thirty_words(fmt::format("Between {} and {}: {} {} {} there", x_text(low), x_text(high),
-                                               lines_.words.words, what, first.becomes ? "from" : "up to"),
-                                   rest);
+                      "; levels differ"});
+    const std::string there = condition_.passes
+                                  ? fmt::format("there, and {} beyond", first.becomes ? "larger" : "smaller")
+                                  : std::string(first.becomes ? "from" : "up to") + " there";
+    out.sentence = in_thirty_words(
+        fmt::format("Between {} and {}: {} {} {}", x_text(low), x_text(high), lines_.words.words, what, there), rest);
     return out;
   }
 
@@ -206,7 +216,7 @@ class Threshold {
     };
     if (!always.empty() && !never.empty()) {
       out.verdict = word(Verdict::open);
-      out.reason = "methods differ, none changes along the axis";
+      out.reason = "levels differ, none changes along the axis";
       out.sentence = in_thirty_words(fmt::format("No change along {}: {} {} {}, {}", axis_words(), lines_.words.words,
                                                  what, some("always", always), some("never", never)),
                                      {{open.empty() ? "" : fmt::format("; open with {}", open.size())}});
@@ -214,28 +224,35 @@ class Threshold {
     }
     const std::string& which = (always.empty() ? never : always).front()->what;
     const Series& first = *without.front();
-    out.verdict = open.empty() ? which : "in part";
+    out.verdict = open.empty() ? (condition_.passes ? "never" : which) : "in part";
     const std::size_t all = without.size() - open.size();
-    out.sentence =
-        in_thirty_words(fmt::format("{} {}, from {} to {}", answers::capitalised(lines_.words.words),
-                                    condition_.text(lines_, which + " "), x_text(first.points.front().first),
-                                    x_text(first.points.back().first)),
-                        {{open.empty() && all > 1 ? with_all(all)
-                          : open.empty()          ? ""
-                                         : fmt::format(", with {} of {}; open with the others", all, without.size())}});
+    out.sentence = in_thirty_words(
+        fmt::format("{} {}, from {} to {}", answers::capitalised(lines_.words.words), always_text(which),
+                    x_text(first.points.front().first), x_text(first.points.back().first)),
+        {{open.empty() && all > 1 ? in_all(all)
+          : open.empty()          ? ""
+                                  : fmt::format(", with {} of {}; open with the others", all, without.size())}});
     return out;
+  }
+
+  /// "is never below 3 N"; of what passes a value the side on which it stays, "is always above 3 N".
+  std::string always_text(const std::string& which) const {
+    if (!condition_.passes || which == "always") return condition_.text(lines_, which + " ");
+    return (is_plural(lines_.words.words) ? "are always below " : "is always below ") + lines_.number(*condition_.is);
   }
 
   std::string x_text(double x) const {
     const std::string number = answers::short_number(x);
     return unit_.empty() && answers::is_refinement(along_) ? number + " " + along_ : number + unit_;
   }
-  std::string axis_words() const { return answers::spoken(along_); }
+  const std::string& axis_words() const { return axis_words_; }
 
   void add_rows(Answered& out, const Series& series) const {
     for (std::size_t k = 0; k < series.points.size(); ++k) {
       VerdictRow row = lines_.row(*series.points[k].second);
-      row.verdict = word(series.states[k]);
+      row.verdict = !condition_.passes || series.states[k] == Verdict::open ? word(series.states[k])
+                    : series.states[k] == Verdict::yes                      ? "above"
+                                                                            : "below";
       out.rows.push_back(std::move(row));
     }
     VerdictRow row;
@@ -274,7 +291,7 @@ class Threshold {
             {"between", between}};
   }
 
-  std::string along_, unit_;
+  std::string along_, unit_, axis_words_;
   Condition condition_;
   Lines lines_;
   std::vector<Series> series_;

@@ -52,8 +52,11 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
     const auto by_value = [](const Line* a, const Line* b) { return a->estimate().value < b->estimate().value; };
     const Line &least = **std::min_element(known.begin(), known.end(), by_value),
                &most = **std::max_element(known.begin(), known.end(), by_value);
-    said = fmt::format("{}: from {} to {}", name, told(lines, least.estimate()), told(lines, most.estimate()));
-    rest = {{fmt::format(" (least{}, most{})", least.place(), most.place()), fmt::format(" (most{})", most.place())}};
+    const std::string low = told(lines, least.estimate()), high = told(lines, most.estimate());
+    said = low == high ? fmt::format("{}: {} in {}", name, low, all_text(known.size()))
+                       : fmt::format("{}: from {} to {}", name, low, high);
+    if (low != high)
+      rest = {{fmt::format(" (least{}, most{})", least.place(), most.place()), fmt::format(" (most{})", most.place())}};
   }
   if (unsettled > 0) {
     const Line* first =

@@ -74,9 +74,9 @@ struct Shell {
   const char *nothing, *files, *folders, *studies, *words;
 };
 constexpr Shell bash{
-    "COMPREPLY=()", "compopt -o filenames; COMPREPLY=($(compgen -f -- \"$word\"))",
-    "compopt -o filenames; COMPREPLY=($(compgen -d -- \"$word\"))",
-    "compopt -o filenames; COMPREPLY=($(compgen -f -X '!*.json' -- \"$word\") $(compgen -d -- \"$word\"))",
+    "COMPREPLY=()", "compopt -o filenames; mapfile -t COMPREPLY < <(compgen -f -- \"$word\")",
+    "compopt -o filenames; mapfile -t COMPREPLY < <(compgen -d -- \"$word\")",
+    "compopt -o filenames; mapfile -t COMPREPLY < <(compgen -f -X '!*.json' -- \"$word\"; compgen -d -- \"$word\")",
     "COMPREPLY=($(compgen -W '{}' -- \"$word\"))"};
 constexpr Shell zsh{" ", "_files", "_files -/", "_files -g \"*.json\"", "({})"};
 constexpr Shell fish{"-f", "-F", "-f -a '(__fish_complete_directories)'", "-f -a '(__fish_complete_suffix .json)'",

@@ -17,6 +17,7 @@
 #include "runners/run/agreement.hpp"
 #include "runners/run/analysed_results.hpp"
 #include "runners/run/environment.hpp"
+#include "runners/run/run_study.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/folder_lock.hpp"
@@ -114,12 +115,18 @@ int command_pack(const Arguments& arguments, std::ostream& out) {
   // Nobody writes there meanwhile; where nobody can, nothing is locked.
   std::optional<FolderLock> lock;
   if (::access(folder.c_str(), W_OK) == 0) lock.emplace(folder);
-  StudyResults results = read_store(folder);
+  const AnalysedResults results(read_store(folder));
   const std::size_t cases = results.cases.size();
   const int expected = results.expected_cases;
   const fs::path file = arguments.out.value_or(results.name + ".ricochet.zip");
-  const std::string answer = report::index_markdown({{with_tables(results), ""}});
-  const std::size_t parts = pack_results(folder, results, answer, file);
+  const std::string answer = report::index_markdown({{results, ""}});
+  // Tables and report are those of the store, whatever lies beside it.
+  const TemporaryFolder made("pack");
+  write_results(results, made.path());
+  for (const auto& item : fs::directory_iterator(folder))
+    if (item.path().filename().string().starts_with("results.sqlite"))
+      fs::copy_file(item.path(), made.path() / item.path().filename());
+  const std::size_t parts = pack_results(made.path(), results, answer, file);
   out << fmt::format("{}: {}, {} of {}, {}\nSHA-256 {}\n", file.string(), counted(parts, "part"), cases,
                      counted(static_cast<std::size_t>(expected), "case"),
                      size_text(static_cast<double>(fs::file_size(file))), file_sha256(file));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <csignal>
 #include <iostream>
 #include <ostream>
 #include <ricochet/loader/child.hpp>
@@ -264,7 +266,12 @@ std::string status_text(const std::string& folder, const RunStatus& status) {
   if (!status.progress.empty()) {
     text += fmt::format("  {}\n", who);
     text += fmt::format("  {}, {} ago\n", status.progress, duration_text(status.silent));
-    if (status.silent > silence)
+    // On the machine of the run its process is looked for.
+    const bool gone = status.run && status.run->process > 0 && status.run->host == this_run().host &&
+                      ::kill(status.run->process, 0) != 0 && errno == ESRCH;
+    if (gone)
+      text += "  that process is not there any more: the same command again goes on where it was\n";
+    else if (status.silent > silence)
       text += fmt::format(
           "  it has not written for {}: it has ended, or cannot write; the same command again goes on where it was\n",
           duration_text(status.silent));

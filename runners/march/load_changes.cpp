@@ -346,6 +346,18 @@ Said short_run(const SemiDiscrete& problem, double duration) {
               duration, duration / *period, *period);
 }
 
+Said beyond_table(const MethodChoice& law, const PluginManual& manual, double deepest) {
+  for (const ParameterSpec& spec : manual.parameters) {
+    if (spec.type != ParameterSpec::Type::table || !spec.unit.ends_with(" against m")) continue;
+    const auto value = law.parameters.values().find(spec.key);
+    const auto* table = value == law.parameters.values().end() ? nullptr : std::get_if<ParameterTable>(&value->second);
+    if (!table || table->empty() || !(deepest > table->back()[0])) continue;
+    return said("a point passes its stop by {:.4g} m, {} ends at {:g} m: its last slope is taken beyond", deepest,
+                spec.key, table->back()[0]);
+  }
+  return {};
+}
+
 std::vector<Said> run_doubts(const StudyCase& study_case, const Prepared& prepared) {
   std::vector<Said> out = load_changes(study_case.scene, study_case.step, prepared.steps);
   out.push_back(short_run(*prepared.problem, static_cast<double>(prepared.steps) * study_case.step));

@@ -48,6 +48,9 @@ std::vector<Said> load_changes(const SceneSpec& scene, double step, long long st
 /// of that motion. Nothing where no such period is known.
 Said short_run(const SemiDiscrete& problem, double duration);
 
+/// Whether a point passed its stop by more (m) than a table of its law, against a depth, knows: its last slope goes on.
+Said beyond_table(const MethodChoice& law, const PluginManual& manual, double deepest);
+
 /// What the steps of a case do not resolve, and what its duration does not show: load_changes() and short_run().
 std::vector<Said> run_doubts(const StudyCase& study_case, const Prepared& prepared);
 

@@ -122,7 +122,7 @@ std::string crate(const StudyResults& results, const std::vector<Part>& parts) {
       {{"@id", "#run"},
        {"@type", "CreateAction"},
        {"name", fmt::format("{} of {} cases of kind {}", results.cases.size(), results.expected_cases, results.kind)},
-       {"endTime", started},
+       {"startTime", started},
        {"instrument", refers("#ricochet")},
        {"object", given},
        {"result", made}},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "runners/report/assets.hpp"
@@ -127,7 +128,24 @@ std::string effects_caveats(const CaseView& view, const MeasureShares& measure) 
   std::string fixed;
   for (const MeasureShare& share : measure.shares)
     if (single(share)) fixed += (fixed.empty() ? "" : ", ") + share.factor;
-  if (!measure.told()) out += " Either all its values are the same, or too many cases have none.";
+  // Choices without any share, and what of the spread no share tells.
+  std::set<std::string> told;
+  double sum = 0;
+  for (const MeasureShare& share : measure.shares) {
+    sum += share.share;
+    for (const std::string& choice : choices_in(share.factor)) told.insert(choice);
+  }
+  std::string untold;
+  for (const std::string& column : view.results().columns)
+    if (const std::string choice = axis_role(column); view.varies(column) && told.insert(choice).second)
+      untold += (untold.empty() ? "" : ", ") + spoken_choice(choice);
+  constexpr double much = 0.05;
+  if (!measure.told())
+    out += " Either all its values are the same, too many cases have none, or round-off explains what differs.";
+  else if (!untold.empty())
+    out += fmt::format(
+        " Choices of two levels have no share: {}{}.", untold,
+        1 - sum > much ? fmt::format("; {} of the spread is theirs, or of no choice", effects_percent(1 - sum)) : "");
   if (without)
     out += fmt::format(" {} of {} have no value ({}){}.", without,
                        count_text(view.results().cases.size(), "case", "cases"), statuses,

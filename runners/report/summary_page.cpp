@@ -16,8 +16,11 @@
 namespace ricochet::report {
 
 std::vector<std::string> answer_lines(const StudyResults& results) {
+  std::vector<answers::Clause> clauses = answers::answers_type().read(results.derived);
+  // What happened, or did not, comes before any number.
+  std::stable_partition(clauses.begin(), clauses.end(), [](const auto& one) { return one.form == "status"; });
   std::vector<std::string> lines;
-  for (answers::Clause& one : answers::answers_type().read(results.derived))
+  for (answers::Clause& one : clauses)
     if (!one.sentence.empty()) lines.push_back(std::move(one.sentence));
   return lines;
 }

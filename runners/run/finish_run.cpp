@@ -126,9 +126,12 @@ int tell_results(std::FILE* out, const AnalysedResults& results, const std::file
     say(out, "nothing ran: every case is refused; the reasons above and in the report say what to change\n");
   else if (code != 0)
     say(out, std::any_of(results.cases.begin(), results.cases.end(), went_wrong)
-                 ? fmt::format("exit code {}: some cases diverged or failed, the others are usable; {} holds "
-                               "a study of each alone\n",
-                               code, (folder / "failures").string())
+                 ? fmt::format("exit code {}: {}; {} holds a study of each alone\n", code,
+                               std::any_of(results.cases.begin(), results.cases.end(),
+                                           [](const CaseRecord& one) { return one.status == Status::done; })
+                                   ? "some cases diverged or failed, the others are usable"
+                                   : "no case came to its end, some diverged or failed",
+                               (folder / "failures").string())
                  : fmt::format("exit code {}: the methods of some cases are in error\n", code));
   return code == 0 && !results.asked.unmet().empty() ? exit_not_met : code;
 }

@@ -5,6 +5,7 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <ricochet/contract/errors.hpp>
 #include <ricochet/measure/statistics/quantiles.hpp>
 #include <span>
 #include <system_error>
@@ -107,18 +108,28 @@ void predict_cases(const StudyRunner& runner, std::vector<PendingCase>& pending,
   std::vector<std::vector<std::size_t>> all;  // which are alike, in the study's order
   for (auto& [key, alike] : std::move(groups).list()) all.push_back(std::move(alike));
   std::atomic<std::size_t> next{0};
+  std::atomic<bool> some{false};
+  std::mutex first;
+  std::exception_ptr wrong;
   on_threads(std::max(1, std::min(at_once, static_cast<int>(all.size()))), [&] {
     for (std::size_t group = next++; group < all.size() && !stop; group = next++) {
       const std::vector<std::size_t>& alike = all[group];
       double seconds = 0;
       for (std::size_t k = 0; k < std::min(alike.size(), most_tried) && seconds == 0 && !stop; ++k) try {
           seconds = std::max(0.0, runner.plan(*pending[alike[k]].study_case).predicted_seconds);
+          some = true;
+        } catch (const InputError&) {
+          const std::lock_guard lock(first);
+          if (!wrong) wrong = std::current_exception();
         } catch (...) {
           // A prediction that cannot be made says nothing about the case: running it will.
+          some = true;
         }
       for (const std::size_t i : alike) pending[i].predicted_seconds = seconds;
     }
   });
+  // Where the input of every case is wrong the study is.
+  if (wrong && !some && !stop) std::rethrow_exception(wrong);
 }
 
 namespace {

@@ -11,6 +11,7 @@
 #include "runners/run/asked_text.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/merge_folders.hpp"
+#include "runners/run/outputs.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/workers/allowed_processors.hpp"
 #include "runners/workers/isolated_cases.hpp"
@@ -87,6 +88,10 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
 int merge_folders(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out,
                   const std::vector<std::filesystem::path>& plugins) {
   return merge_folders_with(render, folders, out, plugins, stdout);
+}
+
+void write_results(const AnalysedResults& results, const std::filesystem::path& folder) {
+  write_outputs(folder, results, [&] { return render(results); });
 }
 
 int rebuild_report(const std::filesystem::path& folder, bool json) {

@@ -11,6 +11,8 @@
 
 namespace ricochet {
 
+class AnalysedResults;
+
 struct RunOptions {
   std::filesystem::path out;  ///< results folder; empty: default_folder()
   int jobs = 0;               ///< workers; 0: as many as processors that it may use
@@ -34,6 +36,9 @@ std::filesystem::path default_folder(const std::string& study, const StudyPart& 
 /// study.json and report.html, and prints the answer. Returns the exit code (0, 3, 5, 130); throws
 /// PartRefused (study_cases.hpp).
 int run_study(const Study& study, const Catalogue& catalogue, const Registry& registry, const RunOptions& options);
+
+/// Writes tables, curves and report of these results into a folder.
+void write_results(const AnalysedResults& results, const std::filesystem::path& folder);
 
 /// Rebuilds report.html (and cases.csv, curves/) from results.sqlite; `json`: prints what the study asks with its
 /// verdicts in place of words. Returns the exit code.

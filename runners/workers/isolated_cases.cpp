@@ -393,6 +393,7 @@ CaseRunner IsolatedCases::runner() {
 
 double IsolatedCases::predicted_seconds(const StudyCase& study_case) {
   const CaseAnswer answer = coordinator_->ask(Word::plan, study_case, std::atomic<bool>{false});
+  if (!answer.pointer.empty()) throw InputError(answer.pointer, answer.error);
   if (!answer.error.empty()) throw std::runtime_error(answer.error);
   return answer.seconds;
 }

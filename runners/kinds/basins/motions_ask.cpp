@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "runners/answers/numbers_in_words.hpp"
@@ -181,12 +182,16 @@ class MotionShares {
     return fmt::format("{} of the {} {} undecided", a == b ? a : a + " to " + b, places(), "are");
   }
 
-  static std::string number(const CaseShares& one, const ShareOfStarts& share) {
+  /// With as many digits as the best known of all cases has: what is equal reads equal.
+  std::string number(const std::string& motion, double share) const {
     answers::MeasureWords words;
     words.unit = "%";
     words.factor = asks::per_cent;
-    return answers::value_text(words, share.value,
-                               one.decided > 0 ? std::optional(0.5 * (share.high - share.low)) : std::nullopt, false);
+    std::optional<double> half;
+    for (const CaseShares& one : told_)
+      if (const ShareOfStarts own = one.share(motion); one.decided > 0)
+        half = std::min(half.value_or(INFINITY), 0.5 * (own.high - own.low));
+    return answers::value_text(words, share, half, false);
   }
 
   /// "94.6, 97.4 and 98.2", or the range.
@@ -195,14 +200,15 @@ class MotionShares {
     const CaseShares *least = nullptr, *most = nullptr;
     for (const CaseShares& one : told_) {
       if (one.decided == 0) continue;
-      list.push_back(number(one, one.share(motion)));
+      list.push_back(number(motion, one.share(motion).value));
       if (!least || one.share(motion).value < least->share(motion).value) least = &one;
       if (!most || one.share(motion).value > most->share(motion).value) most = &one;
     }
     const bool same = std::all_of(list.begin(), list.end(), [&](const auto& one) { return one == list.front(); });
     if (same) return list.front() + " %";
     if (each) return answers::and_list(list) + " %";
-    return fmt::format("{} to {} %", number(*least, least->share(motion)), number(*most, most->share(motion)));
+    return fmt::format("{} to {} %", number(motion, least->share(motion).value),
+                       number(motion, most->share(motion).value));
   }
 
   static std::string in(const std::string& motion) {

@@ -138,6 +138,13 @@ TableType<OrderRow> orders_type() {
   return {"orders", "The order with which one kind of error of one method falls as one quantity is refined.", rows};
 }
 
+double error_floor(const CaseRecord& record, const std::string& error) {
+  constexpr double units = 4;
+  const double round_off =
+      units * 0x1p-52 * std::sqrt(static_cast<double>(record.steps)) * measure(record, "size." + error).value_or(0);
+  return std::max(measure(record, "floor." + error).value_or(0), round_off);
+}
+
 namespace {
 
 /// By method, the finest of the other quantity. One order per method: steps on the finest mesh, meshes at the smallest
@@ -160,7 +167,7 @@ std::optional<OrderRow> order_row(const StudyResults& results, const Cases& grou
   const CaseRecord* finest = nullptr;
   for (const CaseRecord* record : group)
     if (const auto value = measure(*record, "error." + error)) {
-      points.push_back({size_of(*record, refined), *value, measure(*record, "floor." + error).value_or(0)});
+      points.push_back({size_of(*record, refined), *value, error_floor(*record, error)});
       if (!finest || size_of(*record, refined) < size_of(*finest, refined)) finest = record;
     }
   if (!finest) return std::nullopt;

@@ -12,6 +12,10 @@ inline constexpr char of_each_error[] = "that of the error";
 /// The unit that all errors of a study have; of_each_error where they differ.
 std::string error_unit(const StudyResults& results);
 
+/// Below what an error of this case says nothing: what its reference is known to, and the round-off of its steps. That
+/// is 4 units of the motion's size, times the root of their number.
+double error_floor(const CaseRecord& record, const std::string& error);
+
 /// One row of `errors`.
 struct ErrorRow {
   std::string id, error;

@@ -48,6 +48,14 @@ Found found_in(const MethodRun& one) {
   }
 }
 
+constexpr double orders_agree = 0.35;
+
+/// Whether a clean order in the step is less than the one that the scheme declares.
+bool below_declared(const Method& method) {
+  return method.found == Found::clean && method.run->declared &&
+         method.run->run.order < *method.run->declared - orders_agree;
+}
+
 class OrderAsk {
  public:
   OrderAsk(const asks::Ask& ask, const asks::Evidence& evidence)
@@ -70,15 +78,18 @@ class OrderAsk {
     for (const char* one : {"step", "elements"})
       if (sizes(one) >= 3) refined.emplace_back(one);
     std::set<std::string> words;
+    std::size_t below = 0;
     for (const std::string& one : refined) {
       const std::vector<Method> methods = methods_along(one);
       const std::string beside = refined.size() > 1 ? (one == "step" ? "in the step" : "in the mesh") : "";
       for (const Method& method : methods) {
         add_row(out, method, beside);
         words.insert(found_word(method.found));
-        verdicts.push_back(method.found == Found::clean  ? asks::Verdict::yes
-                           : method.found == Found::none ? asks::Verdict::no
-                                                         : asks::Verdict::open);
+        const bool less = one == "step" && below_declared(method);
+        below += less ? 1 : 0;
+        verdicts.push_back(method.found == Found::none || less ? asks::Verdict::no
+                           : method.found == Found::clean      ? asks::Verdict::yes
+                                                               : asks::Verdict::open);
         if (one == refined.front()) add_series(series, method);
       }
       said.push_back(texts(methods, one, refined.size() > 1));
@@ -94,6 +105,12 @@ class OrderAsk {
         sentences.push_back(std::move(text));
       }
       out.sentence = asks::fitting(sentences);
+      const std::string less = below == 0 ? ""
+                               : said.size() == 1 && out.rows.size() == 1
+                                   ? ", less than the scheme declares"
+                                   : fmt::format(", less than declared with {}", below);
+      if (!less.empty() && asks::fits(out.sentence + less))
+        out.sentence = out.sentence.substr(0, out.sentence.size() - 1) + less + ".";
     }
     out.passes = verdicts.empty() ? asks::Verdict::open : asks::all_of(verdicts);
     out.verdict = words.empty() ? "open" : words.size() == 1 ? *words.begin() : "in part";
@@ -157,8 +174,8 @@ class OrderAsk {
         else if (!run.beyond.empty())
           parts.push_back(fmt::format("{:.2f} once at finer sizes", run.beyond.front()));
         if (run.stops_at) parts.push_back("the error ends at " + with_unit(*run.stops_at) + share);
-        if (constexpr double agrees = 0.35; refined == "step" && one.declared)
-          parts.push_back(std::abs(run.order - *one.declared) <= agrees
+        if (refined == "step" && one.declared)
+          parts.push_back(std::abs(run.order - *one.declared) <= orders_agree
                               ? "as declared"
                               : "the scheme declares " + answers::fraction_text(*one.declared));
         break;
@@ -172,12 +189,13 @@ class OrderAsk {
         parts.emplace_back("slopes do not agree");
         break;
       case Run::below_floor:
-        parts.push_back("the floor of the reference, " + with_unit(one.floor) + ", hides it");
+        parts.push_back(measure(*one.finest, "floor." + error_).value_or(0) < one.floor
+                            ? "errors are round-off, up to " + with_unit(one.floor)
+                            : "the floor of the reference, " + with_unit(one.floor) + ", hides it");
         break;
       case Run::too_few:
-        parts.push_back(one.errors.size() < 3
-                            ? fmt::format("{} sizes have an error", one.errors.size())
-                            : "fewer than three errors above the floor of the reference, " + with_unit(one.floor));
+        parts.push_back(one.errors.size() < 3 ? fmt::format("{} sizes have an error", one.errors.size())
+                                              : "fewer than three errors above their floor, " + with_unit(one.floor));
         break;
     }
     return fmt::format("{}", fmt::join(parts, "; "));

@@ -40,7 +40,7 @@ std::vector<MethodRun> runs_of(const Compared& study, const Cases& all, const st
       const auto at = size(*record);
       if (record->status != Status::done || !value || !at || other(*record) != *finest_other) continue;
       errors.push_back({*at, *value});
-      floor = std::max(floor, measure(*record, "floor." + error).value_or(0));
+      floor = std::max(floor, error_floor(*record, error));
       if (!one.finest || *at < *size(*one.finest)) one.finest = record;
     }
     if (errors.size() < 2) continue;

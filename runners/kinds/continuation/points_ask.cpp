@@ -42,8 +42,8 @@ struct Followed {
 struct Told {
   const StudyPoint* point = nullptr;
   double value = 0;
-  double known = 0;                    ///< half the interval in which its own case has it
-  std::optional<double> half = {};     ///< nothing where no second case refines it
+  double less = 0, more = 0;           ///< how far below and above its own case, then step and mesh, leave it open
+  bool confirmed = false;              ///< whether a second case refines it
   std::string below = {}, above = {};  ///< stable orbits on each side
 };
 
@@ -153,11 +153,10 @@ class PointsAsk {
       }
       if (!is_point_kind(point.kind) || std::isnan(point.parameter) || !(all_ || kinds_.contains(point.kind))) continue;
       if (point.kind == "fold" && point.name < 0 && point.prominence < least) continue;
-      Told told{&point, point.parameter, point.half};
-      // An interval that reaches farther on one side has its middle elsewhere.
+      Told told{&point, point.parameter, point.half, point.half};
       if (const auto& low = point.row.low, &high = point.row.high; low && high) {
-        told.value = 0.5 * (*low + *high);
-        told.known = 0.5 * (*high - *low);
+        told.less = std::max(0.0, told.value - *low);
+        told.more = std::max(0.0, *high - told.value);
       }
       if (point.name >= 0) refine(told, owner, point);
       out.points.push_back(std::move(told));
@@ -173,12 +172,12 @@ class PointsAsk {
   /// What step and mesh leave of a point; a stiffness of a law is a level of its own. One case alone leaves what it
   /// leaves open unknown.
   void refine(Told& told, std::size_t owner, const StudyPoint& point) const {
-    double open = told.known;
     for (const PointConvergence::Along& along : of_.points.convergence(owner, point.name).along) {
       if (!answers::is_refinement(of_.points.axes()[along.axis].column) || !along.limit.open) continue;
       told.value += along.limit.correction;
-      open += *along.limit.open;
-      told.half = open;
+      told.less += *along.limit.open;
+      told.more += *along.limit.open;
+      told.confirmed = true;
     }
   }
 
@@ -186,13 +185,14 @@ class PointsAsk {
   /// farther than half way to the next point of its case.
   double beside(const Told& told, std::size_t owner, int side) const {
     constexpr double share = 0.005;
-    double away = std::max(share * of_.points.range(), 2 * told.known);
+    const double known = side < 0 ? told.less : told.more;
+    double away = std::max(share * of_.points.range(), 2 * known);
     for (const StudyPoint& other : of_.points.points()) {
       const double gap = side * (other.parameter - told.value);
-      if (other.owner == owner && is_point_kind(other.kind) && gap > told.known + other.half)
+      if (other.owner == owner && is_point_kind(other.kind) && gap > known + other.half)
         away = std::min(away, 0.5 * gap);
     }
-    return std::max(away, told.known);
+    return std::max(away, known);
   }
 
   /// The stable orbits that branches have at a value of the parameter: "period 1 and period 2"; "none", or "" where no
@@ -230,9 +230,9 @@ class PointsAsk {
     row.measure = point_words(told.point->kind).thing;
     row.level = (level(one).empty() ? "" : level(one) + ", ") + told.point->row.branch;
     row.value = told.value;
-    if (told.half) {
-      row.low = told.value - *told.half;
-      row.high = told.value + *told.half;
+    if (told.confirmed) {
+      row.low = told.value - told.less;
+      row.high = told.value + told.more;
     }
     row.unit = parameter_.unit;
     row.verdict =
@@ -240,7 +240,7 @@ class PointsAsk {
     std::vector<std::string> parts;
     const auto side = [](const std::string& stable) { return stable.empty() ? "not followed" : stable; };
     parts.push_back(fmt::format("stable below: {}, above: {}", side(told.below), side(told.above)));
-    if (!told.half) parts.emplace_back("no second case confirms it");
+    if (!told.confirmed) parts.emplace_back("no second case confirms it");
     if (told.point->name >= 0)
       for (const PointOrderRow& order : of_.orders)
         if (order.name == of_.points.names()[static_cast<std::size_t>(told.point->name)].text &&
@@ -285,8 +285,11 @@ class PointsAsk {
     for (const Followers& one : methods_)
       for (const Told& told : one.points)
         if (told.point->name >= 0) names.insert(told.point->name);
+    constexpr std::size_t most = 3;
+    std::size_t lacking = 0;
     for (const int name : names) {
-      const std::string& text = of_.points.names()[static_cast<std::size_t>(name)].text;
+      const NamedPoint& named = of_.points.names()[static_cast<std::size_t>(name)];
+      const std::string &text = named.text, &kind = named.point->kind;
       std::size_t reached = 0, absent = 0;
       std::optional<double> least;
       for (const PointPresenceRow& row : of_.presence) {
@@ -298,11 +301,23 @@ class PointsAsk {
         ++absent;
         if (row.passed_to) least = std::min(*row.passed_to, least.value_or(*row.passed_to));
       }
-      if (absent == 0) continue;
+      if (absent == 0 || ++lacking > most) continue;
+      const std::string at = text.starts_with(kind) ? text.substr(kind.size()) : " " + text;
       out.aside.push_back(fmt::format(
-          "{} of {} cases have no {}{}.", absent, reached, text,
+          "{} of {} cases have no {}{}{}{}.", absent, reached, point_words(kind).thing, at, unit(),
           least ? fmt::format(", though their branches go on to {} at least", answers::short_number(*least, 4)) : ""));
     }
+    if (lacking > most)
+      out.aside.push_back(fmt::format("{} more points are not in every case: point_presence.csv.", lacking - most));
+  }
+
+  /// A named point of a method by its case.
+  const Told* told_of(const std::string& id, int name) const {
+    for (const Followers& one : methods_)
+      if (one.record->id == id)
+        for (const Told& told : one.points)
+          if (told.point->name == name) return &told;
+    return nullptr;
   }
 
   /// What choices move named points by, as rows: each against the case from which it differs in that alone.
@@ -319,19 +334,35 @@ class PointsAsk {
       row.measure = std::string("shift of the ") + point_words(found->second->kind).thing;
       row.level = shift.value + " against " + shift.reference_value + ", " + shift.name;
       row.value = shift.shift;
-      row.low = shift.low;
-      row.high = shift.high;
       row.unit = parameter_.unit;
-      row.verdict = shift.low && shift.high && *shift.low <= 0 && *shift.high >= 0 ? "not told from none" : "moves";
+      const Told *own = told_of(shift.id, found->second->name),
+                 *other = told_of(of_.points.reference()->id, found->second->name);
+      if (own && other && own->confirmed && other->confirmed) {
+        row.low = *row.value - own->less - other->more;
+        row.high = *row.value + own->more + other->less;
+        row.verdict = *row.low <= 0 && *row.high >= 0 ? "not told from none" : "moves";
+      } else {
+        row.verdict = "open";
+        row.reason = "no second case confirms both";
+      }
       row.cases = 2;
       row.left_out = 0;
       out.rows.push_back(std::move(row));
     }
   }
 
-  /// "folds at 0.1006 ± 3e-5".
+  /// "folds at 0.1006 ± 3e-5"; "doubles its period between 1.9705 and 5.997" where the value stands near one end.
   static std::string place(const Told& told) {
-    return fmt::format("{} at {}", point_words(told.point->kind).does, point_value(told.value, told.half));
+    constexpr double lopsided = 2;
+    const double wide = std::max(told.less, told.more), narrow = std::min(told.less, told.more);
+    const char* does = point_words(told.point->kind).does;
+    if (told.confirmed && wide > lopsided * narrow) {
+      constexpr int digits = 5;
+      const std::string low = answers::short_number(told.value - told.less, digits),
+                        high = answers::short_number(told.value + told.more, digits);
+      if (low != high) return fmt::format("{} between {} and {}", does, low, high);
+    }
+    return fmt::format("{} at {}", does, point_value(told.value, told.confirmed ? std::optional(wide) : std::nullopt));
   }
 
   /// How the branches of all methods end.
@@ -413,7 +444,7 @@ class PointsAsk {
     for (const bool sure : {true, false})
       for (const Told& told : first->points) {
         const auto there = [&](const Told* other) { return at_one_place(*told.point, *other->point); };
-        if (told.half.has_value() == sure && std::none_of(confirmed.begin(), confirmed.end(), there) &&
+        if (told.confirmed == sure && std::none_of(confirmed.begin(), confirmed.end(), there) &&
             std::none_of(single.begin(), single.end(), there))
           (sure ? confirmed : single).push_back(&told);
       }

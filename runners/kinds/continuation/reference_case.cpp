@@ -244,7 +244,9 @@ CasePlan plan_reference(const StudyCase& study_case, const Registry& registry) {
 
 CaseRecord run_reference(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) {
   try {
-    return ReferenceRun(study_case, registry).run(stop);
+    ReferenceRun run(study_case, registry);
+    run.size();  // refuses a reference without states before any orbit
+    return run.run(stop);
   } catch (const Refusal& refusal) {
     CaseRecord record;
     record.id = study_case.id;

@@ -242,8 +242,10 @@ std::string where(const StepRange& range, const std::optional<double>& limit, Kn
 }
 
 std::string prediction(const StepRange& range) {
+  // Of its own spectrum: what grows apart from the stops has a limit of its own.
   const auto known = [](const StepCell& cell) { return cell.radius.has_value(); };
-  return where(range, range.predicted, known, std::mem_fn(&StepCell::predicted_unstable));
+  const auto unstable = [](const StepCell& cell) { return cell.radius && *cell.radius > 1 + growth_tolerance; };
+  return where(range, range.predicted, known, unstable);
 }
 
 std::string observation(const StepRange& range) {

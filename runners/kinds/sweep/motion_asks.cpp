@@ -247,7 +247,7 @@ class MotionEffect {
 
   void say(asks::Answered& out, const std::vector<const MotionPair*>& yes, const std::vector<const MotionPair*>& no,
            const std::vector<const MotionPair*>& open) const {
-    const std::string choice = answers::spoken(ask_.subject()), least = answers::percent(from_);
+    const std::string choice = study_.spoken(ask_.subject()), least = answers::percent(from_);
     const std::size_t all = pairs_.size();
     const auto word = [&](asks::Verdict changes) {
       const asks::Verdict shown = changes == asks::Verdict::open               ? changes

@@ -196,21 +196,24 @@ void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, c
 
 void add_shares(CaseRecord& record, const std::vector<OrbitView>& views) {
   double orbits = 0, periodic = 0, chaotic = 0, impacts = 0;
-  std::optional<double> largest;
+  std::optional<Interval> largest;
   for (const OrbitView& view : views) {
     if (!view.complete()) continue;
     ++orbits;
     periodic += view.judged.verdict.motion.repeats();
     chaotic += view.judged.verdict.motion.regime == Regime::chaotic;
     impacts += impacts_per_period(*view.orbit);
-    if (!view.exponents.values.empty())
-      largest = std::max(largest.value_or(-std::numeric_limits<double>::infinity()), view.exponents.values[0].value);
+    if (view.exponents.values.empty()) continue;
+    if (const Interval& own = view.exponents.values[0]; !largest || own.value > largest->value) largest = own;
   }
   if (orbits == 0) return;
   record.measures.insert(record.measures.end(), {{"share_periodic", periodic / orbits},
                                                  {"share_chaotic", chaotic / orbits},
                                                  {"impacts_per_period", impacts / orbits}});
-  if (largest) put_measure(record, "largest_exponent", *largest);
+  if (!largest) return;
+  put_measure(record, "largest_exponent", largest->value);
+  put_measure(record, "confidence.largest_exponent",
+              std::max(largest->high - largest->value, largest->value - largest->low));
 }
 
 void add_grazing_row(CaseRecord& record, const Grazing& grazing) {

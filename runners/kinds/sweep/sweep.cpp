@@ -115,6 +115,8 @@ std::vector<MeasureInfo> orbit_measures() {
       {"share_chaotic", "1", "Share of these orbits that are chaotic."},
       {"impacts_per_period", "1", "Impacts in one forcing period, mean over these orbits."},
       {"largest_exponent", "1/s", "Largest Lyapunov exponent among these orbits."},
+      {"confidence.largest_exponent", "1/s", "Half the 95 % interval of that exponent, by its kept periods.",
+       Of::computation},
       {"exponent_seconds", "s", "Processor time of the exponents.", Of::computation},
       {"lane_steps_per_second", "1/s", "Steps of single orbits per second of processor time, exponents not counted.",
        Of::computation},

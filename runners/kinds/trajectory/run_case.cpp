@@ -391,6 +391,8 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   add_contact(record, contacts, marcher, {&outputs, &tangents, &friction});
   doubts.push_back(GapWatch::crossed(marcher, recorder));
   doubts.push_back(sampler.gaps().passed());
+  if (const PluginManual* law = registry.manual(Role::contact, study_case.contact.name))
+    doubts.push_back(beyond_table(study_case.contact, *law, measure(record, "deepest_penetration").value_or(0)));
   doubts.push_back(struck.told(marcher, largest_restitution(study_case, *problem, registry)));
   add_doubts(record, doubts);
   if (orbits.any()) record.numbers.push_back(orbits.finish());

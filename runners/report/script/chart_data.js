@@ -5,23 +5,32 @@
   const listed = (names, most = 8) =>
       names.slice(0, most).join(", ") + (names.length > most ? " and " + (names.length - most) + " more" : "");
 
-  // What is drawn as rows [name, x, y, what is said of it]; a mark whose place says nothing has neither.
+  // Whether one chart has several quantities upwards, each on an axis of its own.
+  const severalQuantities = (view) => view.yAxes.filter((axis) => axis.name).length > 1;
+  // What is drawn as rows [name, x, y, what is said of it], the quantity before the last where there are several; a
+  // mark whose place says nothing has neither, one on an axis without a name no height.
   function rowsOf(figure, slot) {
     const {countOf, reader, rowAt, isShown} = ricochet.plot, rows = [], view = figure.viewOf(slot),
+                                   several = view && severalQuantities(view),
                                    known = (value) => value !== null && value !== undefined && !Number.isNaN(value);
     for (const mark of view ? view.marks : []) {
       if (!isShown(mark, figure.hidden) || mark.mark === "image" || Array.isArray(mark.x)) continue;
-      const x = reader(mark, "x"), y = reader(mark, "y"), name = mark.tags ? mark.tags.join(", ") : mark.name,
+      const axis = view.yAxes[mark.yAxis || 0], before = rows.length, x = reader(mark, "x"), y = reader(mark, "y"),
+            name = mark.tags ? mark.tags.join(", ") : mark.name,
             low = mark.mark === "whiskers" ? (i) => "from " + ricochet.format.shown(mark.values[3 * i + 1]) : () => "";
       for (let i = 0; i < countOf(mark); ++i)
         if (mark.apart !== undefined) rows.push([name, mark.apart ? "" : x(i), "", rowAt(mark, i).text || ""]);
-        else if (known(x(i)) && known(y(i))) rows.push([name, x(i), y(i), rowAt(mark, i).text || low(i)]);
+        else if (known(x(i)) && known(y(i)))
+          rows.push([name, x(i), axis.hidden ? "" : y(i), rowAt(mark, i).text || low(i)]);
+      if (several)
+        for (const row of rows.slice(before)) row.splice(3, 0, axis.name || "");
     }
     return rows;
   }
   const heads = (figure, slot) => {
-    const {x, y} = figure.viewOf(slot), {withUnit} = ricochet.format;
-    return ["of", withUnit(x), withUnit(y), "remark"];
+    const view = figure.viewOf(slot), {x, y} = view, {withUnit} = ricochet.format;
+    return severalQuantities(view) ? ["of", withUnit(x), "value", "quantity", "remark"] :
+                                     ["of", withUnit(x), withUnit(y), "remark"];
   };
   const field = (value) => {
     const text = typeof value === "number" ? ricochet.format.exact(value) : String(value);
@@ -38,10 +47,10 @@
 
   function table(figure, slot) {
     const {escape, shown} = ricochet.format, rows = rowsOf(figure, slot), head = heads(figure, slot),
-                   some = rows.slice(0, mostRows), remarks = rows.some((row) => row[3] !== "");
+                   some = rows.slice(0, mostRows), remarks = rows.some((row) => row[row.length - 1] !== "");
     const cell = (value) =>
               (typeof value === "number" ? '<td class="number">' + shown(value, 9) : "<td>" + escape(value)) + "</td>",
-          kept = (row) => (remarks ? row : row.slice(0, 3));
+          kept = (row) => (remarks ? row : row.slice(0, -1));
     const file = figure.description.id + "-" + figure.chartOf(slot).title, rest = rows.length - some.length,
           box = document.createElement("div");
     box.className = "chart-data";

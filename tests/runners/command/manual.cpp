@@ -125,6 +125,13 @@ TEST_CASE("manual: bash completes every command and option") {
   CHECK(offered("run", "o") == Words{"own.json"});
   CHECK(offered("list", "m") == Words{"mass"});
   CHECK(offered("run own.json --plugin", "own") == Words{"own.json", "own.txt"});
+  // A blank belongs to the name of its file.
+  here.write("two words.json", "{}");
+  here.write("ask",
+             "source ./bash; COMP_WORDS=(ricochet run two); COMP_CWORD=2; _ricochet; echo \"${#COMPREPLY[@]} "
+             "${COMPREPLY[0]}\"");
+  REQUIRE(std::system(("cd '" + (here / "").string() + "' && bash ask >said 2>/dev/null").c_str()) == 0);
+  CHECK(read(here / "said") == "1 two words.json\n");
 }
 
 TEST_CASE("manual: fish completes every command and option, and zsh reads its own") {

@@ -1,4 +1,7 @@
 // `ricochet point`: an orbit of a stored diagram, asked for from a shell.
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -170,7 +173,7 @@ TEST_CASE("status: a folder says how many of its cases are finished, as what, an
   CHECK_THAT(ended.out, Contains("2 of 2 cases finished: 2 done") && !Contains("under way"));
 
   // A third case that nobody has begun.
-  {
+  const auto begin = [&] {
     Store store(here / "results/far", false);
     StudyResults more = read_store(here / "results/far");
     std::vector<ExpectedCase> cases;
@@ -178,11 +181,21 @@ TEST_CASE("status: a folder says how many of its cases are finished, as what, an
     more.expected_cases = 3;
     store.begin(more, cases);
     store.save_progress("1/3 cases, 33 %, 5 s left");
-  }
+  };
+  begin();
   const CommandOutput going = say(here, "status results/far");
   CHECK(going.code == 0);
   CHECK_THAT(going.out, Contains("0 of 3 cases finished") && Contains("33 %"));
   CHECK(going.out.find("has ended") == std::string::npos);
+  CHECK_THAT(going.out, !Contains("not there any more"));
+  // By a process that has ended.
+  if (const pid_t child = ::fork(); child == 0) {
+    begin();
+    ::_exit(0);
+  } else {
+    ::waitpid(child, nullptr, 0);
+  }
+  CHECK_THAT(say(here, "status results/far").out, Contains("that process is not there any more"));
 
   const CommandOutput both = say(here, "status results/far results/none");
   CHECK(both.code == 5);

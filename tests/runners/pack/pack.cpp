@@ -375,6 +375,21 @@ TEST_CASE("pack: another result than the stored one is not equal, and says so wi
   CHECK_THAT(other.err, Contains("force.csv has changed since"));
 }
 
+TEST_CASE("pack: tables and report are those of the store, whatever lies beside it") {
+  const Folder here;
+  make_results(here);
+  REQUIRE(here.run("pack made --out whole.zip").code == 0);
+  here.write("made/cases.csv", "case,impulse\nnobody,1\n");
+  fs::remove(here / "made/report.html");
+  here.write("made/notes-of-mine.txt", "not ours");
+  const Outcome packed = here.run("pack made --out again.zip");
+  INFO(packed.err);
+  REQUIRE(packed.code == 0);
+  CHECK(read(here / "again.zip") == read(here / "whole.zip"));
+  REQUIRE(here.run("unpack whole.zip told").code == 0);
+  CHECK_THAT(read(here / "told/ro-crate-metadata.json"), Contains("startTime") && !Contains("endTime"));
+}
+
 TEST_CASE("pack: a folder that cannot be packed is refused with its cause") {
   const Folder here;
   make_results(here);

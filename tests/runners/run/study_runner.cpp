@@ -199,6 +199,23 @@ TEST_CASE("run: what a case throws is its row, and the others go on") {
   CHECK_THAT(run.summary, Contains("1 done, 4 failed") && Contains("exit code 3"));
 }
 
+TEST_CASE("run: where the input of every case is wrong the study is, and no case runs") {
+  const ScratchFolder scratch;
+  FakeRun run(scratch);
+  const auto wrong = [](bool all) {
+    return [all](const StudyCase& one) -> CasePlan {
+      if (all || one.id.back() == '0') throw InputError("/scene/initial/equilibrium", "friction leaves it open");
+      return {};
+    };
+  };
+  run.runner.plan = wrong(true);
+  CHECK_THROWS_AS(run(fake_study(3), {scratch / "all", 2, false}), InputError);
+  CHECK(run.runs == 0);
+  run.runner.plan = wrong(false);
+  CHECK(run(fake_study(3), {scratch / "some", 2, false}) == 0);
+  CHECK(run.runs == 3);
+}
+
 TEST_CASE("run: longest predicted first, on one thread as predicted") {
   const ScratchFolder scratch;
   FakeRun run(scratch);

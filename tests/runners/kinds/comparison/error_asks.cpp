@@ -163,6 +163,50 @@ TEST_CASE("the cheapest stays within the share at all finer steps", "[asks]") {
   CHECK(out.passes == asks::Verdict::yes);
 }
 
+TEST_CASE("what is exact to round-off is no refutation, and less than declared is no yes", "[asks]") {
+  // Some units of round-off of a motion of 5 m over 10⁴ to 10⁵ steps.
+  StudyResults exact = study_of({{"one", {9e-15, 1.4e-13, 2e-14, 4.1e-13, 1e-13}}}, 5);
+  for (CaseRecord& record : exact.cases) record.steps = 100000;
+  asks::Answered out = ask(exact, {{"order", "impulse"}});
+  INFO(out.sentence);
+  CHECK(out.passes == asks::Verdict::open);
+  CHECK(out.rows.front().verdict == "hidden");
+  CHECK_THAT(out.rows.front().reason, Contains("round-off"));
+  // Larger errors fall or they do not.
+  for (CaseRecord& record : exact.cases) record.measures.front().second *= 1e4;
+  CHECK(ask(exact, {{"order", "impulse"}}).passes == asks::Verdict::no);
+
+  StudyResults first = study_of({{"one", powers(1, 6)}});
+  for (CaseRecord& record : first.cases) record.measures.emplace_back("declared_order", 1.0);
+  CHECK(ask(first, {{"order", "impulse"}}).passes == asks::Verdict::yes);
+  for (CaseRecord& record : first.cases) record.measures.back().second = 2;
+  out = ask(first, {{"order", "impulse"}});
+  CHECK(out.passes == asks::Verdict::no);
+  CHECK(out.rows.front().verdict == "clean");
+  CHECK_THAT(out.sentence, Contains("less than the scheme declares"));
+  for (CaseRecord& record : first.cases) record.measures.back().second = 0.5;
+  CHECK(ask(first, {{"order", "impulse"}}).passes == asks::Verdict::yes);
+}
+
+TEST_CASE("a tie is told as one, and what was timed once is no surer than its machine", "[asks]") {
+  const Json asked = {{"cheapest", "impulse"}, {"within", 0.5}};
+  StudyResults results =
+      study_of({{"a", powers(1, 3), 0, 1e-3}, {"b", powers(1, 3), 0, 1.1e-3}, {"c", powers(1, 3), 0, 3e-3}});
+  asks::Answered out = ask(results, asked);
+  CHECK(out.verdict == "tie");
+  for (CaseRecord& record : results.cases)
+    std::erase_if(record.measures,
+                  [](const auto& one) { return one.first == "timed_low" || one.first == "timed_high"; });
+  out = ask(results, asked);
+  INFO(out.sentence);
+  CHECK(out.verdict == "tie");
+  CHECK(out.rows[1].verdict == "the same within the timing noise");
+  CHECK(out.rows[2].verdict == "there");
+  CHECK_FALSE(out.rows[0].low);
+  CHECK_THAT(out.rows[0].reason, Contains("timed once"));
+  CHECK_THAT(out.sentence, Contains("noise") || Contains("not told apart"));
+}
+
 TEST_CASE("a crossing by chance reaches nothing, and an unknown reference tells nothing", "[asks]") {
   const Json asked = {{"cheapest", "impulse"}, {"within", 0.01}};
   asks::Answered out = ask(study_of({{"chance", {0.5, 0.001, 0.2, 0.1}}}), asked);

@@ -4,6 +4,7 @@
 #include <ricochet/loader/catalogue.hpp>
 
 #include "runners/kinds/stability/stability.hpp"
+#include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"
 #include "runners/table/text.hpp"
@@ -362,6 +363,29 @@ TEST_CASE("oscillators and free masses have their cells") {
         INFO(stiffness << " " << contact);
         CHECK((status == "stable" || status == "marginal"));
       }
+  }
+}
+
+TEST_CASE("what grows apart from the stops limits no closed stop") {
+  // Central differences are stable up to 2/ω = 0.2 s; the rigid stop holds the one mass that there is.
+  Json text = Json::parse(R"({
+    "name": "held", "kind": "stability",
+    "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 100},
+              "stops": {"lower": -0.1, "at": "tip"}, "initial": {"displacement": 0.05, "velocity": -2}},
+    "mesh": {"elements": 1},
+    "steps": {"from": 0.03, "to": 0.3, "count": 12}
+  })");
+  text["methods"] = {{"mass", "consistent"}, {"contact", "signorini"}, {"time", dumont_paoli(0)}};
+  const Result result = run(text);
+  StudyResults results;
+  results.kind = "stability";
+  results.cases = {result.record};
+  const std::vector<LimitRow> rows = step_limit_rows(results);
+  REQUIRE(rows.size() == 2);
+  for (const LimitRow& row : rows) {
+    INFO((row.closed ? "closed" : "open"));
+    CHECK(row.prediction == (row.closed ? "none" : "limit"));
+    if (!row.closed) CHECK(*row.predicted == Approx(0.2).epsilon(1e-6));
   }
 }
 

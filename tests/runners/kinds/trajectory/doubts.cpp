@@ -55,6 +55,18 @@ TEST_CASE("a step that is longer than the way from stop to stop is told") {
   CHECK(CaseRuns().first_of(meeting).reason().empty());
 }
 
+TEST_CASE("a point that goes deeper than a measured table knows is told") {
+  // Of k = 100 N/m it turns 0.1 m beyond the stop.
+  const auto told = [](double end) {
+    const Json table = {{"name", "table"}, {"depth_force", {{0, 0}, {end / 2, 50 * end}, {end, 100 * end}}}};
+    return CaseRuns().first_of(thrown(1, 2e-2, table));
+  };
+  CHECK(told(0.2).reason().empty());
+  const CaseRecord beyond = told(0.05);
+  CHECK(beyond.status == Status::done);
+  CHECK_THAT(beyond.reason(), Contains("depth_force ends at 0.05 m: its last slope is taken beyond"));
+}
+
 TEST_CASE("a point that is further beyond its stop than the gap is wide is told") {
   // It turns v √(m/k) = 0.1 m beyond the stop.
   const auto told = [](double gap, double step) { return CaseRuns().first_of(thrown(gap, step, soft)).reason(); };

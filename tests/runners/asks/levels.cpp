@@ -1,0 +1,190 @@
+// Of which level, stop and value a verdict speaks, and what is not settled.
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "runners/kinds/kind.hpp"
+#include "runners/run/analysed_results.hpp"
+#include "tests/runners/asks/made_tables.hpp"
+
+using namespace ricochet;
+using namespace ricochet::asks;
+
+namespace {
+
+/// Values of two methods at four halved steps.
+StudyResults two_methods(const std::vector<double>& first, const std::vector<double>& second) {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1"}}};
+  return synthetic::full_factorial(
+      made.choices, {8e-3, 4e-3, 2e-3, 1e-3},
+      [&](const std::vector<std::size_t>& at, double h) {
+        return (at[0] == 0 ? first : second)[static_cast<std::size_t>(std::lround(std::log2(8e-3 / h)))];
+      },
+      "impulse");
+}
+
+}  // namespace
+
+TEST_CASE("asks: what still moves with the step decides only where it is far") {
+  // m1 rises by a thousandth at each halving, as slowly as that; both are 9 % apart.
+  const std::vector<double> settled = {1.001, 1.0005, 1.00025, 1.000125}, moves = {0.909, 0.91, 0.911, 0.912};
+  const StudyResults results = two_methods(settled, moves);
+  const auto answered = [&](const Json& ask) { return answer_of(results, ask); };
+  CHECK(answered({{"effect", "mass"}, {"on", "impulse"}, {"within", 0.1}}).passes == Verdict::open);
+  CHECK(answered({{"effect", "mass"}, {"on", "impulse"}, {"from", 0.02}}).passes == Verdict::yes);
+  CHECK(answered({{"effect", "mass"}, {"on", "impulse"}, {"within", 0.5}}).passes == Verdict::yes);
+  CHECK(answered({{"limit", "impulse"}, {"below", 1.1}}).passes == Verdict::yes);
+  const Answered near = answered({{"limit", "impulse"}, {"above", 0.9}});
+  CHECK(near.passes == Verdict::open);
+  CHECK(near.reason == "it still rises with the step");
+  const Answered known = answered({{"enough", "impulse"}, {"within", 0.01}});
+  INFO(known.sentence);
+  CHECK(known.passes == Verdict::open);
+  CHECK(known.reason == "it still rises with the step");
+  // What settles is told at the same distance.
+  const StudyResults others = two_methods(settled, {0.912, 0.911, 0.9105, 0.91025});
+  CHECK(answer_of(others, {{"effect", "mass"}, {"on", "impulse"}, {"within", 0.1}}).passes == Verdict::yes);
+  CHECK(answer_of(others, {{"limit", "impulse"}, {"above", 0.9}}).passes == Verdict::yes);
+}
+
+TEST_CASE("asks: a value is passed between two levels, a count is met on one") {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1"}}, {"stops.upper", {"1", "2", "3", "4"}}};
+  made.error = 1e-3;
+  const auto answered = [&](bool counts, double is) {
+    made.truth = [=](const std::vector<std::size_t>& at) {
+      const double value = 10 * static_cast<double>(at[1] + 1) + (counts ? 0 : 0.5 * static_cast<double>(at[0]));
+      return value;
+    };
+    if (counts) made.error = 0;
+    StudyResults results = made.results();
+    for (CaseRecord& record : results.cases)
+      record.axes[1].second = std::stod(record.axes[1].second.get<std::string>());
+    return answer_of(results, {{"threshold", "impulse"}, {"is", is}, {"along", "stops.upper"}});
+  };
+  const Answered passed = answered(false, 25);
+  INFO(passed.sentence);
+  CHECK(passed.passes == Verdict::yes);
+  CHECK(passed.sentence.find("Between 2 and 3") == 0);
+  CHECK(passed.sentence.find("larger beyond") != std::string::npos);
+  std::set<std::string> verdicts;
+  for (const VerdictRow& row : passed.rows) verdicts.insert(row.verdict);
+  CHECK(verdicts == std::set<std::string>{"above", "below", "threshold"});
+  const Answered never = answered(false, 5);
+  CHECK(never.verdict == "never");
+  CHECK(never.sentence.find("always above 5") != std::string::npos);
+  CHECK(answered(false, 500).sentence.find("always below 500") != std::string::npos);
+  CHECK(answered(true, 20).verdict == "not monotone");  // on one level of four
+  CHECK(answered(true, 40).passes == Verdict::yes);
+}
+
+TEST_CASE("asks: a measure that each stop has is told of each, and of one stop as it is") {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 3.0; };
+  made.error = 1e-3;
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) {
+    record.measures.emplace_back("impulse[p1]", 2.0 * record.measures.front().second / 3);
+    record.measures.emplace_back("impulse[p2]", record.measures.front().second / 3);
+  }
+  const Answered answered = answer_of(results, {{"limit", "impulse"}, {"above", 1.5}});
+  INFO(answered.sentence);
+  CHECK(answered.passes == Verdict::no);
+  CHECK(answered.sentence.find("p2") != std::string::npos);
+  CHECK(answer_of(results, {{"limit", "impulse"}, {"above", 1.5}, {"stops", {"p1"}}}).passes == Verdict::yes);
+  for (CaseRecord& record : results.cases) record.measures.pop_back();
+  CHECK(answer_of(results, {{"limit", "impulse"}, {"above", 2.5}}).passes == Verdict::yes);
+}
+
+TEST_CASE("asks: choices with one word are told by what has them") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}, {"stops.0.upper", {"1", "2"}}, {"stops.1.upper", {"1", "2"}}};
+  made.truth = [](const std::vector<std::size_t>& at) { return 1.0 + static_cast<double>(at[1] + 2 * at[2]); };
+  made.error = 1e-3;
+  StudyResults results = made.results();
+  results.study["scene"]["stops"] = {{{"name", "plate"}}, {{"name", "bar"}}};
+  for (CaseRecord& record : results.cases)
+    for (const std::size_t k : {1, 2}) record.axes[k].second = std::stod(record.axes[k].second.get<std::string>());
+  const Answered value = answer_of(results, {{"value", "impulse"}});
+  CHECK(value.rows.front().level == "plate upper 1 m, bar upper 1 m");
+  const Answered effect = answer_of(results, {{"effect", "stops.1.upper"}, {"on", "impulse"}, {"from", 0.01}});
+  INFO(effect.sentence);
+  CHECK(effect.sentence.find("upper stop at bar") != std::string::npos);
+  // Whatever is asked, levels stand in the study's order.
+  for (const VerdictRow& row : answer_of(results, {{"rank", "impulse"}, {"over", "stops.0.upper"}}).rows)
+    CHECK(row.level.find("plate") < row.level.find("bar"));
+}
+
+TEST_CASE("asks: what an axis says nothing of is not ranked, and no level is \"none\"") {
+  Made made;
+  made.choices = {{"contact", {"signorini", "penalty"}}, {"contact.stiffness", {"1", "2"}}};
+  made.truth = [](const std::vector<std::size_t>& at) { return 1.0 + static_cast<double>(at[1]); };
+  made.error = 1e-3;
+  StudyResults results = made.results();
+  std::erase_if(results.cases,
+                [](const CaseRecord& one) { return one.axes[0].second == "signorini" && one.axes[1].second == "2"; });
+  for (CaseRecord& record : results.cases)
+    if (record.axes[0].second == "signorini") record.axes[1].second = nullptr;
+  const Answered ranked = answer_of(results, {{"rank", "impulse"}, {"over", "contact.stiffness"}});
+  INFO(ranked.sentence);
+  CHECK(ranked.verdict == "told apart");
+  CHECK(ranked.rows.size() == 2);
+  const Answered effect = answer_of(results, {{"effect", "contact.stiffness"}, {"on", "impulse"}, {"from", 0.01}});
+  for (const VerdictRow& row : effect.rows) CHECK_FALSE(row.level.ends_with("against "));
+}
+
+TEST_CASE("asks: where the mesh alone leaves more than asked the answer is no") {
+  Made made;
+  made.choices = {{"elements", {"8", "16", "32"}}};
+  made.truth = [](const std::vector<std::size_t>& at) { return 1 + std::pow(0.5, static_cast<double>(at[0])); };
+  made.error = 1e-3;
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) record.axes[0].second = std::stoi(record.axes[0].second.get<std::string>());
+  const Answered answered = answer_of(results, {{"enough", "impulse"}, {"within", 0.05}});
+  INFO(answered.sentence);
+  CHECK(answered.passes == Verdict::no);
+  CHECK(answered.sentence.find("the mesh alone leaves") != std::string::npos);
+}
+
+TEST_CASE("asks: of what has no finished case nothing is told, in every kind") {
+  for (const KindPointer& kind : kinds()) {
+    for (const Verb* verb : verbs()) {
+      StudyResults results;
+      results.kind = kind->format.name;
+      results.columns = {"mass", "step"};
+      results.study = {{"observe", {"impulse"}}};
+      Json ask = {{"below", 1}, {"above", 0}, {"within", 0.1}, {"over", "mass"}, {"along", "step"}, {"on", "impulse"}};
+      ask[verb->name] = verb->name == std::string("points") ? Json::array({"fold"})
+                        : verb->name == std::string("runs") ? Json(true)
+                                                            : Json("impulse");
+      results.study["ask"] = {ask};
+      INFO(kind->format.name << " " << verb->name);
+      const bool own = std::any_of(kind->format.verbs.begin(), kind->format.verbs.end(),
+                                   [&](const auto& one) { return one == std::string(verb->name); });
+      if (!own && !verb->answer) continue;
+      const AnalysedResults analysed(std::move(results));
+      for (const auto& [asked, answered] : analysed.asked.all) {
+        CHECK_FALSE(answered.sentence.empty());
+        CHECK(answered.passes != Verdict::no);
+      }
+    }
+  }
+}
+
+TEST_CASE("asks: an order that is not told turns nothing round") {
+  // m1 is larger with t1, but within what their steps leave; of t2 it stands alone.
+  Made made;
+  made.choices = {{"mass", {"m0", "m1"}}, {"time", {"t0", "t1", "t2"}}};
+  made.truth = [](const std::vector<std::size_t>& at) {
+    return at[1] == 0 ? 2.0 - static_cast<double>(at[0]) : 1.0 + 1e-4 * static_cast<double>(at[0]);
+  };
+  made.error = 0.01;
+  StudyResults results = made.results();
+  std::erase_if(results.cases,
+                [](const CaseRecord& one) { return one.axes[0].second == "m0" && one.axes[1].second == "t2"; });
+  const Answered answered = answer_of(results, {{"rank", "impulse"}, {"over", "mass"}});
+  INFO(answered.sentence);
+  CHECK(answered.verdict != "turned round");
+  CHECK(answered.passes != Verdict::no);
+}
