@@ -35,11 +35,12 @@ CasePlan plan_continuation(const StudyCase& study_case, const Registry& registry
   };
   double pieces = 0;
   if (continued.by_pieces()) {
-    // Measured on the shaken tube and on bilinear oscillators: about as many pieces as steps per period. A piece
-    // marches two columns over a map, composes its derivative and takes two spectra.
+    // Measured on the shaken tube and on bilinear oscillators: about as many pieces as steps per period. A piece looks
+    // at the measures of its steps, carries vectors over its changes and takes two spectra. Loads make each step.
     pieces = followed(0.8 * steps);
-    const double of_map = continued.no_image().empty() ? steps / 2 : steps;
-    out.predicted_seconds += pieces * (of_map * (5e-7 + 5e-10 * unknowns * unknowns) + 4e-9 * std::pow(unknowns, 3));
+    const double of_map = continued.no_image().empty() ? steps / 2 : steps, squares = unknowns * unknowns;
+    const double each_step = continued.scenes().problem(0).load ? 5e-7 + 5e-10 * squares : 7e-8;
+    out.predicted_seconds += pieces * (of_map * each_step + 2.7e-7 * squares + 3e-10 * squares * unknowns);
   } else {
     // Measured on oscillators that rebound: some hundred orbits, each of a score of marches with tangent columns.
     constexpr double orbits = 100, marches = 18;
