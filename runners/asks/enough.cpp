@@ -234,6 +234,7 @@ class Enough {
     width_row.measure = line.measure;
     width_row.level = line.level;
     width_row.stop = line.stop;
+    width_row.of_case = row.of_case;
     const double own = width(line);
     if (std::isfinite(own)) width_row.value = per_cent * own;
     width_row.unit = "%";

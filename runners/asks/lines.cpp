@@ -41,6 +41,7 @@ VerdictRow Lines::row(const Line& line) const {
   out.level = line.level;
   out.stop = line.stop;
   out.unit = words.unit;
+  out.of_case = line.point.first().id;
   out.cases = line.point.behind.size();
   out.left_out = line.point.cases.size() - line.point.behind.size();
   if (!line.known()) {

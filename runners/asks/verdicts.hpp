@@ -22,6 +22,7 @@ struct VerdictRow {
   std::string unit = {}, verdict = {}, reason = {};
   std::optional<std::size_t> cases = {}, left_out = {};
   std::string sentence = {};
+  std::string of_case = {};  ///< a case with these levels, by id; no column
 };
 const TableType<VerdictRow>& verdicts_type();
 

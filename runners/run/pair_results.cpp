@@ -27,10 +27,27 @@ std::string json_text(const asks::Ask& ask) {
   return ask.keys.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-void add_verdicts(const AnalysedResults& results, std::vector<KeyedValue>& out) {
+using Records = std::map<std::string, const CaseRecord*>;
+
+Records by_id(const StudyResults& results) {
+  Records out;
+  for (const CaseRecord& record : results.cases) out[record.id] = &record;
+  return out;
+}
+
+/// By the axes of a case where a row is one's: another study may call the same levels otherwise.
+void add_verdicts(const AnalysedResults& results, const std::vector<std::string>& chosen,
+                  std::vector<KeyedValue>& out) {
+  const Records records = by_id(results);
   for (const auto& [ask, answered] : results.asked.all)
-    for (const VerdictRow& row : answered.rows)
-      out.push_back({"verdicts", json_text(ask), {row.measure, row.level, row.stop, row.unit}, row});
+    for (const VerdictRow& row : answered.rows) {
+      Row key{row.measure, row.stop, row.unit};
+      if (const auto record = records.find(row.of_case); record == records.end())
+        key.emplace_back(row.level);
+      else
+        for (Cell& cell : axes_of(*record->second, chosen)) key.push_back(std::move(cell));
+      out.push_back({"verdicts", json_text(ask), std::move(key), row});
+    }
 }
 
 /// Columns of both but those that are refined.
@@ -49,8 +66,7 @@ void add_rows_of(const StudyResults& results, const char* name, const char* leve
                  const std::vector<std::string>& chosen, std::vector<KeyedValue>& out) {
   const Table* table = find_table(results.derived, name);
   if (!table) return;
-  std::map<std::string, const CaseRecord*> records;
-  for (const CaseRecord& record : results.cases) records[record.id] = &record;
+  const Records records = by_id(results);
   const TableReader rows(*table);
   const std::size_t words = rows.column_if_any(level), stop = rows.column_if_any("stop"),
                     id = rows.column_if_any("case"), u = rows.column_if_any("u");
@@ -76,7 +92,7 @@ void add_rows_of(const StudyResults& results, const char* name, const char* leve
 
 std::vector<KeyedValue> values_of(const AnalysedResults& results, const std::vector<std::string>& chosen) {
   std::vector<KeyedValue> out;
-  add_verdicts(results, out);
+  add_verdicts(results, chosen, out);
   add_rows_of(results, "limits", "method", chosen, out);
   add_rows_of(results, "uncertainty", "", {}, out);
   // Rows that nothing tells apart go together in their order.
@@ -92,6 +108,8 @@ PairChange change_of(PairedValue& pair) {
   if (!pair.b) return PairChange::only_a;
   if (!pair.a) return PairChange::only_b;
   const VerdictRow &a = *pair.a, &b = *pair.b;
+  const auto known = [](const VerdictRow& row) { return row.value || row.low; };
+  if (known(a) != known(b)) return known(a) ? PairChange::only_a : PairChange::only_b;
   if (a.value && b.value) pair.difference = *b.value - *a.value;
   if (std::pair(a.value, a.verdict) == std::pair(b.value, b.verdict) &&
       std::pair(a.low, a.high) == std::pair(b.low, b.high))

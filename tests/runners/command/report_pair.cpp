@@ -127,6 +127,32 @@ TEST_CASE("report --compare: other steps change what their tables have different
   CHECK(bare > 0);
 }
 
+TEST_CASE("report --compare: one method is one, whatever tells it from others of its own study") {
+  const Folder here;
+  nlohmann::ordered_json study = tiny();
+  study["ask"] = {{{"value", "tip_displacement_end"}}};
+  study["step"] = {4e-4, 2e-4, 1e-4};
+  study["duration"] = 0.2;
+  study["methods"] = {{"mass", "consistent"}, {"contact", "signorini"}};
+  const nlohmann::ordered_json half = {{"name", "newmark-dumont-paoli"}, {"beta", 0.5}},
+                               quarter = {{"name", "newmark-dumont-paoli"}, {"beta", 0.25}};
+  for (const auto& [out, other] :
+       {std::pair<std::string, nlohmann::ordered_json>("one", "moreau-jean"), {"two", quarter}}) {
+    study["methods"]["time"] = {half, other};
+    here.write("study.json", study.dump());
+    REQUIRE(here.run("run study.json --out " + out).code == 0);
+  }
+  const Outcome said = here.run("report --compare one two");
+  INFO(said.out << said.err);
+  REQUIRE(said.code == 0);
+  std::map<std::string, std::size_t> changes;
+  for (const auto& row : rows_of(here / "comparison.csv"))
+    if (row.at("table") == "verdicts") ++changes[row.at("change")];
+  CHECK(changes["equal"] == 1);
+  CHECK(changes["only in A"] == 1);
+  CHECK(changes["only in B"] == 1);
+}
+
 TEST_CASE("report --compare: what is no pair of results of one kind is told in a sentence") {
   const Folder here;
   nlohmann::ordered_json study = tiny();
