@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "tests/benchmarks/held_bytes.hpp"
+#include "tests/benchmarks/hold_between.hpp"
 #include "tests/benchmarks/thread_clock.hpp"
 
 namespace {
@@ -21,6 +22,7 @@ using ricochet::benchmarks::FairFactor;
 using ricochet::benchmarks::FairResult;
 using ricochet::benchmarks::FairScene;
 using ricochet::benchmarks::held_bytes;
+using ricochet::benchmarks::hold_between;
 using ricochet::benchmarks::thread_nanoseconds;
 using Sparse = Eigen::SparseMatrix<double>;
 
@@ -38,20 +40,7 @@ class Contact {
       effort.setZero();
       return false;
     }
-    VectorXd place = free + W_ * effort;
-    for (int sweep = 0; sweep < 10000; ++sweep) {
-      double change = 0, largest = 0;
-      for (int i = 0; i < place.size(); ++i) {
-        const double open = place[i] - W_(i, i) * effort[i];
-        const double wanted = open < -gap_ ? (-gap_ - open) / W_(i, i) : open > gap_ ? (gap_ - open) / W_(i, i) : 0;
-        const double more = wanted - effort[i];
-        if (more != 0) place += W_.col(i) * more;
-        effort[i] = wanted;
-        change = std::max(change, std::abs(more));
-        largest = std::max(largest, std::abs(wanted));
-      }
-      if (change <= 1e-13 * largest) break;
-    }
+    hold_between(W_, gap_, free, effort);
     return true;
   }
 

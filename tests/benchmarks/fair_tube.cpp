@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tests/benchmarks/hold_between.hpp"
 #include "tests/benchmarks/thread_clock.hpp"
 
 namespace {
@@ -15,29 +16,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using ricochet::benchmarks::FairTube;
 using ricochet::benchmarks::FairTubeResult;
+using ricochet::benchmarks::hold_between;
 using ricochet::benchmarks::thread_nanoseconds;
 
 constexpr int most_points = 16;
 using Set = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_points, most_points>;
 using Efforts = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_points, 1>;
-
-// λ that holds |u + Wλ| within the gap, from the last one on.
-void hold(const MatrixXd& W, double gap, const Efforts& free, Efforts& effort) {
-  Efforts place = free + W * effort;
-  for (int sweep = 0; sweep < 10000; ++sweep) {
-    double change = 0, largest = 0;
-    for (int i = 0; i < place.size(); ++i) {
-      const double open = place[i] - W(i, i) * effort[i];
-      const double wanted = open < -gap ? (-gap - open) / W(i, i) : open > gap ? (gap - open) / W(i, i) : 0;
-      const double more = wanted - effort[i];
-      if (more != 0) place += W.col(i) * more;
-      effort[i] = wanted;
-      change = std::max(change, std::abs(more));
-      largest = std::max(largest, std::abs(wanted));
-    }
-    if (change <= 1e-13 * largest) break;
-  }
-}
 
 // λ of springs behind the gap: points that push are looked for until they stay the same.
 void press(const MatrixXd& W, double gap, double stiffness, const Efforts& free, Efforts& effort) {
@@ -93,7 +77,8 @@ FairTubeResult ricochet_fair_tube(const FairTube& scene, long long steps) {
     now = following;
     place.noalias() = shapes * next;
     if ((place.array().abs() > scene.gap).any()) {
-      scene.stiffness > 0 ? press(W, scene.gap, scene.stiffness, place, effort) : hold(W, scene.gap, place, effort);
+      scene.stiffness > 0 ? press(W, scene.gap, scene.stiffness, place, effort)
+                          : hold_between(W, scene.gap, place, effort);
       next.noalias() += moved * effort;
       out.impulse += h * effort.lpNorm<1>();
       ++out.pushed;
