@@ -122,7 +122,8 @@ class MotionsAlong {
                 change.low, change.high, parameter_.unit);
     }
     say(out);
-    out.figure = {{"form", "ranges"}, {"x", parameter_.name}, {"x_unit", parameter_.unit}, {"rows", drawn}};
+    out.figure = {
+        {"form", "ranges"}, {"x", answers::spoken(parameter_.name)}, {"x_unit", parameter_.unit}, {"rows", drawn}};
     return out;
   }
 

@@ -116,7 +116,7 @@ class PointsAsk {
     tell_absent(out);
     say(out);
     out.figure = {{"form", "branches"},
-                  {"x", parameter_.name},
+                  {"x", answers::spoken(parameter_.name)},
                   {"x_unit", parameter_.unit},
                   {"y", "displacement of the tip"},
                   {"y_unit", "m"},
@@ -152,7 +152,7 @@ class PointsAsk {
         continue;
       }
       if (!is_point_kind(point.kind) || std::isnan(point.parameter) || !(all_ || kinds_.contains(point.kind))) continue;
-      if (point.kind == "fold" && point.name < 0 && point.prominence < least) continue;
+      if (point.kind == "fold" && ((point.name < 0 && point.prominence < least) || is_doubling(point))) continue;
       Told told{&point, point.parameter, point.half, point.half};
       if (const auto& low = point.row.low, &high = point.row.high; low && high) {
         told.less = std::max(0.0, told.value - *low);
@@ -167,6 +167,16 @@ class PointsAsk {
     for (Told& told : out.points)
       for (const int side : {-1, 1})
         (side < 0 ? told.below : told.above) = stable_at(out, told.value + side * beside(told, owner, side));
+  }
+
+  /// Whether a turn is where its branch, of twice the period, begins at a flip of the same case: both ways from there
+  /// are the same orbit, half its period later.
+  bool is_doubling(const StudyPoint& turn) const {
+    const std::vector<StudyPoint>& points = of_.points.points();
+    return std::any_of(points.begin(), points.end(), [&](const StudyPoint& other) {
+      return other.owner == turn.owner && other.kind == "flip" && turn.period == 2 * other.period &&
+             std::abs(other.parameter - turn.parameter) <= other.half + turn.half;
+    });
   }
 
   /// What step and mesh leave of a point; a stiffness of a law is a level of its own. One case alone leaves what it
@@ -245,7 +255,8 @@ class PointsAsk {
       for (const PointOrderRow& order : of_.orders)
         if (order.name == of_.points.names()[static_cast<std::size_t>(told.point->name)].text &&
             order.method == one.record->id && order.verdict == order_told)
-          parts.push_back(fmt::format("order {} in {}", answers::short_number(*order.order, 2), order.refined));
+          parts.push_back(
+              fmt::format("order {} in {}", answers::short_number(*order.order, 2), answers::spoken(order.refined)));
     for (const PointLimitRow& limit : of_.limits)
       if (told.point->name >= 0 && limit.id == one.record->id && limit.reference &&
           limit.name == of_.points.names()[static_cast<std::size_t>(told.point->name)].text)
