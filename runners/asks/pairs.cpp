@@ -102,8 +102,9 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
   out.share = share.value;
   out.share_u = left_open(share, both(1 + std::abs(share.value), std::abs(out.base)), round_off);
   out.share_most = left_open(share, both(1 + std::abs(share.value), std::abs(out.base), true), round_off, share.doubt);
-  for (const Estimate* one : {&share, &*first.estimate, &*second.estimate})
-    if (out.motion.empty() && !one->motion.empty()) out.motion = one->motion;
+  out.motion = share.motion;
+  for (const Point* point : {&first, &second})
+    if (out.motion.empty() && point->estimate) out.motion = point->estimate->motion;
   out.unknown = out.share_u ? "" : why_not(share);
   return out;
 }
