@@ -245,25 +245,34 @@ class EffectSpeaker {
                        one.first, lines_.text(line_of(*one.where, one.second).estimate()), one.second);
   }
 
+  /// Of these, which have shares, those with the least share and the most.
+  static std::pair<const Told*, const Told*> extremes(const std::vector<const Told*>& list) {
+    const auto by_share = [](const Told* a, const Told* b) { return *a->pair->share < *b->pair->share; };
+    const auto [least, most] = std::minmax_element(list.begin(), list.end(), by_share);
+    return {*least, *most};
+  }
+  static bool both_ways(const Told& least, const Told& most) { return *least.pair->share < 0 && *most.pair->share > 0; }
+  static const Told& larger(const Told& least, const Told& most) {
+    return std::abs(*least.pair->share) > std::abs(*most.pair->share) ? least : most;
+  }
+
   /// How much these differ: "by +6.8 ± 0.1 % to +30 ± 2 % (hrz against consistent)"; of what no share says, the values.
   std::string sizes(std::vector<const Told*> list) const {
     std::erase_if(list, [](const Told* one) { return !one->pair; });
     if (list.empty()) return "";
     const auto odd = std::find_if(list.begin(), list.end(), [](const Told* one) { return !as_share(*one); });
     if (odd != list.end()) return values(**odd) + place(**odd);
-    const auto by_share = [](const Told* a, const Told* b) { return *a->pair->share < *b->pair->share; };
-    const auto [least, most] = std::minmax_element(list.begin(), list.end(), by_share);
+    const auto [least, most] = extremes(list);
     const bool one_pair = std::all_of(list.begin(), list.end(), [&](const Told* one) {
       return one->first == list.front()->first && one->second == list.front()->second;
     });
     if (one_pair) {
       const std::string which = fmt::format(" ({} against {})", list.front()->second, list.front()->first);
-      const std::string low = share_text(*(*least)->pair), high = share_text(*(*most)->pair);
+      const std::string low = share_text(*least->pair), high = share_text(*most->pair);
       return low == high ? "by " + low + which : fmt::format("by {} to {}{}", low, high, which);
     }
-    if (*(*least)->pair->share < 0 && *(*most)->pair->share > 0)
-      return fmt::format("by {} to {}", share_text(*(*least)->pair), share_text(*(*most)->pair));
-    const Told& largest = std::abs(*(*least)->pair->share) > std::abs(*(*most)->pair->share) ? **least : **most;
+    if (both_ways(*least, *most)) return fmt::format("by {} to {}", share_text(*least->pair), share_text(*most->pair));
+    const Told& largest = larger(*least, *most);
     return fmt::format("by up to {} ({} against {}{})", share_text(*largest.pair), largest.second, largest.first,
                        place(largest).empty() ? "" : "," + place(largest));
   }
@@ -276,12 +285,9 @@ class EffectSpeaker {
     if (odd != list.end())
       return fmt::format("from {} to {}", lines_.text(line_of(*(*odd)->where, (*odd)->first).estimate()),
                          lines_.text(line_of(*(*odd)->where, (*odd)->second).estimate()));
-    const auto by_share = [](const Told* a, const Told* b) { return *a->pair->share < *b->pair->share; };
-    const auto [least, most] = std::minmax_element(list.begin(), list.end(), by_share);
-    const Pair &low = *(*least)->pair, &high = *(*most)->pair;
-    if (*low.share < 0 && *high.share > 0) return fmt::format("by {} to {}", share_text(low), share_text(high));
-    return (list.size() == 1 ? "by " : "by up to ") +
-           share_text(std::abs(*low.share) > std::abs(*high.share) ? low : high);
+    const auto [least, most] = extremes(list);
+    if (both_ways(*least, *most)) return fmt::format("by {} to {}", share_text(*least->pair), share_text(*most->pair));
+    return (list.size() == 1 ? "by " : "by up to ") + share_text(*larger(*least, *most).pair);
   }
 
   /// The combinations of these, by name where they have one: " with stiffness 1e8 N/m", " in 2 of 6".

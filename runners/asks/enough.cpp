@@ -101,11 +101,11 @@ class Enough {
     } else {
       const auto open = std::count_if(needs.begin(), needs.end(), [](const auto& one) { return !one.second.known; });
       const std::string rest = open > 0 ? fmt::format("; open in {} of {}", open, needs.size()) : "";
-      const std::string what = remedy(need);
       out.reason = need.why;
       out.sentence = in_thirty_words(
-          fmt::format("No: {}; {}", found,
-                      need.why.empty() ? fmt::format("{} would do for {}", what, answers::percent(within_)) : need.why),
+          fmt::format(
+              "No: {}; {}", found,
+              need.why.empty() ? fmt::format("{} would do for {}", remedy(need), answers::percent(within_)) : need.why),
           {{line->place() + rest, rest, line->place()}});
     }
     return out;

@@ -17,7 +17,7 @@ struct Pair {
   std::optional<double> u = {};  ///< of the difference, as of an Estimate; nothing where it is not known
   std::string unknown = {};      ///< why it is not: "one step: …"
   /// The difference as a share of the first at the same step and mesh, and what is open of that; nothing where the
-  /// first is zero or round-off.
+  /// first is not told from zero.
   std::optional<double> share = {}, share_u = {};
   std::optional<double> share_most = {};  ///< what is open of it where a yes or a no is told (Estimate::doubt)
   std::string motion = {};                ///< of what is not settled: "still rises with the step"

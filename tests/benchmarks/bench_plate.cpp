@@ -233,8 +233,8 @@ void race(const Plate& made, int rounds, long long steps, int modes, Registry& r
     if (median(step[k]) < median(step[best])) best = k;
   for (std::size_t k = 0; k < 4; ++k)
     fmt::print("  {:<20} step {} µs, set-up {} ms, {:.1f} MB; {} steps in contact, impulse {:.9g}, end {:.9g}\n",
-               k < 3 ? names[k] : operator_name(kind), shown_range(step[k], 1e6), shown_range(setup[k], 1e3), last[k].bytes / 1e6,
-               last[k].pushed, last[k].impulse, last[k].end);
+               k < 3 ? names[k] : operator_name(kind), shown_range(step[k], 1e6), shown_range(setup[k], 1e3),
+               last[k].bytes / 1e6, last[k].pushed, last[k].impulse, last[k].end);
   fmt::print("  against the fastest ({}): step {:.2f}, set-up {:.2f}, memory {:.2f}\n", names[best],
              median(step[3]) / median(step[best]), median(setup[3]) / median(setup[best]),
              last[3].bytes / last[best].bytes);

@@ -154,8 +154,8 @@ void race(const Sweep& sweep, int lanes, const Setting& setting) {
   fmt::print(
       "  {:2} lanes: beside {}, ours {}, kept {} ns; ratio {:.2f}, kept {:.2f}; {:.1f} % in contact; ends {:.9g}, "
       "{:.9g}\n",
-      lanes, shown_range(theirs, 1e9), shown_range(ours, 1e9), shown_range(watched, 1e9), median(ratio), median(watched_ratio),
-      100.0 * static_cast<double>(last.pushed) / lane_steps, last.end, end);
+      lanes, shown_range(theirs, 1e9), shown_range(ours, 1e9), shown_range(watched, 1e9), median(ratio),
+      median(watched_ratio), 100.0 * static_cast<double>(last.pushed) / lane_steps, last.end, end);
   std::fflush(stdout);
 }
 

@@ -56,8 +56,8 @@ struct Tube {
     }
     for (int i = 1; i <= points; ++i) add(fmt::format("p{}", i), i / (points + 1.0), shapes);
     add("force", 0.37, load);
-    const ModalFiles files{
-        read_csv(table, "modes.csv"), read_csv(rows + "\n", "shapes.csv"), std::nullopt, std::nullopt, std::nullopt};
+    const ModalFiles files{read_csv(table, "modes.csv"), read_csv(rows + "\n", "shapes.csv"), std::nullopt,
+                           std::nullopt, std::nullopt};
     AssembledSpec spec;
     std::vector<double> ratios;
     spec.structure = std::make_shared<const AssembledStructure>(modal_structure(files, ratios));

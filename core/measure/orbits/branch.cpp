@@ -93,12 +93,11 @@ void BranchRun::read() {
   corner.change = state.change;
   std::vector<std::complex<double>> raw = multipliers_of(*map_, clock_, follower_.derivative());
   corner.raw = roots_at(raw);
-  corner.smooth =
-      runs.count == 0
-          ? corner.raw
-          : roots_at(multipliers_of(*map_, clock_,
-                                    half_step_derivative(*map_, follower_.derivative(), state.sets, clock_,
-                                                         state.parameter, follower_.measures())));
+  corner.smooth = runs.count == 0
+                      ? corner.raw
+                      : roots_at(multipliers_of(*map_, clock_,
+                                                half_step_derivative(*map_, follower_.derivative(), state.sets, clock_,
+                                                                     state.parameter, follower_.measures())));
   raw.resize(std::min(raw.size(), static_cast<std::size_t>(limits_.multipliers)));
   corner.leading = std::move(raw);
   trace_.corners.push_back(std::move(corner));

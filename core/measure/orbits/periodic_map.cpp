@@ -142,8 +142,7 @@ MatrixXd PeriodicMap::blended(MatrixXd derivative, const SetSequence& sets, cons
   MatrixXd moved(D, count), read(D, count), links = MatrixXd::Zero(count, count);
   for (Index j = 0; j < count; ++j) {
     const SetBlend& blend = blends[static_cast<std::size_t>(j)];
-    const MatrixXd change =
-        sets_[blend.other].state.topRows(D) - sets_[sets[blend.step]].state.topRows(D);
+    const MatrixXd change = sets_[blend.other].state.topRows(D) - sets_[sets[blend.step]].state.topRows(D);
     Index row = 0, column = 0;
     const double largest = change.cwiseAbs().maxCoeff(&row, &column);
     read.col(j) = change.row(row).transpose();
@@ -180,8 +179,7 @@ MatrixXd PeriodicMap::blended(MatrixXd derivative, const SetSequence& sets, cons
   }
   carry(sets, 0, at, rows, true);
   for (Index j = 0; j < count; ++j) {
-    for (Index i = 0; i < j; ++i)
-      rows.col(j) += blends[static_cast<std::size_t>(i)].weight * links(j, i) * rows.col(i);
+    for (Index i = 0; i < j; ++i) rows.col(j) += blends[static_cast<std::size_t>(i)].weight * links(j, i) * rows.col(i);
     derivative.noalias() +=
         (clock.sign() * blends[static_cast<std::size_t>(j)].weight * columns.col(j)) * rows.col(j).transpose();
   }

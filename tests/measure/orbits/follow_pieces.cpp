@@ -118,8 +118,8 @@ TEST_CASE("a branch followed back ends where it began") {
 
 TEST_CASE("the derivative along a branch is that of its steps, and a follower in its place goes on alike") {
   Started from(500, true, 0.08);
-  PieceFollower follower(from.map, from.clock,
-                         branch_start(from.orbit.x, from.orbit.parameter, from.orbit.sets, 1), round_off);
+  PieceFollower follower(from.map, from.clock, branch_start(from.orbit.x, from.orbit.parameter, from.orbit.sets, 1),
+                         round_off);
   std::optional<PieceFollower> other;
   double apart = 0, size = 0;
   for (long long piece = 1; piece < pieces_updated + 40; ++piece) {
