@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <ricochet/contract/errors.hpp>
 #include <vector>
@@ -29,14 +30,8 @@ std::string key_of(const std::string& prefix) {
 
 /// Row and children of the cases, a query each, the key first; `only`: of the case that is bound.
 std::vector<std::string> queries(const std::string& prefix, bool only) {
-  const std::string key = key_of(prefix);
-  std::vector<std::string> out = {fmt::format("SELECT {0}, id, fingerprint, {1} FROM {2}cases{3}", key, kCaseColumns,
-                                              prefix, only ? fmt::format(" WHERE {} = ?", key) : "")};
-  for (const auto& [table, columns] : kRowsOfCases) {
-    const bool parts = std::string_view(columns).starts_with("position, part");
-    out.push_back(fmt::format("SELECT case_id, {} FROM {}{}{} ORDER BY case_id, position{}", columns, prefix, table,
-                              only ? " WHERE case_id = ?" : "", parts ? ", part" : ""));
-  }
+  std::vector<std::string> out = {rows_query(prefix, "cases", kCaseColumns, only)};
+  for (const auto& [table, columns] : kRowsOfCases) out.push_back(rows_query(prefix, table, columns, only));
   return out;
 }
 
@@ -69,23 +64,14 @@ std::string sum_of(Statements& prepared, const std::string& prefix, const std::s
 }
 
 std::map<std::string, std::string> sums_of_all(SQLite::Database& database, const std::string& prefix) {
-  std::map<std::string, Checksum> sums;
+  CaseSums sums;
   bool of_case = true;
   for (const std::string& query : queries(prefix, false)) {
     SQLite::Statement rows(database, query);
-    // A case's rows come one after the other.
-    auto found = sums.end();
-    while (rows.executeStep()) {
-      const SQLite::Column key = rows.getColumn(0);
-      if (found == sums.end() || found->first != key.getText())
-        found = of_case ? sums.try_emplace(key.getString()).first : sums.find(key.getString());
-      if (found != sums.end()) add_row(rows, of_case, found->second);
-    }
+    while (rows.executeStep()) sums.add(rows, of_case);
     of_case = false;
   }
-  std::map<std::string, std::string> out;
-  for (const auto& [key, sum] : sums) out[key] = sum.text();
-  return out;
+  return sums.texts();
 }
 
 std::int64_t position_of(Statements& prepared, const std::string& id) {
@@ -212,38 +198,95 @@ bool is_whole(SQLite::Database& database, const std::string& prefix, const std::
   return false;
 }
 
-Damage find_damage(SQLite::Database& database) {
-  Damage damage;
-  if (!has_table(database, "sums")) return damage;
+void CaseSums::add(SQLite::Statement& row, bool of_case) {
+  const SQLite::Column key = row.getColumn(0);
+  if (last_ == sums_.end() || last_->first != key.getText())
+    last_ = of_case ? sums_.try_emplace(key.getString()).first : sums_.find(key.getString());
+  if (last_ != sums_.end()) add_row(row, of_case, last_->second);
+}
+
+std::map<std::string, std::string> CaseSums::texts() const {
+  std::map<std::string, std::string> out;
+  for (const auto& [key, sum] : sums_) out[key] = sum.text();
+  return out;
+}
+
+std::string rows_query(const std::string& prefix, const std::string& table, const std::string& columns, bool only) {
+  const bool of_case = table == "cases", parts = columns.starts_with("position, part");
+  const std::string key = of_case ? key_of(prefix) : "case_id";
+  return fmt::format("SELECT {0}, {1}{2} FROM {3}{4}{5}{6}", key, of_case ? "id, fingerprint, " : "", columns, prefix,
+                     table, only ? fmt::format(" WHERE {} = ?", key) : "",
+                     of_case ? "" : fmt::format(" ORDER BY case_id, position{}", parts ? ", part" : ""));
+}
+
+namespace {
+
+/// What was stated of the cases, and their places.
+struct Stated {
   std::map<std::string, Seal> seals;
   std::map<std::string, std::int64_t> positions;
+  bool pages = false;  ///< some of it cannot be read
+};
+
+Stated read_stated(SQLite::Database& database) {
+  Stated stated;
   const auto each = [&](const char* query, const auto& take) {
     try {
       SQLite::Statement rows(database, query);
       while (rows.executeStep()) take(rows);
     } catch (const SQLite::Exception&) {
-      damage.pages = true;
+      stated.pages = true;
     }
   };
   each("SELECT case_id, sum, place FROM sums", [&](SQLite::Statement& row) {
-    seals[row.getColumn(0).getString()] = {row.getColumn(1).getString(), row.getColumn(2).getString()};
+    stated.seals[row.getColumn(0).getString()] = {row.getColumn(1).getString(), row.getColumn(2).getString()};
   });
   each("SELECT id, position FROM cases",
-       [&](SQLite::Statement& row) { positions[row.getColumn(0).getString()] = row.getColumn(1).getInt64(); });
-  for (const auto& [id, ignored] : seals)
-    if (!positions.contains(id)) damage.cases.insert(id);
+       [&](SQLite::Statement& row) { stated.positions[row.getColumn(0).getString()] = row.getColumn(1).getInt64(); });
+  return stated;
+}
+
+/// The cases that are stated and are not there, and those that are not whole.
+std::set<std::string> damaged_of(const Stated& stated, const std::function<bool(const std::string& id)>& whole) {
+  std::set<std::string> damaged;
+  for (const auto& [id, ignored] : stated.seals)
+    if (!stated.positions.contains(id)) damaged.insert(id);
+  for (const auto& [id, ignored] : stated.positions)
+    if (!whole(id)) damaged.insert(id);
+  return damaged;
+}
+
+bool fits(const Stated& stated, const std::map<std::string, std::string>& sums, const std::string& id) {
+  const auto seal = stated.seals.find(id);
+  const auto sum = sums.find(id);
+  return seal != stated.seals.end() && sum != sums.end() && fits(seal->second, sum->second, stated.positions.at(id));
+}
+
+}  // namespace
+
+Damage damaged_cases(SQLite::Database& database, const std::map<std::string, std::string>& sums) {
+  Damage damage;
+  if (!has_table(database, "sums")) return damage;
+  const Stated stated = read_stated(database);
+  damage.pages = stated.pages;
+  damage.cases = damaged_of(stated, [&](const std::string& id) { return fits(stated, sums, id); });
+  return damage;
+}
+
+Damage find_damage(SQLite::Database& database) {
+  Damage damage;
+  if (!has_table(database, "sums")) return damage;
+  const Stated stated = read_stated(database);
+  damage.pages = stated.pages;
   std::map<std::string, std::string> sums;
   if (!damage.pages) try {
       sums = sums_of_all(database, "");
     } catch (const SQLite::Exception&) {
       damage.pages = true;
     }
-  for (const auto& [id, position] : positions) {
-    const auto stated = seals.find(id);
-    const bool whole =
-        damage.pages ? is_whole(database, "", id) : stated != seals.end() && fits(stated->second, sums[id], position);
-    if (!whole) damage.cases.insert(id);
-  }
+  damage.cases = damaged_of(stated, [&](const std::string& id) {
+    return damage.pages ? is_whole(database, "", id) : fits(stated, sums, id);
+  });
   return damage;
 }
 

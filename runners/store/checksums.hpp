@@ -41,6 +41,29 @@ void seal_cases(SQLite::Database& database, const std::string& prefix);
 /// States the checksum of its place anew.
 void seal_place(Statements& prepared, const std::string& id);
 
+/// Checksums of all cases, of the rows that queries give them: those of rows_query, each row of a case after the other.
+class CaseSums {
+ public:
+  CaseSums() = default;
+  CaseSums(const CaseSums&) = delete;
+  CaseSums& operator=(const CaseSums&) = delete;
+
+  /// A row of the case itself (`of_case`), or of what belongs to it. The key comes first.
+  void add(SQLite::Statement& row, bool of_case);
+  /// By key.
+  std::map<std::string, std::string> texts() const;
+
+ private:
+  std::map<std::string, Checksum> sums_;
+  std::map<std::string, Checksum>::iterator last_ = sums_.end();
+};
+
+/// The query of the cases' own rows (`table` = "cases"), or of a table of kRowsOfCases, in the order of the checksums.
+std::string rows_query(const std::string& prefix, const std::string& table, const std::string& columns, bool only);
+
+/// The cases of which these checksums, or places, are not those that were stated; none in a store that states none.
+Damage damaged_cases(SQLite::Database& database, const std::map<std::string, std::string>& sums);
+
 /// Whether a case has the checksums that were stated, its rows and its place.
 bool is_whole(SQLite::Database& database, const std::string& prefix, const std::string& key);
 

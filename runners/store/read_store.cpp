@@ -30,6 +30,7 @@ using Json = nlohmann::ordered_json;
 /// The cases that are read, and those of them whose rows make no sense: a store of an earlier program has no checksums.
 struct ReadCases {
   std::map<std::string, CaseRecord*> records;
+  CaseSums* sums = nullptr;  ///< are made of the rows
   std::set<std::string> damaged = {};
   std::map<std::vector<std::string>, Columns> columns = {};  // by their names: most cases have the same
 
@@ -70,16 +71,31 @@ struct BadRow : std::runtime_error {
   BadRow() : std::runtime_error("a row that cannot be") {}
 };
 
-/// Calls `row(record, statement)` for each row of these columns of `table`, in the order of `order`: of all cases, or
-/// of the only one.
+// What is short is read with its row: to ask for it later costs more than its numbers.
+constexpr int read_bytes = 1024;
+
+/// The columns of a table of kRowsOfCases. Of a series that no checksum needs, its bytes and, where short, its numbers.
+std::string columns_of(const char* table, bool summed) {
+  const auto* const found = std::find_if(std::begin(kRowsOfCases), std::end(kRowsOfCases),
+                                         [&](const auto& one) { return std::string_view(one.first) == table; });
+  std::string columns = found->second;
+  constexpr std::string_view series = "series";
+  if (!summed && columns.ends_with(series)) {
+    columns.resize(columns.size() - series.size());
+    columns += fmt::format("length(series), CASE WHEN length(series) <= {} THEN series END", read_bytes);
+  }
+  return columns;
+}
+
+/// Calls `row(record, statement)` for each row of `table`, in its order: of all cases, or of the only one. The case's
+/// id is column 0, then come the columns of kRowsOfCases.
 template <class Row>
-void per_case(SQLite::Database& database, ReadCases& cases, const std::string& columns, const char* table,
-              const char* order, Row row) {
-  const bool only = cases.records.size() == 1;
-  SQLite::Statement statement(database, fmt::format("SELECT case_id, {} FROM {}{} ORDER BY case_id, {}", columns, table,
-                                                    only ? " WHERE case_id = ?" : "", order));
+void per_case(SQLite::Database& database, ReadCases& cases, const char* table, Row row) {
+  const bool only = cases.records.size() == 1 && !cases.sums;
+  SQLite::Statement statement(database, rows_query("", table, columns_of(table, cases.sums), only));
   if (only) statement.bind(1, cases.records.begin()->first);
   while (statement.executeStep()) {
+    if (cases.sums) cases.sums->add(statement, false);
     const auto found = cases.records.find(statement.getColumn(0).getString());
     if (found == cases.records.end()) continue;
     try {
@@ -123,24 +139,33 @@ void read_study(SQLite::Database& database, StudyResults& results) {
   }
 }
 
-constexpr const char* kStoredCase =
-    "id, status, reason, steps, setup_seconds, run_seconds, operator, fingerprint, arithmetic";
-
-// Null for a case of another id or status than a case can have: what is damaged.
+// Null for a case of another id or status than a case can have: what is damaged. The row is that of rows_query.
 std::optional<CaseRecord> case_of(SQLite::Statement& row) {
-  const auto status = status_of_word(row.getColumn(1).getString());
+  const auto status = status_of_word(row.getColumn(3).getString());
   CaseRecord record;
-  record.id = row.getColumn(0).getString();
+  record.id = row.getColumn(1).getString();
   if (!status || !is_case_id(record.id)) return std::nullopt;
   record.status = *status;
-  if (std::string reason = text_in(row.getColumn(2)); !reason.empty()) record.reasons = {std::move(reason)};
-  record.steps = row.getColumn(3).getInt64();
-  record.setup_seconds = row.getColumn(4).getDouble();
-  record.run_seconds = row.getColumn(5).getDouble();
-  record.operator_name = text_in(row.getColumn(6));
-  record.partial = row.getColumn(7).getString().empty();
-  record.arithmetic = text_in(row.getColumn(8));
+  record.partial = row.getColumn(2).getString().empty();
+  if (std::string reason = text_in(row.getColumn(4)); !reason.empty()) record.reasons = {std::move(reason)};
+  record.steps = row.getColumn(5).getInt64();
+  record.setup_seconds = row.getColumn(6).getDouble();
+  record.run_seconds = row.getColumn(7).getDouble();
+  record.operator_name = text_in(row.getColumn(8));
+  record.arithmetic = text_in(row.getColumn(9));
   return record;
+}
+
+/// The cases in the study's order, and the ids of those that can be none.
+void read_cases(SQLite::Database& database, CaseSums* sums, StudyResults& results) {
+  SQLite::Statement rows(database, rows_query("", "cases", kCaseColumns, false) + " ORDER BY position");
+  while (rows.executeStep()) {
+    if (sums) sums->add(rows, true);
+    if (auto record = case_of(rows))
+      results.cases.push_back(std::move(*record));
+    else
+      results.damage.cases.insert(rows.getColumn(0).getString());
+  }
 }
 
 Series series_of(SQLite::Database& database, const CaseRecord& record, std::vector<StoredPiece> pieces,
@@ -155,26 +180,23 @@ Series series_of(SQLite::Database& database, const CaseRecord& record, std::vect
   return values;
 }
 
-// What is short is read with its row: to ask for it later costs more than its numbers.
-constexpr const char* kStoredSeries = "length(series), CASE WHEN length(series) <= 1024 THEN series END";
-
-// The piece whose length, and numbers, stand from this column on.
+// The piece whose series, or whose length and numbers, stand from this column on.
 StoredPiece piece_of(StoredPiece::Of of, const CaseRecord& record, int position, int part, SQLite::Statement& row,
                      int column) {
-  StoredPiece piece{of, record.id, position, part,
-                    static_cast<std::size_t>(row.getColumn(column).getInt64()) / sizeof(double)};
-  if (const SQLite::Column blob = row.getColumn(column + 1); !blob.isNull()) piece.numbers = doubles_of(blob);
+  const SQLite::Column first = row.getColumn(column), last = row.getColumn(row.getColumnCount() - 1);
+  const bool whole = column + 1 == row.getColumnCount();
+  const std::int64_t bytes = whole ? first.getBytes() : first.getInt64();
+  StoredPiece piece{of, record.id, position, part, static_cast<std::size_t>(bytes) / sizeof(double)};
+  if (!last.isNull() && bytes <= read_bytes) piece.numbers = doubles_of(last);
   return piece;
 }
 
 void read_curves(SQLite::Database& database, ReadCases& cases, StoredSeries* later) {
-  per_case(database, cases, fmt::format("position, name, {}", kStoredSeries), "curves", "position",
-           [&](CaseRecord& record, SQLite::Statement& row) {
-             record.curve.names.push_back(text_in(row.getColumn(2)));
-             record.curve.columns.push_back(
-                 series_of(database, record,
-                           {piece_of(StoredPiece::Of::curves, record, row.getColumn(1).getInt(), 0, row, 3)}, later));
-           });
+  per_case(database, cases, "curves", [&](CaseRecord& record, SQLite::Statement& row) {
+    record.curve.names.push_back(text_in(row.getColumn(2)));
+    record.curve.columns.push_back(series_of(
+        database, record, {piece_of(StoredPiece::Of::curves, record, row.getColumn(1).getInt(), 0, row, 3)}, later));
+  });
 }
 
 /// The columns of one table of numbers while its pieces are read.
@@ -190,42 +212,45 @@ void read_numbers(SQLite::Database& database, ReadCases& cases, StoredSeries* la
     for (std::size_t t = 0; t < read.size(); ++t) {
       NumberTable& table = of->numbers[t];
       table.columns = cases.named(read[t].names);
-      for (std::vector<StoredPiece>& column : read[t].pieces)
-        table.values.push_back(series_of(database, *of, std::move(column), later));
+      for (std::vector<StoredPiece>& column : read[t].pieces) {
+        // A row that made no sense left a name without numbers.
+        if (column.empty()) cases.damaged.insert(of->id);
+        table.values.push_back(column.empty() ? Series(std::vector<double>())
+                                              : series_of(database, *of, std::move(column), later));
+      }
       // A piece that is lost: the columns of a table are equally long.
       for (const Series& column : table.values)
         if (table.exported && column.size() != table.rows()) cases.damaged.insert(of->id);
     }
     read.clear();
   };
-  per_case(database, cases, fmt::format("position, part, name, exported, column_name, words, {}", kStoredSeries),
-           "case_numbers", "position, part", [&](CaseRecord& record, SQLite::Statement& row) {
-             if (of != &record) {
-               end_case();
-               of = &record;
-             }
-             const int number = row.getColumn(2).getInt();
-             const auto part = static_cast<std::size_t>(number);
-             const std::string name = row.getColumn(3).getString();
-             const std::size_t known = read.empty() ? 0 : read.back().names.size();
-             const bool same = known > 0 && record.numbers.back().name == name;
-             if (number < 0 || (part > 0 && (!same || part > known)) || !is_table_name(name)) throw BadRow();
-             if (part == 0 && !same) {
-               NumberTable& first = record.numbers.emplace_back();
-               first.name = name;
-               first.exported = row.getColumn(4).getInt() != 0;
-               read.emplace_back();
-             }
-             if (part == read.back().names.size()) {
-               read.back().pieces.emplace_back();
-               read.back().names.push_back(text_in(row.getColumn(5)));
-               if (!row.getColumn(6).isNull())
-                 record.numbers.back().words.emplace_back(read.back().names.back(),
-                                                          json_in(row.getColumn(6)).get<std::vector<std::string>>());
-             }
-             read.back().pieces[part].push_back(
-                 piece_of(StoredPiece::Of::case_numbers, record, row.getColumn(1).getInt(), number, row, 7));
-           });
+  per_case(database, cases, "case_numbers", [&](CaseRecord& record, SQLite::Statement& row) {
+    if (of != &record) {
+      end_case();
+      of = &record;
+    }
+    const int number = row.getColumn(2).getInt();
+    const auto part = static_cast<std::size_t>(number);
+    const std::string name = row.getColumn(3).getString();
+    const std::size_t known = read.empty() ? 0 : read.back().names.size();
+    const bool same = known > 0 && record.numbers.back().name == name;
+    if (number < 0 || (part > 0 && (!same || part > known)) || !is_table_name(name)) throw BadRow();
+    if (part == 0 && !same) {
+      NumberTable& first = record.numbers.emplace_back();
+      first.name = name;
+      first.exported = row.getColumn(4).getInt() != 0;
+      read.emplace_back();
+    }
+    if (part == read.back().names.size()) {
+      read.back().pieces.emplace_back();
+      read.back().names.push_back(text_in(row.getColumn(5)));
+      if (!row.getColumn(6).isNull())
+        record.numbers.back().words.emplace_back(read.back().names.back(),
+                                                 json_in(row.getColumn(6)).get<std::vector<std::string>>());
+    }
+    read.back().pieces[part].push_back(
+        piece_of(StoredPiece::Of::case_numbers, record, row.getColumn(1).getInt(), number, row, 7));
+  });
   end_case();
 }
 
@@ -242,31 +267,30 @@ Said said_in(const SQLite::Column& stored, const Json& marks) {
   return out;
 }
 
-/// Reads what belongs to these cases.
+/// Reads what belongs to these cases. Checksums ask for the order of kRowsOfCases.
 void read_rows(SQLite::Database& database, ReadCases& cases, StoredSeries* later) {
   using Statement = SQLite::Statement;
-  per_case(database, cases, "name, value", "axes", "position", [](CaseRecord& record, Statement& row) {
-    record.axes.emplace_back(text_in(row.getColumn(1)), json_in(row.getColumn(2)));
+  per_case(database, cases, "axes", [](CaseRecord& record, Statement& row) {
+    record.axes.emplace_back(text_in(row.getColumn(2)), json_in(row.getColumn(3)));
   });
-  per_case(database, cases, "name, value", "measures", "position", [](CaseRecord& record, Statement& row) {
-    record.measures.emplace_back(text_in(row.getColumn(1)), row.getColumn(2).getDouble());
+  per_case(database, cases, "measures", [](CaseRecord& record, Statement& row) {
+    record.measures.emplace_back(text_in(row.getColumn(2)), row.getColumn(3).getDouble());
   });
-  per_case(database, cases, "item, reason", "left_out", "position", [](CaseRecord& record, Statement& row) {
-    record.left_out.emplace_back(text_in(row.getColumn(1)), text_in(row.getColumn(2)));
+  per_case(database, cases, "left_out", [](CaseRecord& record, Statement& row) {
+    record.left_out.emplace_back(text_in(row.getColumn(2)), text_in(row.getColumn(3)));
   });
-  per_case(database, cases, "position, excluded, reason, marks", "reasons", "position",
-           [](CaseRecord& record, Statement& row) {
-             if (row.getColumn(1).getInt() == 0) record.reasons.clear();
-             record.excluded = row.getColumn(2).getInt() != 0;
-             record.reasons.push_back(said_in(row.getColumn(3), json_in(row.getColumn(4))));
-           });
-  per_case(database, cases, "note", "notes", "position",
-           [](CaseRecord& record, Statement& row) { record.notes.push_back(text_in(row.getColumn(1))); });
+  per_case(database, cases, "notes",
+           [](CaseRecord& record, Statement& row) { record.notes.push_back(text_in(row.getColumn(2))); });
+  per_case(database, cases, "reasons", [](CaseRecord& record, Statement& row) {
+    if (row.getColumn(1).getInt() == 0) record.reasons.clear();
+    record.excluded = row.getColumn(2).getInt() != 0;
+    record.reasons.push_back(said_in(row.getColumn(3), json_in(row.getColumn(4))));
+  });
   read_curves(database, cases, later);
-  per_case(database, cases, "name, content", "case_tables", "position", [&](CaseRecord& record, Statement& row) {
+  per_case(database, cases, "case_tables", [&](CaseRecord& record, Statement& row) {
     // What the columns mean is not stored: the kind of study declares it.
-    const Json content = json_in(row.getColumn(2));
-    const std::string name = row.getColumn(1).getString();
+    const Json content = json_in(row.getColumn(3));
+    const std::string name = row.getColumn(2).getString();
     if (!is_table_name(name)) throw BadRow();
     if (record.tables.empty() || record.tables.back().name != name) {
       Table& first = record.tables.emplace_back();
@@ -281,6 +305,35 @@ void read_rows(SQLite::Database& database, ReadCases& cases, StoredSeries* later
     }
   });
   read_numbers(database, cases, later);
+}
+
+/// Reads every case, its rows once: for what they say and for their checksums.
+void read_all_cases(SQLite::Database& database, bool compared, StoredSeries* later, StudyResults& results) {
+  CaseSums sums;
+  ReadCases cases;
+  if (!compared) cases.sums = &sums;
+  read_cases(database, cases.sums, results);
+  for (CaseRecord& record : results.cases) cases.records[record.id] = &record;
+  if (!cases.records.empty()) read_rows(database, cases, later);
+  if (!compared) results.damage.merge(damaged_cases(database, sums.texts()));
+  results.damage.cases.merge(cases.damaged);
+}
+
+/// Of a file with pages that cannot be read: what is whole, case by case.
+void read_whole_cases(SQLite::Database& database, StoredSeries* later, StudyResults& results) {
+  results.cases.clear();
+  results.damage.merge(find_damage(database));
+  try {
+    read_cases(database, nullptr, results);
+  } catch (const SQLite::Exception&) {
+    results.damage.pages = true;
+  }
+  for (CaseRecord& record : results.cases) {
+    if (results.damage.cases.contains(record.id)) continue;
+    ReadCases one{{{record.id, &record}}};
+    read_rows(database, one, later);
+    results.damage.cases.merge(one.damaged);
+  }
 }
 
 }  // namespace
@@ -304,34 +357,15 @@ StudyResults read_tables(SQLite::Database& database, bool compared) {
   StudyResults results;
   SQLite::Transaction transaction(database);
   read_study(database, results);
-  if (!compared) results.damage.merge(find_damage(database));
+  const auto later = std::make_shared<StoredSeries>(database.getFilename());
   try {
-    SQLite::Statement rows(database, fmt::format("SELECT {} FROM cases ORDER BY position", kStoredCase));
-    while (rows.executeStep())
-      if (auto record = case_of(rows))
-        results.cases.push_back(std::move(*record));
-      else
-        results.damage.cases.insert(rows.getColumn(0).getString());
+    read_all_cases(database, compared, later.get(), results);
   } catch (const SQLite::Exception&) {
+    if (compared) throw;
     results.damage.pages = true;
   }
-  const auto left_out = [&](const CaseRecord& record) { return results.damage.cases.contains(record.id); };
-  std::erase_if(results.cases, left_out);
-  const auto later = std::make_shared<StoredSeries>(database.getFilename());
-  ReadCases cases;
-  for (CaseRecord& record : results.cases) cases.records[record.id] = &record;
-  if (!results.damage.pages) {
-    if (!cases.records.empty()) read_rows(database, cases, later.get());
-  } else {
-    // Of a file with pages that cannot be read, what is whole is read case by case.
-    for (CaseRecord& record : results.cases) {
-      ReadCases one{{{record.id, &record}}};
-      read_rows(database, one, later.get());
-      cases.damaged.merge(one.damaged);
-    }
-  }
-  results.damage.cases.merge(cases.damaged);
-  std::erase_if(results.cases, left_out);
+  if (results.damage.pages) read_whole_cases(database, later.get(), results);
+  std::erase_if(results.cases, [&](const CaseRecord& record) { return results.damage.cases.contains(record.id); });
   for (CaseRecord& record : results.cases) record.id = id_of_today(record.id);
   if (!results.damage.environment) results.environment = read_environment(database);
   tell_arithmetics(results);
@@ -346,7 +380,7 @@ StudyResults read_head(SQLite::Database& database) {
 }
 
 std::optional<CaseRecord> read_case(SQLite::Database& database, const std::string& id) {
-  SQLite::Statement row(database, fmt::format("SELECT {} FROM cases WHERE id = ? OR id = ?", kStoredCase));
+  SQLite::Statement row(database, rows_query("", "cases", kCaseColumns, false) + " WHERE id = ? OR id = ?");
   row.bind(1, id);
   row.bind(2, former_id(id));
   if (!row.executeStep()) return std::nullopt;
