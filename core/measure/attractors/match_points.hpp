@@ -118,7 +118,8 @@ struct PointLimit {
 };
 
 /// The limit along one refinement. With an order that is told it is v_n + (v_n − v_{n−1})/((h_{n−1}/h_n)ᵖ − 1), and
-/// that correction is open. Otherwise the finest value, with the uncertainty of limit_of(). Levels as for
+/// that correction is open; of an order that three sizes tell, (v_n − v_{n−1})/(h_{n−1}/h_n − 1), which holds any order
+/// above one. Otherwise the finest value, with the uncertainty of limit_of(). Levels as for
 /// point_order(); at least one, else std::invalid_argument.
 PointLimit point_limit(std::vector<PointLevel> levels, const PointOrder& order);
 

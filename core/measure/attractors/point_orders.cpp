@@ -137,7 +137,10 @@ PointLimit point_limit(std::vector<PointLevel> levels, const PointOrder& order) 
   if (order.told) {
     out.correction = (finest.value - before.value) / (std::pow(before.size / finest.size, *order.order) - 1);
     out.value += out.correction;
-    out.open = std::abs(out.correction);
+    // One order alone may be chance: the first order's rest holds any that is larger.
+    constexpr int several_orders = 4;
+    out.open = order.used >= several_orders ? std::abs(out.correction)
+                                            : std::abs(finest.value - before.value) / (before.size / finest.size - 1);
   } else if (plain.status == LimitStatus::same) {
     // What moves within the intervals is in them already.
     double largest = 0;

@@ -246,8 +246,8 @@ std::optional<Limit> combined(const std::optional<Limit>& step, const std::optio
     out.order = mesh->order;
   }
   out.uncertainty = *step->uncertainty + *mesh->uncertainty;
-  out.low = std::min(step->low, mesh->low);
-  out.high = std::max(step->high, mesh->high);
+  out.low = step->low + mesh->low - mesh->value;
+  out.high = step->high + mesh->high - mesh->value;
   out.range = std::max(step->range, mesh->range);
   return out;
 }

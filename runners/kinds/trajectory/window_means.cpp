@@ -79,7 +79,7 @@ void WindowMeans::see_step(const Marcher& marcher) {
   series_[power].push_back((end.lost - begin_.lost) / length);
   series_[force].push_back((end.impulse - begin_.impulse) / length);
   series_[rate].push_back((end.impacts - begin_.impacts) / length);
-  series_[tip].push_back(std::sqrt(squares_ / static_cast<double>(steps_)));
+  series_[tip].push_back(squares_ / static_cast<double>(steps_));
   begin_ = end;
   squares_ = 0;
   steps_ = 0;
@@ -99,7 +99,10 @@ void WindowMeans::put(CaseRecord& record) const {
       record.left_out.emplace_back(names[mean], answers::no_work_form);
       continue;
     }
-    const Interval found = block_bootstrap_mean(series_[static_cast<std::size_t>(mean)]);
+    Interval found = block_bootstrap_mean(series_[static_cast<std::size_t>(mean)]);
+    // The series has the squares: a mean of roots would depend on the number of parts.
+    if (mean == tip)
+      for (double* one : {&found.value, &found.low, &found.high}) *one = std::sqrt(std::max(*one, 0.0));
     put_measure(record, names[mean], found.value);
     put_measure(record, std::string("confidence.") + names[mean],
                 std::max(found.high - found.value, found.value - found.low));

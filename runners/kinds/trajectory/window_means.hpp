@@ -14,9 +14,9 @@ namespace ricochet {
 
 /// Means over the window of a trajectory, cut into equal parts: what a chaotic motion has in place of a path. Of each
 /// part: the energy lost at the stops and the momentum that they gave, both over its length (W, N). Then how often
-/// points closed in a second (1/s), and the root mean square of the tip's absolute displacement (m). The mean over the
-/// parts has a 95 % interval by the stationary block bootstrap. That holds where the motion is stationary over the
-/// window. Parts that drift show as an interval that is too narrow, never too wide.
+/// points closed in a second (1/s), and the square of the tip's absolute displacement, of whose mean the root is told
+/// (m). The mean over the parts has a 95 % interval by the stationary block bootstrap. That holds where the motion is
+/// stationary over the window. Parts that drift show as an interval that is too narrow, never too wide.
 class WindowMeans final : public StepObserver {
  public:
   static constexpr int fewest_parts = fewest_resampled;

@@ -118,6 +118,9 @@ TEST_CASE("over two refinements uncertainties are added, and the worse status st
   const auto step = limit_of(power_law(3, 0.1, 2, 2, 4), 0), two = limit_of({{1, 3}, {0.5, 3.1}}, 0),
              wanders = limit_of({{1, 3}, {0.5, 4}, {0.25, 3.1}}, 0), one = limit_of({{1, 3}}, 0);
   CHECK(*combined(step, two)->uncertainty == Approx(*step->uncertainty + *two->uncertainty));
+  // Low and high are as far as both say together.
+  CHECK(combined(step, two)->low == Approx(step->low - (two->value - two->low)));
+  CHECK(combined(step, two)->high == Approx(step->high + two->high - two->value));
   CHECK(combined(step, two)->status == LimitStatus::settles);
   CHECK(combined(step, wanders)->status == LimitStatus::wanders);
   CHECK(combined(step, one)->uncertainty == step->uncertainty);

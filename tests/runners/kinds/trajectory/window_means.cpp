@@ -54,6 +54,17 @@ TEST_CASE("window means: a free oscillation has the root mean square of a sine, 
   CHECK(measure(record, "window_impact_rate").value() == 0);
 }
 
+TEST_CASE("window means: a root mean square does not depend on the number of parts") {
+  Json text = bouncing_study();
+  std::vector<double> found;
+  for (const int parts : {8, 16, 64}) {
+    text["window"]["parts"] = parts;
+    found.push_back(measure(CaseRuns().first_of(text), "window_tip_rms").value());
+  }
+  // 6400 steps in 8, 16 or 64 equal parts: round-off.
+  for (const double one : found) CHECK(one == Approx(found.front()).epsilon(1e-12));
+}
+
 TEST_CASE("window means: twice the window is an interval narrower by about the root of two") {
   // Chaotic (ζ = 0, e = 0.8): parts are draws, so the ratio has a spread of its own of some 20 % for 64 parts.
   Json text = bouncing_study();
