@@ -75,11 +75,7 @@ bool is_table(const std::string& value) {
 
 /// "plate" of stops.0.upper, "strap" of bodies.strap.stiffness, "contact" of contact.stiffness; "" of one part.
 std::string owner_of(const std::string& column, const Json& study) {
-  std::vector<std::string> parts;
-  for (std::size_t at = 0, dot = 0; dot != std::string::npos; at = dot + 1) {
-    dot = column.find('.', at);
-    parts.push_back(column.substr(at, dot == std::string::npos ? dot : dot - at));
-  }
+  const std::vector<std::string> parts = column_parts(column);
   if (parts.size() < 2) return "";
   if (parts.front() == "bodies") return parts[1];
   const auto stop = number_in(parts[1]);

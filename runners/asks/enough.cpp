@@ -145,7 +145,7 @@ class Enough {
     if (out.enough && (!one.unknown().empty() || one.doubt * *one.u() > asked || doubtful(line.point))) {
       out.known = out.enough = false;
       out.why = !one.unknown().empty()         ? one.unknown()
-                : one.doubt * *one.u() > asked ? "it " + one.motion
+                : one.doubt * *one.u() > asked ? "it " + one.unsettled()
                                                : "the runs are doubtful";
       return out;
     }
@@ -180,10 +180,11 @@ class Enough {
   }
 
   /// The seeds of these windows, or the windows of these seeds, that a half-width of the mean takes. Of n seeds it is
-  /// t₀.₉₇₅(n−1)/√n of their scatter, of a window T it falls as 1/√T.
+  /// t₀.₉₇₅(n−1)/√n of their scatter; told by each seed's own interval, and of a window T, it falls as 1/√n, 1/√T.
   void draws_for(Need& out, const Estimate& one, double half) const {
     const double longer = std::pow(*one.sampling / half, 2);
-    if (one.seeds > 1) {
+    if (one.seeds > 1 && !one.scattered) out.seeds = std::ceil(longer * static_cast<double>(one.seeds));
+    if (one.seeds > 1 && one.scattered) {
       const double scatter = *one.sampling / half_interval_over_scatter(one.seeds);
       constexpr std::size_t fewest = 2, large = 200;  // beyond it t changes no more
       std::size_t n = fewest;
@@ -192,7 +193,9 @@ class Enough {
       out.seeds = n < large ? static_cast<double>(n) : two_digits_above(static_cast<double>(n) * beyond * beyond);
     }
     if (evidence_.window() > 0) out.duration = longer * evidence_.window();
-    if (const double kept = evidence_.kept_periods(); kept > 0) out.periods = two_digits_above(longer * kept);
+    // An orbit repeats in one period at least.
+    if (const double kept = evidence_.kept_periods(); kept > 0)
+      out.periods = std::max(1.0, two_digits_above(longer * kept));
     // A longer window of a load that repeats holds nothing new.
     if (out.duration && *out.duration > evidence_.repeats_after()) {
       out.duration.reset();
@@ -278,6 +281,15 @@ class Enough {
   Lines lines_;
 };
 
+void check_enough(const Ask& ask, const Study& study) {
+  check_subject(ask, study);
+  // Nothing refines what each step and mesh has for itself.
+  if (const MeasureInfo* info = measure_info(ask.subject()); info && info->of_each_size)
+    throw InputError(ask.pointer(), quote(ask.subject()) +
+                                        " is told of each step and mesh, which are levels here: it has no interval; "
+                                        "ask {\"cheapest\": …} or {\"value\": …}");
+}
+
 std::string doubt_enough(const Ask&, const Study& study) {
   const Planned plan = planned(study);
   return plan.steps == 1 ? "one step only: which step would do is not told" : "";
@@ -292,7 +304,7 @@ const Verb& enough_verb() {
       {keys::of_form(Field::Form::text, "enough", std::nullopt, "The measure."),
        keys::of_form(Field::Form::share, "within", std::nullopt, "The half-width of its interval as a share of it.")},
       "",
-      check_subject,
+      check_enough,
       doubt_enough,
       [](const Ask& ask, const Evidence& evidence) { return Enough(ask, evidence).answer(); }};
   return verb;

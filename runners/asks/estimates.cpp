@@ -66,12 +66,23 @@ std::vector<SizedValue> along(const std::map<Size, BySeed>& values, const Size& 
   return out;
 }
 
+/// The coarser size over the finest, of one refinement; 1 where there is none.
+double last_ratio(const std::map<Size, BySeed>& values, const Size& finest, bool steps) {
+  double ratio = INFINITY;
+  for (const auto& [size, by_seed] : values) {
+    if (steps ? size.second != finest.second : size.first != finest.first) continue;
+    const double own = steps ? size.first / finest.first : finest.second / size.second;
+    if (own > 1) ratio = std::min(ratio, own);
+  }
+  return std::isfinite(ratio) ? ratio : 1;
+}
+
 std::optional<double> left_by(const std::optional<Limit>& limit) {
   return limit && limit->uncertainty && std::isfinite(*limit->uncertainty) ? limit->uncertainty : std::nullopt;
 }
 
 /// Half the interval of the mean at one size: of many draws between them, of few what each knows of itself.
-std::optional<double> sampling_of(const BySeed& draws, const BySeed* halves) {
+void put_sampling(Estimate& out, const BySeed& draws, const BySeed* halves) {
   std::vector<double> values, own;
   for (const auto& [seed, value] : draws) {
     values.push_back(value);
@@ -82,9 +93,11 @@ std::optional<double> sampling_of(const BySeed& draws, const BySeed* halves) {
   if (all && values.size() < few) {
     double squares = 0;
     for (const double one : own) squares += one * one;
-    return std::sqrt(squares) / static_cast<double>(own.size());
+    out.sampling = std::sqrt(squares) / static_cast<double>(own.size());
+    return;
   }
-  return half_interval(values);
+  out.sampling = half_interval(values);
+  out.scattered = out.sampling.has_value();
 }
 
 }  // namespace
@@ -117,11 +130,21 @@ Estimate estimate_of(const std::map<Size, BySeed>& values, const std::map<Size, 
                                                   : "wanders") +
                    " with the " + what;
   }
+  // Of two sizes three times what first order leaves, 3 |d|/(r − 1) (Roache, 1994), where u is |d|.
+  constexpr double of_two = 3;
+  for (const bool steps : {true, false}) {
+    const std::optional<Limit>& limit = steps ? limits.step : limits.mesh;
+    if (!limit || limit->status != LimitStatus::two) continue;
+    const double ratio = last_ratio(values, finest, steps);
+    if (ratio <= 1 || of_two <= ratio - 1) continue;
+    out.doubt = std::max(out.doubt, of_two / (ratio - 1));
+    if (out.few.empty()) out.few = std::string("is known by two ") + (steps ? "steps" : "meshes") + " alone";
+  }
   if (out.grows) out.motion = "grows without bound";
   out.vanishes = limits.step && limits.step->status == LimitStatus::vanishes;
   out.order = limits.step ? limits.step->order : std::nullopt;
   const auto own = halves.find(finest);
-  out.sampling = sampling_of(draws, own == halves.end() ? nullptr : &own->second);
+  put_sampling(out, draws, own == halves.end() ? nullptr : &own->second);
   return out;
 }
 

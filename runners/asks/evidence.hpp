@@ -21,14 +21,18 @@ struct Estimate {
   double value = 0;                  ///< at the finest step and mesh; of seeds their mean
   std::optional<double> step, mesh;  ///< what each refinement leaves; nothing of a single size
   std::optional<double> sampling;    ///< half the 95 % interval of a mean; nothing where none is drawn
+  bool scattered = false;            ///< whether that is told by the scatter between seeds
   bool grows = false;                ///< without bound as it is refined
   bool vanishes = false;             ///< falls to zero with the step
   std::string motion;                ///< "still falls with the step" of what is not settled
+  std::string few;                   ///< "is known by two steps alone", where they leave more than u
   double doubt = 1;                  ///< of what is not settled: so many times u may be between it and its limit
   std::optional<double> order;       ///< in the step
   std::size_t steps = 1, meshes = 1, seeds = 1;
   bool has_step = true;  ///< whether its study has a step to refine
   bool beyond = false;   ///< all that is known is that it lies above `value`, where the study stopped looking
+  /// Why it may be farther than u from its limit; "" where it is not.
+  const std::string& unsettled() const { return motion.empty() ? few : motion; }
   /// What is not known at all: "one step"; "" where u holds all.
   std::string unknown() const;
   /// The sum of what is known; nothing where it grows, or where nothing is known.

@@ -27,7 +27,7 @@ std::string why_open(const Line& line, const Bounds& bounds) {
   if (!one.unknown().empty()) return one.unknown();
   const bool all = one.has_interval() && bounds.holds(one.least()) && bounds.holds(one.most());
   const bool within = !bounds.holds(one.low()) || !bounds.holds(one.high());
-  if (!all && !within) return "it " + one.motion;
+  if (!all && !within) return "it " + one.unsettled();
   return all ? "one seed is too near to it" : "the limit lies within its interval";
 }
 
@@ -75,11 +75,11 @@ std::pair<std::string, std::vector<double>> range_of(const Lines& lines, const B
   std::string text;
   if (bounds.below) {
     at.push_back(*bounds.below * lines.words.factor);
-    text = "below " + lines.number(*bounds.below);
+    text = "below " + lines.given(*bounds.below);
   }
   if (bounds.above) {
     at.push_back(*bounds.above * lines.words.factor);
-    text += (text.empty() ? "" : " and ") + ("above " + lines.number(*bounds.above));
+    text += (text.empty() ? "" : " and ") + ("above " + lines.given(*bounds.above));
   }
   return {text, at};
 }

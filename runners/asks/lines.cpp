@@ -35,6 +35,11 @@ std::string Lines::number(double value, std::optional<double> u) const {
   return answers::value_text(words, value, u);
 }
 
+std::string Lines::given(double value) const {
+  constexpr int all = 12;  // what a decimal number times a power of ten keeps
+  return answers::short_number(words.factor * value, all) + (words.unit.empty() ? "" : " " + words.unit);
+}
+
 VerdictRow Lines::row(const Line& line) const {
   VerdictRow out;
   out.measure = line.measure;
@@ -236,6 +241,8 @@ void check_choice(const Ask& ask, const Study& study, const std::string& key, co
     }
   }
   if (std::find(varying.begin(), varying.end(), choice) != varying.end()) return;
+  // Seeds are draws: no verb takes them.
+  std::erase(varying, seed_axis);
   const std::string expected =
       varying.empty() ? "; no choice of this study varies" : "; expected one of " + quoted_list(varying);
   if (std::find(fixed.begin(), fixed.end(), choice) != fixed.end())

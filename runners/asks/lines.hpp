@@ -33,6 +33,8 @@ struct Lines {
   /// A value of this measure in words, with its unit.
   std::string text(const Estimate& estimate) const;
   std::string number(double value, std::optional<double> u = {}) const;
+  /// A value that the user gave, with all its digits.
+  std::string given(double value) const;
   /// The line as a row, without a verdict.
   VerdictRow row(const Line& line) const;
 };

@@ -66,7 +66,9 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
     };
     // One draw: no surer than if the two were drawn apart. Of several, differences under one load tell.
     const auto a = half(first), b = half(second);
-    if (a && b && draws.size() == 1) halves[*finest][seed] = std::hypot(*a, *b);
+    // What is the same to the last bit, interval and all, is one draw.
+    const bool same = difference == 0 && a == b;
+    if (a && b && draws.size() == 1) halves[*finest][seed] = same ? 0 : std::hypot(*a, *b);
   }
   const double floor = std::max(first.floor, second.floor);
   const bool has_step = first.estimate && first.estimate->has_step;
@@ -102,9 +104,9 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
   out.share = share.value;
   out.share_u = left_open(share, both(1 + std::abs(share.value), std::abs(out.base)), round_off);
   out.share_most = left_open(share, both(1 + std::abs(share.value), std::abs(out.base), true), round_off, share.doubt);
-  out.motion = share.motion;
+  out.motion = share.unsettled();
   for (const Point* point : {&first, &second})
-    if (out.motion.empty() && point->estimate) out.motion = point->estimate->motion;
+    if (out.motion.empty() && point->estimate) out.motion = point->estimate->unsettled();
   out.unknown = out.share_u ? "" : why_not(share);
   return out;
 }

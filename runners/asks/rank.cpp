@@ -22,6 +22,7 @@ struct Order {
   std::string level;
   std::vector<const Line*> lines;
   std::vector<std::string> names;
+  std::size_t without = 0;  ///< that ran and have no value: each may be larger than all others
   /// Groups of neighbours that are not told apart, as places in `lines`.
   std::vector<std::vector<std::size_t>> groups;
 };
@@ -58,7 +59,11 @@ class Ranking {
       const std::string level = level_of(line);
       Order& order = orders[level];
       order.level = level;
-      if (line.known()) order.lines.push_back(&line);
+      if (line.known())
+        order.lines.push_back(&line);
+      else if (std::any_of(line.point.cases.begin(), line.point.cases.end(),
+                           [](const CaseRecord* one) { return one->status == Status::done; }))
+        ++order.without;
     }
     orders_ = std::move(orders).list();
     for (auto& [key, order] : orders_) {
@@ -66,6 +71,9 @@ class Ranking {
                        [](const Line* a, const Line* b) { return a->estimate().value > b->estimate().value; });
       for (const Line* line : order.lines) order.names.push_back(name_of(*line));
       order.groups = grouped(order.lines);
+      if (order.without == 0) continue;
+      order.groups.assign(1, {});
+      for (std::size_t k = 0; k < order.lines.size(); ++k) order.groups.front().push_back(k);
     }
     // Where the axis says nothing, as of a stiffness beside rigid stops, nothing is ranked.
     std::erase_if(orders_, [](const auto& one) {
@@ -88,11 +96,11 @@ class Ranking {
     }
     for (const auto& [key, order] : orders_) add_rows(out, order);
     const Order& first = orders_[told_].second;
-    const bool firm = first.groups.size() == first.lines.size();
+    const bool firm = is_firm(first);
     bool all_firm = true, any_told = false;
     std::size_t surely_first = 0;
     for (const auto& [key, order] : orders_) {
-      all_firm = all_firm && order.groups.size() == order.lines.size();
+      all_firm = all_firm && is_firm(order);
       any_told = any_told || order.groups.size() > 1;
       surely_first +=
           order.names.front() == first.names.front() && order.groups.front().size() == 1 && order.groups.size() > 1 ? 1
@@ -101,7 +109,8 @@ class Ranking {
     const auto [turned, turned_to] = turns();
     out.passes = !turned.empty() ? Verdict::no : all_firm ? Verdict::yes : Verdict::open;
     out.verdict = !turned.empty() ? "turned round" : all_firm ? "told apart" : any_told ? "in part" : "not told apart";
-    if (!firm && !first.lines.empty()) out.reason = first.lines.front()->estimate().unknown();
+    if (!firm && !first.lines.empty())
+      out.reason = first.without > 0 ? without_value(first) : first.lines.front()->estimate().unknown();
     std::vector<std::vector<std::string>> rest;
     if (!out.reason.empty()) rest.push_back({"; " + out.reason, "; " + short_reason(out.reason)});
     if (orders_.size() > 1)
@@ -112,13 +121,23 @@ class Ranking {
                                             surely_first, orders_.size())
                               : "; in no combination one is surely first",
            !turned.empty() ? fmt::format("; {} is first in {} of {}", turned_to, turned.size(), orders_.size())
-                           : fmt::format("; surely first in {} of {}", surely_first, orders_.size()),
+           : surely_first > 0
+               ? fmt::format("; {} surely first in {} of {}", first.names.front(), surely_first, orders_.size())
+               : "; none surely first",
            !turned.empty() ? "; another elsewhere" : ""});
-    out.sentence = in_thirty_words(capitalised_order(first), rest);
+    std::string must;
+    for (std::size_t most = 3; most > 0; --most)
+      if (must = capitalised_order(first, most); fits(must)) break;
+    out.sentence = in_thirty_words(must, rest);
     return out;
   }
 
  private:
+  static bool is_firm(const Order& order) { return order.without == 0 && order.groups.size() == order.lines.size(); }
+  static std::string without_value(const Order& order) {
+    return fmt::format("{} {} no value", order.without, order.without == 1 ? "has" : "have");
+  }
+
   /// All else, "HRZ, end"; what is ranked.
   std::string level_of(const Line& line) const {
     const std::string level = evidence_.level(line.point.first(), others_),
@@ -141,8 +160,7 @@ class Ranking {
   }
 
   /// "Largest wear power: p2, 3.1 ± 0.2 mW, then p1, 1.2 ± 0.1 mW; p3 and p4 are not told apart".
-  std::string capitalised_order(const Order& order) const {
-    constexpr std::size_t most = 3;
+  std::string capitalised_order(const Order& order, std::size_t most) const {
     std::vector<std::string> parts;
     for (std::size_t g = 0; g < std::min(order.groups.size(), most); ++g) {
       const std::vector<std::size_t>& group = order.groups[g];
@@ -150,7 +168,8 @@ class Ranking {
       for (const std::size_t k : group) names.push_back(order.names[k]);
       const Estimate& top = order.lines[group.front()]->estimate();
       parts.push_back(group.size() == 1 ? fmt::format("{} ({})", names.front(), lines_.text(top))
-                                        : fmt::format("{}, not told apart (to {})", some_of(names), lines_.text(top)));
+                                        : fmt::format("{}, not told apart (to {})", some_of(names, most > 1 ? 2 : 1),
+                                                      lines_.text(top)));
     }
     const std::size_t more = order.groups.size() > most ? order.groups.size() - most : 0;
     std::string what = lines_.words.words;
@@ -177,14 +196,31 @@ class Ranking {
     return out;
   }
 
+  /// Why a line has no place of its own: intervals touch, or one is not settled and may be farther off.
+  static std::string why_together(const Order& order, const std::vector<std::size_t>& group, std::size_t k) {
+    const Estimate& own = order.lines[k]->estimate();
+    std::string moving;
+    for (const std::size_t other : group) {
+      const Estimate& one = order.lines[other]->estimate();
+      if (other != k && own.low() <= one.high() && one.low() <= own.high())
+        return "its interval touches that of a neighbour";
+      if (other != k && one.doubt > 1 && moving.empty()) moving = "a neighbour " + one.unsettled();
+    }
+    return own.doubt > 1 ? "it " + own.unsettled() : moving.empty() ? "a neighbour has no interval" : moving;
+  }
+
   void add_rows(Answered& out, const Order& order) const {
     std::size_t place = 1;
     for (const std::vector<std::size_t>& group : order.groups) {
       for (const std::size_t k : group) {
         VerdictRow row = lines_.row(*order.lines[k]);
-        row.verdict =
-            group.size() == 1 ? std::to_string(place) : fmt::format("{} to {}", place, place + group.size() - 1);
-        if (group.size() > 1 && row.reason.empty()) row.reason = "its interval touches that of a neighbour";
+        row.verdict = order.without > 0   ? word(Verdict::open)
+                      : group.size() == 1 ? std::to_string(place)
+                                          : fmt::format("{} to {}", place, place + group.size() - 1);
+        if (row.reason.empty() && order.without > 0)
+          row.reason = without_value(order);
+        else if (row.reason.empty() && group.size() > 1)
+          row.reason = why_together(order, group, k);
         out.rows.push_back(std::move(row));
       }
       place += group.size();
@@ -216,7 +252,9 @@ void check_rank(const Ask& ask, const Study& study) {
     return;
   }
   check_subject(ask, study);
-  if (study.resolved.at("scene").at("stops").is_array() && did_you_mean(over, {over_stops}) != "")
+  const Json& stops = study.resolved.at("scene").at("stops");
+  if (stops.is_array() && stops.size() > 1 && did_you_mean(over, {over_stops}) != "" &&
+      std::find(study.columns.begin(), study.columns.end(), over) == study.columns.end())
     throw InputError(ask.pointer("over"),
                      "no choice of this study is called " + quote(over) + did_you_mean(over, {over_stops}));
   check_choice(ask, study, "over", over);

@@ -23,11 +23,11 @@ struct Condition {
   /// "is always below 3 N".
   std::string text(const Lines& lines, const std::string& adverb = "") const {
     return (is_plural(lines.words.words) ? "are " : "is ") + adverb +
-           (passes && adverb.empty() ? lines.number(*is)
-            : passes                 ? "above " + lines.number(*is)
-            : is                     ? lines.number(*is)
-            : below                  ? "below " + lines.number(*below)
-                                     : "above " + lines.number(*above));
+           (passes && adverb.empty() ? lines.given(*is)
+            : passes                 ? "above " + lines.given(*is)
+            : is                     ? lines.given(*is)
+            : below                  ? "below " + lines.given(*below)
+                                     : "above " + lines.given(*above));
   }
 };
 
@@ -54,10 +54,9 @@ struct Series {
   std::string level, stop;
   std::vector<std::pair<double, const Line*>> points;  // ascending
   std::vector<Verdict> states;
-  /// Where it changes: between which values; nothing where it does not.
-  std::optional<std::pair<double, double>> between;
-  bool becomes = true;  // from no to yes as the axis grows
-  bool monotone = true;
+  /// Where it changes: between which values, in their order.
+  std::vector<std::pair<double, double>> between = {};
+  bool becomes = true;    // from no to yes as the axis grows, at the first of these
   std::string what = {};  // of one without a threshold: "always", "never", "not told"
 
   bool known() const {
@@ -77,17 +76,13 @@ void find_change(Series& series) {
     series.what = "not told";
     return;
   }
-  std::size_t changes = 0, at = 0;
   for (std::size_t k = 1; k < firm.size(); ++k)
-    if (series.states[firm[k]] != series.states[firm[k - 1]]) ++changes, at = k;
-  if (changes == 0) {
-    const bool all = firm.size() == series.states.size();
-    series.what = !all ? "not told" : series.states[firm.front()] == Verdict::yes ? "always" : "never";
-    return;
-  }
-  series.monotone = changes == 1;
-  series.becomes = series.states[firm[at]] == Verdict::yes;
-  series.between = {series.points[firm[at - 1]].first, series.points[firm[at]].first};
+    if (series.states[firm[k]] != series.states[firm[k - 1]])
+      series.between.emplace_back(series.points[firm[k - 1]].first, series.points[firm[k]].first);
+  series.becomes = series.states[firm.front()] == Verdict::no;
+  if (!series.between.empty()) return;
+  const bool all = firm.size() == series.states.size();
+  series.what = !all ? "not told" : series.states[firm.front()] == Verdict::yes ? "always" : "never";
 }
 
 class Threshold {
@@ -131,7 +126,8 @@ class Threshold {
     // Of a series without any value what is left out says all.
     std::vector<const Series*> with, not_monotone, without;
     for (const Series& series : series_)
-      if (series.known()) (!series.between ? without : series.monotone ? with : not_monotone).push_back(&series);
+      if (series.known())
+        (series.between.empty() ? without : series.between.size() == 1 ? with : not_monotone).push_back(&series);
     const std::size_t judged = with.size() + not_monotone.size() + without.size();
     const std::string what = condition_.text(lines_);
     const auto place = [&](const Series& one) {
@@ -141,23 +137,25 @@ class Threshold {
     if (!not_monotone.empty()) {
       out.passes = Verdict::no;
       out.verdict = "not monotone";
-      out.sentence =
-          fmt::format("Not monotone: {} {} in several ranges of {}{}{}.", lines_.words.words, what, axis_words(),
-                      place(*not_monotone.front()),
-                      not_monotone.size() < judged ? fmt::format(" ({} of {})", not_monotone.size(), judged) : "");
+      const Series& first = *not_monotone.front();
+      const std::string where =
+          place(first) + (not_monotone.size() < judged ? fmt::format(" ({} of {})", not_monotone.size(), judged) : "");
+      out.sentence = in_thirty_words(fmt::format("Not monotone: {} {}", lines_.words.words, ranges(first, what)),
+                                     {{where, place(first)}});
       return out;
     }
     if (with.empty()) return say_unchanged(out, without, what, place);
-    double low = with.front()->between->first, high = with.front()->between->second;
+    double low = with.front()->between.front().first, high = with.front()->between.front().second;
     // Thresholds differ where one bracket ends before another begins, or one turns the other way.
     double first_end = high, last_begin = low;
     bool differ = false;
     for (const Series* one : with) {
       differ = differ || one->becomes != with.front()->becomes;
-      low = std::min(low, one->between->first);
-      high = std::max(high, one->between->second);
-      last_begin = std::max(last_begin, one->between->first);
-      first_end = std::min(first_end, one->between->second);
+      const auto& [begin, end] = one->between.front();
+      low = std::min(low, begin);
+      high = std::max(high, end);
+      last_begin = std::max(last_begin, begin);
+      first_end = std::min(first_end, end);
     }
     differ = differ || first_end <= last_begin;
     out.passes = without.empty() ? Verdict::yes : Verdict::open;
@@ -167,8 +165,8 @@ class Threshold {
     if (!without.empty()) rest.push_back({unchanged(without, judged, place), unchanged(without, judged, nullptr)});
     if (!differ && with.size() > 1 && without.empty()) rest.push_back({in_all(with.size())});
     if (differ)
-      rest.push_back({fmt::format("; levels differ: {} and {}{}", x_text(first.between->first),
-                                  x_text(first.between->second), place(first)),
+      rest.push_back({fmt::format("; levels differ: {} and {}{}", x_text(first.between.front().first),
+                                  x_text(first.between.front().second), place(first)),
                       "; levels differ"});
     const std::string there = condition_.passes
                                   ? fmt::format("there, and {} beyond", first.becomes ? "larger" : "smaller")
@@ -179,6 +177,17 @@ class Threshold {
   }
 
  private:
+  /// "is above 2 m in one range of the pulsation, from 0.8–0.85 to 1.1–1.15 rad/s": each end lies between two values.
+  std::string ranges(const Series& of, const std::string& what) const {
+    constexpr std::size_t both_ends = 2;
+    if (of.between.size() > both_ends) return what + " in several ranges of " + axis_words();
+    const auto& [first, begin] = of.between.front();
+    const auto& [end, last] = of.between.back();
+    return fmt::format("{} in one range of {}, from {}–{} to {}–{}",
+                       of.becomes ? what : condition_.text(lines_, "not "), axis_words(), answers::short_number(first),
+                       answers::short_number(begin), answers::short_number(end), x_text(last));
+  }
+
   /// "; always with penalty; not told with 3 of 6": what those without a threshold are.
   static std::string unchanged(const std::vector<const Series*>& without, std::size_t judged,
                                const std::function<std::string(const Series&)>& place) {
@@ -238,7 +247,7 @@ class Threshold {
   /// "is never below 3 N"; of what passes a value the side on which it stays, "is always above 3 N".
   std::string always_text(const std::string& which) const {
     if (!condition_.passes || which == "always") return condition_.text(lines_, which + " ");
-    return (is_plural(lines_.words.words) ? "are always below " : "is always below ") + lines_.number(*condition_.is);
+    return (is_plural(lines_.words.words) ? "are always below " : "is always below ") + lines_.given(*condition_.is);
   }
 
   std::string x_text(double x) const {
@@ -260,9 +269,13 @@ class Threshold {
     row.level = series.level;
     row.stop = series.stop;
     row.unit = unit_.empty() ? "" : unit_.substr(1);
-    row.verdict = series.between ? (series.monotone ? "threshold" : "not monotone") : series.what;
-    if (series.between) row.low = series.between->first, row.high = series.between->second;
-    out.rows.push_back(std::move(row));
+    row.verdict = series.between.empty() ? series.what : series.between.size() == 1 ? "threshold" : "not monotone";
+    if (series.between.empty()) out.rows.push_back(row);
+    for (const auto& [low, high] : series.between) {
+      row.low = low;
+      row.high = high;
+      out.rows.push_back(row);
+    }
   }
 
   Json figure() const {
@@ -280,7 +293,7 @@ class Threshold {
       if (bound) at.push_back(*bound * lines_.words.factor);
     Json between = Json::array();
     for (const Series& series : series_)
-      if (series.between) between.push_back({series.between->first, series.between->second});
+      for (const auto& [low, high] : series.between) between.push_back({low, high});
     return {{"form", "along"},
             {"measure", lines_.words.words},
             {"unit", lines_.words.unit},

@@ -9,16 +9,6 @@
 namespace ricochet {
 namespace {
 
-std::vector<std::string> split(const std::string& column) {
-  std::vector<std::string> parts = {""};
-  for (const char c : column)
-    if (c == '.')
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  return parts;
-}
-
 // Where the study format has the key that a column is of.
 std::string pointer_of(const std::string& column) {
   std::string pointer = "/" + (column == residual_axis ? std::string("residual") : column);
@@ -126,8 +116,18 @@ std::string spoken_choice(const std::string& column) {
   return words.empty() ? column : words;
 }
 
+std::vector<std::string> column_parts(const std::string& column) {
+  std::vector<std::string> parts = {""};
+  for (const char c : column)
+    if (c == '.')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  return parts;
+}
+
 std::string axis_role(const std::string& column) {
-  const std::string first = split(column).front();
+  const std::string first = column_parts(column).front();
   return is_method_role(first) ? first : column;
 }
 
@@ -145,7 +145,7 @@ Column axis_meaning(const std::string& column, const Json& resolved) {
 std::vector<Column> axis_meanings(const Study& study, const Registry& registry) {
   std::vector<Column> columns;
   for (const std::string& column : study.columns) {
-    const std::vector<std::string> path = split(column);
+    const std::vector<std::string> path = column_parts(column);
     const bool method = path.size() > 1 && is_method_role(path.front());
     columns.push_back(
         method ? parameter_meaning(column, path.front(), column.substr(path.front().size() + 1), study, registry)

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <ricochet/contract/registry.hpp>
 #include <string>
+#include <vector>
 
 #include "runners/table/table.hpp"
 
@@ -14,6 +15,9 @@ struct Study;
 /// column names (`step`, `elements`, `support.amplitude`, …) in the study `resolved`. Of a method's parameter the
 /// format knows only whose it is; its unit is then "".
 Column axis_meaning(const std::string& column, const nlohmann::ordered_json& resolved);
+
+/// The parts of a column between its dots: stops, 0, upper of stops.0.upper.
+std::vector<std::string> column_parts(const std::string& column);
 
 /// The roles of methods that a study crosses: mass, contact, friction, time.
 const std::vector<std::string>& method_roles();

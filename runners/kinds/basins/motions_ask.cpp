@@ -78,6 +78,8 @@ class MotionShares {
                   {"at", Json::array()}};
     tell_aside(out);
     say(out);
+    if (!evidence_.study().varies("steps_per_period") && !told_.empty())
+      out.aside.emplace_back("One number of steps per period: intervals hold what the grid leaves open, not the step.");
     return out;
   }
 

@@ -66,6 +66,8 @@ class PointsAsk {
         parameter_(report::swept_parameter(evidence.results())) {
     parameter_.unit = report::shown_unit(parameter_.unit);
     for (const Json& one : ask.keys.at("points")) kinds_.insert(point_kind(one.get<std::string>()));
+    // A contact of stop_at and of special_points is any of these.
+    if (kinds_.contains("contact")) kinds_.insert({"first contact", "lift-off"});
     all_ = kinds_.contains("all");
     const Cases& owners = of.points.cases();
     std::map<std::string, std::size_t> best;
@@ -205,8 +207,8 @@ class PointsAsk {
     return std::max(away, known);
   }
 
-  /// The stable orbits that branches have at a value of the parameter: "period 1 and period 2"; "none", or "" where no
-  /// branch goes.
+  /// The stable orbits that branches have at a value of the parameter: "period 1 and period 2"; that none was followed,
+  /// or "" where no branch goes.
   std::string stable_at(const Followers& one, double value) const {
     std::set<std::string> stable;
     bool any = false;
@@ -219,7 +221,7 @@ class PointsAsk {
         if (*a.stable == *b.stable ? *a.stable : stable_between(one, branch, a, b, value))
           stable.insert(fmt::format("period {}", a.period));
       }
-    return stable.empty() ? (any ? "none" : "") : fmt::format("{}", fmt::join(stable, " and "));
+    return stable.empty() ? (any ? "none that was followed" : "") : fmt::format("{}", fmt::join(stable, " and "));
   }
 
   /// Between a stable and an unstable row of a branch: on the side of the point between them, else of their middle.
@@ -251,6 +253,7 @@ class PointsAsk {
     const auto side = [](const std::string& stable) { return stable.empty() ? "not followed" : stable; };
     parts.push_back(fmt::format("stable below: {}, above: {}", side(told.below), side(told.above)));
     if (!told.confirmed) parts.emplace_back("no second case confirms it");
+    if (!told.point->row.note.empty()) parts.push_back(told.point->row.note);
     if (told.point->name >= 0)
       for (const PointOrderRow& order : of_.orders)
         if (order.name == of_.points.names()[static_cast<std::size_t>(told.point->name)].text &&
@@ -373,12 +376,14 @@ class PointsAsk {
                         high = answers::short_number(told.value + told.more, digits);
       if (low != high) return fmt::format("{} between {} and {}", does, low, high);
     }
-    return fmt::format("{} at {}", does, point_value(told.value, told.confirmed ? std::optional(wide) : std::nullopt));
+    constexpr int few = 4;  // digits of what one case alone has
+    return fmt::format("{} at {}", does,
+                       told.confirmed ? point_value(told.value, wide) : answers::short_number(told.value, few));
   }
 
   /// How the branches of all methods end.
   struct Ends {
-    std::size_t branches = 0, known = 0, inside = 0, points = 0;
+    std::size_t branches = 0, known = 0, inside = 0, asked = 0, points = 0;
     const Followed *first = nullptr, *stopped = nullptr;  ///< of all; of those that stop inside the range
   };
 
@@ -391,6 +396,7 @@ class PointsAsk {
       for (const Followed& branch : one.branches) {
         if (ends.branches++ == 0) ends.first = &branch;
         ends.known += branch.end != nullptr;
+        ends.asked += branch.end && branch.end->ended == "asked";
         if (!branch.end || !end_words(branch.end->ended).empty()) continue;
         ++ends.inside;
         if (!ends.stopped) ends.stopped = &branch;
@@ -405,6 +411,8 @@ class PointsAsk {
                          answers::short_number(ends.stopped->end->parameter.value_or(ends.stopped->to), 6), unit());
     if (ends.branches == 1 && ends.first->end) return "the branch " + end_words(ends.first->end->ended);
     if (ends.known == 0) return "no end of a branch is told";
+    if (ends.inside == 0 && ends.asked > 0)
+      return fmt::format("{} of {} branches stop at a point of stop_at", ends.asked, ends.branches);
     if (ends.inside == 0) return fmt::format("all {} branches end at the range, closed or joined", ends.known);
     return fmt::format("{} of {} branches stop inside the range", ends.inside, ends.branches);
   }
@@ -437,7 +445,8 @@ class PointsAsk {
           {"Open: no periodic orbit was found: " + out.reason + ".", "Open: no periodic orbit was found."});
       return;
     }
-    const bool any = branches.points > 0, inside = branches.inside > 0;
+    // Beyond a point of stop_at nothing was looked for.
+    const bool any = branches.points > 0, inside = branches.inside + branches.asked > 0;
     out.passes = any ? asks::Verdict::yes : inside ? asks::Verdict::open : asks::Verdict::no;
     out.verdict = any ? "found" : inside ? "open" : "none";
     const std::string ends = text(branches);

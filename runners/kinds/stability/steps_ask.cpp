@@ -22,9 +22,10 @@ constexpr const char* no_bound = "none";
 /// What bounds the step of a case.
 enum class Bound { stop, mesh, marched, none, everywhere, unknown };
 
-const char* bound_word(Bound bound) {
+/// `meshed`: whether the structure has a mesh; an oscillator and matrices have none.
+const char* bound_word(Bound bound, bool meshed) {
   constexpr const char* words[] = {"the stop", "the mesh", "marches alone", "no limit", "no step is stable", "open"};
-  return words[static_cast<int>(bound)];
+  return bound == Bound::mesh && !meshed ? "the structure" : words[static_cast<int>(bound)];
 }
 
 struct StepLimit {
@@ -42,10 +43,23 @@ bool by_the_stop(double open, double closed) {
   return 2 * closed * closed < open * open;
 }
 
+/// A largest step in three digits, rounded down: a step that is read off a sentence must be allowed.
+std::string step_words(double step) {
+  const double digit = std::pow(10.0, std::floor(std::log10(step)) - 2);
+  constexpr double round_off = 1e-9;
+  return answers::short_number(std::floor(step / digit * (1 + round_off)) * digit, 3);
+}
+
 class StepsAsk {
  public:
   StepsAsk(const asks::Ask& ask, const asks::Evidence& evidence, const std::vector<LimitRow>& rows)
       : evidence_(evidence), study_(evidence.study()), cases_(evidence.cases(ask)), columns_(evidence.varying(cases_)) {
+    const Json& resolved = evidence.results().study;
+    const Json range = resolved.is_object() ? resolved.value("steps", Json::object()) : Json::object();
+    from_ = range.value("from", 0.0);
+    range_ = fmt::format("{} to {} s", answers::short_number(from_), answers::short_number(range.value("to", 0.0)));
+    const std::vector<std::string>& columns = evidence.results().columns;
+    meshed_ = resolved.contains("mesh") || std::find(columns.begin(), columns.end(), "elements") != columns.end();
     std::map<std::string, StepLimit> by_id;
     for (const LimitRow& row : rows) (row.closed ? by_id[row.id].closed : by_id[row.id].open) = row;
     for (const CaseRecord* one : cases_)
@@ -56,10 +70,6 @@ class StepsAsk {
         judge(limit);
         limits_.push_back(std::move(limit));
       }
-    const Json range =
-        evidence.results().study.is_object() ? evidence.results().study.value("steps", Json::object()) : Json::object();
-    range_ = fmt::format("{} to {} s", answers::short_number(range.value("from", 0.0)),
-                         answers::short_number(range.value("to", 0.0)));
     for (const RootRow& row : stability_roots_type().read(evidence.results().derived))
       if (row.twofold) double_roots_.insert(row.id);
   }
@@ -78,7 +88,7 @@ class StepsAsk {
       row.low = one.low;
       row.high = one.high;
       row.unit = "s";
-      row.verdict = bound_word(one.bound);
+      row.verdict = bound_word(one.bound, meshed_);
       row.reason = one.reason;
       row.cases = 1;
       row.left_out = 0;
@@ -99,11 +109,12 @@ class StepsAsk {
           fmt::format("Marches have another limit than the spectrum with {} of {}.", unlike, limits_.size()));
     say_mesh(out);
     say_gains(out);
-    if (!double_roots_.empty())
+    const Members twofold = members(
+        [&](const StepLimit& one) { return one.bound == Bound::none && double_roots_.contains(one.record->id); });
+    if (!twofold.empty())
       out.aside.push_back(
           fmt::format("A double root on the unit circle grows linearly, though no limit shows, in {} of {}.",
-                      members([&](const StepLimit& one) { return double_roots_.contains(one.record->id); }).size(),
-                      limits_.size()));
+                      twofold.size(), limits_.size()));
     say(out);
     return out;
   }
@@ -145,23 +156,25 @@ class StepsAsk {
         // No spectrum grows, and yet the scene does.
         out.bound = Bound::marched;
         out.step = own.observed;
-        parts.push_back(
-            fmt::format("every spectrum is stable; marches are to {} s", answers::short_number(*own.observed, 3)));
+        parts.push_back(fmt::format("every spectrum is stable; marches are to {} s", step_words(*own.observed)));
       } else if (step) {
         out.step = own.observed && own.agrees == false ? std::min(*step, *own.observed) : *step;
         if (own.observed) {
           out.low = std::min(*step, *own.observed);
           out.high = std::max(*step, *own.observed);
-          parts.push_back(fmt::format("predicted {} s, marched {} s", answers::short_number(*step, 3),
-                                      answers::short_number(*own.observed, 3)));
+          parts.push_back(fmt::format("predicted {} s, marched {} s", step_words(*step), step_words(*own.observed)));
         }
         if (predicted_alone(out)) parts.emplace_back("contact not marched");
         if (has_closed && open.predicted)
-          parts.push_back(fmt::format("without contact {} s", answers::short_number(*open.predicted, 3)));
+          parts.push_back(fmt::format("without contact {} s", step_words(*open.predicted)));
         if (!closed.id.empty() && closed.prediction.empty()) parts.emplace_back("the closed stop was not predicted");
       } else {
         parts.push_back("every step of the range is stable");
       }
+    }
+    if (out.step && *out.step < from_) {
+      out.bound = Bound::everywhere;
+      parts.emplace_back("the limit lies below the range");
     }
     out.reason = fmt::format("{}", fmt::join(parts, "; "));
   }
@@ -218,7 +231,7 @@ class StepsAsk {
       low = std::min(low, *limits_[k].step);
       high = std::max(high, *limits_[k].step);
     }
-    const std::string a = answers::short_number(low, 3), b = answers::short_number(high, 3);
+    const std::string a = step_words(low), b = step_words(high);
     return a == b ? a + " s" : a + " to " + b + " s";
   }
 
@@ -228,7 +241,9 @@ class StepsAsk {
     out.passes = limits_.empty() || bounds.contains(Bound::unknown) ? asks::Verdict::open
                  : bounds.contains(Bound::everywhere)               ? asks::Verdict::no
                                                                     : asks::Verdict::yes;
-    out.verdict = limits_.empty() ? "open" : bounds.size() == 1 ? bound_word(bounds.begin()->first) : "by level";
+    out.verdict = limits_.empty()      ? "open"
+                  : bounds.size() == 1 ? bound_word(bounds.begin()->first, meshed_)
+                                       : "by level";
     if (limits_.empty()) {
       out.reason = "no case has a spectrum";
       out.sentence = "Open: " + out.reason + ".";
@@ -248,7 +263,11 @@ class StepsAsk {
       for (const auto& [bound, of] : bounds)
         if (of.size() >= bounds.at(largest).size()) largest = bound;
       std::string verb = " bounds the step";  // once
-      for (const auto& [bound, of] : bounds) {
+      std::vector<std::pair<Bound, Members>> told(bounds.begin(), bounds.end());
+      // What is elsewhere follows what is named.
+      if (brief == 1)
+        std::stable_partition(told.begin(), told.end(), [&](const auto& one) { return one.first != largest; });
+      for (const auto& [bound, of] : told) {
         const std::string who = of.size() == limits_.size() ? (limits_.size() == 1 ? "" : " with every case")
                                 : brief == 2 ? fmt::format(" in {} of {} cases", of.size(), limits_.size())
                                 : brief == 1 && bound == largest && bounds.size() > 1 ? " elsewhere"
@@ -256,8 +275,9 @@ class StepsAsk {
         switch (bound) {
           case Bound::stop:
           case Bound::mesh:
-            parts.push_back(fmt::format("{}{}{} ({})", bound == Bound::stop ? "the closed stop" : "the mesh", verb, who,
-                                        steps(of)));
+            parts.push_back(fmt::format("{}{}{} ({})",
+                                        bound == Bound::stop ? "the closed stop" : bound_word(bound, meshed_), verb,
+                                        who, steps(of)));
             verb.clear();
             break;
           case Bound::marched:
@@ -267,7 +287,7 @@ class StepsAsk {
             parts.push_back(fmt::format("no limit{} from {}", who, range_));
             break;
           case Bound::everywhere:
-            parts.push_back("no stable step" + who);
+            parts.push_back(fmt::format("no stable step{} from {}", who, range_));
             break;
           case Bound::unknown:
             parts.push_back("open" + who);
@@ -285,6 +305,8 @@ class StepsAsk {
   std::vector<std::string> columns_;
   std::vector<StepLimit> limits_;
   std::string range_;
+  double from_ = 0;  ///< s, of the range
+  bool meshed_ = true;
   std::set<std::string> double_roots_;
 };
 

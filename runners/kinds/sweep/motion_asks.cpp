@@ -66,6 +66,7 @@ struct MotionPair {
   MotionCounts counts;
   double share = 0, low = 0, high = 0;          ///< of the places
   asks::Verdict verdict = asks::Verdict::open;  ///< whether it changes as much as asked
+  bool one_step = false;                        ///< what the step changes is not known
   std::string reason;
 };
 
@@ -108,8 +109,6 @@ class MotionEffect {
       (one.verdict == asks::Verdict::yes ? yes : one.verdict == asks::Verdict::no ? no : open).push_back(&one);
     }
     say(out, yes, no, open);
-    if (!study_.varies("steps_per_period") && !pairs_.empty())
-      out.aside.emplace_back("One number of steps per period: what the step changes is not known.");
     out.figure = {{"form", "bars"},
                   {"measure", places_ + " of another motion"},
                   {"unit", "%"},
@@ -167,9 +166,11 @@ class MotionEffect {
     }
     pair.share = static_cast<double>(pair.counts.changed) / static_cast<double>(pair.counts.both);
     // Shares of places that differ are a distance: what refinement moves on both sides may add to it or take from it.
-    const double moved = moved_by_refinement(*pair.first, one) + moved_by_refinement(*pair.second, other);
-    pair.low = std::max(0.0, static_cast<double>(pair.counts.changed) / all - moved);
-    pair.high = std::min(1.0, static_cast<double>(pair.counts.changed + pair.counts.open) / all + moved);
+    const auto first = moved_by_refinement(*pair.first, one), second = moved_by_refinement(*pair.second, other);
+    const double moved = first.value_or(0) + second.value_or(0), decided = static_cast<double>(pair.counts.both),
+                 changed = static_cast<double>(pair.counts.changed);
+    pair.low = std::max(0.0, changed - moved * decided) / all;
+    pair.high = std::min(1.0, (changed + static_cast<double>(pair.counts.open) + moved * decided) / all);
     if (pair.low >= from_ && pair.share > 0)
       pair.verdict = asks::Verdict::yes;
     else if (pair.high < from_ || pair.high == 0)
@@ -177,13 +178,29 @@ class MotionEffect {
     std::vector<std::string> parts = {fmt::format("{} of {} {}", pair.counts.changed, pair.counts.both, places_)};
     if (pair.counts.open > 0) parts.push_back(fmt::format("{} open", pair.counts.open));
     if (moved > 0) parts.push_back("refinement moves " + answers::percent(moved));
+    if (!owns("steps_per_period") && !owns("step") && !(first && second)) {
+      pair.verdict = asks::Verdict::open;
+      pair.one_step = true;
+      parts.emplace_back("one number of steps per period: what it changes is not known");
+    } else if (agrees_ && pair.verdict == asks::Verdict::no && untouched(*pair.first) && untouched(*pair.second)) {
+      pair.verdict = asks::Verdict::open;
+      parts.emplace_back("no stop is touched: nothing tells them apart");
+    }
     pair.reason = fmt::format("{}", fmt::join(parts, "; "));
     pairs_.push_back(std::move(pair));
   }
 
-  /// Share of the places that the last refinement of step and of mesh changes.
-  double moved_by_refinement(const CaseRecord& finest, const Cases& of) const {
-    double out = 0;
+  bool untouched(const CaseRecord& one) const {
+    const std::vector<GridCell>& places = *motions_(one);
+    return std::none_of(places.begin(), places.end(), [](const GridCell& cell) {
+      return cell.present && cell.motion.decided() && cell.motion.regime != Regime::no_contact;
+    });
+  }
+
+  /// Share of the places that the last refinement of step and of mesh changes; nothing where no step is coarser.
+  std::optional<double> moved_by_refinement(const CaseRecord& finest, const Cases& of) const {
+    std::optional<double> by_step;
+    double by_mesh = 0;
     for (const bool step : {true, false}) {
       const CaseRecord* before = nullptr;
       for (const CaseRecord* one : of) {
@@ -193,9 +210,11 @@ class MotionEffect {
       }
       if (!before) continue;
       const MotionCounts counts = compare_motions(*motions_(*before), *motions_(finest));
-      if (counts.both > 0) out += static_cast<double>(counts.changed) / static_cast<double>(counts.both);
+      const double share =
+          static_cast<double>(counts.changed) / static_cast<double>(std::max<std::size_t>(1, counts.both));
+      if (counts.both > 0) step ? void(by_step = share) : void(by_mesh = share);
     }
-    return out;
+    return by_step ? std::optional(*by_step + by_mesh) : std::nullopt;
   }
 
   std::string own_level(const CaseRecord& one) const { return study_.words(one, own_); }
@@ -255,8 +274,13 @@ class MotionEffect {
                                                                                : asks::Verdict::no;
       out.passes = shown;
       out.verdict = asks::word(shown);
-      return std::string(shown == asks::Verdict::yes ? "Yes" : "No");
+      return std::string(shown == asks::Verdict::yes ? "Yes" : "No") + (!agrees_ ? ""
+                                                                        : shown == asks::Verdict::yes
+                                                                            ? ", they agree"
+                                                                            : ", they do not agree");
     };
+    // Of what changes less than asked.
+    const std::string under = from_ > 0 ? fmt::format(", {} {}", agrees_ ? "within" : "less than", least) : "";
     if (all == 0) {
       word(asks::Verdict::open);
       out.reason = "no two cases differ in it alone";
@@ -269,12 +293,12 @@ class MotionEffect {
     } else if (no.size() == all) {
       const std::string first = word(asks::Verdict::no);
       out.sentence = asks::fitting(
-          {fmt::format("{}: {} changes the motion of {}.", first, choice, each(no)),
+          {fmt::format("{}: {} changes the motion of {}{}.", first, choice, each(no), under),
            fmt::format(
-               "{}: {} changes the motion of {} at most, in {} pairs.", first, choice,
+               "{}: {} changes the motion of {} at most, in {} pairs{}.", first, choice,
                range({*std::max_element(no.begin(), no.end(),
                                         [](const MotionPair* a, const MotionPair* b) { return a->share < b->share; })}),
-               all)});
+               all, under)});
     } else if (!yes.empty()) {
       // Agreement is asked of all pairs; a change that shows somewhere is one in part.
       word(agrees_ ? asks::Verdict::yes : no.empty() ? asks::Verdict::open : asks::Verdict::yes);
@@ -282,17 +306,18 @@ class MotionEffect {
         out.passes = no.empty() ? asks::Verdict::open : asks::Verdict::no;
         out.verdict = "in part";
       }
-      const std::string first = agrees_ ? "No" : "In part",
+      const std::string first = agrees_ ? "No, they do not agree" : "In part",
                         rest = open.empty() ? "" : fmt::format("; {} open", open.size());
       out.sentence = asks::fitting({fmt::format("{}: {} changes the motion of {}{}.", first, choice, each(yes), rest),
                                     fmt::format("{}: {} changes the motion of {} in {} of {} pairs{}.", first, choice,
                                                 range(yes), yes.size(), all, rest)});
     } else {
       word(asks::Verdict::open);
-      out.reason = open.front()->reason;
+      const bool one_step = std::all_of(open.begin(), open.end(), [](const MotionPair* one) { return one->one_step; });
+      out.reason = one_step ? "one number of steps per period" : open.front()->reason;
       out.sentence = asks::fitting(
-          {fmt::format("Open: whether {} changes the motion of {} of the {} is not told: {} ({}).", choice, least,
-                       places_, out.reason, pair_words(*open.front())),
+          {fmt::format("Open: whether {} changes the motion of {} of the {} is not told: {}{}.", choice, least, places_,
+                       out.reason, one_step ? "" : " (" + pair_words(*open.front()) + ")"),
            fmt::format("Open: whether {} changes the motion of {} of the {} is not told in {} of {} pairs.", choice,
                        least, places_, open.size(), all)});
     }

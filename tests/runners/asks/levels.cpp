@@ -134,6 +134,115 @@ TEST_CASE("asks: what an axis says nothing of is not ranked, and no level is \"n
   for (const VerdictRow& row : effect.rows) CHECK_FALSE(row.level.ends_with("against "));
 }
 
+TEST_CASE("asks: two sizes decide three times what first order leaves of them") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.error = 0.2;
+  const auto below = [&](const std::vector<double>& steps, double bound) {
+    made.steps = steps;
+    return answer_of(made.results(), {{"limit", "impulse"}, {"below", bound}});
+  };
+  // Halved: 1.2, 1.1; u = 0.1 decides 0.3 away. A tenth: 1.2, 1.02; u = 0.18 is eight times what is left.
+  const Answered near = below({4e-3, 2e-3}, 1.35);
+  INFO(near.sentence);
+  CHECK(near.passes == Verdict::open);
+  CHECK(near.reason == "it is known by two steps alone");
+  CHECK(below({4e-3, 2e-3}, 1.45).passes == Verdict::yes);
+  CHECK(below({4e-3, 4e-4}, 1.25).passes == Verdict::yes);
+}
+
+TEST_CASE("asks: a limit is said with all digits that were given") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.error = 1e-7;
+  for (const double below : {1.0001, 1.00005, 1.0000211}) {
+    const Answered answered = answer_of(made.results(), {{"limit", "impulse"}, {"below", below}});
+    INFO(answered.sentence);
+    CHECK(answered.passes == Verdict::yes);
+    CHECK(answered.sentence.find(fmt::format("below {} ", below)) != std::string::npos);
+  }
+}
+
+TEST_CASE("asks: what holds in one range of an axis has both its ends") {
+  Made made;
+  made.choices = {{"stops.upper", {"1", "2", "3", "4", "5", "6", "7"}}};
+  made.error = 1e-6;
+  const auto answered = [&](const std::vector<double>& values) {
+    made.truth = [values](const std::vector<std::size_t>& at) { return values[at[0]]; };
+    StudyResults results = made.results();
+    for (CaseRecord& record : results.cases)
+      record.axes[0].second = std::stod(record.axes[0].second.get<std::string>());
+    return answer_of(results, {{"threshold", "impulse"}, {"above", 1.5}, {"along", "stops.upper"}});
+  };
+  const auto brackets = [](const Answered& of) {
+    return std::count_if(of.rows.begin(), of.rows.end(),
+                         [](const VerdictRow& row) { return row.verdict == "not monotone"; });
+  };
+  const Answered one = answered({1, 1, 2, 2, 2, 1, 1}), but_one = answered({2, 2, 1, 1, 2, 2, 2}),
+                 several = answered({1, 2, 2, 1, 1, 2, 2});
+  INFO(one.sentence << "\n" << but_one.sentence << "\n" << several.sentence);
+  CHECK(brackets(one) == 2);
+  CHECK(one.sentence.find("is above 1.5 N s in one range of") != std::string::npos);
+  CHECK(one.sentence.find("from 2–3 to 5–6.") != std::string::npos);
+  CHECK(but_one.sentence.find("is not above 1.5 N s in one range of") != std::string::npos);
+  CHECK(brackets(several) == 3);
+  CHECK(several.sentence.find("in several ranges") != std::string::npos);
+}
+
+TEST_CASE("asks: beside a member without a value nothing has a place") {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1", "m2"}}};
+  made.truth = [](const std::vector<std::size_t>& at) { return static_cast<double>(at[0]); };
+  made.error = 1e-6;
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases)
+    if (record.axes[0].second == "m2") record.measures.clear();
+  const Answered open = answer_of(results, {{"rank", "impulse"}, {"over", "mass"}});
+  INFO(open.sentence);
+  CHECK(open.passes == Verdict::open);
+  for (const VerdictRow& row : open.rows) CHECK(row.verdict == "open");
+  // What is refused is no member.
+  for (CaseRecord& record : results.cases)
+    if (record.axes[0].second == "m2") record.status = Status::refused;
+  CHECK(answer_of(results, {{"rank", "impulse"}, {"over", "mass"}}).passes == Verdict::yes);
+}
+
+TEST_CASE("asks: what is not settled, and touches no neighbour, is told as that") {
+  // Each rises by a thousandth at each halving, five thousandths apart.
+  const StudyResults results = two_methods({0.914, 0.915, 0.916, 0.917}, {0.909, 0.91, 0.911, 0.912});
+  const Answered ranked = answer_of(results, {{"rank", "impulse"}, {"over", "mass"}});
+  INFO(ranked.sentence);
+  CHECK(ranked.verdict == "not told apart");
+  for (const VerdictRow& row : ranked.rows) CHECK(row.reason == "it still rises with the step");
+}
+
+TEST_CASE("asks: seeds that know their own intervals fall with the root of their number") {
+  Made made;
+  made.choices = {{seed_axis, {"1", "2", "3"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) record.measures.emplace_back("confidence.impulse", 0.2);
+  const Answered answered = answer_of(results, {{"enough", "impulse"}, {"within", 0.03}});
+  const auto would = std::find_if(answered.rows.begin(), answered.rows.end(),
+                                  [](const VerdictRow& one) { return one.verdict == "seeds that would do"; });
+  REQUIRE(would != answered.rows.end());
+  // 0.2/√n ≤ 0.03.
+  CHECK(*would->value == std::ceil(std::pow(0.2 / 0.03, 2)));
+}
+
+TEST_CASE("asks: a difference that is zero to the last bit is known") {
+  StudyResults results = two_methods({1.1, 1.05, 1.025, 1.0125}, {1.1, 1.05, 1.025, 1.0125});
+  for (CaseRecord& record : results.cases) record.measures.emplace_back("confidence.impulse", 0.2);
+  const Json within = {{"effect", "mass"}, {"on", "impulse"}, {"within", 0.05}};
+  CHECK(answer_of(results, within).passes == Verdict::yes);
+  // Draws of their own leave theirs.
+  for (CaseRecord& record : results.cases)
+    if (record.axes[0].second == "m1") record.measures.back().second = 0.21;
+  CHECK(answer_of(results, within).passes == Verdict::open);
+}
+
 TEST_CASE("asks: where the mesh alone leaves more than asked the answer is no") {
   Made made;
   made.choices = {{"elements", {"8", "16", "32"}}};

@@ -28,22 +28,23 @@ struct Grids {
   BasinAnalysis analysis;
 };
 
-/// A case for each grid, restitution 0.1, 0.2, …
-Grids study_of(const std::vector<std::vector<GridCell>>& grids) {
+/// A case for each grid and each number of steps, which changes nothing; restitution 0.1, 0.2, …
+Grids study_of(const std::vector<std::vector<GridCell>>& grids, const std::vector<int>& steps = {1000}) {
   Grids out;
   out.results.kind = "basins";
-  out.results.columns = {"time.restitution"};
-  for (std::size_t c = 0; c < grids.size(); ++c) {
-    CaseRecord& record = out.results.cases.emplace_back();
-    record.id = "c" + std::to_string(c);
-    record.status = Status::done;
-    record.axes = {{"time.restitution", 0.1 * static_cast<double>(c + 1)}};
-    BasinGrid grid;
-    grid.columns = grids[c].size();
-    grid.rows = 1;
-    grid.cells = grids[c];
-    out.analysis.grids.push_back(std::move(grid));
-  }
+  out.results.columns = {"time.restitution", "steps_per_period"};
+  for (std::size_t c = 0; c < grids.size(); ++c)
+    for (const int count : steps) {
+      CaseRecord& record = out.results.cases.emplace_back();
+      record.id = "c" + std::to_string(c) + "-" + std::to_string(count);
+      record.status = Status::done;
+      record.axes = {{"time.restitution", 0.1 * static_cast<double>(c + 1)}, {"steps_per_period", count}};
+      BasinGrid grid;
+      grid.columns = grids[c].size();
+      grid.rows = 1;
+      grid.cells = grids[c];
+      out.analysis.grids.push_back(std::move(grid));
+    }
   for (const CaseRecord& record : out.results.cases) out.analysis.records.push_back(&record);
   return out;
 }
@@ -138,22 +139,35 @@ TEST_CASE("a choice changes the motions of a share of the starts, or does not, o
   for (std::size_t k = 0; k < 34; ++k) a[k] = cell(none, 3);
   for (std::size_t k = 0; k < 5; ++k) b[k] = c[k] = cell(none, 3);
   const Json effect = {{"effect", "time.restitution"}, {"on", "motions"}};
-  asks::Answered out = ask(study_of({a, b}), effect);
+  const auto twice = [](const std::vector<std::vector<GridCell>>& grids) { return study_of(grids, {500, 1000}); };
+  asks::Answered out = ask(twice({a, b}), effect);
   CHECK(out.sentence == "Yes: restitution changes the motion of 29 of 625 starts (0.2 against 0.1).");
   CHECK(*out.rows.front().value == Approx(100 * 29.0 / 625));
   CHECK(out.passes == asks::Verdict::yes);
-  out = ask(study_of({b, c}), effect);
+  out = ask(twice({b, c}), effect);
   CHECK_THAT(out.sentence, Catch::Matchers::StartsWith("No: restitution changes the motion of 0 of 625 starts"));
-  out = ask(study_of({a, b, c}), effect);
+  out = ask(twice({a, b, c}), effect);
   CHECK(out.verdict == "in part");
-  out = ask(study_of({b, c}), {{"effect", "time.restitution"}, {"on", "motions"}, {"within", 0.01}});
+  const Json within = {{"effect", "time.restitution"}, {"on", "motions"}, {"within", 0.01}};
+  out = ask(twice({b, c}), within);
   CHECK(out.passes == asks::Verdict::yes);
+  CHECK_THAT(out.sentence, Catch::Matchers::StartsWith("Yes, they agree: "));
+  out = ask(twice({a, b}), within);
+  CHECK(out.passes == asks::Verdict::no);
+  CHECK_THAT(out.sentence, Catch::Matchers::StartsWith("No, they do not agree: "));
+  // One step leaves a yes and a no unknown, and motions that touch nothing are no agreement.
+  CHECK(ask(study_of({a, b}), effect).passes == asks::Verdict::open);
+  CHECK(ask(study_of({b, c}), within).passes == asks::Verdict::open);
+  const std::vector<GridCell> still(625, cell(none, 0));
+  out = ask(twice({still, still}), within);
+  CHECK(out.passes == asks::Verdict::open);
+  CHECK_THAT(out.rows.front().reason, Contains("no stop is touched"));
   // Undecided starts may have changed: more than asked.
   for (std::size_t k = 0; k < 20; ++k) b[600 + k] = cell(open, -1);
-  out = ask(study_of({b, c}), effect);
+  out = ask(twice({b, c}), effect);
   CHECK(out.passes == asks::Verdict::open);
   CHECK_THAT(out.rows.front().reason, Contains("20 open"));
-  out = ask(study_of({b, c}), {{"effect", "time.restitution"}, {"on", "motions"}, {"from", 0.05}});
+  out = ask(twice({b, c}), {{"effect", "time.restitution"}, {"on", "motions"}, {"from", 0.05}});
   CHECK(out.passes == asks::Verdict::no);
 }
 

@@ -22,18 +22,22 @@ struct Made {
   SweptMotions swept;
 };
 
-/// Cases of two schemes or more, each with its motions at 1, 2, 3, …
-Made study_of(const std::vector<std::vector<MotionClass>>& cases, std::mt19937* random = nullptr) {
+/// Cases of two schemes or more, each with its motions at 1, 2, 3, …; with as many steps, which change nothing.
+Made study_of(const std::vector<std::vector<MotionClass>>& motions, std::mt19937* random = nullptr,
+              const std::vector<int>& steps = {1000}) {
+  std::vector<std::vector<MotionClass>> cases;
+  for (const auto& of : motions) cases.insert(cases.end(), steps.size(), of);
   Made out;
   out.results.kind = "bifurcation";
-  out.results.columns = {"time"};
+  out.results.columns = {"time", "steps_per_period"};
   out.results.study = {{"parameter", {{"pointer", "/scene/support/pulsation"}}}};
   out.swept.diagram.starts = {{"rest", false}};
   for (std::size_t c = 0; c < cases.size(); ++c) {
     CaseRecord& record = out.results.cases.emplace_back();
     record.id = "c" + std::to_string(c);
     record.status = Status::done;
-    record.axes = {{"time", "scheme" + std::to_string(c + 1)}};
+    record.axes = {{"time", "scheme" + std::to_string(c / steps.size() + 1)},
+                   {"steps_per_period", steps[c % steps.size()]}};
     DiagramCase& of = out.swept.diagram.cases.emplace_back();
     for (std::size_t k = 0; k < cases[c].size(); ++k) {
       DiagramRun run;
@@ -149,12 +153,23 @@ TEST_CASE("rows in another order change no verdict", "[asks]") {
 
 TEST_CASE("a choice changes the motion at the values where class or period differ", "[asks]") {
   const Json effect = {{"effect", "time"}, {"on", "motions"}, {"from", 0.2}};
-  asks::Answered out = ask(study_of({{one, one, two, two, three}, {one, two, two, two, two}}), effect);
+  const auto twice = [](const std::vector<std::vector<MotionClass>>& cases) {
+    return study_of(cases, nullptr, {500, 1000});
+  };
+  asks::Answered out = ask(twice({{one, one, two, two, three}, {one, two, two, two, two}}), effect);
   CHECK(out.sentence == "Yes: the time scheme changes the motion of 2 of 5 values (scheme2 against scheme1).");
-  out = ask(study_of({{one, one, two, two, three}, {one, one, two, two, three}}), effect);
+  out = ask(twice({{one, one, two, two, three}, {one, one, two, two, three}}), effect);
   CHECK(out.passes == asks::Verdict::no);
-  out = ask(study_of({{one, one, two, two, open}, {one, one, two, open, open}}), effect);
+  CHECK_THAT(out.sentence, Contains("less than 20 %"));
+  out = ask(twice({{one, one, two, two, open}, {one, one, two, open, open}}), effect);
   CHECK(out.passes == asks::Verdict::open);
+  // Shares of places are told over all of them, the undecided ones too: 3 of 9 are no less than 1 % of 17.
+  const std::vector<MotionClass> ones(9, one), others = {two, two, two, one, one, one, one, one, one};
+  auto a = ones, b = others;
+  a.insert(a.end(), 8, open);
+  b.insert(b.end(), 8, open);
+  out = ask(twice({a, b}), {{"effect", "time"}, {"on", "motions"}, {"from", 0.01}});
+  CHECK(out.passes == asks::Verdict::yes);
 }
 
 }  // namespace ricochet::tests_of_sweep_asks

@@ -62,6 +62,26 @@ TEST_CASE("the stop bounds the step where it alone has the smaller limit, and th
   CHECK(out.passes == asks::Verdict::yes);
 }
 
+TEST_CASE("a step that is read off a sentence is allowed", "[asks]") {
+  for (const double open : {8.0952e-5, 9.999e-5, 1e-4, 3.333333e-5}) {
+    const asks::Answered out = ask({{4, open, 1}});
+    const std::size_t bracket = out.sentence.find('(');
+    INFO(out.sentence);
+    REQUIRE(bracket != std::string::npos);
+    const double read = std::stod(out.sentence.substr(bracket + 1));
+    CHECK(read <= open * (1 + 1e-12));  // the same decimals
+    CHECK(read > 0.99 * open);          // three digits
+  }
+}
+
+TEST_CASE("a limit below the range of steps is none that a study may take", "[asks]") {
+  const asks::Answered out = ask({{4, 1e-8, 1}});
+  INFO(out.sentence);
+  CHECK(out.passes == asks::Verdict::no);
+  CHECK(out.rows.front().verdict == "no step is stable");
+  CHECK(out.sentence == "No stable step from 1e-7 to 0.001 s.");
+}
+
 TEST_CASE("what has no limit, no stable step or another limit in marches is told so", "[asks]") {
   asks::Answered out = ask({{4, 1e-4, 1e-3}}, [](LimitRow& open, LimitRow& closed) {
     open.prediction = closed.prediction = open.observation = closed.observation = "none";
