@@ -56,4 +56,19 @@ std::string cut_short(std::string_view text) {
   return std::string(text.substr(0, end)) + std::string(more);
 }
 
+std::string one_line(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  std::string out;
+  while (!text.empty()) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(text.size(), line.size() + 1));
+    const std::size_t begin = line.find_first_not_of(blanks);
+    if (begin == std::string_view::npos) continue;
+    line = line.substr(begin, line.find_last_not_of(blanks) + 1 - begin);
+    if (!out.empty()) out += "; ";
+    out += line;
+  }
+  return cut_short(out);
+}
+
 }  // namespace ricochet

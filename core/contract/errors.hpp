@@ -46,5 +46,7 @@ std::string shortened(std::string_view text);
 inline constexpr std::size_t longest_text = 2000;
 /// The text, or its beginning and "…": together at most `longest_text` bytes. No character is cut.
 std::string cut_short(std::string_view text);
+/// The same of the text in one line: its lines without blanks around them, joined by "; ".
+std::string one_line(std::string_view text);
 
 }  // namespace ricochet

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <new>
 #include <ricochet/contract/check_inertia.hpp>
@@ -17,13 +18,13 @@ namespace {
   } catch (const PluginFault&) {
     throw;
   } catch (const InputError& error) {
-    throw InputError(error.pointer(), cut_short(error.what()));
+    throw InputError(error.pointer(), one_line(error.what()));
   } catch (const PluginError& error) {
-    throw PluginError(cut_short(error.what()));
+    throw PluginError(one_line(error.what()));
   } catch (const std::bad_alloc&) {
     throw PluginFault(plugin, function, "not enough memory");
   } catch (const std::exception& error) {
-    const std::string what = error.what();
+    const std::string what = one_line(error.what());
     throw PluginFault(plugin, function, what.empty() ? "an exception that says nothing" : what);
   } catch (...) {
     throw PluginFault(plugin, function, "an exception that says nothing");
@@ -45,6 +46,9 @@ void check_refusal(const PluginIdentity& plugin, const char* function, Refusal& 
   if (refusal.sentence.text.find_first_not_of(" \t\r\n") == std::string::npos)
     throw PluginFault(plugin, function, "refuses without a sentence");
   Said& sentence = refusal.sentence;
+  // One line, in which marks stay where they are.
+  std::replace_if(
+      sentence.text.begin(), sentence.text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
   sentence.text = cut_short(sentence.text);
   std::erase_if(sentence.marks, [&](const Mark& mark) { return mark.begin + mark.size > sentence.text.size(); });
 }

@@ -149,6 +149,6 @@ PluginCallScope::~PluginCallScope() {
 }
 
 PluginFault::PluginFault(const PluginIdentity& plugin, const char* function, const std::string& what)
-    : std::runtime_error("plugin " + plugin.text() + ", " + function + "(): " + cut_short(what)) {}
+    : std::runtime_error("plugin " + plugin.text() + ", " + function + "(): " + one_line(what)) {}
 
 }  // namespace ricochet

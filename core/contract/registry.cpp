@@ -46,7 +46,7 @@ std::optional<std::string> check_declaration(const PluginManual& manual, std::si
 }
 
 // A text may be written over several lines of a source: each run of white space is one blank.
-std::string one_line(const std::string& text) {
+std::string flowed(const std::string& text) {
   std::istringstream words(text);
   std::string line;
   for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
@@ -98,8 +98,8 @@ template <class Interface>
 void Registry::add(std::map<std::string, Entry<Interface>>& entries, Role role, PluginManual manual,
                    Maker<Interface> make) {
   check(role, manual);
-  for (std::string* text : {&manual.summary, &manual.text, &manual.source}) *text = one_line(*text);
-  for (ParameterSpec& spec : manual.parameters) spec.text = one_line(spec.text);
+  for (std::string* text : {&manual.summary, &manual.text, &manual.source}) *text = flowed(*text);
+  for (ParameterSpec& spec : manual.parameters) spec.text = flowed(spec.text);
   const std::string name = manual.name;
   if (!make) throw PluginError("the " + std::string(role_name(role)) + " plugin '" + name + "' registers no factory");
   PluginIdentity identity{role_name(role), name, current_file_};

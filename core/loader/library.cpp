@@ -57,9 +57,9 @@ void* open_library(const fs::path& file, Registry& registry) {
   try {
     enter(registry);
   } catch (const PluginError& error) {
-    throw PluginError(place + cut_short(error.what()));
+    throw PluginError(place + one_line(error.what()));
   } catch (const std::exception& error) {
-    throw PluginError(place + "failed while registering: " + cut_short(error.what()));
+    throw PluginError(place + "failed while registering: " + one_line(error.what()));
   } catch (...) {
     throw PluginError(place + "failed while registering, with an exception that says nothing");
   }

@@ -163,7 +163,7 @@ Verdict gap_is_honest(const Reference& reference) {
     if (!found.coarser.tip.empty()) {
       if (std::string wrong = misfit(found.coarser, scene.grid); !wrong.empty()) return "its coarser motion: " + wrong;
       gap = gap_of(found.motion.tip, found.coarser.tip);
-      if (gap > 0.1 * size)
+      if (!(gap <= 0.1 * size))
         return fmt::format("its two settings differ by {:.3g} m in motions of {:.3g} m: it knows nothing", gap, size);
     }
     text = found.coarser.tip.empty() ? "a closed form" : fmt::format("its settings differ by {:.2g} m", gap);
@@ -171,7 +171,7 @@ Verdict gap_is_honest(const Reference& reference) {
     double error = 0;
     for (std::size_t i = 0; i < scene.grid.times.size(); ++i)
       error = std::max(error, std::abs(found.motion.tip[i] - scene.exact(scene.grid.times[i])));
-    if (error > 10 * gap + 1e-8 * size)
+    if (!(error <= 10 * gap + 1e-8 * size))
       return fmt::format("it is {:.3g} m away from the closed form and says that it is known to {:.3g} m", error, gap);
     text += fmt::format(", {:.2g} m away from a closed form", error);
     return std::string();

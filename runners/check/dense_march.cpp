@@ -157,9 +157,9 @@ void DenseMarch::look_at_contact(const Stage& stage, const Lane& lane, const Fou
                          (p[i] >= 0 || y[i] >= upper - size);
       if (!holds)
         note(fmt::format("the impact measure is {:.10g} between {:g} and {:g} under {:g} N", y[i], lower, upper, p[i]));
-    } else if (p[i] == 0 && (y[i] < lower - size || y[i] > upper + size)) {
+    } else if (p[i] == 0 && !(y[i] >= lower - size && y[i] <= upper + size)) {
       note(fmt::format("g = {:.10g} lies beyond its stop without an effort", y[i]));
-    } else if ((p[i] > 0 && y[i] > lower + size) || (p[i] < 0 && y[i] < upper - size)) {
+    } else if (p[i] != 0 && !((p[i] > 0 && y[i] <= lower + size) || (p[i] < 0 && y[i] >= upper - size))) {
       note(fmt::format("{:g} N act where g = {:.10g} is open", p[i], y[i]));
     }
   }
@@ -172,7 +172,7 @@ void DenseMarch::look_at_work(const Lane& lane, std::size_t k, std::size_t sourc
     const double given = p[i] * way[i], taken = before[i] * lane.ways[source][i];
     const double size =
         tolerance * (std::abs(p[i]) + std::abs(before[i])) * (std::abs(way[i]) + std::abs(lane.ways[source][i]) + 1e-6);
-    if (std::abs(given + taken) > size)
+    if (!(std::abs(given + taken) <= size))
       note(fmt::format("contact takes {:.10g} J in a stage, and {:.10g} J are given back", -taken, given));
     if (p[i] * before[i] < 0 || (before[i] == 0 && p[i] != 0))
       note(fmt::format("{:g} N give back the work of {:g} N", p[i], before[i]));
@@ -195,10 +195,10 @@ void DenseMarch::look_at_gate(const ImpactMeasure& impact, const Lane& lane, con
     if ((p[i] > 0 && !lower) || (p[i] < 0 && !upper))
       note(fmt::format("{:g} N act on a side whose gate is open", p[i]));
     const double rebound = -gate.restitution * speed[i];
-    if (p[i] > 0 && std::abs(speed[i]) > size && speed[i] < 0 && std::abs(y[i] - rebound) > size)
+    if (p[i] > 0 && std::abs(speed[i]) > size && speed[i] < 0 && !(std::abs(y[i] - rebound) <= size))
       note(
           fmt::format("a point that comes with {:g} m/s leaves with {:g} m/s, not with {:g}", speed[i], y[i], rebound));
-    if (p[i] < 0 && std::abs(speed[i]) > size && speed[i] > 0 && std::abs(y[i] - rebound) > size)
+    if (p[i] < 0 && std::abs(speed[i]) > size && speed[i] > 0 && !(std::abs(y[i] - rebound) <= size))
       note(
           fmt::format("a point that comes with {:g} m/s leaves with {:g} m/s, not with {:g}", speed[i], y[i], rebound));
   }

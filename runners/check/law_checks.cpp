@@ -35,7 +35,7 @@ std::string wrong_with(const SemiDiscrete& problem) {
   if (!K.allFinite() || !G.allFinite()) return "the stiffness or the measure is not finite";
   if (G.rowwise().norm().minCoeff() == 0) return "a point measures nothing";
   const double size = K.cwiseAbs().maxCoeff(), skew = (K - K.transpose()).cwiseAbs().maxCoeff();
-  if (skew > 1e-12 * size) return fmt::format("the stiffness is not symmetric: {:.3g} of {:.3g}", skew, size);
+  if (!(skew <= 1e-12 * size)) return fmt::format("the stiffness is not symmetric: {:.3g} of {:.3g}", skew, size);
   const SymmetricModes modes = symmetric_modes(K, Eigen::MatrixXd(problem.own_stiffness), EigenVectors::none);
   if (!modes.found) return "the modes of the stiffness against that of the structure are not found";
   // Shares of the structure's own stiffness that are left.
@@ -121,7 +121,7 @@ Verdict complementarity_holds(const Law& law) {
           return fails(where + ": reports a negative count of iterations or a residual that is no number ≥ 0");
         const double deepest = depth_of(lane), found = residual(W.matrix(), reach, lane, p);
         const double scale = std::max(deepest, 1e-6);
-        if (found > outcome.residual * (1 + 1e-6) + 1e-9 * scale)
+        if (!(found <= outcome.residual * (1 + 1e-6) + 1e-9 * scale))
           return fails(
               fmt::format("{}: the efforts leave {:.3g} of the deepest violation {:.3g} (in units of the "
                           "measure), and the law owns up to {:.3g}",

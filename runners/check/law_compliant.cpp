@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runners/check/law_checks.hpp"
 
@@ -54,8 +55,10 @@ Verdict rigid() {
   return not_applicable("not a compliant law");
 }
 
+constexpr double unanswered = std::numeric_limits<double>::quiet_NaN();
+
 // What one point answers at a given measure, speed and measure before, between the stops of a lane, where the law keeps
-// this of it.
+// this of it; else `unanswered`.
 double answer_at(LawBench& bench, const LaneProblem& lane, Eigen::Index i, double g, double u,
                  const std::vector<double>& kept) {
   const double layer = bench.layer();
@@ -67,7 +70,9 @@ double answer_at(LawBench& bench, const LaneProblem& lane, Eigen::Index i, doubl
     // What a step leads from one stop to the other, both answer for.
     if (!acts) continue;
     if (!kept.empty()) bench.keep(kept);
-    effort += at_point(bench, side, depth, u, before).effort;
+    const PointAnswer here = at_point(bench, side, depth, u, before);
+    if (!here.answered) return unanswered;
+    effort += here.effort;
   }
   return effort;
 }
@@ -77,6 +82,7 @@ double answer_near(LawBench& bench, const LaneProblem& lane, Eigen::Index i, dou
                    const std::vector<double>& kept, double p) {
   const double one = answer_at(bench, lane, i, g - smallest, u, kept);
   const double other = answer_at(bench, lane, i, g + smallest, u, kept);
+  if (std::isnan(one) || std::isnan(other)) return unanswered;
   return std::clamp(p, std::min(one, other), std::max(one, other));
 }
 
@@ -116,11 +122,11 @@ Verdict force_law_is_one(const Law& law) {
               fmt::format("pulls: {:g} N at the {} stop, depth {:g} m, speed {:g} m/s. A force p > 0 pushes up from "
                           "the lower stop, p < 0 down from the upper one",
                           p, side_name(side), depth, speed));
-        if (speed == 0 && std::abs(p) < last * (1 - 1e-9))
+        if (speed == 0 && !(std::abs(p) >= last * (1 - 1e-9)))
           return fails(fmt::format("the force falls from {:g} to {:g} N as the depth grows to {:g} m", last,
                                    std::abs(p), depth));
         const double mirrored = at_point(bench, -side, depth, -speed, depth).effort;
-        if (std::abs(p + mirrored) > 1e-9 * std::abs(p))
+        if (!(std::abs(p + mirrored) <= 1e-9 * std::abs(p)))
           return fails(fmt::format("{:g} N at the {} stop, {:g} N at the other one in the mirror", p, side_name(side),
                                    mirrored));
         if (speed == 0) last = std::abs(p);
@@ -175,15 +181,20 @@ Verdict solution_answers_the_force_law(const Law& law) {
           const double wanted = answer_near(one, lane, i, g[i], u[i], bench.of_point(kept, i, 0), p[i]);
           if (std::abs(p[i] - wanted) < nearest) nearest = std::abs(p[i] - wanted), expected = wanted;
         }
+        if (std::isinf(nearest))
+          return fails(
+              fmt::format("{} point{}, reach {:g}: the efforts lead to a measure of {:g} m, where the law answers one "
+                          "point no force",
+                          points, points == 1 ? "" : "s", reach, g[i]));
         difference = std::max(difference, nearest);
         largest = std::max({largest, std::abs(expected), std::abs(p[i])});
       }
-      if (difference > 1e-6 * largest + 10 * outcome.residual / flexibility)
+      if (!(difference <= 1e-6 * largest + 10 * outcome.residual / flexibility))
         return fails(
             fmt::format("{} point{}, reach {:g}: the efforts found differ by {:.3g} of {:.3g} N from what the law "
                         "answers one point at the measures they lead to. The law states an error of {:.3g} m at most",
                         points, points == 1 ? "" : "s", reach, difference, largest, outcome.residual));
-      if (outcome.residual > 1e-4 * 0.02)
+      if (!(outcome.residual <= 1e-4 * 0.02))
         return fails(
             fmt::format("{} points: leaves an error of {:.3g} m in measures of 0.02 m", points, outcome.residual));
       if (largest > 0) worst = std::max(worst, difference / largest);
@@ -200,7 +211,7 @@ Verdict stiffness_as_declared(const Law& law) {
   for (const double depth : {1e-4, 1e-3, 1e-2})
     for (const double speed : speeds_of(bench)) {
       const double p = at_point(bench, -1, depth, speed, depth).effort;
-      if (std::abs(p - *stiffness * depth) > 1e-9 * *stiffness * depth)
+      if (!(std::abs(p - *stiffness * depth) <= 1e-9 * *stiffness * depth))
         return fails(
             fmt::format("declares that its force is {:g} N/m times the depth; at {:g} m and {:g} m/s it is "
                         "{:g} N, not {:g}",
@@ -238,13 +249,13 @@ Verdict slopes_are_derivatives(const Law& law) {
           return fmt::format("at a depth of {:g} m and {:g} m/s it says a {} of {:.6g}, differences give {:.6g}", depth,
                              speed, what, says, is);
         };
-        if (std::abs(here.slopes.stiffness - stiffness) > 1e-4 * size)
+        if (!(std::abs(here.slopes.stiffness - stiffness) <= 1e-4 * size))
           return fails(wrong("stiffness", here.slopes.stiffness, stiffness));
-        if (std::abs(here.slopes.before - backwards) > 1e-4 * size)
+        if (!(std::abs(here.slopes.before - backwards) <= 1e-4 * size))
           return fails(wrong("slope in the measure before", here.slopes.before, backwards));
         const double damping = std::max(std::abs(viscosity), std::abs(here.effort));
         // A dashpot that acts one way has a corner at rest.
-        if (speed != 0 && std::abs(here.slopes.viscosity - viscosity) > 1e-4 * damping)
+        if (speed != 0 && !(std::abs(here.slopes.viscosity - viscosity) <= 1e-4 * damping))
           return fails(wrong("viscosity", here.slopes.viscosity, viscosity));
       }
   return fine("agree with differences of the force");
@@ -266,7 +277,7 @@ Verdict potential_stores_the_force(const Law& law) {
   for (const double depth : depths_of(bench)) {
     const double stored = U(depth);
     if (!(stored >= 0)) return fails(fmt::format("stores {:g} J at a depth of {:g} m", stored, depth));
-    if (std::abs(rest) > 1e-9 * stored) return fails(fmt::format("stores {:g} J where it begins to act", rest));
+    if (!(std::abs(rest) <= 1e-9 * stored)) return fails(fmt::format("stores {:g} J where it begins to act", rest));
     // What is stored is counted from where the law begins to act.
     const double step = conserving ? 0.25 * std::abs(depth) : 1e-5 * std::max(std::abs(depth), bench.layer());
     const double ahead = depth + step, behind = depth - step;
@@ -275,7 +286,7 @@ Verdict potential_stores_the_force(const Law& law) {
     const double p =
         conserving ? at_point(bench, -1, ahead, 0, behind).effort : at_point(bench, -1, depth, 0, depth).effort;
     const double tolerance = (conserving ? 1e-8 : 1e-5) * std::max(std::abs(p), std::abs(slope));
-    if (std::abs(slope - p) > tolerance)
+    if (!(std::abs(slope - p) <= tolerance))
       return fails(fmt::format("at a depth of {:g} m the force is {:.6g} N, its potential grows by {:.6g} J/m", depth,
                                p, slope));
   }
@@ -295,8 +306,11 @@ Verdict energy_over_a_step(const Law& law) {
   double given = 0, kept = 0;
   for (const int side : sides)
     for (const auto& [depth, before] : steps_of(bench)) {
-      const double work = std::abs(at_point(bench, side, depth, 0, before).effort) * (depth - before);
-      const double stored = U(depth) - U(before);
+      const PointAnswer here = at_point(bench, side, depth, 0, before);
+      const double work = std::abs(here.effort) * (depth - before), stored = U(depth) - U(before);
+      if (!here.answered || !std::isfinite(stored))
+        return fails(
+            fmt::format("force or energy of a step from a depth of {:g} to {:g} m are not finite", before, depth));
       const double share = (stored - work) / std::max(U(depth), U(before));
       given = std::max(given, share);
       kept = std::max(kept, -share);
@@ -327,7 +341,7 @@ Verdict dissipation_is_reported(const Law& law) {
         const PointAnswer here = at_point(bench, side, depth, speed, depth);
         const double taken = -(here.effort - at_rest) * speed;
         const double scale = std::abs(at_rest * speed) + std::abs(taken);
-        if (taken < -1e-9 * scale)
+        if (!(taken >= -1e-9 * scale))
           return fails(fmt::format("gives {:.3g} W at a depth of {:g} m and {:g} m/s: a law may only take energy",
                                    -taken, depth, speed));
         if (!(std::abs(here.dissipation - taken) <= 1e-6 * scale))

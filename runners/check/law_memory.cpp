@@ -170,7 +170,7 @@ std::string energies_of(const Cycle& cycle) {
     if (!now.answered || !(now.stored >= 0))
       return fmt::format("stores {:g} J at a depth of {:g} m", now.stored, now.depth);
     const double more = now.stored - now.before, work = now.mean * now.way;
-    if (more > work + of_trapezium * cycle.most)
+    if (!(more <= work + of_trapezium * cycle.most))
       return fmt::format("stores {:g} J more from a depth of {:g} to {:g} m; its force took {:g} J", more,
                          now.depth - now.way, now.depth, work);
     if (now.effort != 0)
@@ -196,12 +196,12 @@ std::string dissipation_of(const Cycle& cycle) {
     if (!(now.dissipation >= -1e-9 * largest) || !std::isfinite(now.dissipation))
       return says(": a law may only take energy");
     if (now.speed == 0 && now.dissipation != 0) return says(": what does not move has no power");
-    if (now.dissipation < now.damper - 1e-6 * largest)
+    if (!(now.dissipation >= now.damper - 1e-6 * largest))
       return says(fmt::format("; its force beyond that at rest takes {:g} W", now.damper));
     reported += now.dissipation * now.time;
     lost += now.mean * now.way - (now.stored - now.before);
   }
-  if (reported > lost + of_trapezium * cycle.most * static_cast<double>(turns.size()))
+  if (!(reported <= lost + of_trapezium * cycle.most * static_cast<double>(turns.size())))
     return fmt::format("reports {:g} J dissipated over load, unload and reload, of {:g} J lost", reported, lost);
   return {};
 }

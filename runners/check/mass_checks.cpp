@@ -77,7 +77,7 @@ Verdict some_structure_is_accepted(const Mass& mass) {
       return fails("an oscillator: " + poor);
   } else {
     const Eigen::MatrixXd M = dense(std::get<Inertia>(oscillator), oscillator_space());
-    if (std::abs(M(0, 0) - 1) > 1e-12)
+    if (!(std::abs(M(0, 0) - 1) <= 1e-12))
       return fails(fmt::format("the mass of an oscillator of 1 kg is {:g} kg", M(0, 0)));
     ++taken;
   }
@@ -217,7 +217,7 @@ Verdict total_mass_is_right(const Mass& mass) {
                                  free ? "" : " in the limit of fine meshes"));
       bench.point_mass = true;
       const double added = translated(mass, bench) - fine_one;
-      if (std::abs(added - 0.3) > 1e-9)
+      if (!(std::abs(added - 0.3) <= 1e-9))
         return fails(fmt::format("{}: a point mass of 0.3 kg adds {:.6g} kg", space_text(bench), added));
       found = "that of the structure, of equal and unequal elements and sections, point masses included";
     }
@@ -254,7 +254,7 @@ Verdict rotations_have_their_inertia(const Mass& mass) {
     bench.point_inertia = true;
     if (!refuses(mass, bench)) {
       const double added = turned(mass, bench) - without;
-      if (std::abs(added - 0.05) > 1e-9)
+      if (!(std::abs(added - 0.05) <= 1e-9))
         return fails(
             fmt::format("{}: a point inertia of 0.05 kg m² adds {:.6g} to a rotation", space_text(bench), added));
       found = "point inertias are added whole";
@@ -287,7 +287,7 @@ Verdict ends_are_treated_alike(const Mass& mass) {
     if (!there) return fails(space_text(bench) + " is accepted, its mirror image is refused");
     const Eigen::MatrixXd M = matrix(mass, bench), N = mirrored(matrix(mass, other), bench.beam);
     const double gap = (M - N).cwiseAbs().maxCoeff(), size = M.cwiseAbs().maxCoeff();
-    if (gap > 1e-10 * size)
+    if (!(gap <= 1e-10 * size))
       return fails(fmt::format("{} and its mirror image have masses that differ by {:.3g} of {:.3g} kg",
                                space_text(bench), gap, size));
     ++compared;

@@ -80,11 +80,11 @@ Verdict energy_in_free_flight(const Scheme& scheme) {
       const EnergyTotals totals = march(scheme, flight, 4, share, 300).totals;
       const double start = totals.scheme_start, scale = throughput(totals);
       if (!(start > 0)) return fails(fmt::format("its energy of a moving structure is {:g} J", start));
-      if (totals.largest_step_gain > round_off * scale)
+      if (!(totals.largest_step_gain <= round_off * scale))
         return fails(fmt::format("the declared energy grows in undamped free flight, by {:.3g} of {:.3g} J in one step",
                                  totals.largest_step_gain, start));
       const double left = totals.last.scheme - start + totals.work_of_scheme;
-      if (all_have_work(plan) && std::abs(left) > round_off * scale)
+      if (all_have_work(plan) && !(std::abs(left) <= round_off * scale))
         return fails(
             fmt::format("the declared energy of undamped free flight goes from {:.10g} to {:.10g} J in 300 "
                         "steps, while the declared losses are {:.3g} J",
@@ -138,7 +138,7 @@ Verdict contact_gains_as_declared(const Scheme& scheme) {
     }
   if (plan.facts.contact_never_gains) {
     if (impacts == 0) return fails("declares that contact never gains, yet finds no contact at all");
-    if (gain > round_off)
+    if (!(gain <= round_off))
       return fails(
           fmt::format("declares that its energy never grows at a fixed rigid stop; a bar or a beam gains {:.3g} "
                       "of what it has in one step",

@@ -180,7 +180,7 @@ Verdict rigid_stops_hold(const Scheme& scheme) {
     if (of.impacts == 0) return fails("a mass that falls on a rigid stop passes through it: no effort is ever found");
   }
   // A measure that averages positions lets the mass pass by the way of a step or so.
-  if (-lowest > 2 * h)
+  if (!(-lowest <= 2 * h))
     return fails(
         fmt::format("a mass that comes with 1 m/s passes a rigid stop by {:.2g} steps of its way", -lowest / h));
   return fine(fmt::format("passes the stop by {:.2g} of a step's way at most", -lowest / h));
@@ -256,7 +256,7 @@ Verdict contact_order_as_declared(const Scheme& scheme) {
   const MeasuredOrder measured = measured_order(steps, errors_after_impact(scheme, steps, e), 0.5);
   if (!plan.facts.contact_order) return not_declared(fmt::format("not known; measured {:.2f}", measured.order));
   constexpr double irregular = 0.35;  // impacts fall anywhere in a step
-  if (!measured.exact && measured.order < *plan.facts.contact_order - irregular)
+  if (!measured.exact && !(measured.order >= *plan.facts.contact_order - irregular))
     return fails(
         fmt::format("declares order {:g} at rigid stops; after one bounce of an oscillator it is {:.2f} (error "
                     "{:.2g} m at the finest of 5 steps)",
@@ -282,7 +282,7 @@ Verdict impulse_is_momentum(const Scheme& scheme) {
       if (!(std::abs(change - of.impulse) <= 1e-8 * mass))
         return fails(fmt::format("{}: the efforts of one bounce sum up to {:.8g} N s, the momentum changes by {:.8g}",
                                  name, of.impulse, change));
-      if (of.after < -1e-6)
+      if (!(of.after >= -1e-6))
         return fails(
             fmt::format("{}: a mass that falls with 1 m/s still falls with {:.3g} m/s at the end", name, -of.after));
     }

@@ -416,6 +416,10 @@ int exit_code_of(const std::function<int()>& work, std::ostream& err) {
     err << "ricochet: not enough memory\n";
     return exit_store;
   } catch (const std::system_error& error) {
+    if (error.code() == std::errc::no_space_on_device) {
+      err << "ricochet: the disk is full; free some space and run the same command again: " << error.what() << "\n";
+      return exit_store;
+    }
     const bool at_end = is_at_end(error.code());
     err << "ricochet: " << (at_end ? "the system has no more memory, threads or files to give: " : "internal error: ")
         << error.what() << "\n";

@@ -6,7 +6,7 @@
 #include "runners/asks/ask.hpp"
 #include "runners/command/manual.hpp"
 #include "runners/command/subcommand.hpp"
-#include "runners/store/record.hpp"
+#include "runners/store/record_values.hpp"
 #include "runners/study/fields.hpp"
 #include "runners/study/study_kind.hpp"
 #include "runners/table/text.hpp"
@@ -186,10 +186,32 @@ void print_asks(std::ostream& out) {
   out << table.text(2);
 }
 
+std::string unit_in_words(const std::string& unit) {
+  return unit == "1" ? "a ratio or a count" : "in " + unit;
+}
+
 void print(const MeasureInfo& measure, std::ostream& out) {
-  out << fmt::format("{} (a measure of a case, {}): {}\n", measure.name,
-                     std::string(measure.unit) == "1" ? "a ratio or a count" : std::string("in ") + measure.unit,
-                     measure.text);
+  out << fmt::format("{} (a measure of a case, {}): {}\n", measure.name, unit_in_words(measure.unit), measure.text);
+}
+
+/// The columns of cases.csv that are no measures: status, steps, times.
+std::vector<Column> columns_of_cases() {
+  std::vector<Column> columns = cases_table({}).columns;
+  std::erase_if(columns, [](const Column& column) { return measure_info(column.name) != nullptr; });
+  return columns;
+}
+
+void print(const Column& column, std::ostream& out) {
+  out << fmt::format("{} (a column of cases.csv{}): {}\n", column.name,
+                     column.unit.empty() ? "" : ", " + unit_in_words(column.unit), column.text);
+}
+
+/// Each once, in the order met.
+std::vector<std::string> each_once(const std::vector<std::string>& words) {
+  std::vector<std::string> once;
+  for (const std::string& word : words)
+    if (std::find(once.begin(), once.end(), word) == once.end()) once.push_back(word);
+  return once;
 }
 
 }  // namespace
@@ -263,6 +285,11 @@ bool describe_word(const std::string& name, std::ostream& out) {
       next();
       print(measure, out);
     }
+  for (const Column& column : columns_of_cases())
+    if (column.name == name) {
+      next();
+      print(column, out);
+    }
   // Those of a stop, "impulse[bar-a]", are as many as there are names.
   if (const MeasureInfo* of_stop = measure_info(name.ends_with("]") ? name : name + "[NAME]")) {
     next();
@@ -275,7 +302,7 @@ std::vector<std::string> words_of_studies() {
   std::vector<std::string> names = {whole_study, all_asks};
   for (const asks::Verb* verb : asks::verbs()) names.emplace_back(verb->name);
   for (const FormWord& word : form_words()) names.push_back(word.name);
-  return names;
+  return each_once(names);
 }
 
 std::vector<std::string> words_of_results() {
@@ -285,6 +312,7 @@ std::vector<std::string> words_of_results() {
     names.push_back(name);
     if (const auto dot = name.rfind('.'); dot != std::string::npos) names.push_back(name.substr(dot + 1));
   }
+  for (const Column& column : columns_of_cases()) names.push_back(column.name);
   return names;
 }
 

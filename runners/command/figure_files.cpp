@@ -35,7 +35,11 @@ std::string output_of(const std::string& command) {
 
 std::string browser() {
   const char* said = std::getenv("RICOCHET_BROWSER");
-  if (said && *said) return said;
+  if (said && *said) {
+    if (output_of(fmt::format("command -v {}", shell_quoted(said))).empty())
+      throw StoreError(fmt::format("RICOCHET_BROWSER names \"{}\", and there is no such program", said));
+    return said;
+  }
   for (const char* name : {"chromium", "chromium-browser", "google-chrome", "microsoft-edge"})
     if (!output_of(fmt::format("command -v {}", name)).empty()) return name;
   throw StoreError(

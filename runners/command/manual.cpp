@@ -58,7 +58,8 @@ std::string program_page() {
   for (const ExitMeaning& meaning : exit_meanings()) page += item(fmt::format("{}", meaning.code), meaning.text);
   page += ".SH ENVIRONMENT\n" +
           item("RICOCHET_PLUGIN_PATH", "folders of plugins beside the program's own, separated by colons") +
-          item("RICOCHET_FILE_LIMIT", "the largest file that a study may name, in bytes");
+          item("RICOCHET_FILE_LIMIT", "the largest file that a study may name, in bytes") +
+          item("RICOCHET_BROWSER", "the browser that draws the files of report --figures; else chromium");
   page += ".SH FILES\n" + item("results/NAME", "report.html, tables, results.sqlite and failures of the study NAME");
   page += ".SH EXAMPLES\n.nf\n" + roff("ricochet plan study.json\nricochet run study.json\n") + ".fi\n";
   return page + ".SH SEE ALSO\n.BR ricochet\\-study (5)\n";

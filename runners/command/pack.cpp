@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <ostream>
 #include <random>
+#include <set>
 #include <system_error>
 
 #include "runners/command/command.hpp"
@@ -19,6 +21,7 @@
 #include "runners/run/environment.hpp"
 #include "runners/run/run_study.hpp"
 #include "runners/run/study_runner.hpp"
+#include "runners/store/atomic_file.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/folder_lock.hpp"
 #include "runners/store/store.hpp"
@@ -61,31 +64,73 @@ std::vector<const CaseRecord*> drawn(const std::vector<const CaseRecord*>& all, 
   return found;
 }
 
+/// What decides the last digits of a table.
+Environment program_here() {
+  const Environment here = describe_environment({});
+  Environment program;
+  for (const char* name : {"program", "commit", "compiler", "contract", kArithmetic})
+    program.entries.emplace_back(name, environment_entry(here, name));
+  return program;
+}
+
 /// What computes here and did not there, a line.
 std::string other_program(const Environment& there) {
-  const Environment here = describe_environment({});
+  const Environment here = program_here();
   std::string text;
-  for (const char* name : {"program", "commit", "compiler", "contract", "arithmetic"})
+  for (const auto& [name, ignored] : here.entries)
     if (const std::string a = environment_entry(there, name), b = environment_entry(here, name); a != b)
       text += fmt::format("{}{} {} there, {} here", text.empty() ? "computed with " : "; ", name, a, b);
   return text.empty() ? "" : text + "\n";
 }
 
-int compute_again(const Arguments& arguments, const fs::path& place, std::ostream& out) {
-  StudyResults stored_results = read_store(place / packed::results);
-  if (stored_results.study.contains("files") && stored_results.study["files"].is_object())
-    stored_results.study["files"]["folder"] = (place / packed::study).string();
-  const AnalysedResults results = with_tables(std::move(stored_results));
+bool same_bytes(const fs::path& a, const fs::path& b) {
+  return fs::is_regular_file(a) && fs::is_regular_file(b) && fs::file_size(a) == fs::file_size(b) &&
+         file_sha256(a) == file_sha256(b);
+}
+
+/// Whether the tables, the answer and the report are what this program makes of the store beside them. Throws
+/// InputError for the first that is not. What another program packed is not compared, which is said.
+void compare_with_store(const fs::path& file, const std::vector<std::string>& parts, const AnalysedResults& results,
+                        const fs::path& place, std::ostream& out) {
+  if (packer_of(place).entries != program_here().entries) {
+    out << "tables, answer and report are not compared with the store: another program packed them\n";
+    return;
+  }
+  const TemporaryFolder made("tables");
+  make_folder(made.path() / packed::results);
+  write_results(results, made.path() / packed::results);
+  write_file(made.path() / packed::answer, report::index_markdown({{results, ""}}));
+  std::set<std::string> names;
+  for (const auto& item : fs::recursive_directory_iterator(made.path()))
+    if (item.is_regular_file()) names.insert(item.path().lexically_relative(made.path()).generic_string());
+  const std::string folder = std::string(packed::results) + "/";
+  for (const std::string& part : parts)
+    if (part.starts_with(folder) && !part.starts_with(folder + "results.sqlite")) names.insert(part);
+  if (results.study.contains("beneath")) names.erase(folder + "report.html");  // it shows another folder's points
+  for (const std::string& name : names)
+    if (!same_bytes(made.path() / name, place / name))
+      throw InputError("", fmt::format("{}: {} is not what its store says", file.string(), name));
+  out << "tables, answer and report are what the store says\n";
+}
+
+int compute_again(const Arguments& arguments, const std::vector<std::string>& parts, const fs::path& place,
+                  std::ostream& out) {
+  AnalysedResults results(read_store(place / packed::results));
+  compare_with_store(arguments.operands.front(), parts, results, place, out);
+  if (results.study.contains("files") && results.study["files"].is_object())
+    results.study["files"]["folder"] = (place / packed::study).string();
   const Kind* kind = find_kind(results.kind);
   if (!kind)
     throw UsageError(fmt::format("it holds a study of kind {}, which this program does not have", results.kind));
   const std::vector<const CaseRecord*> all = cases_that_march(results);
   const std::vector<const CaseRecord*> chosen = drawn(all, cases_asked(arguments.drawn, all.size()));
+  std::optional<StoredStudy> opened;  // a plugin that is missing is told before anything is
+  if (!chosen.empty()) opened.emplace(results, arguments.plugins);
   out << fmt::format("{} ({}): {} of {} computed again\n", results.name, results.kind, chosen.size(),
                      counted(all.size(), "case"))
       << other_program(results.environment);
-  if (chosen.empty()) return exit_done;
-  const StoredStudy stored(results, arguments.plugins);
+  if (!opened) return exit_done;
+  const StoredStudy& stored = *opened;
   const StopSignal signals;
   const AgreementOf agreement(results);
   std::map<Agreement, std::size_t> counts;
@@ -106,12 +151,46 @@ int compute_again(const Arguments& arguments, const fs::path& place, std::ostrea
   return counts[Agreement::no] > 0 ? exit_some_failed : exit_done;
 }
 
+bool lies_in(const fs::path& file, const fs::path& folder) {
+  const fs::path inner = fs::weakly_canonical(file), outer = fs::canonical(folder);
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+/// Nothing there, an empty file, or a zip file, which a new one may replace.
+bool may_replace(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return true;
+  if (!fs::is_regular_file(file, ignored)) return false;
+  std::ifstream stream(file, std::ios::binary);
+  std::string begins(4, '\0');
+  stream.read(begins.data(), static_cast<std::streamsize>(begins.size()));
+  return (stream.eof() && stream.gcount() == 0) || begins == "PK\x03\x04";
+}
+
+/// NAME of NAME.ricochet.zip, else the name without its last ending. Throws UsageError where that is no other name.
+fs::path folder_to_unpack(const fs::path& file) {
+  constexpr std::string_view ending = ".ricochet.zip";
+  std::string name = file.filename().string();
+  if (name.ends_with(ending))
+    name.resize(name.size() - ending.size());
+  else
+    name = file.stem().string();
+  std::error_code ignored;
+  if (name.empty() || fs::equivalent(name, file, ignored))
+    throw UsageError(file.string() + ": its name says no folder; expected one: ricochet unpack FILE DIR");
+  return name;
+}
+
 }  // namespace
 
 int command_pack(const Arguments& arguments, std::ostream& out) {
   const fs::path folder = arguments.operands.front();
   if (!fs::exists(folder / "results.sqlite"))
     throw UsageError(folder.string() + ": holds no results.sqlite; expected a folder of results");
+  if (arguments.out && lies_in(*arguments.out, folder))
+    throw UsageError(arguments.out->string() + " lies in the folder that is packed; expected a file outside of it");
+  if (arguments.out && !may_replace(*arguments.out))
+    throw UsageError(arguments.out->string() + " is there, and no zip file; expected a new file");
   // Nobody writes there meanwhile; where nobody can, nothing is locked.
   std::optional<FolderLock> lock;
   if (::access(folder.c_str(), W_OK) == 0) lock.emplace(folder);
@@ -126,7 +205,7 @@ int command_pack(const Arguments& arguments, std::ostream& out) {
   for (const auto& item : fs::directory_iterator(folder))
     if (item.path().filename().string().starts_with("results.sqlite"))
       fs::copy_file(item.path(), made.path() / item.path().filename());
-  const std::size_t parts = pack_results(made.path(), results, answer, file);
+  const std::size_t parts = pack_results(made.path(), results, answer, file, program_here());
   out << fmt::format("{}: {}, {} of {}, {}\nSHA-256 {}\n", file.string(), counted(parts, "part"), cases,
                      counted(static_cast<std::size_t>(expected), "case"),
                      size_text(static_cast<double>(fs::file_size(file))), file_sha256(file));
@@ -135,10 +214,7 @@ int command_pack(const Arguments& arguments, std::ostream& out) {
 
 int command_unpack(const Arguments& arguments, std::ostream& out) {
   const fs::path file = arguments.operands.front();
-  constexpr std::string_view ending = ".ricochet.zip";
-  std::string name = file.filename().string();
-  if (name.ends_with(ending)) name.resize(name.size() - ending.size());
-  const fs::path folder = arguments.operands.size() > 1 ? fs::path(arguments.operands[1]) : fs::path(name);
+  const fs::path folder = arguments.operands.size() > 1 ? fs::path(arguments.operands[1]) : folder_to_unpack(file);
   std::error_code ignored;
   if (fs::exists(folder, ignored) && (!fs::is_directory(folder, ignored) || !fs::is_empty(folder, ignored)))
     throw UsageError(folder.string() + " is there, and not an empty folder; expected a new one");
@@ -155,11 +231,11 @@ int command_verify(const Arguments& arguments, std::ostream& out) {
   return march_apart(arguments, out, [&](std::ostream& to) {
     const fs::path file = arguments.operands.front();
     const TemporaryFolder work("verify");
-    const std::size_t parts = unpack_results(file, work.path()).size();
-    to << fmt::format("{}: {}, each as it was packed\nSHA-256 {}\n", file.string(), counted(parts, "part"),
+    const std::vector<std::string> parts = unpack_results(file, work.path());
+    to << fmt::format("{}: {}, each as it was packed\nSHA-256 {}\n", file.string(), counted(parts.size(), "part"),
                       file_sha256(file));
     try {
-      return compute_again(arguments, work.path(), to);
+      return compute_again(arguments, parts, work.path(), to);
     } catch (const PointRefused& refused) {
       throw UsageError(refused.what());
     } catch (const Interrupted&) {

@@ -5,6 +5,7 @@
 #include <regex>
 
 #include "runners/command/command.hpp"
+#include "runners/command/manual.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/study/load_study.hpp"
@@ -53,6 +54,15 @@ fs::path ranks_program() {
   return file;
 }
 
+/// The exit codes after which another try would mend nothing, as a pattern of `case`: all but a bug and an
+/// interruption. A job that a signal ended has none of them.
+std::string final_codes() {
+  std::vector<int> codes;
+  for (const ExitMeaning& meaning : exit_meanings())
+    if (meaning.code != exit_bug && meaning.code != exit_interrupted) codes.push_back(meaning.code);
+  return fmt::format("{}", fmt::join(codes, "|"));
+}
+
 }  // namespace
 
 int command_slurm(const Arguments& arguments, std::ostream& out) {
@@ -90,7 +100,7 @@ code=$?
 [ $code -ne 0 ] || [ {folder}/report.html -nt {folder}/.started ] || code=1
 rm -f {folder}/.started
 case $code in
-  0|2|3|4|5) exit $code ;; # done, or nothing that another try would mend
+  {final}) exit $code ;; # done, or nothing that another try would mend
 esac
 # A node that is stopped while it clears away what is left of the ranks would not start them again.
 [ "${{SLURM_RESTART_COUNT:-0}}" -lt 10 ] && sleep 5 && scontrol requeue "$SLURM_JOB_ID"
@@ -99,7 +109,7 @@ exit $code
         fmt::arg("name", shell_word(open.study.name)), fmt::arg("nodes", std::max(1, arguments.nodes)),
         fmt::arg("cpus", cpus), fmt::arg("time", arguments.time), fmt::arg("notice", notice), fmt::arg("each", each),
         fmt::arg("program", shell_word(program.string())), fmt::arg("study", shell_word(study)),
-        fmt::arg("folder", shell_word(folder)), fmt::arg("plugins", plugins));
+        fmt::arg("folder", shell_word(folder)), fmt::arg("plugins", plugins), fmt::arg("final", final_codes()));
     return exit_done;
   });
 }

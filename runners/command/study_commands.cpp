@@ -26,6 +26,7 @@
 #include "runners/store/store.hpp"
 #include "runners/store/temporary_folder.hpp"
 #include "runners/study/load_study.hpp"
+#include "runners/study/product.hpp"
 #include "runners/table/text.hpp"
 #include "runners/workers/allowed_processors.hpp"
 
@@ -39,6 +40,9 @@ int with_study(const Arguments& arguments, const std::function<int(const OpenStu
   try {
     open.study = load_study(given.emplace(name), open.catalogue, open.registry);
     return use(open);
+  } catch (const MissingMethod& error) {
+    if (error.near()) throw StudyError(explain(error, *given));
+    throw PluginError(explain(error, *given));
   } catch (const InputError& error) {
     throw StudyError(given ? explain(error, *given) : explained(error, StudyText::place_of(name), ""));
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/program_options.hpp>
 #include <sstream>
 
@@ -44,6 +45,18 @@ std::string see_help(const Subcommand& command) {
   return "\nUsage: ricochet " + command.name + " " + command.usage;
 }
 
+/// What was meant by an option that a command does not have: one of its own, else one of another command.
+std::string instead_of(const std::string& name, const Subcommand& command, const po::options_description& own) {
+  if (const std::string nearest = nearest_name(name, option_names(own)); !nearest.empty())
+    return "; did you mean " + nearest + "?";
+  for (const Subcommand& other : subcommands()) {
+    if (other.name == command.name) continue;
+    if (const std::string nearest = nearest_name(name, option_names(described(other))); !nearest.empty())
+      return "; `ricochet " + other.name + "` has " + nearest;
+  }
+  return "";
+}
+
 po::variables_map parse(const Subcommand& command, const po::options_description& named,
                         const std::vector<std::string>& words) {
   po::options_description all = named;
@@ -59,9 +72,8 @@ po::variables_map parse(const Subcommand& command, const po::options_description
   } catch (const po::unknown_option& error) {
     std::string name = error.get_option_name();
     if (!name.starts_with("-")) name = "--" + name;
-    const std::string nearest = nearest_name(name, option_names(named));
-    throw UsageError(command.name + " has no option " + name +
-                     (nearest.empty() ? "" : "; did you mean " + nearest + "?") + see_help(command));
+    name.resize(std::min(name.size(), name.find('=')));
+    throw UsageError(command.name + " has no option " + name + instead_of(name, command, named) + see_help(command));
   } catch (const po::invalid_option_value& error) {
     const bool real = error.get_option_name() == "--parameter" || error.get_option_name() == "--arc";
     const char* wanted = real ? "; expected a number" : "; expected a whole number";
@@ -93,7 +105,10 @@ struct Placed {
     into.*member = value.as<std::string>();
   }
   void operator()(std::vector<std::filesystem::path> Arguments::*member) const {
-    for (const std::string& file : value.as<std::vector<std::string>>()) (into.*member).emplace_back(file);
+    for (const std::string& file : value.as<std::vector<std::string>>()) {
+      if (file.empty()) throw UsageError("--" + name + " was given an empty path");
+      (into.*member).emplace_back(file);
+    }
   }
   void operator()(StudyPart Arguments::*member) const {
     const auto& text = value.as<std::string>();
@@ -116,6 +131,8 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
     if (values.count(option.name)) std::visit(Placed{arguments, option.name, values[option.name]}, option.target);
   if (arguments.isolate && arguments.here) throw UsageError("--inline and --isolate exclude each other");
   if (values.count("operand")) arguments.operands = values["operand"].as<std::vector<std::string>>();
+  if (std::any_of(arguments.operands.begin(), arguments.operands.end(), [](const auto& one) { return one.empty(); }))
+    throw UsageError(command.name + " was given an empty argument" + see_help(command));
   if (arguments.operands.size() < command.fewest)
     throw UsageError("an argument of " + command.name + " is missing" + see_help(command));
   if (arguments.operands.size() > command.most)

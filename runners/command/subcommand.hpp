@@ -132,7 +132,8 @@ struct OpenStudy {
 };
 
 /// Loads the study that the first operand names and hands it over. An InputError, from loading or from `use`, is thrown
-/// again as a StudyError that names file, line and pointer.
+/// again as a StudyError that names file, line and pointer. A method that no plugin provides and that no near name
+/// explains is a PluginError.
 int with_study(const Arguments& arguments, const std::function<int(const OpenStudy&)>& use);
 
 /// The exit code of a command that does this. What it throws goes to `err`, as one clear message; no exception leaves.
@@ -165,13 +166,13 @@ const char* type_word(const ParameterSpec& spec);
 /// The range of a number, the words of a word.
 std::string admissible_values(const ParameterSpec& spec);
 
-/// Prints what is known of a structure, a cross-section, a kind of study (text and keys), a measure or an error (unit
-/// and meaning). False where nothing is called so.
+/// Prints what is known of a structure, a cross-section, a kind of study (text and keys), a measure, an error or
+/// another column of cases.csv (unit and meaning). False where nothing is called so.
 bool describe_word(const std::string& name, std::ostream& out);
 
-/// The structures, cross-sections and kinds.
+/// The structures, cross-sections and kinds, each once.
 std::vector<std::string> words_of_studies();
-/// The measures and the errors.
+/// The measures, the errors and the other columns of cases.csv.
 std::vector<std::string> words_of_results();
 
 }  // namespace ricochet

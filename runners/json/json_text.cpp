@@ -362,7 +362,7 @@ std::string explained(const InputError& error, std::string place, const std::str
 
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
   const std::string nearest = nearest_name(word, candidates);
-  return nearest.empty() ? std::string() : "; did you mean \"" + shortened(nearest) + "\"?";
+  return nearest.empty() || nearest == word ? std::string() : "; did you mean \"" + shortened(nearest) + "\"?";
 }
 
 namespace {

@@ -77,7 +77,7 @@ std::vector<T> one_or_each(const Json& value) {
 /// A value as it is quoted in a message: its JSON, cut short when long.
 std::string quote(const Json& value);
 
-/// "; did you mean "X"?" or "".
+/// "; did you mean "X"?" or "", which it is too where the word itself is the nearest.
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
 
 /// "a", "b", "c". Of five or more in a row that differ in numbers alone the first and the last: "p1" … "p9".

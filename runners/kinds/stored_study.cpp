@@ -13,6 +13,7 @@
 #include "runners/store/store.hpp"
 #include "runners/study/case_id.hpp"
 #include "runners/study/load_study.hpp"
+#include "runners/study/product.hpp"
 
 namespace ricochet {
 
@@ -55,6 +56,15 @@ std::string text_to_compute(nlohmann::ordered_json study) {
   return study.dump();
 }
 
+// Its methods were there when it ran: a name that is unknown is no slip.
+Study study_to_compute(const StudyResults& results, Catalogue& catalogue, Registry& registry) {
+  try {
+    return parse_study(text_to_compute(results.study), catalogue, registry);
+  } catch (const MissingMethod& error) {
+    throw PluginError("at " + error.pointer() + ": " + error.what());
+  }
+}
+
 }  // namespace
 
 const CaseRecord& find_case(const StudyResults& results, const std::string& id) {
@@ -77,7 +87,7 @@ const CaseRecord& find_case(const StudyResults& results, const std::string& id) 
 }
 
 StoredStudy::StoredStudy(const StudyResults& results, const std::vector<std::filesystem::path>& plugins)
-    : catalogue(standard_catalogue(plugins)), study(parse_study(text_to_compute(results.study), catalogue, registry)) {}
+    : catalogue(standard_catalogue(plugins)), study(study_to_compute(results, catalogue, registry)) {}
 
 const StudyCase& StoredStudy::find(const std::string& id) const {
   if (const StudyCase* found = find_case(study, id)) return *found;

@@ -20,7 +20,7 @@ nlohmann::ordered_json single_study(const StudyResults& results, const CaseRecor
 const CaseRecord& find_case(const StudyResults& results, const std::string& id);
 
 /// The study of stored results, parsed again, and the case of this id. Throws PointRefused where there is none any
-/// more.
+/// more, PluginError where no plugin provides one of its methods.
 struct StoredStudy {
   StoredStudy(const StudyResults& results, const std::vector<std::filesystem::path>& plugins);
   const StudyCase& find(const std::string& id) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <ricochet/contract/errors.hpp>
 #include <sstream>
 
@@ -89,11 +90,20 @@ const char* format_of(const std::string& name) {
   return found == known.end() ? "application/octet-stream" : found->second;
 }
 
+constexpr const char* packer_id = "#packer";
+
+Json properties(const Environment& environment) {
+  Json facts = Json::array();
+  for (const auto& [name, value] : environment.entries)
+    facts.push_back({{"@type", "PropertyValue"}, {"name", name}, {"value", without_place(name, value)}});
+  return facts;
+}
+
 /// What the parts are and what made them, as research objects are described. Source: RO-Crate 1.1.
-std::string crate(const StudyResults& results, const std::vector<Part>& parts) {
+std::string crate(const StudyResults& results, const std::vector<Part>& parts, const Environment& packer) {
   const auto refers = [](const std::string& id) { return Json{{"@id", id}}; };
   const std::string started = environment_entry(results.environment, kStarted);
-  Json all = Json::array(), given = Json::array(), made = Json::array(), facts = Json::array(), files = Json::array();
+  Json all = Json::array(), given = Json::array(), made = Json::array(), files = Json::array();
   for (const Part& part : parts) {
     all.push_back(refers(part.name));
     (part.name.starts_with(packed::study) ? given : made).push_back(refers(part.name));
@@ -104,8 +114,6 @@ std::string crate(const StudyResults& results, const std::vector<Part>& parts) {
                      {"encodingFormat", format_of(part.name)},
                      {"sha256", part.sum}});
   }
-  for (const auto& [name, value] : results.environment.entries)
-    facts.push_back({{"@type", "PropertyValue"}, {"name", name}, {"value", without_place(name, value)}});
   Json graph = {
       {{"@id", packed::crate},
        {"@type", "CreativeWork"},
@@ -130,7 +138,13 @@ std::string crate(const StudyResults& results, const std::vector<Part>& parts) {
        {"@type", "SoftwareApplication"},
        {"name", "Ricochet"},
        {"version", environment_entry(results.environment, "program")},
-       {"additionalProperty", facts}}};
+       {"additionalProperty", properties(results.environment)}}};
+  if (!packer.entries.empty())
+    graph.push_back({{"@id", packer_id},
+                     {"@type", "SoftwareApplication"},
+                     {"name", "Ricochet"},
+                     {"version", environment_entry(packer, "program")},
+                     {"additionalProperty", properties(packer)}});
   for (Json& file : files) graph.push_back(std::move(file));
   return dumped({{"@context", "https://w3id.org/ro/crate/1.1/context"}, {"@graph", graph}});
 }
@@ -155,13 +169,13 @@ std::map<std::string, std::string> read_sums(const fs::path& file, const std::st
 }  // namespace
 
 std::size_t pack_results(const fs::path& folder, const StudyResults& results, const std::string& answer,
-                         const fs::path& file) {
+                         const fs::path& file, const Environment& packer) {
   std::vector<Part> parts;
   add_results(folder, parts);
   add_study(results, parts);
   parts.push_back(part_of(packed::answer, answer));
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.name < b.name; });
-  parts.insert(parts.begin(), part_of(packed::crate, crate(results, parts)));
+  parts.insert(parts.begin(), part_of(packed::crate, crate(results, parts, packer)));
   std::string sums;
   for (const Part& part : parts) sums += part.sum + "  " + part.name + "\n";
   ZipWriter zip(file);
@@ -178,28 +192,23 @@ std::vector<std::string> unpack_results(const fs::path& file, const fs::path& pl
   std::map<std::string, std::string> found;
   std::string current;
   Sha256 sum;
-  std::ofstream out;
-  const auto check = [&] {
-    if (!out) throw StoreError(fmt::format("{}: cannot be written", (place / current).string()));
-  };
+  std::optional<FileWriter> out;
   read_zip(file, {.begin =
                       [&](const std::string& name) {
                         current = name;
                         sum = Sha256();
                         make_folder((place / name).parent_path());
-                        out.open(place / name, std::ios::binary | std::ios::trunc);
-                        check();
+                        out.emplace(place / name);
                       },
                   .data =
                       [&](std::string_view bytes) {
                         sum.add(bytes);
-                        out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-                        check();
+                        out->write(bytes);
                       },
                   .end =
                       [&] {
-                        out.close();
-                        check();
+                        out->commit();
+                        out.reset();
                         found[current] = sum.digits();
                       }});
   if (found.erase(packed::sums) == 0)
@@ -221,6 +230,21 @@ std::vector<std::string> unpack_results(const fs::path& file, const fs::path& pl
     if (!fs::exists(place / name)) refuse(fmt::format("has no part {}", name));
   if (!fs::exists(place / packed::results / "results.sqlite")) refuse("holds no results");
   return names;
+}
+
+Environment packer_of(const fs::path& place) {
+  std::ifstream stream(place / packed::crate, std::ios::binary);
+  const Json crate = Json::parse(stream, nullptr, false);
+  Environment packer;
+  try {
+    for (const Json& one : crate.at("@graph"))
+      if (one.at("@id") == packer_id)
+        for (const Json& fact : one.at("additionalProperty"))
+          packer.entries.emplace_back(fact.at("name").get<std::string>(), fact.at("value").get<std::string>());
+  } catch (const Json::exception&) {
+    return {};
+  }
+  return packer;
 }
 
 }  // namespace ricochet

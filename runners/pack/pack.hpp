@@ -19,14 +19,18 @@ inline constexpr const char* study = "study";      ///< study.json, and beside i
 }  // namespace packed
 
 /// Writes the results in `folder`, read as `results`, to `file`; returns the number of parts. The same folder makes the
-/// same bytes. `answer`: questions and answers in Markdown. Throws InputError where the study reads files outside of
-/// its folder, or one that has changed since; StoreError (path and cause).
+/// same bytes. `answer`: questions and answers in Markdown. `packer`: what made tables and answer of the store, where
+/// that is to be kept. Throws InputError where the study reads files outside of its folder, or one that has changed
+/// since; StoreError (path and cause).
 std::size_t pack_results(const std::filesystem::path& folder, const StudyResults& results, const std::string& answer,
-                         const std::filesystem::path& file);
+                         const std::filesystem::path& file, const Environment& packer = {});
 
 /// Writes the parts of `file` into the empty folder `place` and compares their sums; returns their names. Throws
 /// InputError with the cause where the file is no packed result, is not whole, or is not as it was packed. What was
 /// written by then stays: `place` is the caller's to remove.
 std::vector<std::string> unpack_results(const std::filesystem::path& file, const std::filesystem::path& place);
+
+/// What made tables and answer of the result that is unpacked in `place`. No entries where it does not say.
+Environment packer_of(const std::filesystem::path& place);
 
 }  // namespace ricochet

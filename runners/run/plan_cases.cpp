@@ -118,7 +118,8 @@ PlanOutcome CasePlanner::plan_in_child(const StudyCase& study_case) {
                                                                                   Json::error_handler_t::replace);
         }
       },
-      longest_plan);
+      // A budget is what a case may take at all; a child takes some of a second to begin.
+      std::min(longest_plan, std::max(1.0, budget_of(study_case))));
   if (!outcome.ok()) {
     const std::string sentence = outcome.sentence();
     if (outcome.end == ChildOutcome::End::timeout && outcome.call.serial != 0)

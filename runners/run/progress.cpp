@@ -193,7 +193,7 @@ void Progress::refresh() {
     if (stop_ && !stop_told_) {
       stop_told_ = true;
       erase();
-      say(out_, "stopping: the cases in flight are given up, the others kept (once more ends at once)\n");
+      say(out_, "stopping: what is under way is stored as far as it can be (once more ends at once)\n");
     }
     if (terminal_ || seconds_since(last_line_) >= 5 * kLineEverySeconds) draw();
     if (elsewhere_ && seconds_since(told_elsewhere_) >= kElsewhereEverySeconds) {

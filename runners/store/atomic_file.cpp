@@ -19,9 +19,7 @@ constexpr const char* kMark = ".part-";
 [[noreturn]] void fail(const std::filesystem::path& file, int error) {
   if (error == ENOSPC || error == EDQUOT)
     throw StoreError(
-        fmt::format("{}: the disk is full; free some space and run the same command again: the cases that "
-                    "finished are kept",
-                    file.string()));
+        fmt::format("{}: the disk is full; free some space and run the same command again", file.string()));
   throw StoreError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(error)));
 }
 

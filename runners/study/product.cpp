@@ -188,9 +188,10 @@ const PluginManual& require_method(Role role, const std::string& name, const std
   std::vector<const Unusable*> suspects;
   for (const Unusable& file : catalogue.unusable())
     if (meant ? &file == meant : file.meant.empty()) suspects.push_back(&file);
-  if (suspects.empty()) throw InputError(pointer, message);
-  if (!meant && !nearest_name(name, names).empty())
-    throw InputError(pointer, message + "; `ricochet doctor` tells of plugin files that cannot serve");
+  const bool near = !nearest_name(name, names).empty();
+  if (suspects.empty()) throw MissingMethod(pointer, message, near);
+  if (!meant && near)
+    throw MissingMethod(pointer, message + "; `ricochet doctor` tells of plugin files that cannot serve", near);
   message =
       "at " + pointer + ": " + message +
       (suspects.size() == 1 ? "; this file was found and cannot serve:" : "; these files were found and cannot serve:");

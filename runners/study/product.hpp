@@ -66,6 +66,18 @@ class CaseIds {
 /// no case has, a combination that matches nothing, a missing reason, and when nothing remains.
 void apply_excludes(const Json& excludes, Study& study);
 
+/// A study names a method that no plugin provides. Where another name is near it is a slip of the study's writer, else
+/// a plugin is missing (exit code 4).
+class MissingMethod : public InputError {
+ public:
+  MissingMethod(std::string pointer, const std::string& message, bool near)
+      : InputError(std::move(pointer), message), near_(near) {}
+  bool near() const { return near_; }
+
+ private:
+  bool near_;
+};
+
 /// One method of one role, every list of parameters expanded.
 struct MethodOption {
   MethodChoice choice;
@@ -80,10 +92,10 @@ struct MethodOptions {
 };
 
 /// Reads the methods of a role: a name, an object {name, parameters…}, or a list of either. Opens the libraries named,
-/// and only these. Throws InputError for an unknown name, parameter or value. Throws PluginError when the library that
-/// provides the name fails, or the only file meant to provide it cannot serve. Also when the name is near no other, and
-/// files were found that tell nothing of themselves. A scheme that the study states itself (plan_file.hpp) is
-/// read relative to `folder`; its resolved object holds the plan.
+/// and only these. Throws MissingMethod for an unknown name, InputError for an unknown parameter or value. Throws
+/// PluginError when the library that provides the name fails, or the only file meant to provide it cannot serve. Also
+/// when the name is near no other, and files were found that tell nothing of themselves. A scheme that the study states
+/// itself (plan_file.hpp) is read relative to `folder`; its resolved object holds the plan.
 MethodOptions read_methods(Role role, const Json& value, const std::string& pointer, Catalogue& catalogue,
                            Registry& registry, const std::filesystem::path& folder = {});
 

@@ -32,7 +32,9 @@ enum class Wrong {
   lane_before,     // depends on the lane before it
   memory_of_last,  // adds the effort of the last step
   residual,        // owns up to nothing while it stops early
-  no_number
+  no_number,
+  no_number_alone,  // where no effort moves the one point
+  unanswered_alone  // says there that it did not converge
 };
 
 constexpr double kappa = 2e4;
@@ -65,6 +67,9 @@ class FlawedLaw final : public ContactLaw {
         if (wrong_ == Wrong::memory_of_last && last != 0) p += 0.1 * last;
         if (wrong_ == Wrong::residual) p *= 0.99;
         if (wrong_ == Wrong::no_number) p = std::nan("");
+        const bool alone = problem.points == 1 && problem.reach == 0;
+        if (wrong_ == Wrong::no_number_alone && alone) p = std::nan("");
+        if (wrong_ == Wrong::unanswered_alone && alone) problem.outcome[lane].converged = false;
       }
       lane_before += 1e-9 * problem.effort[at(0)];
       if (wrong_ == Wrong::dissipation) problem.outcome[lane].dissipation = 1;
@@ -172,6 +177,10 @@ TEST_CASE("check: wrong efforts of compliant laws are caught") {
   caught(false, Wrong::effort, "constant stiffness", "declares that its force is 20000 N/m");
   caught(false, Wrong::pulls, "force law", "pulls");
   caught(false, Wrong::no_number, "force law", "not finite");
+  caught(false, Wrong::no_number_alone, "solution", "answers one point no force");
+  caught(false, Wrong::unanswered_alone, "solution", "answers one point no force");
+  for (const char* check : {"slopes", "potential", "constant stiffness", "dissipation"})
+    caught(false, Wrong::no_number_alone, check, "");
 }
 
 TEST_CASE("check: wrong slopes, stiffness, potential and dissipation are caught") {

@@ -40,6 +40,13 @@ TEST_CASE("errors carry what a person needs to act") {
   CHECK(std::string(PluginError("time-x.so: no").what()) == "time-x.so: no");
 }
 
+TEST_CASE("a text of several lines is one line, cut as any text") {
+  CHECK(one_line("") == "");
+  CHECK(one_line("one") == "one");
+  CHECK(one_line("\n one \r\n\n\ttwo\n") == "one; two");
+  CHECK(one_line(std::string(longest_text, 'a') + "\nb") == std::string(longest_text - 3, 'a') + "…");
+}
+
 TEST_CASE("a text is quoted whole up to 80 characters, and by its first 80 beyond") {
   CHECK(shortened("") == "");
   CHECK(shortened(std::string(80, 'a')) == std::string(80, 'a'));

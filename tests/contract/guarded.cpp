@@ -125,6 +125,16 @@ TEST_CASE("what a plugin throws arrives as a fault that names plugin, file and f
                     "plugin reference 'mine', solve(): an exception that says nothing");
 }
 
+TEST_CASE("what a plugin says in several lines arrives in one") {
+  const std::string place = "plugin time 'mine' (here.so), plan(): ";
+  CHECK_THROWS_WITH(plan_of([]() -> PlanOrRefusal { throw std::runtime_error("first\n  second\r\n\n"); }),
+                    place + "first; second");
+  CHECK_THROWS_WITH(plan_of([]() -> PlanOrRefusal { throw std::runtime_error("\n \n"); }),
+                    place + "an exception that says nothing");
+  const auto refused = plan_of([]() -> PlanOrRefusal { return Refusal{"too stiff:\nlower the step"}; });
+  CHECK(std::get<Refusal>(refused).sentence.text == "too stiff: lower the step");
+}
+
 TEST_CASE("an error that already says what to do passes as it is") {
   CHECK_THROWS_AS(plan_of([]() -> PlanOrRefusal { throw InputError("/methods/time/beta", "no"); }), InputError);
   CHECK_THROWS_AS(plan_of([]() -> PlanOrRefusal { throw PluginError("no"); }), PluginError);

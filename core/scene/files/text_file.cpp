@@ -57,8 +57,12 @@ std::string utf8_of(std::string_view bytes) {
 
 std::uintmax_t file_limit() {
   const char* given = std::getenv("RICOCHET_FILE_LIMIT");
-  const auto asked = given ? whole_number(given) : std::nullopt;
-  return asked ? static_cast<std::uintmax_t>(*asked) : std::uintmax_t{256} << 20U;
+  if (!given || !*given) return std::uintmax_t{256} << 20U;
+  const auto asked = whole_number(given);
+  if (!asked)
+    throw FileError(fmt::format("the environment has RICOCHET_FILE_LIMIT=\"{}\"; expected a whole number of bytes",
+                                shortened(given)));
+  return static_cast<std::uintmax_t>(*asked);
 }
 
 std::string missing_text(const std::filesystem::path& folder, const std::string& name) {
@@ -205,8 +209,8 @@ std::string read_file(const std::filesystem::path& folder, const std::string& na
   const std::uintmax_t size = std::filesystem::file_size(file, error), limit = file_limit();
   if (error) throw FileError(fmt::format("\"{}\" cannot be read: {}", shortened(name), error.message()));
   if (size > limit)
-    throw FileError(fmt::format("\"{}\" has {:.3g} MB; the limit is {:.3g} MiB (RICOCHET_FILE_LIMIT, bytes)",
-                                shortened(name), static_cast<double>(size) / 1e6,
+    throw FileError(fmt::format("\"{}\" has {:.4g} MiB; the limit is {:.4g} MiB (RICOCHET_FILE_LIMIT, bytes)",
+                                shortened(name), static_cast<double>(size) / mebibyte,
                                 static_cast<double>(limit) / mebibyte));
   std::string content(size, '\0');
   std::ifstream stream(file, std::ios::binary);

@@ -75,7 +75,8 @@ std::optional<long long> whole_number(std::string_view text);
 bool lies_within(const std::filesystem::path& folder, const std::filesystem::path& file);
 
 /// Content of `folder`/`name`. Throws FileError where it is missing (with the nearest name of the folder), is no file
-/// or cannot be read. The same where it is larger than the limit: 256 MiB, or RICOCHET_FILE_LIMIT bytes.
+/// or cannot be read. The same where it is larger than the limit: 256 MiB, or RICOCHET_FILE_LIMIT bytes, and where that
+/// is no whole number.
 std::string read_file(const std::filesystem::path& folder, const std::string& name);
 
 /// A table: a header, then one row per line. Cells are separated by what separates the header: semicolons, tabs, commas

@@ -125,9 +125,9 @@ std::vector<MeasureInfo> contact_measures() {
       {"confidence.window_force", "N", "Half the 95 % interval of that mean.", Of::computation},
       {"window_impact_rate", "1/s", "How often a contact point closes in a second: such a mean."},
       {"confidence.window_impact_rate", "1/s", "Half the 95 % interval of that mean.", Of::computation},
-      {"window_tip_rms", "m", "Root mean square of the displacement of the tip: mean over the parts.", Of::motion,
-       false, "largest_tip_displacement"},
-      {"confidence.window_tip_rms", "m", "Half the 95 % interval of that mean.", Of::computation},
+      {"window_tip_rms", "m", "Root mean square of the displacement of the tip over the window.", Of::motion, false,
+       "largest_tip_displacement"},
+      {"confidence.window_tip_rms", "m", "Half its 95 % interval, by the squares of the parts.", Of::computation},
       {"complementarity_residual", "m or m/s",
        "Largest complementarity residual of the contact problem over the run, in units of the measure (position or "
        "velocity).",
@@ -310,9 +310,9 @@ StudyKind trajectory_format(const std::vector<MeasureInfo>& measures) {
   for (const std::string& one : measures_of_stops()) names.push_back(one);
   format.check_measure = [observe = format.keys.back(), names](const Json& study, const std::string& measure,
                                                                const std::string& pointer) {
-    const auto& of_stops = observe.of_each;
+    const bool of_stops = std::find(observe.of_each.begin(), observe.of_each.end(), measure) != observe.of_each.end();
     const Json& stops = study.at("scene").at("stops");
-    if (stops.is_array() && !stops.empty() && std::find(of_stops.begin(), of_stops.end(), measure) != of_stops.end()) {
+    if (of_stops && stops.is_array() && !stops.empty()) {
       check_stop_measure(study, measure + "[" + stops.front().at("name").get<std::string>() + "]", pointer);
       return;
     }
@@ -322,6 +322,10 @@ StudyKind trajectory_format(const std::vector<MeasureInfo>& measures) {
     try {
       check_object(form, {{"observe", measure}}, "", none);
     } catch (const InputError& error) {
+      if (of_stops)
+        throw InputError(pointer, quote(measure) +
+                                      " is of stops with names; write the stops of the scene as a list, "
+                                      "each with a name");
       const std::string near = did_you_mean(measure, names);
       throw InputError(pointer, near.empty() ? error.what() : "no measure is called " + quote(measure) + near);
     }

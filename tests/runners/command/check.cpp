@@ -104,10 +104,18 @@ TEST_CASE("what no plugin provides is told with where it was looked for", "[comm
   fs::create_directory(here / "mine");
   const Outcome outcome = here.run("plan study.json --plugin theta.json", "RICOCHET_PLUGIN_PATH=mine:nowhere");
   INFO(outcome.err);
-  CHECK(outcome.code == 2);
-  CHECK_THAT(outcome.err, Contains("no plugin provides the time scheme \"my-scheme\"") && Contains("looked in ") &&
+  CHECK(outcome.code == 4);
+  CHECK_THAT(outcome.err, Contains("study.json:") &&
+                              Contains("at /methods/time: no plugin provides the time scheme \"my-scheme\"") &&
+                              Contains("looked in ") &&
                               Contains("lib/ricochet, mine, nowhere (no such folder), theta.json"));
   CHECK_THAT(here.run("check my-scheme").err, Contains("looked in "));
+  // A slip of the study's writer, where another name is near.
+  study["methods"]["time"] = "newmrk";
+  here.write("study.json", study.dump(2));
+  const Outcome slip = here.run("plan study.json");
+  CHECK(slip.code == 2);
+  CHECK_THAT(slip.err, Contains("did you mean \"newmark\"?"));
 }
 
 TEST_CASE("a study of stability says where the limit that a scheme declares is another", "[command]") {

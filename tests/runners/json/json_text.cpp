@@ -153,6 +153,11 @@ TEST_CASE("Messages quote long values cut short, at a character") {
   CHECK_NOTHROW(Json::parse(cut.substr(0, cut.size() - 3) + "\""));
 }
 
+TEST_CASE("The nearest name is told where it is another one") {
+  CHECK(did_you_mean("ful", {"poor", "full"}) == "; did you mean \"full\"?");
+  CHECK(did_you_mean("full", {"poor", "full"}).empty());
+}
+
 TEST_CASE("A list of names tells of many that differ in numbers alone the first and the last") {
   CHECK(quoted_list({}).empty());
   CHECK(quoted_list({"p1", "p2", "p3", "p4"}) == R"("p1", "p2", "p3", "p4")");

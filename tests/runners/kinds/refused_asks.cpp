@@ -76,6 +76,16 @@ TEST_CASE("errors that a study does not compute are refused with the nearest nam
   CHECK_THAT(refused(oscillator("trajectory"), {{"order", "impulse"}}), Contains("kind convergence"));
 }
 
+TEST_CASE("a measure of stops with names is refused where the stops have none, with the list to write", "[asks]") {
+  Json study = oscillator("trajectory");
+  CHECK(refused(study, {{"value", "impulse"}}) == "");
+  CHECK_THAT(refused(study, {{"value", "peak_force"}}),
+             Contains("\"peak_force\" is of stops with names; write the stops of the scene as a list") &&
+                 !Contains("did you mean"));
+  study["scene"]["stops"] = {{{"name", "gap"}, {"upper", 0.5}, {"at", {{"x", 0}}}}};
+  CHECK(refused(study, {{"value", "peak_force"}}) == "");
+}
+
 TEST_CASE("a sweep is asked for its own parameter, basins for shares", "[asks]") {
   const Json sweep = oscillator("bifurcation");
   for (const char* name : {"/scene/structure/force/pulsation", "scene.structure.force.pulsation",

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <functional>
 
+#include "runners/command/manual.hpp"
+#include "runners/run/exit_code.hpp"
 #include "tests/places.hpp"
 #include "tests/runners/mpi/cluster.hpp"
 #include "tests/runners/same_tables.hpp"
@@ -139,6 +141,31 @@ TEST_CASE("slurm: a job whose ranks were never started has not ended well, whate
   stand_in("srun", "exit 0");
   CHECK(to_its_end(scratch, line).code == 1);
   CHECK_FALSE(fs::exists(scratch / "out/.started"));
+}
+
+TEST_CASE("slurm: a job goes back into the queue after a bug, an interruption or a signal, and after no other code") {
+  if (without_mpi()) return;
+  const ScratchFolder scratch;
+  write_text(scratch / "job.sh", script(scratch, study_of("trajectory"), "out"));
+  const auto stand_in = [&](const std::string& name, const std::string& does) {
+    write_text(scratch / name, "#!/bin/sh\n" + does + "\n");
+    fs::permissions(scratch / name, fs::perms::owner_all);
+  };
+  stand_in("scontrol", "echo $1 $2");
+  stand_in("sleep", "");
+  const std::string report = "'" + (scratch / "out/report.html").string() + "'";
+  std::vector<int> codes{143};  // SIGTERM
+  for (const ricochet::ExitMeaning& meaning : ricochet::exit_meanings()) codes.push_back(meaning.code);
+  for (const int code : codes) {
+    CAPTURE(code);
+    stand_in("srun", "/bin/sleep 0.05; echo >" + report + "; exit " + std::to_string(code));
+    const Ended ended =
+        to_its_end(scratch, "env SLURM_JOB_ID=4711 SLURM_CPUS_PER_TASK=2 PATH='" + scratch.path().string() +
+                                "':$PATH sh '" + (scratch / "job.sh").string() + "'");
+    CHECK(ended.code == code);
+    const bool again = code == ricochet::exit_bug || code == ricochet::exit_interrupted || code == 143;
+    CHECK(ended.out == (again ? "requeue 4711\n" : ""));
+  }
 }
 
 TEST_CASE("slurm: a job that is warned by USR1 keeps what it has, goes back into the queue and on to the same tables") {

@@ -375,6 +375,70 @@ TEST_CASE("pack: another result than the stored one is not equal, and says so wi
   CHECK_THAT(other.err, Contains("force.csv has changed since"));
 }
 
+TEST_CASE("verify: tables, answer and report that the store does not say are refused, though their sums fit") {
+  const Folder here;
+  make_results(here);
+  REQUIRE(here.run("pack made").code == 0);
+  const Parts whole = parts_of(here / "rod.ricochet.zip");
+  const auto verified_with = [&](const std::string& changed, const std::function<void(std::string&)>& change) {
+    Parts parts = whole;
+    std::string sums;
+    for (auto& [name, text] : parts) {
+      if (name == changed) change(text);
+      if (name != ricochet::packed::sums) sums += sha256(text) + "  " + name + "\n";
+    }
+    parts.front().second = sums;
+    fs::remove(here / "other.zip");
+    write_parts(here / "other.zip", parts);
+    return here.run("verify other.zip --cases 0");
+  };
+  const Outcome same = verified_with("", [](std::string&) {});
+  INFO(same.out << same.err);
+  CHECK(same.code == 0);
+  CHECK_THAT(same.out, Contains("\ntables, answer and report are what the store says\n"));
+  for (const std::string part :
+       {"results/cases.csv", "results/limits.csv", "answer.md", "results/report.html", "results/study.json"}) {
+    const Outcome other = verified_with(part, [](std::string& text) { text.back() = ' '; });
+    INFO(other.out << other.err);
+    CHECK(other.code == 2);
+    CHECK_THAT(other.err, Contains("other.zip: " + part + " is not what its store says"));
+  }
+  Parts more = whole;
+  add_part(more, "results/more.csv", "case\n");
+  write_parts(here / "more.zip", more);
+  const Outcome added = here.run("verify more.zip --cases 0");
+  CHECK(added.code == 2);
+  CHECK_THAT(added.err, Contains("more.zip: results/more.csv is not what its store says"));
+  // Another program may write other digits.
+  const Outcome program = verified_with(ricochet::packed::crate, [](std::string& text) {
+    const std::string packer = "\"#packer\"", name = "\"ricochet ";
+    const std::size_t at = text.find(name, text.find(packer));
+    REQUIRE(at != std::string::npos);
+    text.replace(at, name.size(), "\"ricochet 9.");
+    text.replace(text.find(name, at + 1), name.size(), "\"ricochet 9.");
+  });
+  INFO(program.out << program.err);
+  CHECK(program.code == 0);
+  CHECK_THAT(program.out, Contains("are not compared with the store: another program packed them"));
+}
+
+TEST_CASE("verify: a method that no plugin here provides is a missing plugin, however near another name is") {
+  const Folder here;
+  make_results(here);
+  ricochet::StudyResults results = ricochet::read_store(here / "made");
+  for (const std::string name : {"newmarks", "my-scheme"}) {
+    CAPTURE(name);
+    results.study["methods"]["time"][0]["name"] = name;
+    const Outcome outcome = verified(here, results);
+    INFO(outcome.out << outcome.err);
+    CHECK(outcome.code == 4);
+    CHECK_THAT(outcome.err,
+               Contains("at /methods/time") && Contains("no plugin provides the time scheme \"" + name + "\""));
+    CHECK_THAT(outcome.out, !Contains("computed again"));
+    CHECK(here.run("case changed " + results.cases.front().id).code == 4);
+  }
+}
+
 TEST_CASE("pack: tables and report are those of the store, whatever lies beside it") {
   const Folder here;
   make_results(here);
@@ -404,6 +468,48 @@ TEST_CASE("pack: a folder that cannot be packed is refused with its cause") {
   fs::create_directory(here / "full");
   here.write("full/file", "x");
   CHECK_THAT(here.run("unpack nowhere.zip full").err, Contains("not an empty folder"));
+}
+
+TEST_CASE("pack: nothing but a zip file is replaced, and nothing of the folder that is packed") {
+  const Folder here;
+  make_results(here);
+  here.write("table.csv", "mine");
+  for (const char* file : {"table.csv", "made"}) {
+    const Outcome kept = here.run(std::string("pack made --out ") + file);
+    INFO(kept.err);
+    CHECK(kept.code == 2);
+  }
+  CHECK(read(here / "table.csv") == "mine");
+  const std::string cases = read(here / "made/cases.csv");
+  for (const char* file : {"made/cases.csv", "made/new.zip", "made/../made/curves/../new.zip"}) {
+    const Outcome inside = here.run(std::string("pack made --out ") + file);
+    CHECK(inside.code == 2);
+    CHECK_THAT(inside.err, Contains("lies in the folder that is packed"));
+  }
+  CHECK(read(here / "made/cases.csv") == cases);
+  here.write("empty", "");
+  for (int time = 0; time < 2; ++time) CHECK(here.run("pack made --out empty").code == 0);
+}
+
+TEST_CASE("unpack: the folder is the name of the file without its ending, and never the file") {
+  const Folder here;
+  make_results(here);
+  REQUIRE(here.run("pack made --out m.zip").code == 0);
+  CHECK(here.run("unpack m.zip").code == 0);
+  CHECK(fs::exists(here / "m/results/results.sqlite"));
+  fs::copy_file(here / "m.zip", here / "plain");
+  fs::copy_file(here / "m.zip", here / ".ricochet.zip");
+  for (const char* file : {"plain", ".ricochet.zip"}) {
+    const Outcome none = here.run(std::string("unpack ") + file);
+    CHECK(none.code == 2);
+    CHECK_THAT(none.err, Contains("its name says no folder"));
+  }
+  for (const char* words : {"unpack m.zip ''", "unpack ''", "verify ''", "report ''", "run ''", "describe ''"}) {
+    const Outcome empty = here.run(words);
+    INFO(words << empty.err);
+    CHECK(empty.code == 2);
+    CHECK_THAT(empty.err, Contains("was given an empty argument"));
+  }
 }
 
 TEST_CASE("pack: a part that is the folder of another is refused, and a part that is named twice") {

@@ -102,7 +102,7 @@ TEST_CASE("what is larger than it may be, or has no size, is refused before it i
   CHECK_THAT(refused(folders.scratch / "large.json"), Contains("has more than 32 MiB"));
   CHECK_THAT(refused("/dev/zero"), Contains("is a pipe, a socket or a device"));
   fs::resize_file(folders.folder() / "a.csv", std::uintmax_t{1} << 33U);  // takes no room
-  CHECK_THAT(fault(with_table("a.csv"), folders.folder()), Contains("8.59e+03 MB; the limit is 256 MiB"));
+  CHECK_THAT(fault(with_table("a.csv"), folders.folder()), Contains("has 8192 MiB; the limit is 256 MiB"));
   Json study = with_table("/dev/zero");
   study["outside"] = true;
   CHECK_THAT(fault(study, folders.folder()), Contains("is no file; expected one that can be read"));

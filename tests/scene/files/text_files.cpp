@@ -131,5 +131,12 @@ TEST_CASE("a file that is missing has the names that are there, and one that is 
   CHECK(fault([&] { read_file(folder.path(), "."); }) == "\".\" is no file; expected one that can be read");
   ::setenv("RICOCHET_FILE_LIMIT", "0", 1);
   CHECK(fault([&] { read_file(folder.path(), "M.mtx"); }).ends_with("the limit is 0 MiB (RICOCHET_FILE_LIMIT, bytes)"));
+  for (const char* wrong : {"abc", "-5", "1e6"}) {
+    ::setenv("RICOCHET_FILE_LIMIT", wrong, 1);
+    CHECK(fault([&] { read_file(folder.path(), "M.mtx"); }) ==
+          std::string("the environment has RICOCHET_FILE_LIMIT=\"") + wrong + "\"; expected a whole number of bytes");
+  }
+  ::setenv("RICOCHET_FILE_LIMIT", "", 1);
+  CHECK(read_file(folder.path(), "M.mtx") == "y");
   ::unsetenv("RICOCHET_FILE_LIMIT");
 }
