@@ -13,8 +13,8 @@ namespace ricochet::report {
 /// - "parts": `rows` of `name`, `part`, `value`: parts of a whole, stacked from zero; `at` as lines;
 /// - "ranges": `rows` of `name`, `motion`, `from`, `to`: stretches of `x` in `x_unit`, a row for each name; `group` and
 ///   `colour` of each or of none: what the legend names, and "#0072B2";
-/// - "curves": `series` of `name`, `points` [x, y] and `floor`, over `x` and `y` with `x_unit` and `y_unit`, in
-///   logarithms where `log`; `at` as lines of y;
+/// - "curves": `series` of `name`, `points` [x, y] in the order of their line, and `floor`, over `x` and `y` with
+///   `x_unit` and `y_unit`, in logarithms where `log`; `at` as lines of y;
 /// - "branches": `series` of `name` and `points` [x, y, stable], what is not stable broken, and `marks` of `kind`,
 ///   `name`, `branch`, `value` and `tip`.
 /// The value axis is `measure` in `unit`, of logarithms where `log`, or where a linear one hides the small values. A

@@ -11,6 +11,8 @@
 namespace ricochet::report {
 namespace {
 
+constexpr std::size_t long_text = 60;  // which a narrow column would make tall
+
 std::string table_html(const AskedTable& table) {
   HtmlTable out("", {}, "verdicts");
   for (std::size_t k = 0; k < table.heads.size(); ++k) out.add({table.heads[k], k == table.values});
@@ -18,7 +20,7 @@ std::string table_html(const AskedTable& table) {
     out.row("", "", unbroken(row.front()));
     for (std::size_t k = 1; k < row.size(); ++k) {
       if (k != table.values)
-        out.cell(row[k].empty() ? "–" : unbroken(row[k]));
+        out.cell(row[k].empty() ? "–" : unbroken(row[k]), row[k].size() > long_text ? " class=\"long\"" : "");
       else if (row[k].empty())
         out.absent();
       else

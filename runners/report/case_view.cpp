@@ -17,14 +17,6 @@ bool contains(const std::vector<std::string>& list, std::string_view item) {
   return std::find(list.begin(), list.end(), item) != list.end();
 }
 
-/// The word that a label puts before a value: the last part of the column, nothing for a method's own name.
-std::string word(std::string_view column) {
-  if (is_method_role(std::string(column))) return "";
-  const size_t dot = column.rfind('.');
-  const bool method = role_of(column) != column;
-  return std::string(method && dot != std::string_view::npos ? column.substr(dot + 1) : column) + " ";
-}
-
 /// What is added to `before` of a column that sets cases apart by these values.
 std::string apart(const std::string& before, const std::string& column, const std::vector<std::string>& values) {
   return fmt::format("{}{} {}", before.empty() ? "" : "; ", column, fmt::join(values, ", "));
@@ -59,6 +51,12 @@ std::string with_unit(const Quantity& quantity) {
 
 std::string role_of(std::string_view column) {
   return axis_role(std::string(column));
+}
+
+std::string label_word(const std::string& column) {
+  if (is_method_role(column)) return "";
+  const std::size_t dot = role_of(column) != column ? column.rfind('.') : std::string::npos;
+  return (dot == std::string::npos ? column : column.substr(dot + 1)) + " ";
 }
 
 CaseView::CaseView(const StudyResults& results) : results_(results) {
@@ -137,7 +135,7 @@ std::string CaseView::label(const CaseRecord& record, const std::vector<std::str
     const std::string role = role_of(column);
     if (!out.empty()) out += role == previous_role ? ", " : " · ";
     const std::string& unit = unit_of(column);
-    out += word(column) + value + (unit.empty() ? "" : " " + unit);
+    out += label_word(column) + value + (unit.empty() ? "" : " " + unit);
     previous_role = role;
   }
   return out;
@@ -158,14 +156,21 @@ std::string CaseView::mass_label(const CaseRecord& record) const {
   for (const std::string& column : results_.columns) {
     if (column == "mass" || role_of(column) != "mass" || values(column).size() < 2) continue;
     const std::string value = text(record, column);
-    if (!value.empty()) out += ", " + word(column) + value;
+    if (!value.empty()) out += ", " + label_word(column) + value;
   }
   return out;
 }
 
+std::size_t CaseView::mass_place(const CaseRecord& record) const {
+  return static_cast<std::size_t>(std::find(masses_.begin(), masses_.end(), mass_label(record)) - masses_.begin());
+}
+
 std::string CaseView::colour(const CaseRecord& record) const {
-  const auto found = std::find(masses_.begin(), masses_.end(), mass_label(record));
-  return mass_colours[static_cast<size_t>(found - masses_.begin()) % std::size(mass_colours)];
+  return mass_colour(mass_place(record));
+}
+
+std::string mass_colour(std::size_t place) {
+  return mass_colours[place % std::size(mass_colours)];
 }
 
 std::vector<std::string> CaseView::varying_without(const std::vector<std::string>& excluded) const {

@@ -31,7 +31,7 @@ struct CaseGroup {
 /// The name of an axis as it is read: of a stop of a list with the name of that, "stiffness of bar-a".
 std::string axis_text(const StudyResults& results, const std::string& column);
 
-/// The cases of a study as a report speaks of them: which axes vary, short labels, groups, one colour per mass matrix.
+/// The cases of a study as a report speaks of them: which axes vary, short labels, groups, the place of a mass matrix.
 /// A *role* is a method's name with its parameters: "mass" stands for the columns mass, mass.velocity, …
 class CaseView {
  public:
@@ -67,7 +67,8 @@ class CaseView {
   std::string mass_label(const CaseRecord& record) const;
   /// Mass matrices in order of appearance.
   const std::vector<std::string>& masses() const { return masses_; }
-  /// Colour of the case's mass matrix, the same in all charts (Okabe and Ito 2008: distinct for colour-blind readers).
+  /// The place of the case's mass matrix among these; their number where it has none (a reference).
+  std::size_t mass_place(const CaseRecord& record) const;
   std::string colour(const CaseRecord& record) const;
 
   /// Varying columns but for those of the given columns or roles.
@@ -101,6 +102,12 @@ class CaseView {
 
 /// The role of a column: "mass" of "mass.velocity"; the column itself where it belongs to no method.
 std::string role_of(std::string_view column);
+
+/// What a label puts before a value: the last part of the column and a blank; "" for a method's own name.
+std::string label_word(const std::string& column);
+
+/// The colour of a mass matrix, the same in all charts (Okabe and Ito 2008: distinct for colour-blind readers).
+std::string mass_colour(std::size_t place);
 
 /// Which rows of a derived table have the axes of a case.
 class AxisPlaces {

@@ -64,10 +64,9 @@ Bytes gzipped(const Bytes& bytes) {
 
 }  // namespace
 
-nlohmann::ordered_json packed_blocks(const nlohmann::ordered_json& blocks) {
-  nlohmann::ordered_json out = nlohmann::ordered_json::object();
-  for (const auto& [key, value] : blocks.items()) {
-    const auto& text = value.get_ref<const std::string&>();
+Blocks packed_blocks(const Blocks& blocks) {
+  Blocks out;
+  for (const auto& [key, text] : blocks) {
     // The number behind the type's letter counts bits.
     const std::size_t width = static_cast<std::size_t>(std::stoi(key.substr(key.rfind(':') + 2))) / 8;
     const Bytes bytes = from_base64(text);

@@ -24,6 +24,9 @@ std::vector<size_t> keep_extremes(std::span<const double> values, size_t limit);
 /// The column of a curve, nothing where there is none (a refused case has no curve).
 std::optional<std::span<const double>> curve_column(const Curve& curve, std::string_view name);
 
+/// Numbers as base64, by "name:type".
+using Blocks = std::map<std::string, std::string>;
+
 /// The long columns of numbers that the page carries, each written once, whatever the number of charts that show it.
 class CurveData {
  public:
@@ -37,8 +40,7 @@ class CurveData {
   void put(const std::string& key, const std::string& type, std::span<const unsigned char> bytes);
   /// Numbers in single precision.
   void put_floats(const std::string& key, std::span<const double> values);
-  /// Key → base64.
-  const nlohmann::ordered_json& blocks() const { return blocks_; }
+  const Blocks& blocks() const { return blocks_; }
   /// Sentence on what was thinned out for display, "" when nothing was. `files`: whether each case has its curve's
   /// file.
   std::string thinning(bool files = true) const;
@@ -46,12 +48,12 @@ class CurveData {
  private:
   size_t limit_;
   size_t thinned_ = 0, longest_ = 0;
-  nlohmann::ordered_json blocks_ = nlohmann::ordered_json::object();
+  Blocks blocks_;
 };
 
 /// Blocks as the page carries them. One that shrinks by a fifth is packed, its key ends in z: first bytes of all
 /// numbers, then their second ones, and so on, as gzip (RFC 1952), as base64.
-nlohmann::ordered_json packed_blocks(const nlohmann::ordered_json& blocks);
+Blocks packed_blocks(const Blocks& blocks);
 
 /// Limit for CurveData such that curves take about 8 MB of the page: 6·10⁵ numbers shared by the series, at least 1000
 /// samples each.

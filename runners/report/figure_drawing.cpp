@@ -177,8 +177,9 @@ std::string AskFigure::label_at(double value) const {
   return number_text(value, 4) + (unit_.empty() ? "" : " " + unit_);
 }
 
-double AskFigure::legend(const std::vector<std::string>& names, double top, bool boxes) {
-  if (names.size() < 2 && (names.empty() || names.front().empty())) return top;
+double AskFigure::legend(std::vector<std::string> names, double top, bool boxes) {
+  if (names.size() == 1 && names.front().empty()) names.clear();
+  if (names.empty() && floor_.empty()) return top;
   double x = side, y = top + line_height;
   for (std::size_t k = 0; k < names.size(); ++k) {
     const std::vector<std::string> lines = wrapped(names[k], width - 2 * side - 2 * lane);
@@ -192,7 +193,13 @@ double AskFigure::legend(const std::vector<std::string>& names, double top, bool
       draw_.text(x + 1.4 * lane, y + (l == 0 ? 0 : line_height) * static_cast<double>(l), lines[l]);
     x += wide + gap;
     if (lines.size() > 1)
-      x = side, y += line_height * static_cast<double>(lines.size() - (k + 1 == names.size() ? 1 : 0));
+      x = side,
+      y += line_height * static_cast<double>(lines.size() - (k + 1 == names.size() && floor_.empty() ? 1 : 0));
+  }
+  if (!floor_.empty()) {
+    if (x > side && x + 2 * lane + width_of(floor_) > width - side) x = side, y += line_height;
+    draw_.line(x, y - dot, x + lane, y - dot, "floor s7");
+    draw_.text(x + 1.4 * lane, y, floor_);
   }
   return y + gap;
 }
@@ -221,7 +228,9 @@ void AskFigure::lines_at(const FigureAxis& axis, double top, double bottom) {
 void AskFigure::ticks(const FigureAxis& axis, double top, double y, bool above) {
   double end = -1;
   for (const auto& [value, words] : axis.ticks()) {
-    const double x = axis.at(value), wide = width_of(words), from = std::clamp(x - wide / 2, 0.0, width - wide);
+    // Letters are a tenth wider on a phone.
+    const double x = axis.at(value), wide = width_of(words), room = wide / 10,
+                 from = std::clamp(x - wide / 2, room, width - wide - room);
     draw_.line(x, top, x, y, "grid");
     if (from <= end) continue;
     draw_.text(from + wide / 2, above ? y - 4 : y + line_height - 1, words, "tick", "middle");

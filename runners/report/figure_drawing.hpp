@@ -79,7 +79,7 @@ class AskFigure {
   std::string axis_title(const char* axis) const;
   /// Names of series with their signs, from `top` downwards; where it ends. Boxes have the colours of colours_ where
   /// these are given.
-  double legend(const std::vector<std::string>& names, double top, bool boxes = false);
+  double legend(std::vector<std::string> names, double top, bool boxes = false);
   /// "60 N".
   std::string label_at(double value) const;
   /// The labels of upright lines at values, below `top`; where they end.
@@ -93,6 +93,7 @@ class AskFigure {
   const Json& figure_;
   std::string unit_;
   std::vector<double> at_;
+  std::string floor_;                 ///< what the legend calls the dashed lines of floors; "" where there are none
   std::vector<std::string> colours_;  ///< of the names of a legend; empty: those of series
   Drawing draw_;
 };

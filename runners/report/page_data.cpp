@@ -70,7 +70,10 @@ PageJson axes_json(const CaseView& view) {
     }
     out.push_back({{"name", column},
                    {"said", axis_text(view.results(), column)},
+                   {"role", role_of(column)},
+                   {"word", label_word(column)},
                    {"unit", view.unit_of(column)},
+                   {"varies", view.varies(column)},
                    {"texts", std::move(texts)},
                    {"numbers", std::move(numbers)},
                    {"at", std::move(at)}});
@@ -79,10 +82,10 @@ PageJson axes_json(const CaseView& view) {
 }
 
 PageJson cases_json(const CaseView& view) {
-  PageJson out = {{"id", PageJson::array()},          {"status", PageJson::array()},
-                  {"reason", PageJson::array()},      {"partial", PageJson::array()},
-                  {"steps", PageJson::array()},       {"setup_seconds", PageJson::array()},
-                  {"run_seconds", PageJson::array()}, {"measures", PageJson::object()}};
+  PageJson out = {
+      {"id", PageJson::array()},          {"status", PageJson::array()}, {"reason", PageJson::array()},
+      {"partial", PageJson::array()},     {"steps", PageJson::array()},  {"setup_seconds", PageJson::array()},
+      {"run_seconds", PageJson::array()}, {"mass", PageJson::array()},   {"measures", PageJson::object()}};
   const Cases all = view.all();
   for (size_t c = 0; c < all.size(); ++c) {
     const CaseRecord& record = *all[c];
@@ -93,12 +96,19 @@ PageJson cases_json(const CaseView& view) {
     out["steps"].push_back(record.steps);
     out["setup_seconds"].push_back(record.setup_seconds);
     out["run_seconds"].push_back(record.run_seconds);
+    out["mass"].push_back(view.mass_place(record));
     for (const auto& [name, value] : record.measures) {
       PageJson& column = out["measures"][name];
       if (column.is_null()) column = PageJson(all.size(), nullptr);
       column[c] = value;
     }
   }
+  return out;
+}
+
+PageJson masses_json(const CaseView& view) {
+  PageJson out = PageJson::array();
+  for (const std::string& label : view.masses()) out.push_back({{"label", label}, {"colour", mass_colour(out.size())}});
   return out;
 }
 
@@ -148,13 +158,13 @@ PageJson curves_json(const CaseView& view, const KindPage& kind, const CurveChoi
 }
 
 /// Cases that are sampled at the same times share these.
-void share_times(PageJson& curves, PageJson& blocks) {
+void share_times(PageJson& curves, Blocks& blocks) {
   std::map<std::string, std::string> first, of;  // bytes → the first block with them; block → that one
   for (auto& [id, columns] : curves.items())
     for (auto& [column, names] : columns.items()) {
       const std::string name = names[0].get<std::string>(), key = name + ":f64";
       if (const auto block = blocks.find(key); !of.count(name) && block != blocks.end()) {
-        const auto [known, fresh] = first.emplace(block->get<std::string>(), name);
+        const auto [known, fresh] = first.emplace(block->second, name);
         of[name] = known->second;
         if (!fresh) blocks.erase(key);
       }
@@ -173,6 +183,8 @@ PageData page_data(const CaseView& view, const KindPage& kind, const StudyResult
   CurveData curves(sample_limit(series));
   PageJson out = {{"study", {{"name", results.name}, {"kind", results.kind}, {"resolved", results.study}}}};
   out["axes"] = axes_json(view);
+  out["roles"] = method_roles();
+  out["masses"] = masses_json(view);
   out["words"] = results.method_words;
   out["cases"] = cases_json(view);
   out["measures"] = measures_json(out["cases"]);
@@ -186,7 +198,7 @@ PageData page_data(const CaseView& view, const KindPage& kind, const StudyResult
   std::string less = kind.curves.empty() ? "" : choice.sentence();
   if (const std::string thinned = curves.thinning(has_curve_files(all)); !thinned.empty())
     less += (less.empty() ? "" : " ") + thinned;
-  PageJson blocks = curves.blocks();
+  Blocks blocks = curves.blocks();
   share_times(out["curves"], blocks);
   return {std::move(out), std::move(blocks), std::move(less)};
 }

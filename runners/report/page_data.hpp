@@ -12,14 +12,19 @@ namespace ricochet::report {
 
 /// What the page's script reads: the results as JSON, and long columns of numbers apart, as base64 by "name:type".
 struct PageData {
-  nlohmann::ordered_json results, blocks;
+  nlohmann::ordered_json results;
+  Blocks blocks;
   std::string thinning;  ///< what was left out of the curves, "" where nothing was
 };
 
 /// `results` has
 ///   study     name, kind, and the resolved study
-///   axes      [{name, unit, texts, numbers, at}]: the distinct values of a column, and by case which it has (−1: none)
-///   cases     {id, status, reason, partial, steps, setup_seconds, run_seconds, measures: {name: column}}, in columns
+///   axes      [{name, said, role, word, unit, varies, texts, numbers, at}]: the distinct values of a column, and by
+///             case which it has (−1: none); `word` stands before a value in labels
+///   roles     the roles of methods
+///   masses    [{label, colour}] of mass matrices
+///   cases     {id, status, reason, partial, steps, setup_seconds, run_seconds, mass, measures: {name: column}}, in
+///             columns; `mass` is a place in masses
 ///   measures  [{name, unit, text}]
 ///   tables    {name: {columns: [{name, unit, text}], rows, cells}}: a column of words is {words, at}
 ///   own       {table: {case: …}}: tables of single cases, in the same form

@@ -164,8 +164,8 @@ class Curves : public PlaneFigure {
         series.points.push_back({x, Mark(Json{{"value", y}})});
       }
       if (logarithms && series.floor && *series.floor <= 0) series.floor.reset();
-      std::stable_sort(series.points.begin(), series.points.end(),
-                       [](const Point& a, const Point& b) { return a.x < b.x; });
+      if (series.points.empty()) continue;
+      if (series.floor) floor_ = "error floor";
       all.push_back(std::move(series));
     }
     if (logarithms) std::erase_if(at_, [](double value) { return value <= 0; });

@@ -107,7 +107,8 @@ std::string render_report(const StudyResults& results, const report::KindPage& k
   page.set("kind", results.kind);
   page.set("style", std::string(asset("page.css")) + std::string(asset("panel.css")) + page_margins(results));
   page.set("summary", summary_html(view, kind.summary ? kind.summary(view) : ""));
-  if (const std::string sketch = scene_svg(results.study); !sketch.empty()) page.set("sketch", sketch);
+  if (const std::string sketch = scene_svg(results.study); !sketch.empty())
+    page.set("sketch", sketch + scene_svg(results.study, true));
   if (!results.question.empty()) page.set("question", results.question);
   page.set("counts", counts_text(results));
   page.set("banners", banners(results));

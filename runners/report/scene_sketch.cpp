@@ -18,7 +18,8 @@ using Json = nlohmann::ordered_json;
 // Pixels of the drawing: where a structure begins, how long it is, and how far stops may lie off.
 constexpr double sketch_width = 640, sketch_height = 184, sketch_left = 76, sketch_span = 480, together_span = 420,
                  nearest_gap = 9, widest_gap = 44, tallest_nodes = 230, least_span = 36, points_span = 140,
-                 row_half = 62, damper_length = 44;
+                 row_half = 62, damper_length = 44,
+                 narrow_letters = 21;  // as page.css has them
 constexpr std::size_t most_labelled = 12, most_unnamed = 4;
 
 /// Pixels between rest and a stop: gaps are to scale among each other, none so small that it does not show.
@@ -92,8 +93,13 @@ Loads loads_of(const SceneValues& scene) {
 
 class SceneDrawing {
  public:
-  explicit SceneDrawing(const Json& study)
-      : scene_(study), bodies_(scene_.bodies()), loads_(loads_of(scene_)), layout_(scene_.at("/files/layout")) {
+  SceneDrawing(const Json& study, bool narrow)
+      : scene_(study),
+        bodies_(scene_.bodies()),
+        loads_(loads_of(scene_)),
+        layout_(scene_.at("/files/layout")),
+        narrow_(narrow),
+        label_(narrow ? Labels(narrow_letters, sketch_width) : Labels()) {
     for (const auto& [name, body] : bodies_) {
       const Json* layout = bodies_.size() == 1 ? layout_ : body.at("/files/layout/bodies/" + name);
       layouts_.push_back(layout);
@@ -113,8 +119,9 @@ class SceneDrawing {
     for (std::size_t i = 0; i < stops_.size(); ++i) draw_stop(i);
     for (std::size_t k = 0; k < loads_.forces.size(); ++k) draw_force(k);
     const auto [from, to] = label_.reach(0, height_);
-    return fmt::format("<svg class=\"sketch\" viewBox=\"0 {:.0f} {} {:.0f}\" role=\"img\" aria-label=\"{}\">{}</svg>\n",
-                       from, sketch_width, to - from, escape(said), strokes_);
+    return fmt::format(
+        "<svg class=\"sketch{}\" viewBox=\"0 {:.0f} {} {:.0f}\" role=\"img\" aria-label=\"{}\">{}</svg>\n",
+        narrow_ ? " narrow" : "", from, sketch_width, to - from, escape(said), strokes_);
   }
 
  private:
@@ -370,14 +377,15 @@ class SceneDrawing {
   std::vector<Piece> pieces_;
   std::vector<std::string> pushed_;
   std::string strokes_;
+  bool narrow_;
   Labels label_;
   double height_ = 0;
 };
 
 }  // namespace
 
-std::string scene_svg(const nlohmann::ordered_json& study) {
-  return SceneDrawing(study).svg("Sketch of the scene: " + in_a_line(scene_numbers(study)));
+std::string scene_svg(const nlohmann::ordered_json& study, bool narrow) {
+  return SceneDrawing(study, narrow).svg("Sketch of the scene: " + in_a_line(scene_numbers(study)));
 }
 
 }  // namespace ricochet::report

@@ -9,8 +9,8 @@ namespace ricochet::report {
 
 /// What is simulated, drawn from a resolved study: structure, clamp, stops with their gaps where they stand, what
 /// shakes it. Lengths along the structure are to scale, gaps among each other; gaps and structure are not. An SVG that
-/// takes its colours from the page; "" for a study without a scene.
-std::string scene_svg(const nlohmann::ordered_json& study);
+/// takes its colours from the page; "" for a study without a scene. `narrow`: with larger letters, for a phone.
+std::string scene_svg(const nlohmann::ordered_json& study, bool narrow = false);
 
 /// A key of a scene with its value, as the study format declares it: {"L", "1.501 m"}. What the study varies is said as
 /// "from … to … (8 values)".

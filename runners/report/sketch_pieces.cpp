@@ -313,10 +313,16 @@ std::string face(double x, double y, double dx, double dy) {
 
 std::string Labels::operator()(double x, double y, const std::string& text, const char* anchor, double away) {
   if (text.empty()) return "";
-  constexpr double letter = 6.7, space = 3, height = 13, most = 8;
+  constexpr double most = 8;
+  const double letter = 6.7 * scale_, space = 3 * scale_, height = 13 * scale_;
   const auto letters = std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
   const double wide = letter * static_cast<double>(letters);
-  const double left = x - (*anchor == 'm' ? wide / 2 : *anchor == 'e' ? wide : 0);
+  double left = x - (*anchor == 'm' ? wide / 2 : *anchor == 'e' ? wide : 0);
+  if (width_ > 0) {
+    const double inside = std::max(0.0, std::min(left, width_ - wide));
+    x += inside - left;
+    left = inside;
+  }
   const auto covers = [&](const Box& one) {
     return left - space < one.right && one.left < left + wide + space && std::abs(y - one.low) < height;
   };
@@ -326,7 +332,7 @@ std::string Labels::operator()(double x, double y, const std::string& text, cons
 }
 
 std::array<double, 2> Labels::reach(double from, double to) const {
-  constexpr double above = 12, below = 6;
+  const double above = 12 * scale_, below = 6 * scale_;
   for (const Box& one : boxes_) {
     from = std::min(from, one.low - above);
     to = std::max(to, one.low + below);

@@ -257,20 +257,31 @@ class CheapestAsk {
          fmt::format("{}: {} and {} more.", together, name(winner), tied.size()), together + "."});
   }
 
+  /// A curve of each method on each mesh, its steps from the largest on.
   Json figure() const {
     Json series = Json::array();
     for (const Reach& one : methods_) {
-      std::vector<std::pair<double, double>> points;
-      double floor = 0;
-      for (const CaseRecord* record : one.cases) {
-        const auto seconds = measure(*record, "timed_seconds");
-        if (!share(*record) || !seconds) continue;
-        floor = std::max(floor, floor_share(*record));
-        if (*share(*record) > floor_share(*record)) points.emplace_back(*seconds, asks::per_cent * *share(*record));
+      InOrderMet<double, Cases> met;
+      for (const CaseRecord* record : one.cases) met[study_.elements(*record).value_or(0)].push_back(record);
+      auto meshes = std::move(met).list();
+      for (auto& [elements, cases] : meshes) {
+        std::stable_sort(cases.begin(), cases.end(), [&](const CaseRecord* a, const CaseRecord* b) {
+          return study_.step(*a).value_or(1) > study_.step(*b).value_or(1);
+        });
+        std::vector<std::pair<double, double>> points;
+        double floor = 0;
+        for (const CaseRecord* record : cases) {
+          const auto seconds = measure(*record, "timed_seconds");
+          if (!share(*record) || !seconds) continue;
+          floor = std::max(floor, floor_share(*record));
+          if (*share(*record) > floor_share(*record)) points.emplace_back(*seconds, asks::per_cent * *share(*record));
+        }
+        if (points.empty()) continue;
+        std::string name = level(one);
+        if (meshes.size() > 1) name += (name.empty() ? "" : ", ") + study_.mesh_words(elements);
+        series.push_back({{"name", name}, {"points", points}});
+        if (floor > 0) series.back()["floor"] = asks::per_cent * floor;
       }
-      std::sort(points.begin(), points.end());
-      series.push_back({{"name", level(one)}, {"points", points}});
-      if (floor > 0) series.back()["floor"] = asks::per_cent * floor;
     }
     return {{"form", "curves"}, {"x", "processor time"}, {"x_unit", "s"},    {"y", error_words(error_)},
             {"y_unit", "%"},    {"log", true},           {"series", series}, {"at", {asks::per_cent * within_}}};

@@ -84,7 +84,7 @@
     const fromZero = range.low <= 0 && range.high >= 0;
     return valueAxis([ricochet.format.withUnit(quantity) + (fromZero ? "" : ", axis not from 0"), "1"], range);
   }
-  // A second vertical axis from 0 to 1 that places marks of cases without a value.
+  // A second vertical axis from 0 to 1.
   const gutterAxis = () => ({type: "value", min: 0, max: 1, hidden: true});
 
   // Values of an axis and where they lie, pixels: `from` is the place of its least, `to` that of its largest.
@@ -120,7 +120,8 @@
       const value = Number((k * step).toPrecision(12));
       out.push({value, words: ricochet.format.shown(value)});
     }
-    return out;
+    // One tick alone tells no scale.
+    return out.length < 2 && most < 8 ? evenTicks({min, max}, 2 * most) : out;
   }
   // Whole powers at even distances, from the lowest on, and what lies between while there is room; null where the axis
   // has less than two of them, and no ticks of 1, 2, 5 either.

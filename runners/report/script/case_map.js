@@ -6,7 +6,7 @@
 // `along` is the column of the cases that it is about; `values` are {view, quantity, of}, `of` a number of a case or
 // null. Its charts name their `cases`.
 {
-  const {numberOf, textOf, roleOf, Interval} = ricochet, {escape, text, unit, mark, count} = ricochet.format;
+  const {numberOf, textOf, roleOf, isMethod, Interval} = ricochet, {escape, text, unit, mark, count} = ricochet.format;
   const mostCharts = 24, mostRows = 60, mostEmpty = 2, mostColumns = 96, mostCells = 4000, mostWritten = 12,
         listed = 10, aroundMap = 135;
   // Pale to dark, so that the order shows without colours too.
@@ -24,12 +24,11 @@
   function layout(view, cases, along) {
     const many = (columns) => view.group(cases, columns).length,
           numeric = view.varying.filter((column) => cases.some((one) => numberOf(one, column) !== null));
-    const longest = (columns) => columns.slice().sort((a, b) => many([b]) - many([a])),
-          method = (column) => ricochet.roles.includes(roleOf(column));
+    const longest = (columns) => columns.slice().sort((a, b) => many([b]) - many([a]));
     const [first] = [along, "step"].filter((column) => view.varies(column)).concat(longest(numeric), view.varying);
     let columns = first === undefined ? [] : [first], rows = view.varying.filter((column) => column !== first);
-    const movable = longest(rows.filter((column) => !method(column)))
-                        .concat(longest(rows.filter((column) => method(column) && numeric.includes(column))));
+    const movable = longest(rows.filter((column) => !isMethod(column)))
+                        .concat(longest(rows.filter((column) => isMethod(column) && numeric.includes(column))));
     for (const column of movable) {
       if (many(rows) <= mostRows) break;
       if (many([column, ...columns]) > mostColumns) continue;

@@ -1,17 +1,12 @@
 // The cases of a study as figures speak of them: which axes vary, short labels, groups, one colour per mass matrix. A
-// *role* is a method's name with its parameters: "mass" stands for the columns mass, mass.velocity, …
+// *role* is a method's name with its parameters: "mass" stands for the columns mass, mass.velocity, … What a column and
+// a mass matrix are called comes with the page.
 {
-  const {distinct} = ricochet, roles = ["mass", "contact", "friction", "time"];
-  // Okabe and Ito 2008: distinct for colour-blind readers.
-  const colours = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#444444"];
-
+  const {distinct} = ricochet;
+  const axisOf = (column) => ricochet.data.view.axes.get(column);
   // "mass" of "mass.velocity"; the column itself where it belongs to no method.
-  const roleOf = (column) => roles.find((role) => column === role || column.startsWith(role + ".")) || column;
-  // What a label puts before a value: the last part of the column, nothing for a method's own name.
-  function word(column) {
-    if (roles.includes(column)) return "";
-    return (roleOf(column) !== column ? column.slice(column.lastIndexOf(".") + 1) : column) + " ";
-  }
+  const roleOf = (column) => (axisOf(column) || {role: column}).role;
+  const isMethod = (column) => ricochet.data.page.roles.includes(roleOf(column));
   const textOf = (one, column) => (one.values[column] ? one.values[column].text : "");
   // null where the case has no such number.
   const numberOf = (one, column) => (one.values[column] ? one.values[column].number : null);
@@ -26,13 +21,8 @@
       this.all = data.cases;
       this.axes = new Map(data.page.axes.map((axis) => [axis.name, axis]));
       this.columns = data.page.axes.map((axis) => axis.name);
-      // A case without a value differs from one that has it.
-      this.varying =
-          data.page.axes
-              .filter(
-                  (axis) => axis.texts.length + (axis.at.some((at, k) => at < 0 && !solved(this.all[k])) ? 1 : 0) > 1)
-              .map((axis) => axis.name);
-      this.masses = distinct(this.all.map((one) => this.massLabel(one)));
+      this.varying = data.page.axes.filter((axis) => axis.varies).map((axis) => axis.name);
+      this.masses = data.page.masses;
     }
     varies(column) { return this.varying.includes(column); }
     values(column) { return this.axes.has(column) ? this.axes.get(column).texts : []; }
@@ -48,19 +38,17 @@
       for (const column of columns) {
         const value = textOf(one, column), role = roleOf(column), unit = this.unit(column);
         if (this.values(column).length < 2 || value === "") continue;
-        out += (out === "" ? "" : role === previous ? ", " : " · ") + word(column) + value + (unit ? " " + unit : "");
+        out += (out === ""            ? "" :
+                    role === previous ? ", " :
+                                        " · ") +
+            this.axes.get(column).word + value + (unit ? " " + unit : "");
         previous = role;
       }
       return out;
     }
     // The mass matrix with every parameter that varies.
-    massLabel(one) {
-      const more = this.columns.filter(
-          (column) => column !== "mass" && roleOf(column) === "mass" && this.values(column).length > 1 &&
-              textOf(one, column) !== "");
-      return textOf(one, "mass") + more.map((column) => ", " + word(column) + textOf(one, column)).join("");
-    }
-    colour(one) { return colours[this.masses.indexOf(this.massLabel(one)) % colours.length]; }
+    massLabel(one) { return one.mass ? one.mass.label : ""; }
+    colour(one) { return (one.mass || this.masses[0]).colour; }
 
     // Groups by the values of columns, in order of appearance, labelled by them.
     group(cases, columns) {
@@ -97,5 +85,5 @@
     }
   }
 
-  Object.assign(ricochet, {Cases, roles, roleOf, textOf, numberOf, measureOf});
+  Object.assign(ricochet, {Cases, roleOf, isMethod, textOf, numberOf, measureOf});
 }

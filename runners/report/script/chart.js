@@ -113,8 +113,8 @@
       const {plot, view} = this, frame = plot.frames[own],
                    clip = (value, low, size) => Math.min(Math.max(value, low), low + size);
       const left = clip(Math.min(ax, bx), frame.x, frame.width), right = clip(Math.max(ax, bx), frame.x, frame.width),
-            tall =
-                Math.abs(ay - by) > 24 && !view.along && plot.frames.length === 1 && view.yAxes[0].type !== "category";
+            tall = Math.abs(ay - by) > 24 && !view.along && plot.frames.filter(({pad}) => !pad).length === 1 &&
+          view.yAxes[0].type !== "category";
       return {
         left,
         right,

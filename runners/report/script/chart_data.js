@@ -117,7 +117,8 @@
                                       " from " + shown(axis.min, 4) + " to " + shown(axis.max, 4) + unit(quantity));
       const tagged = view.marks.some((mark) => mark.values),
             names = tagged ?
-          figure.description.legend.map((entry) => entry.name).filter((name) => !hidden.has(name)) :
+          figure.description.legend.filter((one) => ricochet.inView(one, figure.view) && !hidden.has(one.name))
+              .map((one) => one.name) :
           ricochet.distinct(view.marks.filter((mark) => mark.mark !== "rule" && ricochet.plot.isShown(mark, hidden))
                                 .map((mark) => mark.name));
       slot.element.setAttribute(

@@ -27,6 +27,7 @@
         id: cases.id[index],
         status: cases.status[index],
         reason: cases.reason[index],
+        mass: this.page.masses[cases.mass[index]],
         partial: cases.partial[index],
         values,
         measures

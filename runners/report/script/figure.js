@@ -2,10 +2,13 @@
 //
 // A figure is {id, title, caption, views, charts, legend, overTime, linked}. `views` are names. Each chart has as many
 // views (plot.js), or the one that `only` names; a view with `nothing` is not drawn. `legend` has {name, colour, dash,
-// symbol, heading}. The first of a page with `answers` may stand beside its answer, in the view `atFirst`.
+// symbol, hollow, heading, only}. The first of a page with `answers` may stand beside its answer, in the view
+// `atFirst`.
 {
   const all = (selector, from) => Array.from(from.querySelectorAll(selector));
 
+  // Whether a chart, or an entry of a legend, belongs to a view: `only` names one or lists several.
+  ricochet.inView = ({only}, view) => only === undefined || [].concat(only).includes(view);
   // The view with a vertical axis that fits its own marks.
   function ownScale(view) {
     const [axis, ...others] = view.yAxes, {reader, countOf} = ricochet.plot, range = new ricochet.Interval();
@@ -45,10 +48,7 @@
       const {views} = this.chartOf(slot), view = views[Math.min(this.view, views.length - 1)];
       return view.nothing ? null : this.own ? ownScale(view) : view;
     }
-    visible(slot) {
-      const {only} = this.chartOf(slot);
-      return only === undefined || only === this.view;
-    }
+    visible(slot) { return ricochet.inView(this.chartOf(slot), this.view); }
     get zoomsAsOne() { return this.description.linked || this.slots.length === 1; }
     // What of the axes is shown, for a drawing of it elsewhere.
     windows(slot) { return slot.chart ? slot.chart.windows : {x: this.zoom, y: null}; }
@@ -83,7 +83,7 @@
         n.hidden = n.dataset.notes !== "" && Number(n.dataset.notes) !== view;
       });
       all("[data-only]", this.section).forEach((f) => {
-        f.hidden = Number(f.dataset.only) !== view;
+        f.hidden = !f.dataset.only.split(" ").includes(String(view));
       });
       this.redraw();
     }

@@ -12,32 +12,40 @@
     diamond: '<path d="M15 1 L20 6 L15 11 L10 6 Z"',
   };
 
-  const mostEntries = 12;  // of a legend at first sight
+  const mostEntries = 12;  // of each heading at first sight
+  // Where a view or a list of them, `only`, is shown.
+  const whereShown = ({only}) =>
+      (only === undefined ?
+           "" :
+           ' data-only="' + [].concat(only).join(" ") + '"' + (ricochet.inView({only}, 0) ? "" : " hidden"));
   function legend(entries, used) {
     if (entries.length < 2) return "";
-    const rest = entries.slice(mostEntries),
-          more = '<details><summary>' + rest.length + ' more</summary><div class="legend-rest">';
+    const groups = ricochet.groupBy(entries, ({heading, only}) => [heading, only]);
     return '<div class="legend" role="group" aria-label="Show or hide curves">' +
+        Array.from(groups.values(), (group) => legendGroup(group, used)).join("") + "</div>";
+  }
+  function legendGroup(entries, used) {
+    const [first] = entries, {heading} = first, rest = entries.slice(mostEntries);
+    return '<div class="entries"' + whereShown(first) + ">" +
+        (heading ? '<span class="heading">' + escape(heading) + "</span>" : "") +
         legendEntries(entries.slice(0, mostEntries), used) +
-        (rest.length ? more + legendEntries(rest, used) + "</div></details>" : "") + "</div>";
+        (rest.length ? "<details><summary>" + rest.length + ' more</summary><div class="entries">' +
+                 legendEntries(rest, used) + "</div></details>" :
+                       "") +
+        "</div>";
   }
-  function legendEntries(entries, used) {
-    let out = "", heading = "";
-    for (const entry of entries) {
-      if ((entry.heading || "") !== heading) {
-        out += (heading ? '<span class="line"></span>' : "") + '<span class="heading">' + escape(entry.heading) +
-            "</span>";
-        heading = entry.heading;
-      }
-      const line = '<line x1="0" y1="6" x2="30" y2="6" stroke="' + entry.colour + '" stroke-width="2.2"' +
-          (entry.dash ? ' stroke-dasharray="' + entry.dash + '"' : "") + "/>";
-      const mark = shapes[entry.symbol] ? shapes[entry.symbol] + ' fill="' + entry.colour + '"/>' : "";
-      out += '<button type="button" aria-pressed="true" data-name="' + escape(entry.name) + '" title="' +
-          escape(entry.name) + '"><svg width="30" height="12" aria-hidden="true">' + line + mark + "</svg>" +
-          escape(ricochet.shorten(entry.name, used)) + "</button>";
-    }
-    return out;
-  }
+  const legendEntries = (entries, used) =>
+      entries
+          .map((entry) => {
+            const line = '<line x1="0" y1="6" x2="30" y2="6" stroke="' + entry.colour + '" stroke-width="2.2"' +
+                (entry.dash ? ' stroke-dasharray="' + entry.dash + '"' : "") + "/>";
+            const look = entry.hollow ? ' fill="#ffffff" stroke-width="1.6" stroke="' : ' fill="',
+                  mark = shapes[entry.symbol] ? shapes[entry.symbol] + look + entry.colour + '"/>' : "";
+            return '<button type="button" aria-pressed="true" data-name="' + escape(entry.name) + '" title="' +
+                escape(entry.name) + '"><svg width="30" height="12" aria-hidden="true">' + line + mark + "</svg>" +
+                escape(ricochet.shorten(entry.name, used)) + "</button>";
+          })
+          .join("");
   function controls(figure) {
     let out = "";
     if (figure.views.length > 1)
@@ -77,9 +85,8 @@
     const single = figure.charts.length === 1 && /^all /.test(label), apart = chart.only !== undefined,
           wide = apart && figure.charts.every((other) => other === chart || other.only !== chart.only),
           title = escape(chart.title);
-    let out = '<figure data-title="' + title + '"' + (apart ? ' data-only="' + chart.only + '"' : "") +
-        (apart && chart.only > 0 ? " hidden" : "") + (wide ? ' class="wide"' : "") + '><figcaption><span title="' +
-        title + '">' + (single ? "" : escape(ricochet.shorten(label, used))) + "</span>";
+    let out = '<figure data-title="' + title + '"' + whereShown(chart) + (wide ? ' class="wide"' : "") +
+        '><figcaption><span title="' + title + '">' + (single ? "" : escape(ricochet.shorten(label, used))) + "</span>";
     if (chart.views.length)
       out += '<span class="export"><button type="button" data-export="svg">SVG</button>' +
           '<button type="button" data-export="png">PNG</button></span>';

@@ -14,7 +14,7 @@
   function otherMethod(view, [first, ...others]) {
     const differing = (one) =>
         view.varying.filter((column) => ricochet.textOf(one, column) !== ricochet.textOf(first, column));
-    const isMethod = (column) => ricochet.roles.includes(ricochet.roleOf(column)),
+    const {isMethod} = ricochet,
           cost = (one) => differing(one).reduce(
               (sum, column) => sum + (isMethod(column) ? 1 : 100), differing(one).some(isMethod) ? 0 : 10000);
     return others.filter((one) => one.status === "done").sort((a, b) => cost(a) - cost(b))[0];

@@ -61,27 +61,37 @@
   const ring = (name, colour, size) => ({...dot(name, colour, "circle", size), hollow: true});
   const rule = (name, at, said, more) => ({mark: "rule", name, at, said, silent: true, z: 5, ...more});
 
-  // Marks of text, which the legend filters with the curve of their name, along the upper edge on the gutter's axis.
+  // Marks of text, which the legend filters with the curve of their name, on an axis of their own.
   function drawMarks({marks}, {name, colour}, rows, more) {
     if (rows.length)
       marks.push({mark: "words", name, colour, rows, x: "at", y: "height", z: 5, yAxis: 1, apart: false, ...more});
   }
-  // Height of the mark with `below` others above it, as a share of the frame.
-  const markHeight = 0.085, markAt = (below) => 0.95 - markHeight * below;
-  // Rows of marks for cases without a point: what stands at one place is stacked.
-  function outcomeMarks() {
-    const stacked = new Map();
-    return (one, at) => {
-      const below = stacked.get(at) || 0;
-      stacked.set(at, below + 1);
-      return {
-        case: one.id,
-        at,
-        height: markAt(below),
-        mark: ricochet.format.mark(one.status),
-        text: one.status + ": " + one.reason
-      };
-    };
+  // The mark of a case without a value at a place.
+  const outcome = (one, at) =>
+      ({case: one.id, at, mark: ricochet.format.mark(one.status), text: one.status + ": " + one.reason});
+  // The grey of a strip for what has no value.
+  const strip = (name, yAxis) =>
+      ({mark: "cells", name, colour: "#f2f2f2", silent: true, z: 0, yAxis, rows: [{}], x: [null, null]});
+  // Marks [curve, rows] of what has no value, in a grey strip of their own above the frame: those of one place are
+  // stacked. The strip is wider than the axis, so that marks at its ends are whole.
+  function outcomeStrip(view, marks, word = "no value") {
+    const stacked = new Map(), [frame] = view.frames, pad = 10;
+    const placed = marks.map(([curve, rows]) => [curve, rows.map((row) => {
+                               const height = stacked.get(row.at) || 0;
+                               stacked.set(row.at, height + 1);
+                               return {...row, height};
+                             })]);
+    const lanes = Math.max(0, ...stacked.values()), height = Math.min(18 * lanes, 84);
+    if (!lanes) return;
+    const yAxis = view.yAxes.push({
+      type: "category",
+      frame: view.frames.push({...frame, height, pad}) - 1,
+      data: [word, ...Array(lanes - 1).fill("")]
+    }) - 1;
+    frame.top += height + 8;
+    view.xAxes.push({...view.xAxes[0], bare: true, plain: true});
+    view.marks.push(strip(word, yAxis));
+    for (const [curve, rows] of placed) drawMarks(view, curve, rows, {yAxis});
   }
   // The pale line of a fitted order, with the order at its end.
   function fitted(view, rows, encode, {name, colour}, order) {
@@ -106,10 +116,10 @@
   // The names of the marks in some charts.
   const drawnNames = (charts) =>
       new Set(charts.flatMap(({views}) => views.flatMap(({marks}) => marks.map(({name}) => name))));
-  // An entry of a legend without a line; entries of which the first of each name stays.
+  // An entry of a legend without a line; entries of which the first of each name and view stays.
   const swatch = (name, colour, symbol = "rect", heading) => ({name, colour, dash: "0 30", symbol, heading});
-  const firstOfName = (entries) =>
-      entries.filter((entry, k) => entries.findIndex((other) => other.name === entry.name) === k);
+  const firstOfName = (entries) => entries.filter(
+      ({name, only}, k) => entries.findIndex((other) => other.name === name && other.only === only) === k);
 
   Object.assign(ricochet, {
     view,
@@ -124,9 +134,9 @@
     ring,
     rule,
     drawMarks,
-    markHeight,
-    markAt,
-    outcomeMarks,
+    outcome,
+    strip,
+    outcomeStrip,
     fitted,
     lighten,
     slug,

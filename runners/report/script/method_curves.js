@@ -11,8 +11,7 @@
 
   // Of the columns, those that become facets so that no chart has more curves than a reader can tell apart.
   function facetColumns(view, cases, columns, apart) {
-    const {roleOf} = ricochet, facets = columns.filter((column) => apart.includes(column));
-    const isMethod = (column) => ricochet.roles.includes(roleOf(column));
+    const {roleOf, isMethod} = ricochet, facets = columns.filter((column) => apart.includes(column));
     const candidates = columns.filter((column) => !apart.includes(column) && roleOf(column) !== "mass");
     for (const column of candidates.filter((one) => !isMethod(one)).concat(candidates.filter(isMethod))) {
       const most = Math.max(0, ...view.group(cases, facets).map((facet) => view.group(facet.cases, columns).length));

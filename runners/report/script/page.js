@@ -133,7 +133,7 @@
     document.querySelectorAll("table.sortable, table.cases").forEach(ricochet.startSorting);
     document.querySelectorAll(".scroll > table").forEach(ricochet.startCopies);
     if (document.getElementById("cases")) ricochet.startCaseTable();
-    document.querySelectorAll(".scroll, .scene").forEach(watchWidth);
+    document.querySelectorAll(".scroll").forEach(watchWidth);
     ricochet.later.startTables((box) => {
       box.querySelectorAll("table").forEach(ricochet.startSorting);
       box.querySelectorAll("table").forEach(ricochet.startCopies);

@@ -15,12 +15,14 @@
     return {rows, height: entries.length ? y + line : 0};
   }
   function drawLegend(pen, rows, top) {
-    for (const {entry: {name, colour, dash, symbol}, x, y} of rows) {
+    for (const {entry: {name, colour, dash, symbol, hollow}, x, y} of rows) {
       const middle = top + y + 8, shape = ricochet.plot.shapes[symbol];
       if (dash !== "0 30")
         pen.path(
             "M" + x + " " + middle + "h30", {stroke: colour, width: 2, dash: dash ? dash.split(" ").map(Number) : []});
-      if (shape) pen.stamps(shape(4), [x + 15, middle], symbol === "cross" ? {stroke: colour} : {fill: colour});
+      if (shape)
+        pen.stamps(
+            shape(4), [x + 15, middle], hollow || symbol === "cross" ? {stroke: colour, width: 1.6} : {fill: colour});
       pen.text(name, x + 36, middle);
     }
   }
@@ -30,7 +32,8 @@
     const view = figure.viewOf(slot), chart = figure.chartOf(slot), {hidden, description: {title, legend}} = figure;
     // What the legend shows of what is drawn.
     const drawn = new Set(view.marks.flatMap((mark) => [mark.name, ...(mark.tags || [])])),
-          entries = legend.filter(({name}) => drawn.has(name) && !hidden.has(name)),
+          entries = legend.filter(
+              (entry) => drawn.has(entry.name) && !hidden.has(entry.name) && ricochet.inView(entry, figure.view)),
           {rows, height} = legendRows(entries, 900), top = 32 + height,
           size = {width: 900, height: chart.height || 440};
     return [

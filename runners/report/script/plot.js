@@ -1,8 +1,9 @@
 // A view of a chart, drawn: frames, axes and marks on a pen, and what lies where.
 //
 // A view is {x, y, notes, frames, xAxes, yAxes, along, marks, words, open}. `x` and `y` are quantities. `frames` are
-// {left, top} with {right, bottom} or {width, height}, an axis along x each. `along`: hovering reads all curves at one
-// x. `words` says what lies at a place, `open` shows it; both take what `at` gives.
+// {left, top} with {right, bottom} or {width, height}, an axis along x each; `pad`: what it is wider than that axis.
+// `along`: hovering reads all curves at one x. `words` says what lies at a place, `open` shows it; both take what `at`
+// gives.
 //
 // A mark is {mark, name, tags, colour, z, yAxis, silent, case} and what it draws. It has rows (objects), columns by
 // name or a function that gives these, and `x`, `y` name columns; or `values`, packed pairs (x, y), where there are
@@ -104,12 +105,13 @@
           ...this.ys.filter(({axis}) => !axis.hidden && !axis.bare && axis.type !== "category")
               .map((y) => 34 + y.wide));
       this.frames = boxes.map((box, k) => {
-        const f = view.frames[k], left = Math.max(f.left, room);
-        return {...box, x: left, width: Math.max(10, f.width ?? width - left - f.right)};
+        const {pad = 0, ...f} = view.frames[k], left = Math.max(f.left, room);
+        return {...box, pad, x: left - pad, width: Math.max(10, f.width ?? width - left - f.right) + 2 * pad};
       });
-      this.xs = view.xAxes.map(
-          (axis, k) =>
-              new ricochet.Scale(shown(axis, windows.x), this.frames[k].x, this.frames[k].x + this.frames[k].width));
+      this.xs = view.xAxes.map((axis, k) => {
+        const {x, width: wide, pad} = this.frames[k];
+        return new ricochet.Scale(shown(axis, windows.x), x + pad, x + wide - pad);
+      });
       this.marks = view.marks.filter((mark) => isShown(mark, hidden))
                        .map((mark, k) => [mark, k])
                        .sort(([a, k], [b, l]) => (a.z ?? 2) - (b.z ?? 2) || k - l)
@@ -149,7 +151,7 @@
       for (const mark of this.marks) {
         const own = this.placed(mark);
         // A symbol at an edge is whole, unless a part of the axes is shown.
-        const whole = !this.windows.x && !this.windows.y && (mark.mark === "line" || mark.mark === "dots"),
+        const whole = !this.windows.x && !this.windows.y && ["line", "dots", "words"].includes(mark.mark),
               slack = whole ? 7 : 1, {frame} = own;
         pen.within(
             {x: frame.x - slack, y: frame.y - slack, width: frame.width + 2 * slack, height: frame.height + 2 * slack},
@@ -196,7 +198,7 @@
       const {pen} = this, {axis} = y;
       if (axis.type === "category") {
         if (axis.bare) return;
-        const wide = frame.x - 12, tall = frame.height / axis.data.length;
+        const wide = frame.x - 9, tall = frame.height / axis.data.length;
         for (const {value, words} of y.ticks()) {
           const lines = ricochet.linesOf(words, wide).slice(0, Math.max(1, Math.floor(tall / letter)));
           lines.forEach(

@@ -445,6 +445,29 @@ TEST_CASE("curves of logarithms leave out what has none, and hold their floors",
   }
 }
 
+TEST_CASE("a curve follows the order of its points, and the legend names what is drawn", "[report][asks]") {
+  Json figure = {{"form", "curves"},
+                 {"x", "time"},
+                 {"y", "error"},
+                 {"series",
+                  {{{"name", "one"}, {"points", {{3, 1}, {1, 2}, {2, 3}}}, {"floor", 0.5}},
+                   {{"name", "empty"}, {"points", Json::array()}, {"floor", 100}}}}};
+  const std::string svg = figure_svg(figure);
+  const Drawn drawn = read(svg);
+  check_within(drawn);
+  check_apart(drawn);
+  check_named(drawn, "one");
+  check_named(drawn, "error floor");
+  CHECK(svg.find("empty") == std::string::npos);
+  const auto way =
+      all_of(svg, R"re(<path d="M([0-9.]+) [0-9.]+L([0-9.]+) [0-9.]+L([0-9.]+) [0-9.]+" class="way s0")re");
+  REQUIRE(way.size() == 1);
+  CHECK(std::stod(way[0][2]) < std::stod(way[0][3]));
+  CHECK(std::stod(way[0][3]) < std::stod(way[0][1]));
+  figure["series"][0].erase("floor");
+  CHECK(figure_svg(figure).find("error floor") == std::string::npos);
+}
+
 TEST_CASE("stretches of an axis are boxes between their ends, motions have a colour each", "[report][asks]") {
   Random random(8);
   for (int trial = 0; trial < trials; ++trial) {

@@ -22,7 +22,7 @@ namespace {
 /// Bytes of a block of the page.
 std::vector<unsigned char> bytes_of(const CurveData& curves, const std::string& key) {
   static const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const std::string text = curves.blocks().at(key).get<std::string>();
+  const std::string& text = curves.blocks().at(key);
   std::vector<unsigned char> out;
   unsigned buffer = 0;
   int bits = 0;

@@ -54,6 +54,14 @@ TEST_CASE("stops stand where they are, each with its gap", "[report]") {
   CHECK(count(report::scene_svg(one_sided), "class=\"stop\"") == count(svg, "class=\"stop\"") / 2);
 }
 
+TEST_CASE("a sketch for a phone draws the same with larger words", "[report]") {
+  const std::string wide = report::scene_svg(beam()), narrow = report::scene_svg(beam(), true);
+  CHECK_THAT(narrow, Contains("class=\"sketch narrow\" viewBox=\"0 "));
+  for (const char* one : {"class=\"stop\"", "<text", "class=\"structure\""})
+    CHECK(count(narrow, one) == count(wide, one));
+  CHECK_FALSE(narrow == wide);
+}
+
 TEST_CASE("every structure is drawn, a study without a scene has no sketch", "[report]") {
   const Scene oscillator = Scene::parse(R"({"scene": {"structure": {"type": "oscillator", "mass": 2, "stiffness": 3,
     "force": {"amplitude": 1, "pulsation": 2.2}}, "stops": {"upper": 0.1, "at": "tip"}},

@@ -21,6 +21,7 @@
       this.parameters = all.reduce((sum, one) => sum.include(...one.columns.parameter), new Interval());
       this.kinds = present(all.flatMap((one) => one.kind));
       this.groups = present(all.flatMap((one) => one.group));
+      this.changes = this.cases.some((one) => data.ownRows("bifurcations", one.id).some((row) => row.value !== null));
       this.twins = all.some((one) => one.columns.exponent_twin);
       this.mostExponents = 0;
       while (all.some((one) => one.columns["exponent_" + (this.mostExponents + 1)])) ++this.mostExponents;
@@ -77,7 +78,7 @@
       if (cases.length > methodColours.length)
         out.caption +=
             " Overlaid, colours repeat after " + methodColours.length + " methods: the legend shows any of them alone.";
-      out.legend = this.legend();
+      out.legend = this.legend(out);
       return out;
     }
     caption() {
@@ -104,6 +105,7 @@
         out += "the regime of each start.";
       }
       if (this.verdicts.length) out += " Last: what all methods together say of each interval.";
+      if (this.changes) out += " ▼: where a change of the regime is located.";
       return [out + " Symbols tell starts apart; dense clouds are dots. Click a point for its orbit."]
           .concat(this.data.page.orbits.said)
           .filter(Boolean)
@@ -146,6 +148,7 @@
         title: panel.title,
         cases: panel.cases,
         only,
+        bands: panel.byMethod && lanes.length <= mostLanes,
         height,
         views: [view],
         notes: panel.cases.flatMap((one) => this.outcomes(one, panel))
@@ -173,15 +176,17 @@
 
     draw(panel, frame, lanes) {
       const {orbits} = this, withBand = lanes.length <= mostLanes, frames = [],
+            unfinished = diagramPanels.unfinished(this, panel).filter(({rows}) => rows.length),
             yAxes = [ricochet.valueAxis(tip, frame.range), ricochet.gutterAxis()];
       let top = 10;
-      const place = (height, gap) => {
-        const index = frames.push({left: 74, right: 14, top, height}) - 1;
+      const place = (height, gap, pad = 0) => {
+        const index = frames.push({left: 74, right: 14, top, height, pad}) - 1;
         top += height + gap;
         return index;
       };
       place(panel.byMethod || this.cases.length === 1 ? 380 : 270, 16);
       const growth = this.exponents ? place(110, 8) : -1;
+      const strip = unfinished.length ? place(18, 6, 10) : -1;
       const band = withBand ? place(Math.max(10, lanes.length * (lanes.length > 6 ? 8 : 14)), 6) : -1;
       const verdict = this.verdicts.length ? place(14, 6) : -1;
       const out = Object.assign(
@@ -189,7 +194,13 @@
           {frames});
       const axis = (more) => out.yAxes.push(more) - 1,
             names = (rows, frame, bare) => axis({type: "category", frame, data: rows, bare, plain: true});
-      diagramPanels.edgeMarks(this, out, panel);
+      diagramPanels.changeMarks(this, out, panel);
+      if (strip >= 0) {
+        const yAxis = names(["no value"], strip, false);
+        out.marks.push(ricochet.strip("no value", yAxis));
+        for (const {rows, tags} of unfinished)
+          ricochet.drawMarks(out, {name: "not finished", colour: diagramPanels.dark}, rows, {tags, yAxis});
+      }
       const growthAxis =
           growth < 0 ? -1 : axis({...ricochet.valueAxis(["exponent", "1/s"], this.exponents), frame: growth});
       if (growth >= 0) out.marks.push(ricochet.rule("zero", {y: 0}, "", {colour: "#555555", yAxis: growthAxis, z: 1}));
@@ -239,19 +250,22 @@
               '<div class="fine">click: its orbit</div>';
     }
 
-    legend() {
+    // Overlaid, points have the colours of methods, and only a band those of regimes.
+    legend({views, atFirst: overlaid, charts}) {
       const {groups, kinds} = this.orbits, used = new Set(this.verdicts.map((row) => row.verdict));
       const {swatch} = ricochet, mark = (name, colour, symbol) => out.push(swatch(name, colour, symbol, "Marks"));
-      const out = this.groups.map((group) => swatch(...groups[group], "rect", "Regime"));
+      const regimes = (heading, only) =>
+                this.groups.map((group) => ({...swatch(...groups[group], "rect", heading), only})),
+            out = regimes("Regime", [...views.keys()].filter((view) => view !== overlaid));
+      if (charts.some(({bands}) => bands)) out.push(...regimes("Regime (band)", [overlaid]));
       if (this.kinds.length > 1)
         out.push(...this.kinds.map((kind) => swatch(kinds[kind][0], "#555555", kinds[kind][1], "Start")));
       if (this.cases.length > 1)
         out.push(...this.cases.map(
-            (one) => swatch(this.methodName(one), this.colourOf(one), "roundRect", "Method (overlaid)")));
+            (one) => ({...swatch(this.methodName(one), this.colourOf(one), "roundRect", "Method"), only: [overlaid]})));
       for (const [word, colour] of diagramPanels.verdicts)
         if (used.has(word)) out.push(swatch(word, colour, "rect", "Verdict"));
-      if (this.cases.some((one) => this.data.ownRows("bifurcations", one.id).some((row) => row.value !== null)))
-        mark("located change", diagramPanels.dark, "triangle-down");
+      if (this.changes) mark("located change", diagramPanels.dark, "triangle-down");
       if (this.exponents && this.mostExponents > 1) mark("further exponents", ricochet.faint, "circle");
       if (this.exponents && this.twins) mark("twin check", diagramPanels.dark, "cross");
       return out;

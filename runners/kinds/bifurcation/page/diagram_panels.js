@@ -81,27 +81,28 @@
     for (const [verdict, colour] of verdicts) drawBand(view, rows, verdict, verdict, colour, axis, {verdict});
   }
 
-  // What did not finish, on the axis; located changes, along the upper edge.
-  function edgeMarks(diagram, view, panel) {
-    const {orbits, data} = diagram, {exact, mark} = ricochet.format;
+  // What did not finish, marks in a strip.
+  const unfinished = (diagram, {cases, byMethod, kind}, {orbits} = diagram) =>
+      cases.map((one) => ({
+                  tags: [orbits.groups[failed][0]].concat(byMethod ? [diagram.methodName(one)] : []),
+                  rows: orbits.chosen(one.id, failed, kind).filter((o) => diagram.unfinished(one.id, o)).map((o) => {
+                    const status = orbits.cell(one.id, "status", o);
+                    return {
+                      at: orbits.cell(one.id, "parameter", o),
+                      height: 0,
+                      mark: ricochet.format.mark(status),
+                      text: status + ": " + (orbits.cell(one.id, "reason", o) || "no reason given"),
+                      id: one.id,
+                      orbit: o
+                    };
+                  })
+                }));
+  // Located changes, along the upper edge.
+  function changeMarks(diagram, view, panel) {
+    const {orbits, data} = diagram, {exact} = ricochet.format;
     for (const one of panel.cases) {
       const name = diagram.methodName(one), own = panel.byMethod ? [name] : [],
             colour = panel.byMethod ? diagram.colourOf(one) : dark;
-      const unfinished =
-          orbits.chosen(one.id, failed, panel.kind).filter((o) => diagram.unfinished(one.id, o)).map((o) => {
-            const status = orbits.cell(one.id, "status", o),
-                  text = status + ": " + (orbits.cell(one.id, "reason", o) || "no reason given");
-            return {
-              at: orbits.cell(one.id, "parameter", o),
-              height: 0.03,
-              mark: mark(status),
-              text,
-              id: one.id,
-              orbit: o
-            };
-          });
-      ricochet.drawMarks(
-          view, {name: "not finished", colour: dark}, unfinished, {tags: [orbits.groups[failed][0]].concat(own)});
       const found = data.ownRows("bifurcations", one.id)
                         .filter(
                             (row) => row.value !== null &&
@@ -130,5 +131,5 @@
     }
   }
 
-  ricochet.diagramPanels = {points, exponents, regimes, verdictBand, edgeMarks, verdicts, dark};
+  ricochet.diagramPanels = {points, exponents, regimes, verdictBand, unfinished, changeMarks, verdicts, dark};
 }

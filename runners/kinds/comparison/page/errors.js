@@ -1,6 +1,6 @@
 // Errors against the step and against the number of elements, log–log, one view per kind of error, one curve per
 // method. Shown besides: the fitted slope over the points that follow it, and the error floor. Points at or below the
-// floor are grey. Cases without an error are marks along the upper edge.
+// floor are grey. Cases without an error are marks in a strip above.
 {
   const {numberOf, Interval, errors} = ricochet;
   const follows = 2;  // factor within which a point follows the fitted line
@@ -27,12 +27,6 @@
       this.line = data.finder("order_lines", ["refined", "error"], [refined]);
       this.curves = new ricochet.MethodCurves(view, cases, refined, {ignored: byStep ? [] : ["step"]});
       this.xRange = new Interval().include(...cases.map((one) => numberOf(one, refined)));
-      const most = Math.max(0, ...this.curves.facets.map((facet) => {
-        const stacks = ricochet.groupBy(facet.cases.filter((one) => one.status !== "done"), (one) => [this.place(one)]);
-        return Math.max(0, ...Array.from(stacks.values(), (stack) => stack.length));
-      }));
-      this.gutter = most > 0 ? Math.min(0.5, 0.05 + ricochet.markHeight * most) :
-                               0;  // share of the frame's height that marks take
     }
     place(one) {
       const value = numberOf(one, this.refined);
@@ -82,9 +76,7 @@
     chart(error, facet, range) {
       const quantity = errors.quantity(error), y = ricochet.logAxis(quantity, range), lowest = y.min,
             {exact, text, count} = ricochet.format;
-      y.max = y.max * Math.pow(y.max / y.min, this.gutter / (1 - this.gutter));
-      const out = ricochet.view(this.x, quantity, ricochet.logAxis(this.x, this.xRange), [y, ricochet.gutterAxis()]),
-            mark = ricochet.outcomeMarks();
+      const out = ricochet.view(this.x, quantity, ricochet.logAxis(this.x, this.xRange), y), outcomes = [];
       const ofCase = (curve, find) => curve.cases.map((one) => find(one, [this.refined, error])).find(Boolean),
             all = [], zeros = [];
       for (const curve of facet.curves) {
@@ -95,9 +87,11 @@
         zeros.push(...rows.filter((row) => !(row.value > 0)).map((row) => curve.name + " at " + exact(row.at)));
         if (line) ricochet.fitted(out, lineRows(line, said), {x: "at", y: "error"}, curve, line.order);
         ricochet.draw(out, rows.filter((row) => row.value > 0), {x: "at", y: "value"}, errors.curve(curve));
-        ricochet.drawMarks(
-            out, curve, curve.cases.filter((one) => !done.includes(one)).map((one) => mark(one, this.place(one))));
+        outcomes.push([
+          curve, curve.cases.filter((one) => !done.includes(one)).map((one) => ricochet.outcome(one, this.place(one)))
+        ]);
       }
+      ricochet.outcomeStrip(out, outcomes, "no error");
       // The highest at each place.
       const floors =
           all.filter((row) => row.floor > 0 && all.every((other) => other.at !== row.at || other.floor <= row.floor))

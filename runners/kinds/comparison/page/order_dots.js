@@ -57,8 +57,8 @@
       views: ["order"],
       legend,
       charts: [{title: "all cases", height: out.height, views: [out], notes: []}],
-      caption: "A mark per error and combination: the order in the step that was fitted. The black line is what the " +
-          "scheme declares.",
+      caption: "A mark per error and combination: the order in the step that was fitted." +
+          (ticks.length ? " The black line is what the scheme declares." : ""),
     }];
   });
 }

@@ -26,8 +26,8 @@
         views: [this.draw(curves)],
         notes: []
       });
-      const entries = (curves, heading) =>
-          curves.forEach(({name, colour}) => legend.push({name, colour, dash: "", symbol: "", heading}));
+      const entries = (curves, heading, only) =>
+          curves.forEach(({name, colour}) => legend.push({name, colour, dash: "", symbol: "", heading, only}));
       const finest = methods.map(({cases}, k) => {
         const one = cases[cases.length - 1];
         return {one, name: branches.methodLabel(one), colour: colourOf(k)};
@@ -35,7 +35,7 @@
       if (methods.length > 1 || !refined.length) {
         const only = views.push(methods.length > 1 ? "finest of each method" : "branches") - 1;
         add(methods.length > 1 ? "all methods, each at its finest" : "all cases", finest, only, !refined.length);
-        entries(finest, "Method");
+        entries(finest, "Method", only);
       }
       const names = ricochet.distinct(refined.flatMap(({cases}) => cases.map((one) => branches.refinedLabel(one))));
       if (refined.length) {
@@ -46,7 +46,7 @@
             return {one, name, colour: colourOf(names.indexOf(name))};
           });
           add(label || "the one method", curves, only, methods.length === 1);
-          entries(curves, "Refined");
+          entries(curves, "Refined", only);
         }
       }
       for (const kind of this.kinds()) {

@@ -51,7 +51,7 @@
             this.methods.map((id, k) => ({name: this.methodName(id), colour: colourOf(k), dash: "", symbol: "circle"})),
         caption:
             "Distance of a point from the limit of its own method, with its interval; the pale line is the fitted " +
-            "order, its number at the end. ○ at the upper edge: the case went past the place without the point." +
+            "order, its number at the end. ○ in the grey strip: the case went past the place without the point." +
             (all.length > mostCharts ? " " + mostCharts + " of " + all.length + " charts are drawn." : ""),
       };
     }
@@ -62,8 +62,7 @@
             ys = new Interval().include(...shown.flatMap((row) => [row.distance, row.distance + row.half]));
       if (xs.empty) return null;
       if (ys.empty) ys.include(1e-9, 1e-6);
-      const up = ricochet.logAxis(y, ys),
-            out = ricochet.view(x, y, ricochet.logAxis(x, xs), [up, ricochet.gutterAxis()]);
+      const up = ricochet.logAxis(y, ys), out = ricochet.view(x, y, ricochet.logAxis(x, xs), up), absent = [];
       const without = rows.filter((row) => row.distance === 0);
       for (const [k, method] of this.methods.entries()) {
         const own = {name: this.methodName(method), colour: colourOf(k), style: 0};
@@ -92,16 +91,15 @@
               {...ricochet.line(own.name, own.colour, 1.4), silent: true});
         if (points.length)
           ricochet.draw(out, points, {x: "size", y: "distance"}, ricochet.hollowCurve(own, points, 7, 1.2));
-        const absent = rows.filter((row) => row.method === method && row.presence === "absent")
-                           .map((row) => ({
-                                  case: row.case,
-                                  at: row.size,
-                                  height: ricochet.markAt(k % 5),
-                                  mark: "○",
-                                  text: "no such point: a branch went past its place"
-                                }));
-        ricochet.drawMarks(out, own, absent);
+        absent.push([
+          own,
+          rows.filter((row) => row.method === method && row.presence === "absent")
+              .map(
+                  (row) =>
+                      ({case: row.case, at: row.size, mark: "○", text: "no such point: a branch went past its place"}))
+        ]);
       }
+      ricochet.outcomeStrip(out, absent, "absent");
       if (without.length)
         out.notes.push(
             ricochet.format.count(without.length, "point is", "points are") +

@@ -1,6 +1,6 @@
 // The largest step of each method, predicted and observed.
 {
-  const mostRows = 22, none = "no limit", colours = {open: "#0072B2", closed: "#D55E00"};
+  const mostRows = 22, none = "no limit", colours = {open: "#44AA99", closed: "#882255"};  // of no mass matrix
 
   ricochet.figure("limit-dots", (data) => {
     const {view} = data, {text} = ricochet.format,
@@ -44,15 +44,15 @@
         const own = rows.filter((row) => row.contact === contact && row[what] > 0), name = contact + ", " + what;
         if (!own.length) continue;
         ricochet.draw(out, own, {x: what, y: "name"}, {...draw(name), shift: [0, contact === "open" ? -4 : 4]});
-        legend.push(ricochet.swatch(name, what === "predicted" ? ricochet.lighten(colour, 0.6) : colour, "circle"));
+        legend.push({...ricochet.swatch(name, colour, "circle"), hollow: what === "predicted"});
       }
     if (arrows && unlimited.length) {
       ricochet.draw(
           out,
           unlimited.map(
               (name) => ({name, end: out.xAxes[0].max, text: name + ": no limit within the steps of the study"})),
-          {x: "end", y: "name"}, {...ricochet.dot(none, "#009E73", "triangle-right", 10, 4), shift: [-6, 0]});
-      legend.push(ricochet.swatch(none, "#009E73", "triangle"));
+          {x: "end", y: "name"}, {...ricochet.dot(none, "#555555", "triangle-right", 10, 4), shift: [-6, 0]});
+      legend.push(ricochet.swatch(none, "#555555", "triangle"));
     }
     if (without.length && !arrows)
       out.notes.push("No limit within the steps of the study: " + view.describe(without, counted) + ".");

@@ -25,9 +25,8 @@
     const x = ["step h", "s"], y = [height.name, "1"], grows = height.column === "growth", flat = [];
     let frame = range.empty ? new Interval(...height.frame) : range.copy();
     if (!grows) frame = ricochet.wholeDecades(frame).include(0.1, 10);
-    const out = ricochet.view(
-              x, y, ricochet.logAxis(x, stability.steps), [ricochet.logAxis(y, frame), ricochet.gutterAxis()]),
-          [{min, max}] = out.xAxes;
+    const out = ricochet.view(x, y, ricochet.logAxis(x, stability.steps), ricochet.logAxis(y, frame)),
+          [{min, max}] = out.xAxes, disagree = [];
     if (range.empty) out.notes.push(height.none);
     if (!grows)  // |r| = 1
       ricochet.draw(
@@ -38,11 +37,13 @@
         if (grows && !cells.some((cell) => drawn(height, cell))) flat.push(curve.name);
         const rows = cells.map((cell) => rowOf(height, cell));
         ricochet.draw(out, rows, {x: "step", y: "value"}, ricochet.hollowCurve(curve, rows, 7, 1.4));
-        ricochet.drawMarks(
-            out, curve,
-            cells.filter((cell) => cell.disagrees && cell.unstable)
-                .map((cell) => ({case: cell.case, at: cell.step, height: 0.95, mark: "✕", text: cell.reason})));
+        disagree.push([
+          curve,
+          cells.filter((cell) => cell.disagrees && cell.unstable)
+              .map((cell) => ({case: cell.case, at: cell.step, mark: "✕", text: cell.reason}))
+        ]);
       }
+    ricochet.outcomeStrip(out, disagree, "observed");
     if (flat.length) out.notes.push("No growth at any step: " + flat.join("; ") + ".");
     return out;
   }

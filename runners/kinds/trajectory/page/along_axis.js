@@ -72,8 +72,7 @@
                               ricochet.heightAxis(quantity, ricochet.roundOutwards(frame.range, least));
       const whole = ricochet.logarithmicAxis(this.xRange),
             x = ricochet.axisOf(whole, this.x, whole ? this.xRange : ricochet.roundOutwards(this.xRange, 1e-12));
-      const out = ricochet.view(this.x, quantity, x, [y, ricochet.gutterAxis()]), mark = ricochet.outcomeMarks(),
-            zeros = [];
+      const out = ricochet.view(this.x, quantity, x, y), zeros = [];
       if (!logarithmic && frame.own) out.notes.push(ricochet.ownScale);
       for (const curve of facet.curves) {
         const rows = this.rows(curve.cases, value), shown = rows.filter((row) => !logarithmic || row.height > 0),
@@ -87,10 +86,12 @@
               out, shown.flatMap((row) => [x.min, x.max].map((at) => ({...row, at}))), {x: "at", y: "height"},
               {...ricochet.curve(curve, 8, 1.2), symbol: ""});
         else ricochet.draw(out, shown, {x: "at", y: "height"}, ricochet.hollowCurve(curve, shown));
-        ricochet.drawMarks(
-            out, curve,
-            curve.cases.filter((one) => one.status !== "done").map((one) => mark(one, numberOf(one, this.column))));
       }
+      const unfinished = ({cases}) => cases.filter((one) => one.status !== "done");
+      ricochet.outcomeStrip(
+          out,
+          facet.curves.map(
+              (curve) => [curve, unfinished(curve).map((one) => ricochet.outcome(one, numberOf(one, this.column)))]));
       if (zeros.length) out.notes.push(ricochet.unseenZeros + zeros.join("; ") + ".");
       return out;
     }

@@ -16,7 +16,7 @@ ricochet.figure("clearances", (data) => {
           [first, second] = said?.clearance?.components ?? ["first component", "second component"];
     const x = [first, "m"], y = [second, "m"], frame = new ricochet.Interval(-reach, reach);
     const across = ricochet.valueAxis(x, frame), up = ricochet.valueAxis(y, frame),
-          out = ricochet.view(x, y, across, [up, ricochet.gutterAxis()]);
+          out = ricochet.view(x, y, across, up);
     out.frames = [{left: 84, top: 14, width: side, height: side}];
     const circle = Array.from({length: corners + 1}, (_, k) => ({
                                                        first: radius * Math.cos(2 * Math.PI * k / corners),

@@ -36,7 +36,8 @@
   // What may be told apart within one chart: the step; methods, as far as a chart holds their curves; else the first
   // axis that varies.
   function overlays(view) {
-    const {roleOf, roles} = ricochet, out = view.varies("step") ? [{name: "steps", columns: ["step"]}] : [];
+    const {roleOf} = ricochet, {roles} = view.data.page,
+          out = view.varies("step") ? [{name: "steps", columns: ["step"]}] : [];
     for (let some = roles.slice(); some.length; some.pop()) {
       const columns = view.varying.filter((column) => some.includes(roleOf(column))),
             most =

@@ -14,7 +14,7 @@ ricochet.figure("shocks", (data) => {
   const legend = [], charts = stops.map((stop) => {
     const out = ricochet.view(
         x, y, ricochet.valueAxis(x, ricochet.roundOutwards(times, 1e-12)),
-        [ricochet.heightAxis(y, ricochet.roundOutwards(peaks, ricochet.leastSpan(peaks))), ricochet.gutterAxis()]);
+        ricochet.heightAxis(y, ricochet.roundOutwards(peaks, ricochet.leastSpan(peaks))));
     for (const one of cases) {
       const name = view.label(one, view.varyingWithout(["step", "elements"])) || "all cases", colour = view.colour(one),
             symbol = symbolOf.get(one.id);

@@ -15,12 +15,10 @@ ricochet.figure("spectra", (data) => {
     if (range.empty)
       return {
         title: of + ", " + quantity,
-        views: [ricochet.view(
-            x, y, ricochet.logAxis(x, along),
-            [ricochet.heightAxis(y, new ricochet.Interval(0, 1)), ricochet.gutterAxis()])],
+        views: [ricochet.view(x, y, ricochet.logAxis(x, along), ricochet.heightAxis(y, new ricochet.Interval(0, 1)))],
         notes: ["Zero at every frequency."]
       };
-    const out = ricochet.view(x, y, ricochet.logAxis(x, along), [ricochet.logAxis(y, range), ricochet.gutterAxis()]);
+    const out = ricochet.view(x, y, ricochet.logAxis(x, along), ricochet.logAxis(y, range));
     const shown = rows.map(
         (row) => Object.fromEntries(Object.entries(row).map(
             ([name,

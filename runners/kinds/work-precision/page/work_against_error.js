@@ -130,7 +130,7 @@
       return {
         case: one.id,
         at: far * Math.pow(edge / far, (Math.floor(count / gutterRows) % gutterColumns + 0.5) / gutterColumns),
-        height: ricochet.markAt(count % gutterRows),
+        height: 0.95 - 0.085 * (count % gutterRows),
         mark: done ? "–" : ricochet.format.mark(one.status),
         text: who ? who + ": " + why : why,
       };

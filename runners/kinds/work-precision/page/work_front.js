@@ -43,12 +43,16 @@
     ricochet.draw(
         out, front, {x: "value", y: "seconds"}, {...ricochet.line("Pareto front", "#E8D95A", 9), cap: "round"});
     ricochet.draw(out, rows, {x: "value", y: "seconds"}, ricochet.dot(beaten, grey, "circle", 5, 2), {shown: beaten});
+    // The methods of a mass matrix are told apart by their marks; of one mass matrix alone by colours, too.
+    const byMass = view.masses.length > 1, used = {};
     names.forEach((name, k) => {
+      const colour = byMass ? view.colour(data.byId.get(rows.find((row) => row.shown === name).case)) :
+                              ricochet.methodColours[k % ricochet.methodColours.length],
+            rank = byMass ? used[colour] || 0 : k, symbol = ricochet.symbol(rank), hollow = rank > 5;
+      used[colour] = rank + 1;
       ricochet.draw(
-          out, rows, {x: "value", y: "seconds"},
-          ricochet.dot(name, ricochet.methodColours[k % ricochet.methodColours.length], ricochet.symbol(k), 10, 4),
-          {shown: name});
-      legend.push(ricochet.swatch(name, ricochet.methodColours[k % ricochet.methodColours.length], ricochet.symbol(k)));
+          out, rows, {x: "value", y: "seconds"}, {...ricochet.dot(name, colour, symbol, 10, 4), hollow}, {shown: name});
+      legend.push({...ricochet.swatch(name, colour, symbol), hollow});
     });
     if (rows.some((row) => row.shown === beaten)) legend.push(ricochet.swatch(beaten, grey, "circle"));
     if (scenes.length > 1) out.notes.push("Of " + scenes.length + " scenes the first: " + first.label + ".");
@@ -60,7 +64,8 @@
       legend,
       charts: [{title: "all methods", height: 360, views: [out], notes: []}],
       caption: "Left and low is better; a point per method and step. The band joins the cases that no other is both " +
-          "faster and more precise than, in " + error + ", the error that tells most.",
+          "faster and more precise than, in " + error + ", the error that tells most." +
+          (byMass ? " One colour per mass matrix." : ""),
     }];
   });
 }

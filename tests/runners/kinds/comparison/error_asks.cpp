@@ -237,6 +237,34 @@ TEST_CASE("an error that no case has is none, and no floor hides it", "[asks]") 
   REQUIRE(out.aside.size() == 1);
 }
 
+TEST_CASE("a curve of the cheapest is one method on one mesh, its steps in their order", "[asks]") {
+  StudyResults results;
+  for (const double elements : {8.0, 16.0}) {
+    StudyResults one = study_of({{"a", powers(2, 4), 1e-6}, {"b", {NAN, NAN, NAN, NAN}}});
+    std::reverse(one.cases.begin(), one.cases.end());
+    for (CaseRecord& record : one.cases) {
+      record.id += std::to_string(elements);
+      record.axes.emplace_back("elements", elements);
+      // Longer on the coarse mesh, and the second step is the fastest.
+      for (auto& [name, value] : record.measures)
+        if (name == "timed_seconds") value = (record.id[1] == '1' ? 1e-4 : value) * 16 / elements;
+    }
+    one.cases.insert(one.cases.begin(), results.cases.begin(), results.cases.end());
+    results = one;
+  }
+  results.columns.push_back("elements");
+  const Json series = ask(results, {{"cheapest", "impulse"}, {"within", 0.1}}).figure.at("series");
+  REQUIRE(series.size() == 2);
+  CHECK(series[0].at("name") == "a, 8 elements");
+  CHECK(series[1].at("name") == "a, 16 elements");
+  for (const Json& one : series) {
+    REQUIRE(one.at("points").size() == 4);
+    for (std::size_t k = 0; k < 4; ++k)
+      CHECK(one.at("points")[k][1].get<double>() == Approx(100 * std::pow(4, -static_cast<double>(k))));
+    CHECK(one.at("floor").get<double>() == Approx(1e-4));
+  }
+}
+
 TEST_CASE("errors against rigid stops are said to hold the springs of the law", "[asks]") {
   StudyResults results = study_of({{"a", powers(2, 4)}});
   const auto told = [&](const Json& keys) {

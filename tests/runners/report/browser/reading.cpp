@@ -92,6 +92,30 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a legend names what the shown view needs, and folds no more than its list of methods", "[report][browser]") {
+  if (left_out()) return;
+  const char* const headings =
+      "(() => { const {section, description} = ricochet.figures.find((one) => one.description.id === "
+      "'diagram'), all = (selector) => Array.from(section.querySelectorAll('.legend ' + selector)); return "
+      "description.views.map((name, view) => { section.querySelector('[data-view=\"' + view + '\"]').click(); return "
+      "[name, all('> .entries').filter((one) => one.getClientRects().length).map((one) => "
+      "one.querySelector('.heading').textContent), all('details button').length]; }); })()";
+  const browser::Json views =
+      driven("reading-legend",
+             {{{"name", "legend"}, {"page", report_of("studies", "bifurcation")}, {"evaluate", {headings}}}})
+          .at("legend")
+          .at("values")
+          .at(0);
+  REQUIRE(views.size() > 1);
+  for (const browser::Json& view : views) {
+    const bool overlaid = view.at(0) == "overlaid";
+    INFO(view.dump());
+    CHECK((std::count(view.at(1).begin(), view.at(1).end(), "Method") == 1) == overlaid);
+    CHECK((std::count(view.at(1).begin(), view.at(1).end(), "Regime") == 1) == !overlaid);
+    CHECK(view.at(2) == 0);
+  }
+}
+
 TEST_CASE("a wide table keeps its first column and says that it goes on", "[report][browser]") {
   if (left_out()) return;
   const char* const scrolled =
@@ -464,5 +488,5 @@ TEST_CASE("figures are written as SVG and CSV, and as pages of one PDF", "[repor
   // Where there is no browser the sentence says what to install.
   const std::string alone = "RICOCHET_BROWSER=/nowhere " + tests::places().command + " report '" +
                             report.parent_path().string() + "' --figures '" + out.string() + "' 2>&1; true";
-  CHECK_THAT(words_of(alone), Contains("/nowhere drew no figures"));
+  CHECK_THAT(words_of(alone), Contains("RICOCHET_BROWSER names \"/nowhere\", and there is no such program"));
 }
