@@ -179,7 +179,7 @@ TEST_CASE("a method that cannot be made is told, and nothing is written") {
       {"new time Mine", "\"Mine\" cannot be the name of a method: expected small letters, digits and '-'"},
       {"new time my_scheme", "cannot be the name of a method"},
       {"new time ../mine", "cannot be the name of a method"},
-      {"new time ''", "cannot be the name of a method"},
+      {"new time ''", "was given an empty argument"},
       {"new time -- -mine", "no '-' at its beginning"},
       {"new time newmark", "there is a time method \"newmark\" already"},
       {"new contact penalty", "would be shadowed"},

@@ -132,13 +132,18 @@ TEST_CASE("charts of one figure have headings of their own, open and closed ones
   // A parameter that only a few of many schemes have is no column of a map, which would stand empty; one that all have
   // is.
   const char* const layouts = R"js((() => {
-    const axis = (name, texts, at, number) => ({ name, unit: "", texts, numbers: texts.map((text) => (number ? Number(text) : null)), at });
+    const axis = (name, texts, at, number) => ({ name, role: name.split(".")[0], word: "", varies: true, unit: "", texts, numbers: texts.map((text) => (number ? Number(text) : null)), at });
     const laid = (cases, all) => {
       const places = [...Array(cases).keys()], scheme = places.map((k) => k % (cases / 2)), some = (k) => all || scheme[k] < 6;
       const names = [...new Set(scheme.map((k) => "s" + (all ? k >> 2 : k)))];
       const axes = [axis("step", ["1", "2"], places.map((k) => (k < cases / 2 ? 0 : 1)), true), axis("time", names, scheme.map((k) => (all ? k >> 2 : k))), axis("time.p", ["1", "2", "3", "4"], places.map((k) => (some(k) ? scheme[k] % 4 : -1)), true)];
       const own = places.map((index) => ({ index, status: "done", measures: {}, values: Object.fromEntries(axes.filter(({ at }) => at[index] >= 0).map(({ name, texts, numbers, at }) => [name, { text: texts[at[index]], number: numbers[at[index]] }])) }));
-      return ricochet.mapLayout(new ricochet.Cases({ cases: own, page: { axes } }), own, "step").columns;
+      const kept = ricochet.data, data = { cases: own, page: { axes, roles: kept.page.roles, masses: [] } };
+      data.view = new ricochet.Cases(data);
+      ricochet.data = data;
+      const { columns } = ricochet.mapLayout(data.view, own, "step");
+      ricochet.data = kept;
+      return columns;
     };
     return [laid(160, false), laid(160, true)];
   })())js";
