@@ -36,8 +36,8 @@ std::string Lines::number(double value, std::optional<double> u) const {
 }
 
 std::string Lines::given(double value) const {
-  constexpr int all = 12;  // what a decimal number times a power of ten keeps
-  return answers::short_number(words.factor * value, all) + (words.unit.empty() ? "" : " " + words.unit);
+  constexpr int digits = 12;  // what a decimal number times a power of ten keeps
+  return answers::short_number(words.factor * value, digits) + (words.unit.empty() ? "" : " " + words.unit);
 }
 
 VerdictRow Lines::row(const Line& line) const {

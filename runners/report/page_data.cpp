@@ -9,6 +9,7 @@
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/study_tables.hpp"
+#include "runners/study/axis_meaning.hpp"
 
 namespace ricochet::report {
 namespace {

@@ -1,4 +1,6 @@
 // Of which level, stop and value a verdict speaks, and what is not settled.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <set>
 
