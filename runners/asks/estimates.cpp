@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <tuple>
 
 #include "runners/asks/evidence.hpp"
 
@@ -66,17 +67,6 @@ std::vector<SizedValue> along(const std::map<Size, BySeed>& values, const Size& 
   return out;
 }
 
-/// The coarser size over the finest, of one refinement; 1 where there is none.
-double last_ratio(const std::map<Size, BySeed>& values, const Size& finest, bool steps) {
-  double ratio = INFINITY;
-  for (const auto& [size, by_seed] : values) {
-    if (steps ? size.second != finest.second : size.first != finest.first) continue;
-    const double own = steps ? size.first / finest.first : finest.second / size.second;
-    if (own > 1) ratio = std::min(ratio, own);
-  }
-  return std::isfinite(ratio) ? ratio : 1;
-}
-
 std::optional<double> left_by(const std::optional<Limit>& limit) {
   return limit && limit->uncertainty && std::isfinite(*limit->uncertainty) ? limit->uncertainty : std::nullopt;
 }
@@ -119,26 +109,23 @@ Estimate estimate_of(const std::map<Size, BySeed>& values, const std::map<Size, 
   out.mesh = left_by(limits.mesh);
   for (const auto& one : {limits.step, limits.mesh})
     out.grows = out.grows || (one && one->status == LimitStatus::blows_up);
-  // What moves one way goes on, what wanders stays about where it is.
-  constexpr double of_moving = 10, of_wandering = 2;
-  for (const auto& [limit, what] : {std::pair(limits.step, "step"), std::pair(limits.mesh, "mesh")}) {
-    if (!limit || !limit->restless()) continue;
-    out.doubt = std::max(out.doubt, limit->status == LimitStatus::moves ? of_moving : of_wandering);
-    if (out.motion.empty())
-      out.motion = std::string(limit->trend > 0   ? "still rises"
-                               : limit->trend < 0 ? "still falls"
-                                                  : "wanders") +
-                   " with the " + what;
-  }
-  // Of two sizes three times what first order leaves, 3 |d|/(r − 1) (Roache, 1994), where u is |d|.
-  constexpr double of_two = 3;
-  for (const bool steps : {true, false}) {
-    const std::optional<Limit>& limit = steps ? limits.step : limits.mesh;
-    if (!limit || limit->status != LimitStatus::two) continue;
-    const double ratio = last_ratio(values, finest, steps);
-    if (ratio <= 1 || of_two <= ratio - 1) continue;
-    out.doubt = std::max(out.doubt, of_two / (ratio - 1));
-    if (out.few.empty()) out.few = std::string("is known by two ") + (steps ? "steps" : "meshes") + " alone";
+  // What moves one way goes on, what wanders stays about where it is. Of two sizes three times what first order leaves,
+  // 3 |d|/(r − 1) (Roache, 1994), where u is |d|.
+  constexpr double of_moving = 10, of_wandering = 2, of_two = 3;
+  for (const auto& [limit, what, several] :
+       {std::tuple(limits.step, "step", "steps"), std::tuple(limits.mesh, "mesh", "meshes")}) {
+    if (!limit) continue;
+    if (limit->restless()) {
+      out.doubt = std::max(out.doubt, limit->status == LimitStatus::moves ? of_moving : of_wandering);
+      if (out.motion.empty())
+        out.motion = std::string(limit->trend > 0   ? "still rises"
+                                 : limit->trend < 0 ? "still falls"
+                                                    : "wanders") +
+                     " with the " + what;
+    } else if (limit->status == LimitStatus::two && limit->ratio > 1 && of_two > limit->ratio - 1) {
+      out.doubt = std::max(out.doubt, of_two / (limit->ratio - 1));
+      if (out.few.empty()) out.few = std::string("is known by two ") + several + " alone";
+    }
   }
   if (out.grows) out.motion = "grows without bound";
   out.vanishes = limits.step && limits.step->status == LimitStatus::vanishes;

@@ -166,11 +166,7 @@ std::size_t CaseView::mass_place(const CaseRecord& record) const {
 }
 
 std::string CaseView::colour(const CaseRecord& record) const {
-  return mass_colour(mass_place(record));
-}
-
-std::string mass_colour(std::size_t place) {
-  return mass_colours[place % std::size(mass_colours)];
+  return mass_colours[mass_place(record) % std::size(mass_colours)];
 }
 
 std::vector<std::string> CaseView::varying_without(const std::vector<std::string>& excluded) const {

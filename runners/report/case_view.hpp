@@ -69,6 +69,7 @@ class CaseView {
   const std::vector<std::string>& masses() const { return masses_; }
   /// The place of the case's mass matrix among these; their number where it has none (a reference).
   std::size_t mass_place(const CaseRecord& record) const;
+  /// Colour of the case's mass matrix, the same in all charts (Okabe and Ito 2008: distinct for colour-blind readers).
   std::string colour(const CaseRecord& record) const;
 
   /// Varying columns but for those of the given columns or roles.
@@ -105,9 +106,6 @@ std::string role_of(std::string_view column);
 
 /// What a label puts before a value: the last part of the column and a blank; "" for a method's own name.
 std::string label_word(const std::string& column);
-
-/// The colour of a mass matrix, the same in all charts (Okabe and Ito 2008: distinct for colour-blind readers).
-std::string mass_colour(std::size_t place);
 
 /// Which rows of a derived table have the axes of a case.
 class AxisPlaces {

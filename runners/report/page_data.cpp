@@ -83,10 +83,11 @@ PageJson axes_json(const CaseView& view) {
 }
 
 PageJson cases_json(const CaseView& view) {
-  PageJson out = {
-      {"id", PageJson::array()},          {"status", PageJson::array()}, {"reason", PageJson::array()},
-      {"partial", PageJson::array()},     {"steps", PageJson::array()},  {"setup_seconds", PageJson::array()},
-      {"run_seconds", PageJson::array()}, {"mass", PageJson::array()},   {"measures", PageJson::object()}};
+  PageJson out = {{"id", PageJson::array()},          {"status", PageJson::array()},
+                  {"reason", PageJson::array()},      {"partial", PageJson::array()},
+                  {"steps", PageJson::array()},       {"setup_seconds", PageJson::array()},
+                  {"run_seconds", PageJson::array()}, {"mass", PageJson::array()},
+                  {"colour", PageJson::array()},      {"measures", PageJson::object()}};
   const Cases all = view.all();
   for (size_t c = 0; c < all.size(); ++c) {
     const CaseRecord& record = *all[c];
@@ -98,18 +99,13 @@ PageJson cases_json(const CaseView& view) {
     out["setup_seconds"].push_back(record.setup_seconds);
     out["run_seconds"].push_back(record.run_seconds);
     out["mass"].push_back(view.mass_place(record));
+    out["colour"].push_back(view.colour(record));
     for (const auto& [name, value] : record.measures) {
       PageJson& column = out["measures"][name];
       if (column.is_null()) column = PageJson(all.size(), nullptr);
       column[c] = value;
     }
   }
-  return out;
-}
-
-PageJson masses_json(const CaseView& view) {
-  PageJson out = PageJson::array();
-  for (const std::string& label : view.masses()) out.push_back({{"label", label}, {"colour", mass_colour(out.size())}});
   return out;
 }
 
@@ -185,7 +181,7 @@ PageData page_data(const CaseView& view, const KindPage& kind, const StudyResult
   PageJson out = {{"study", {{"name", results.name}, {"kind", results.kind}, {"resolved", results.study}}}};
   out["axes"] = axes_json(view);
   out["roles"] = method_roles();
-  out["masses"] = masses_json(view);
+  out["masses"] = view.masses();
   out["words"] = results.method_words;
   out["cases"] = cases_json(view);
   out["measures"] = measures_json(out["cases"]);

@@ -22,9 +22,10 @@ struct PageData {
 ///   axes      [{name, said, role, word, unit, varies, texts, numbers, at}]: the distinct values of a column, and by
 ///             case which it has (−1: none); `word` stands before a value in labels
 ///   roles     the roles of methods
-///   masses    [{label, colour}] of mass matrices
-///   cases     {id, status, reason, partial, steps, setup_seconds, run_seconds, mass, measures: {name: column}}, in
-///             columns; `mass` is a place in masses
+///   masses    labels of mass matrices
+///   cases     {id, status, reason, partial, steps, setup_seconds, run_seconds, mass, colour,
+///             measures: {name: column}}, in columns; `mass` is a place in masses, none of a reference; `colour` is
+///             that of the mass
 ///   measures  [{name, unit, text}]
 ///   tables    {name: {columns: [{name, unit, text}], rows, cells}}: a column of words is {words, at}
 ///   own       {table: {case: …}}: tables of single cases, in the same form

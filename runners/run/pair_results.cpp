@@ -92,29 +92,30 @@ void add_rows_of(const StudyResults& results, const char* name, const char* leve
   }
 }
 
+using MeasuresOfStops = std::set<std::pair<std::string, std::string>>;
+
 /// What asks of both tell a value of, by measure and stop: the table of limits would tell that once more.
-std::set<std::pair<std::string, std::string>> told_by_asks(const AnalysedResults& a, const AnalysedResults& b) {
+MeasuresOfStops told_by_asks(const AnalysedResults& a, const AnalysedResults& b) {
   const auto told = [](const AnalysedResults& results) {
-    std::set<std::pair<std::string, std::string>> out;
+    MeasuresOfStops out;
     for (const auto& [ask, answered] : results.asked.all)
       if (ask.verb->name == std::string("value"))
         for (const VerdictRow& row : answered.rows) out.emplace(row.measure, row.stop);
     return out;
   };
-  std::set<std::pair<std::string, std::string>> out;
-  const auto of_a = told(a), of_b = told(b);
+  MeasuresOfStops out;
+  const MeasuresOfStops of_a = told(a), of_b = told(b);
   std::set_intersection(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), std::inserter(out, out.end()));
   return out;
 }
 
 std::vector<KeyedValue> values_of(const AnalysedResults& results, const std::vector<std::string>& chosen,
-                                  const std::set<std::pair<std::string, std::string>>& told) {
-  std::vector<KeyedValue> out;
-  add_rows_of(results, "limits", "method", chosen, out);
-  std::erase_if(out, [&](const KeyedValue& one) { return told.contains({one.row.measure, one.row.stop}); });
-  std::vector<KeyedValue> asked;
-  add_verdicts(results, chosen, asked);
-  out.insert(out.begin(), std::make_move_iterator(asked.begin()), std::make_move_iterator(asked.end()));
+                                  const MeasuresOfStops& told) {
+  std::vector<KeyedValue> out, limits;
+  add_verdicts(results, chosen, out);
+  add_rows_of(results, "limits", "method", chosen, limits);
+  for (KeyedValue& one : limits)
+    if (!told.contains({one.row.measure, one.row.stop})) out.push_back(std::move(one));
   add_rows_of(results, "uncertainty", "", {}, out);
   // Rows that nothing tells apart go together in their order.
   std::map<std::string, std::size_t> met;
@@ -181,7 +182,7 @@ std::size_t PairedResults::count(PairChange change) const {
 PairedResults pair_results(const AnalysedResults& a, const AnalysedResults& b) {
   PairedResults out{compare_studies(a, b), {}, {}};
   const std::vector<std::string> chosen = chosen_columns(a, b);
-  const auto told = told_by_asks(a, b);
+  const MeasuresOfStops told = told_by_asks(a, b);
   std::map<std::string, std::size_t> places;
   for (KeyedValue& one : values_of(a, chosen, told)) {
     places[key_of(one.key)] = out.values.size();

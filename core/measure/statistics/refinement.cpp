@@ -24,6 +24,7 @@ std::optional<double> slope(const SizedValue& coarse, const SizedValue& fine) {
 Limit at_finest(const std::vector<SizedValue>& values) {
   Limit out;
   out.sizes = values.size();
+  if (out.sizes > 1) out.ratio = values[out.sizes - 2].size / values.back().size;
   out.value = out.low = out.high = values.back().value;
   const std::size_t first = values.size() > 3 ? values.size() - 3 : 0;
   double low = out.value, high = out.value;

@@ -37,6 +37,7 @@ struct Limit {
   double low = 0, high = 0;           ///< where the limit is expected: value ± u, towards the truth, or the last three
   std::optional<double> order;        ///< where two orders in a row agree, or the distance to the truth shows one
   std::size_t sizes = 1;
+  double ratio = 1;  ///< of the last two sizes, the coarser over the finer
   int trend = 0;     ///< of a value that moves: 1 rises, −1 falls
   double range = 0;  ///< of the last three values
   /// Settled, equal, at the truth, or falling to zero.
@@ -63,8 +64,7 @@ inline constexpr double lowest_order = 0.5;
 std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std::optional<double> truth = {});
 
 /// The limit over two refinements, at the finest of both: uncertainties are added, so are the ways to low and to high.
-/// The status is the worse of the two.
-/// A single size says nothing. Nothing where both are absent.
+/// The status is the worse of the two. A single size says nothing. Nothing where both are absent.
 std::optional<Limit> combined(const std::optional<Limit>& step, const std::optional<Limit>& mesh);
 
 /// Adds half an interval of the value itself, as of a mean over a window.

@@ -199,22 +199,21 @@ class MotionEffect {
 
   /// Share of the places that the last refinement of step and of mesh changes; nothing where no step is coarser.
   std::optional<double> moved_by_refinement(const CaseRecord& finest, const Cases& of) const {
-    std::optional<double> by_step;
-    double by_mesh = 0;
-    for (const bool step : {true, false}) {
+    const auto moved = [&](bool step) -> std::optional<double> {
       const CaseRecord* before = nullptr;
       for (const CaseRecord* one : of) {
         const bool coarser = step ? size(*one).second == size(finest).second && size(*one).first > size(finest).first
                                   : size(*one).first == size(finest).first && size(*one).second < size(finest).second;
         if (coarser && (!before || study_.finer(*one, *before))) before = one;
       }
-      if (!before) continue;
+      if (!before) return std::nullopt;
       const MotionCounts counts = compare_motions(*motions_(*before), *motions_(finest));
-      const double share =
-          static_cast<double>(counts.changed) / static_cast<double>(std::max<std::size_t>(1, counts.both));
-      if (counts.both > 0) step ? void(by_step = share) : void(by_mesh = share);
-    }
-    return by_step ? std::optional(*by_step + by_mesh) : std::nullopt;
+      if (counts.both == 0) return std::nullopt;
+      return static_cast<double>(counts.changed) / static_cast<double>(counts.both);
+    };
+    std::optional<double> out = moved(true);
+    if (out) *out += moved(false).value_or(0);
+    return out;
   }
 
   std::string own_level(const CaseRecord& one) const { return study_.words(one, own_); }

@@ -47,8 +47,8 @@
       return out;
     }
     // The mass matrix with every parameter that varies.
-    massLabel(one) { return one.mass ? one.mass.label : ""; }
-    colour(one) { return (one.mass || this.masses[0]).colour; }
+    massLabel(one) { return one.mass || ""; }
+    colour(one) { return one.colour; }
 
     // Groups by the values of columns, in order of appearance, labelled by them.
     group(cases, columns) {

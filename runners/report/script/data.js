@@ -28,6 +28,7 @@
         status: cases.status[index],
         reason: cases.reason[index],
         mass: this.page.masses[cases.mass[index]],
+        colour: cases.colour[index],
         partial: cases.partial[index],
         values,
         measures
