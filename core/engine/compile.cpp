@@ -274,6 +274,8 @@ std::optional<Refusal> meet_problem(Program& program, std::vector<LaneSpec> lane
   if (auto refusal = meet_friction(program, derived, options)) return refusal;
   program.load = problem.load && !problem.load->absent();
   program.load_constant = program.load && problem.load->constant_in_time();
+  if (program.load && !program.load_constant && options.march != MarchWay::every_step)
+    program.load_pulsation = problem.load->pulsation().value_or(0);
   return std::nullopt;
 }
 

@@ -126,7 +126,8 @@ struct Program {
   std::vector<StageProgram> start, stages;
   bool own_sets = false;  ///< whether the law has a set for each point and lane (stop_parameters.hpp)
   bool contact = false, support = false, load = false, load_constant = false, eager_delassus = false;
-  bool bounded = true;                ///< whether a lane beyond its energy bound is stopped
+  double load_pulsation = 0;  ///< Ω of a load c + a sin Ωt + b cos Ωt, rad/s; 0: it is no such load, or unasked
+  bool bounded = true;        ///< whether a lane beyond its energy bound is stopped
   double predicted_step_seconds = 0;  ///< per step of the whole block
   double predicted_setup_seconds = 0;
   std::vector<LeftOut> left_out;

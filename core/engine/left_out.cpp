@@ -29,9 +29,12 @@ Refusal refuse_flight(const std::string& cause) {
 std::string why_grounded(const Program& program, const CompileOptions& options) {
   if (program.lanes.size() > 1) return "several lanes march as one block";
   if (program.friction) return "a stop that rubs is marched";
-  if (program.load && !program.load_constant) return "the load depends on time";
+  if (program.load && !program.load_constant) {
+    if (program.load_pulsation == 0) return "the load depends on time otherwise than by one sine";
+    if (program.support) return "the load depends on time and the support moves";
+  }
   if (!program.problem->motions.empty()) return "supports or stops move by histories";
-  if (program.problem->damping.own()) return "the damping is not made of K and M";
+  if (program.problem->damping.matrix) return "the damping is a matrix of its own";
   if (!program.problem->held)
     return program.problem->dofs() == 1 ? "a single degree of freedom is marched"
                                         : "the structure is not held, and has no modes to fly by";

@@ -255,6 +255,10 @@ long long Marcher::fly(long long most) {
     clamp_.set_time(time());
     clamp_.drive(0, e[0], e[1]);
     e[2] = 1;
+  } else if (const double pulsation = program_.load_pulsation; pulsation > 0) {
+    e[0] = std::sin(pulsation * time());
+    e[1] = std::cos(pulsation * time());
+    e[2] = 1;
   } else {
     e[0] = 1;
   }

@@ -223,6 +223,9 @@ bool Formula::is_zero() const {
 const std::string& Formula::text() const {
   return source_->text;
 }
+bool Formula::is_written() const {
+  return !source_->given;
+}
 
 namespace {
 

@@ -53,6 +53,8 @@ class Formula {
   /// A constant that equals zero: what it feeds is left out.
   bool is_zero() const;
   const std::string& text() const;
+  /// Whether its text is what is evaluated; else that only names it.
+  bool is_written() const;
 
  private:
   struct Source;

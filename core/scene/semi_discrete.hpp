@@ -32,6 +32,8 @@ class DistributedLoad {
   void add(Eigen::VectorXd shape, Formula history);
   bool absent() const { return formula_.is_zero() && terms_.empty(); }
   bool constant_in_time() const { return !formula_.uses_t() && !terms_vary_; }
+  /// Ω > 0 (rad/s) where F(t) = c + a sin Ωt + b cos Ωt; none where that is not so, or cannot be told.
+  std::optional<double> pulsation() const;
   /// F(t) into `out` (n); no allocation. Values that are not finite are passed on, and stop the lane as diverged.
   void assemble(double t, double* out) const;
 

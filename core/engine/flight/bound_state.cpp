@@ -19,7 +19,7 @@ constexpr double few_slow = 0.6;
 
 void FlightBound::set_state(const double* x, const double* e) {
   const FlightKernels& kernels = flight_kernels();
-  const double drive = drive_.harmonic ? std::hypot(e[0], e[1]) : 0.0;
+  const double drive = drive_.harmonic() ? std::hypot(e[0], e[1]) : 0.0;
   const double turn = 2 * std::sin(drive_.angle / 2);
   double turned[3] = {};  // what e changes by
   for (int k = 0; k < drives_; ++k)
@@ -50,7 +50,7 @@ void FlightBound::set_state(const double* x, const double* e) {
         watched.offset[i] += own(row, k) * e[k];
         watched.offset_step[i] += own(row, k) * turned[k];
       }
-      if (drive_.harmonic) watched.offset_bend[i] = turn * turn * std::hypot(own(row, 0), own(row, 1)) * drive;
+      if (drive_.harmonic()) watched.offset_bend[i] = turn * turn * std::hypot(own(row, 0), own(row, 1)) * drive;
     }
   }
   placed_of_ = nullptr;

@@ -166,7 +166,7 @@ void ClosedRows::add_points(const Program& program) {
         point.target = (slopes.stiffness + slopes.before) * point.stop;
         if (damps) {
           RowVectorXd turned = RowVectorXd::Zero(drives_);
-          if (drive_.harmonic) turned.head(2) << -omega * stage.rate_phase.across, omega * stage.rate_phase.along;
+          if (drive_.support) turned.head(2) << -omega * stage.rate_phase.across, omega * stage.rate_phase.along;
           point.rate = row_of(at, stage.compliance->rate, h, turned);
           add_to_law(point, point.rate, slopes.viscosity);
         }
@@ -205,7 +205,9 @@ void ClosedRows::add_balances(const Program& program) {
       const WorkForm& work = *plan.work;
       balance.displacement = vector_of(at, work.displacement);
       if (program.problem->damped()) {
-        balance.damping = numbers((damping.stiffness + damping.mass * mass_.array()).matrix());
+        VectorXd of_modes = (damping.stiffness + damping.mass * mass_.array()).matrix();
+        if (const VectorXd& own = program.model->modal_damping(); own.size() > 0) of_modes += own;
+        balance.damping = numbers(of_modes);
         balance.along = ratio_of(work.displacement, work.rate);
         if (balance.along == 0) balance.rate = vector_of(at, work.rate);
       }

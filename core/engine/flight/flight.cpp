@@ -51,6 +51,7 @@ std::string Flight::why_not_closed(const Program& program) {
   if (stage.measure.z == 0) return "the impact measure does not see the effort of its own step";
   if (program.problem->changed_by_law()) return "the law measures no displacements";
   if (program.law->memory_per_point() > 0) return "the law keeps a memory";
+  if (program.model->modal_damping().size() > 0) return "the damping is that of the open modes";
   return "";
 }
 

@@ -204,7 +204,7 @@ FlightBound::ModeRoots FlightBound::roots(const StepRows& rows, int mode) {
 void FlightBound::steady(const MatrixXd& scaled, const Eigen::VectorXd& scale, ModeRoots& found) {
   const MatrixXd scaled_B = scale.cwiseInverse().asDiagonal() * found.step.rightCols(drives_);
   found.steady = MatrixXd::Zero(slots_, drives_);
-  if (drive_.harmonic) {
+  if (drive_.harmonic()) {
     const double half = std::sin(drive_.angle / 2);
     const Complex turn(-2 * half * half, std::sin(drive_.angle));  // e^{iωh} − 1
     const MatrixXcd shifted = turn * MatrixXcd::Identity(slots_, slots_) - scaled.cast<Complex>();
@@ -270,7 +270,7 @@ void FlightBound::shares(const StepRows& rows, int mode, const ModeRoots& found,
     add((over * found.rest).cast<Complex>(), 4);
     over += over * found.step.leftCols(slots_);
   }
-  if (drive_.harmonic) {
+  if (drive_.harmonic()) {
     const Complex steady = (own * found.phasor)[0] + Complex(row[slots_ + 1], -row[slots_]);
     const double turn = 2 * std::sin(drive_.angle / 2);
     watched.steady_amplitude[at] = std::abs(steady);

@@ -61,6 +61,10 @@ FlightWorks::Forms FlightSet::forms(const Program& program, const StepRows& rows
     const Damping& damping = program.problem->damping;
     if (program.problem->damped())
       add(forms.damping, damping.mass, damping.stiffness, stage, work.displacement, work.rate);
+    if (const VectorXd& own = program.model->modal_damping(); own.size() > 0)
+      for (int mode = 0; mode < modes_; ++mode)
+        forms.damping[static_cast<std::size_t>(mode)] +=
+            own[mode] * product(rows.of(mode, stage, work.displacement), rows.of(mode, stage, work.rate));
     if (!program.support && !program.load) continue;
     begin(forms.loads);
     const MatrixXd load = load_over_drive(program, work.load, drive_), modal = project(load);

@@ -12,17 +12,20 @@ namespace ricochet {
 //
 //     x⁺ = x + D x + B e,     e⁺ = e + R e          x: the s slots of one mode;  e: what drives it (1)
 //
-// with e = (A sin(ωt + ψ), A cos(ωt + ψ), 1) at the beginning of the step, as far as the scene has them. What is kept
-// is the change D of a step, not I + D: of small steps I + D would forget the frequency.
+// with e at the beginning of the step, as far as the scene has it: (A sin(ωt + ψ), A cos(ωt + ψ), 1), the supports'
+// motion, or (sin Ωt, cos Ωt, 1) of a load of one pulsation. What is kept is the change D of a step, not I + D: of
+// small steps I + D would forget the frequency.
 
 /// What drives a motion beside its own state.
 struct FlightDrive {
-  bool harmonic = false;  ///< A sin(ωt + ψ) and A cos(ωt + ψ), m
+  bool support = false;   ///< A sin(ωt + ψ) and A cos(ωt + ψ), m
+  bool load = false;      ///< sin Ωt and cos Ωt, where no support moves
   bool constant = false;  ///< 1
-  double angle = 0;       ///< ωh
-  int count() const { return (harmonic ? 2 : 0) + (constant ? 1 : 0); }
+  double angle = 0;       ///< ωh or Ωh
+  bool harmonic() const { return support || load; }
+  int count() const { return (harmonic() ? 2 : 0) + (constant ? 1 : 0); }
   /// Where 1 stands among them.
-  int one() const { return harmonic ? 2 : 0; }
+  int one() const { return harmonic() ? 2 : 0; }
   /// R of k steps, count() × count().
   Eigen::MatrixXd change(double steps) const;
 };
@@ -37,7 +40,9 @@ struct FlightStage {
 /// Rows of one step over (x, e), mode by mode: s + drives numbers each.
 class StepRows {
  public:
-  StepRows(const std::vector<FlightStage>& stages, int slots, const Eigen::VectorXd& mass, const FlightDrive& drive);
+  /// `damping`: c of each mode where damping goes by modes; else empty.
+  StepRows(const std::vector<FlightStage>& stages, int slots, const Eigen::VectorXd& mass,
+           const Eigen::VectorXd& damping, const FlightDrive& drive);
 
   int modes() const { return static_cast<int>(maps_.size()); }
   int slots() const { return slots_; }
@@ -68,7 +73,7 @@ class StepRows {
 Eigen::RowVectorXd harmonic(const PhaseWeights& phase, const FlightDrive& drive, double factor = 1);
 
 /// A load over e, in the coordinates of the integration (rows × drives). It is that of the clamp's inertia and of a
-/// distributed load that is constant in time.
+/// distributed load F = c + a sin Ωt + b cos Ωt, known by F at 0, π/2Ω and π/Ω.
 Eigen::MatrixXd load_over_drive(const Program& program, const Levels& levels, const FlightDrive& drive);
 
 /// The weight of slot j; trailing ones may be left out.

@@ -81,7 +81,7 @@ bool FlightSet::rest(const Program& program) {
     RowVectorXd bound = -carried;
     bound[drive_.one()] += point.lower ? lane.lower[point.point] : lane.upper[point.point];
     MatrixXd steady = MatrixXd::Zero(slots_, drive_.count());
-    if (drive_.harmonic) {
+    if (drive_.harmonic()) {
       const Real angle = drive_.angle;
       const Complex turned(std::cos(angle), std::sin(angle));
       const Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic> shifted =
@@ -244,7 +244,8 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<ClosedPoi
   const bool touching = !closed_.empty();
   for (const auto& [position, velocity] : program.plan.initial)
     metres_.push_back(position != 0 ? 1.0 : velocity != 0 ? program.h / velocity : program.h * program.h);
-  drive_ = {program.support, program.load || touching, program.problem->support.pulsation * program.h};
+  const double pulsation = program.support ? program.problem->support.pulsation : program.load_pulsation;
+  drive_ = {program.support, pulsation > 0 && !program.support, program.load || touching, pulsation * program.h};
   own_mass_ = program.model->inertia().mass.diagonal();
   if (touching) {
     close(program, twin);
@@ -266,7 +267,8 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<ClosedPoi
     const FoldedStage& holds = program.stages.front().folded;
     inertia = own_mass_.asDiagonal() * residual_of_lift(holds.mass, holds.mass_history, lifted);
   }
-  step_rows_ = std::make_unique<const StepRows>(flight_stages(program, inertia), slots_, mass, drive_);
+  step_rows_ = std::make_unique<const StepRows>(flight_stages(program, inertia), slots_, mass,
+                                                program.model->modal_damping(), drive_);
 
   std::vector<FlightWatch> watches = contact_watches(program, layer, lifted);
   if (touching) {

@@ -1,21 +1,23 @@
 #include <cmath>
+#include <numbers>
 #include <ricochet/engine/flight/flight_motion.hpp>
 
 namespace ricochet {
 
 Eigen::MatrixXd FlightDrive::change(double steps) const {
   Eigen::MatrixXd R = Eigen::MatrixXd::Zero(count(), count());
-  if (!harmonic) return R;
+  if (!harmonic()) return R;
   const double turn = angle * steps, half = std::sin(turn / 2), fall = -2 * half * half, rise = std::sin(turn);
   R.topLeftCorner(2, 2) << fall, rise, -rise, fall;
   return R;
 }
 
 StepRows::StepRows(const std::vector<FlightStage>& stages, int slots, const Eigen::VectorXd& mass,
-                   const FlightDrive& drive)
+                   const Eigen::VectorXd& damping, const FlightDrive& drive)
     : slots_(slots), drive_(drive), maps_(static_cast<std::size_t>(mass.size())) {
   for (Eigen::Index mode = 0; mode < mass.size(); ++mode) {
     std::vector<StageMap>& maps = maps_[static_cast<std::size_t>(mode)];
+    const double c = damping.size() > 0 ? damping[mode] : 0;
     Eigen::MatrixXd change = Eigen::MatrixXd::Zero(slots, width());
     for (const FlightStage& stage : stages) {
       StageMap& map = maps.emplace_back(StageMap{change, Eigen::RowVectorXd::Zero(width())});
@@ -23,10 +25,12 @@ StepRows::StepRows(const std::vector<FlightStage>& stages, int slots, const Eige
       if (folded.solves()) {
         for (int j = 0; j < slots; ++j) {
           const auto at = static_cast<std::size_t>(j);
-          map.unknown += (folded.mass_history[at] * mass[mode] + folded.stiffness_history[at]) * slot(map, j);
+          double weight = folded.mass_history[at] * mass[mode] + folded.stiffness_history[at];
+          if (c != 0) weight += folded.damping_history[at] * c;
+          map.unknown += weight * slot(map, j);
         }
         if (drive_.count() > 0) map.unknown.tail(drive_.count()) += stage.force.row(mode);
-        map.unknown /= folded.mass * mass[mode] + folded.stiffness;
+        map.unknown /= folded.mass * mass[mode] + folded.stiffness + folded.damping * c;
       }
       for (int j = 0; j < slots; ++j) {
         const Combination& update = stage.update[static_cast<std::size_t>(j)];
@@ -62,7 +66,7 @@ using Eigen::VectorXd;
 
 RowVectorXd harmonic(const PhaseWeights& phase, const FlightDrive& drive, double factor) {
   RowVectorXd row = RowVectorXd::Zero(drive.count());
-  if (!drive.harmonic) return row;
+  if (!drive.support) return row;
   row[0] = factor * phase.along;
   row[1] = factor * phase.across;
   return row;
@@ -72,16 +76,30 @@ MatrixXd load_over_drive(const Program& program, const Levels& levels, const Fli
   const int rows = program.model->rows();
   MatrixXd load = MatrixXd::Zero(rows, drive.count());
   const double omega = program.problem->support.pulsation;
-  if (drive.harmonic)
+  if (drive.support)
     load += program.model->support_shape() * harmonic(PhaseWeights(levels, omega, program.h), drive, omega * omega);
-  if (program.load) {
-    double weight = 0;
-    for (const Level& level : levels) weight += level.weight;
-    VectorXd nodal(rows), own(rows);
-    program.problem->load->assemble(0, nodal.data());
+  if (!program.load) return load;
+  VectorXd nodal(rows);
+  const auto at = [&](double t) {
+    VectorXd own(rows);
+    program.problem->load->assemble(t, nodal.data());
     program.model->load_to_model(nodal.data(), own.data());
-    load.col(drive.one()) += weight * own;
+    return own;
+  };
+  double weight = 0;
+  for (const Level& level : levels) weight += level.weight;
+  const VectorXd start = at(0);
+  if (!drive.load) {
+    load.col(drive.one()) += weight * start;
+    return load;
   }
+  const double quarter = std::numbers::pi / 2 / program.load_pulsation;
+  const VectorXd half = at(2 * quarter), constant = 0.5 * (start + half), across = 0.5 * (start - half),
+                 along = at(quarter) - constant;
+  const PhaseWeights phase(levels, program.load_pulsation, program.h);
+  load.col(0) += phase.along * along - phase.across * across;
+  load.col(1) += phase.across * along + phase.along * across;
+  load.col(drive.one()) += weight * constant;
   return load;
 }
 
@@ -90,7 +108,13 @@ using Eigen::VectorXd;
 
 EffortResponse::EffortResponse(const Program& program, int stage, int ago, const VectorXd& row) {
   const auto stages = static_cast<int>(program.stages.size()), slots = static_cast<int>(program.plan.slots.size());
-  const VectorXd mass = program.model->inertia().mass.diagonal();
+  const VectorXd mass = program.model->inertia().mass.diagonal(), &damping = program.model->modal_damping();
+  // (m μ + k + c) of every mode.
+  const auto operators = [&](double m, double k, double c) {
+    VectorXd sum = (m * mass.array() + k).matrix();
+    if (damping.size() > 0) sum += c * damping;
+    return sum;
+  };
   slots_.push_back(MatrixXd::Zero(row.size(), slots));
   for (int at = 0; at < stages; ++at) {
     const StageProgram& one = program.stages[static_cast<std::size_t>(at)];
@@ -105,10 +129,10 @@ EffortResponse::EffortResponse(const Program& program, int stage, int ago, const
     if (folded.solves()) {
       z = weight * row;
       for (int j = 0; j < slots; ++j)
-        z += ((weight_at(folded.mass_history, j) * mass.array() + weight_at(folded.stiffness_history, j)) *
-              before.col(j).array())
-                 .matrix();
-      z.array() /= folded.mass * mass.array() + folded.stiffness;
+        z += operators(weight_at(folded.mass_history, j), weight_at(folded.stiffness_history, j),
+                       weight_at(folded.damping_history, j))
+                 .cwiseProduct(before.col(j));
+      z.array() /= operators(folded.mass, folded.stiffness, folded.damping).array();
     }
     unknown_.push_back(z);
     MatrixXd after = MatrixXd::Zero(row.size(), slots);

@@ -21,7 +21,7 @@ FlightBound bound_of(const Matrix2d& A) {
     stage.update.push_back(update);
   }
   stage.force = Eigen::MatrixXd::Zero(1, 0);
-  const StepRows rows({stage}, 2, Eigen::VectorXd::Ones(1), {});
+  const StepRows rows({stage}, 2, Eigen::VectorXd::Ones(1), {}, {});
   FlightWatch watch;
   watch.value.slots = {1, 0};
   watch.rows = Eigen::MatrixXd::Ones(1, 1);

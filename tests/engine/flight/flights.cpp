@@ -165,8 +165,13 @@ TEST_CASE("what cannot fly says why") {
                           return std::vector<LaneSpec>{lane, lane};
                         }),
              Catch::Contains("several lanes"));
+  scene.load = Formula("0.1*sin(3*t)^2", "/scene/load");
+  CHECK_THAT(refusal_of(scene, free_of_contact, 1e-5), Catch::Contains("the load depends on time otherwise"));
   scene.load = Formula("0.1*sin(3*t)", "/scene/load");
-  CHECK_THAT(refusal_of(scene, free_of_contact, 1e-5), Catch::Contains("the load depends on time"));
+  CHECK(refusal_of(scene, free_of_contact, 1e-5).empty());
+  scene.support.amplitude = 0.02;
+  CHECK_THAT(refusal_of(scene, free_of_contact, 1e-5), Catch::Contains("and the support moves"));
+  scene.support.amplitude = 0;
   scene.load = Formula("0.1*x", "/scene/load");
   CHECK(refusal_of(scene, free_of_contact, 1e-5).empty());
 }

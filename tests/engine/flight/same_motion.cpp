@@ -111,6 +111,52 @@ TEST_CASE("leaving out steps changes nothing in random scenes") {
   CHECK(held > 10);
 }
 
+TEST_CASE("leaving out steps changes nothing under loads of one pulsation, nor with damping by modes") {
+  std::mt19937 random(53);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const std::vector<Choice> times = {{"newmark-dumont-paoli", {{"beta", 0.5}}},
+                                     {"newmark-dumont-paoli", {{"restitution", 0.5}}},
+                                     {"moreau-jean", {{"theta", 0.6}}},
+                                     {"bathe"},
+                                     {"generalised-alpha", {{"rho_inf", 0.8}}}};
+  int flew = 0, held = 0, met = 0, by_modes = 0;
+  for (std::size_t k = 0; k < 80; ++k) {
+    SceneSpec scene = working_set();
+    if (k % 4 == 1)
+      beam_of(scene).damping = {.ratios = {0.01, 0.03}, .beyond = 0.02};
+    else
+      beam_of(scene).damping.stiffness = k % 3 == 0 ? 0 : 1e-4;
+    scene.stops.place = k % 4 == 0 ? StopsSpec::Place::nodes : StopsSpec::Place::tip;
+    scene.stops.lower = Formula(-between(0.005, 0.05));
+    scene.stops.upper = Formula(between(0.005, 0.05));
+    scene.support = {};
+    const double pulsation = between(2, 60);
+    scene.load = k % 2 == 0 ? Formula(fmt::format("{0}*x*sin({2}*t) + {1}*x^2*cos({2}*t + 0.4) - {1}", between(2, 30),
+                                                  between(2, 20), pulsation),
+                                      "/scene/load")
+                            : Formula(fmt::format("{}*sin(2*x - {}*t)", between(10, 40), pulsation), "/scene/load");
+    scene.initial.displacement = Formula();
+    scene.initial.velocity = Formula(fmt::format("{}*x", between(-0.2, 0.2)), "/scene/initial/velocity", "x");
+    const Methods methods{{k % 3 == 1 ? "singular" : "consistent"},
+                          k % 5 == 4 ? Choice{"penalty", {{"stiffness", 1e5}}} : Choice{"signorini"},
+                          times[k % times.size()]};
+    const Compared result = compare(scene, 2 + static_cast<int>(k % 5), methods, std::pow(10, -between(4, 5)), 6000);
+    INFO(k << ": " << methods.mass.name << " × " << methods.contact.name << " × " << methods.time.name << ": "
+           << result.apart << result.cause);
+    CHECK(result.alike);
+    flew += result.flew && 2 * result.visited < result.steps;
+    met += result.contact_steps > 0;
+    by_modes += result.flew && k % 4 == 1 && 2 * result.visited < result.steps;
+    held += result.flew && result.visited < result.contact_steps;
+  }
+  CHECK(flew > 60);
+  CHECK(met > 40);
+  CHECK(held > 5);
+  CHECK(by_modes > 10);
+}
+
 TEST_CASE("a flight that looks for the stops where they are not is found out") {
   const Methods methods{{"consistent"}, {"signorini"}, {"newmark-dumont-paoli", {{"beta", 0.5}}}};
   const SceneSpec scene = shaken();
