@@ -222,6 +222,14 @@ bool FrictionSolver::settle(const FrictionProblem& problem, int& sweeps, double&
   return left <= accepted * largest;
 }
 
+// At its bound, and on its way: beside others one may bear all it can, and rest.
+bool FrictionSolver::gives_way(const FrictionProblem& problem, int point) const {
+  const double s = bound_[place(point)];
+  if (size_of(problem, point) < s * (1 - accepted)) return false;
+  const int first = problem.first_row[point], end = problem.first_row[point + 1];
+  return problem.points == 1 || norm(rate_.data() + first, end - first) > accepted * s * trace_[place(point)];
+}
+
 LaneOutcome FrictionSolver::solve(FrictionProblem& problem) {
   LaneOutcome outcome;
   double largest = 0, left = 0;
@@ -243,7 +251,7 @@ LaneOutcome FrictionSolver::solve(FrictionProblem& problem) {
     again = false;
     for (int point = 0; point < problem.points; ++point) {
       double& s = bound_[place(point)];
-      if (!(s > problem.bound[point]) || size_of(problem, point) < s * (1 - accepted)) continue;
+      if (!(s > problem.bound[point]) || !gives_way(problem, point)) continue;
       s = problem.bound[point];
       put_within(problem, point);
       again = true;
@@ -252,8 +260,7 @@ LaneOutcome FrictionSolver::solve(FrictionProblem& problem) {
   }
   outcome.residual = largest > 0 ? left / largest : 0.0;
   for (int point = 0; point < problem.points; ++point) {
-    const double s = bound_[place(point)];
-    const bool sticks = size_of(problem, point) < s * (1 - accepted);
+    const bool sticks = !gives_way(problem, point);
     const int first = problem.first_row[point], end = problem.first_row[point + 1];
     for (int i = first; i < end; ++i) problem.effort[i] = effort_[place(i)];
     problem.sticks[point] = sticks;

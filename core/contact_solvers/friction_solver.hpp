@@ -38,6 +38,7 @@ class FrictionSolver {
   double residual(const FrictionProblem& problem) const;
   double move_together(const FrictionProblem& problem, double before);
   double size_of(const FrictionProblem& problem, int point) const;
+  bool gives_way(const FrictionProblem& problem, int point) const;
   void put_within(const FrictionProblem& problem, int point);
   bool settle(const FrictionProblem& problem, int& sweeps, double& left);
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <ricochet/contract/errors.hpp>
 
 namespace ricochet {
@@ -31,6 +32,9 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
     std::size_t distance = edit_distance(word, candidate);
     // A prefix is what a person types when in a hurry ("newmark-dumont" for "newmark-dumont-paoli").
     if (word.size() >= 3 && candidate.starts_with(word)) distance = std::min<std::size_t>(distance, 1);
+    // A letter is near every other one: only its other case is meant.
+    const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+    if (word.size() == 1 && (candidate.size() != 1 || lower(candidate[0]) != lower(word[0]))) continue;
     if (distance < best_distance) {
       best = candidate;
       best_distance = distance;

@@ -211,6 +211,30 @@ void Marcher::gather_friction(const StageProgram& program, StageState& state, in
       add(column_of(state, i), p, rub.free.data(), 1);
 }
 
+namespace {
+
+// Points that slide now and rubbed the other way, or not at all, before: their rate was zero in between, and there the
+// static bound holds. It is given to them. False where there are none.
+bool hold_turned(StageFriction& rub, const Rubbing* surfaces, const double* before, int stride) {
+  bool any = false;
+  for (std::size_t k = 0; k < rub.number.size(); ++k) {
+    const Rubbing& surface = surfaces[rub.number[k]];
+    const double held = surface.held * rub.normals[k];
+    if (rub.holds[k] != 0 || !(held > rub.held[k])) continue;
+    double along = 0;
+    for (int a = rub.first_row[k]; a < rub.first_row[k + 1]; ++a) {
+      const Tangent& way = rub.tangents[at(a)];
+      along += rub.effort[at(a)] * way.effort(before + static_cast<std::ptrdiff_t>(way.row) * stride, stride);
+    }
+    if (along > 0) continue;
+    rub.held[k] = held;
+    any = true;
+  }
+  return any;
+}
+
+}  // namespace
+
 // p_t of a lane for the normal efforts as they are, into `found`.
 LaneOutcome Marcher::find_friction(const StageProgram& program, StageState& state, int lane, bool first) {
   StageFriction& rub = *rubbing_;
@@ -233,7 +257,10 @@ LaneOutcome Marcher::find_friction(const StageProgram& program, StageState& stat
   problem.effort = rub.effort.data();
   problem.sticks = rub.holds.data();
   problem.slid = rub.slides.data();
-  const LaneOutcome outcome = program_.friction->solve(problem);
+  LaneOutcome outcome = program_.friction->solve(problem);
+  const double* const before = state.effort[0].data() + static_cast<std::ptrdiff_t>(lower_.rows()) * program_.width;
+  if (outcome.converged && hold_turned(rub, program_.lanes[at(lane)].rubbing.data(), before + lane, program_.width))
+    outcome = program_.friction->solve(problem);
   for (std::size_t a = 0; a < rub.tangents.size(); ++a)
     for (int k = 0; k < rub.tangents[a].count; ++k)
       rub.found[at(rub.tangents[a].row + k)] += rub.tangents[a].share[at(k)] * rub.effort[a];

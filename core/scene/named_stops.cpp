@@ -55,10 +55,6 @@ void check_friction(const NamedStop& stop, std::size_t number) {
       throw InputError(
           stop_pointer(number, "/tangent"),
           fmt::format("the tangent of stop {} says nothing; expected slope_radius, direction or component", stop.name));
-  if (!stop.friction && ((stop.tangent && stop.tangent->speed != 0) || (stop.across && stop.across->speed != 0)))
-    throw InputError(
-        stop_pointer(number, "/tangent/speed"),
-        fmt::format("stop {} has no friction: a surface that runs does nothing; expected friction", stop.name));
   if (!stop.friction) return;
   const FrictionSpec& mu = *stop.friction;
   if (mu.held < mu.sliding)

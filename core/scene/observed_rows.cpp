@@ -130,6 +130,13 @@ void observe_rows(const SceneSpec& scene, SemiDiscrete& problem) {
     const double held = stops[i].normal_force ? share_along_y(scene, stops[i].at) -
                                                     (stops[i].to ? share_along_y(scene, *stops[i].to) : 0.0)
                                               : 0.0;
+    int own = count;
+    for (const auto* tangent : {&stops[i].tangent, &stops[i].across}) {
+      if (*tangent && ((*tangent)->speed != 0 || (*tangent)->motion))
+        problem.surfaces.push_back(
+            {own, (*tangent)->speed, (*tangent)->motion ? (*tangent)->motion->history : nullptr});
+      ++own;
+    }
     for (const PlaceRow& row : rows) {
       tangents.add(stops[i].name, row, held, true);
       ++count;

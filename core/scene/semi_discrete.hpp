@@ -85,6 +85,13 @@ struct SurfaceMotion {
   std::shared_ptr<const TimeHistory> history;
 };
 
+/// A surface that runs along a tangent of a stop, with or without friction: V t + φ(t), m; of a round one its rim.
+struct RunningSurface {
+  int row = 0;                                 ///< of SemiDiscrete::tangents, of a round one the first
+  double speed = 0;                            ///< V, m/s
+  std::shared_ptr<const TimeHistory> history;  ///< φ; null: none
+};
+
 /// A contact point that rubs: |p_t| ≤ μ|p_n| against u = T q' + lift − V, p_n its effort or a force that is given. A
 /// round one is met in the direction n = (n₁, n₂) of its circle. Its rows are u₁, u₂ and the rim, which nothing but its
 /// speed moves; of a surface that bends also r θ₁ and r θ₂. Its tangents are −n₂u₁ + n₁u₂ + rim and n₁rθ₁ + n₂rθ₂.
@@ -145,6 +152,7 @@ struct SemiDiscrete {
   ObservedRows observed;                             ///< points that are shown
   ObservedRows fields;                               ///< moments (N m) and shear forces (N) there, by name
   ObservedRows tangents;                             ///< motions along surfaces of stops
+  std::vector<RunningSurface> surfaces = {};         ///< along tangents
   std::vector<int> tangent_of;                       ///< row of each contact point in them, −1: none; or empty
   std::vector<RubbingPoint> rubbing;                 ///< contact points with friction
   ObservedRows rubbed;                               ///< T, their rows

@@ -170,7 +170,10 @@ std::string left_out_text(const StructurePhysics& physics, const Json& scene, st
   for (std::size_t i = 0; i < std::min(most_points, physics.left_out.size()); ++i) {
     const std::string name =
         stops.is_array() && i < stops.size() ? stops[i]["name"].get<std::string>() : fmt::format("point {}", i + 1);
-    text += fmt::format("{}{} {:.2g} %", i == 0 ? "" : ", ", name, percent * physics.left_out[i] * *spring);
+    const Json own = stops.is_array() && i < stops.size() ? stops[i].value("stiffness", Json()) : Json();
+    const double kappa = own.is_number() ? own.get<double>() : *spring;
+    text += fmt::format("{}{} {:.2g} %{}", i == 0 ? "" : ", ", name, percent * physics.left_out[i] * kappa,
+                        own.is_number() ? fmt::format(" (of its own {:.4g} N/m)", kappa) : "");
   }
   if (physics.left_out.size() > most_points) text += fmt::format(" and {} more", physics.left_out.size() - most_points);
   return fmt::format("    what modes leave out times the stiffest spring, R κ with κ = {:.4g} N/m: {}\n", *spring,

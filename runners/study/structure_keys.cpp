@@ -152,7 +152,8 @@ std::vector<Field> beam_extras() {
       quiet(real("added_mass", "kg/m", non_negative, 0.0, "Mass per length that moves with it, as of a fluid.")
                 .as("added mass", "the added mass")),
       quiet(real("tension", "N", any, 0.0, "Axial force T; below 0 it compresses.").as("tension", "the tension")),
-      quiet(real("foundation", "N/m²", non_negative, 0.0, "Elastic foundation k_f, which moves with the supports.")
+      quiet(real("foundation", "N/m²", non_negative, 0.0,
+                 "Elastic foundation k_f; it moves with a harmonic support, and rests under motions.")
                 .as("foundation", "the foundation")),
       quiet(objects("masses", "Point masses on the beam.", beam_mass()).as("mass")),
       quiet(object("shear", Json(nullptr), "Deformation in shear; absent: Euler–Bernoulli.", beam_shear())),

@@ -19,6 +19,8 @@ TEST_CASE("the nearest name is the one a person meant") {
 TEST_CASE("a word that is like nothing has no nearest name") {
   const std::vector<std::string> names = {"length", "young", "density"};
   CHECK(nearest_name("xqzvb", names).empty());
+  CHECK(nearest_name("G", {"t", "F"}).empty());
+  CHECK(nearest_name("f", {"t", "F"}) == "F");
   CHECK(nearest_name("", names).empty());
   CHECK(nearest_name("length", {}).empty());
 }

@@ -64,6 +64,31 @@ double largest_gain(const SceneSpec& scene, int elements, const Methods& methods
 
 }  // namespace
 
+TEST_CASE("a block that turns back under its static bound stays there, at every step; so does one that starts there",
+          "[friction]") {
+  // k = 100 N/m; thrown so that it stops at 40 mm, where the spring pulls 4 N: ½ v² = ½ k x² + μ_d N x.
+  const double stiffness = 100, place = 0.04, force = 10;
+  for (const Choice& scheme : {moreau, dumont})
+    for (const auto& [held, stays] : {std::pair(0.41, true), std::pair(0.39, false)}) {
+      SceneSpec scene = damped_block(1, stiffness, force, {held, 0.1});
+      scene.initial.displacement = Formula(0.0);
+      scene.initial.velocity = Formula(std::sqrt(stiffness * place * place + 2 * 0.1 * force * place));
+      for (const double h : {1e-3, 7e-4, 5e-4, 2.5e-4, 1.7e-4, 1.25e-4}) {
+        INFO(scheme.name << ", static " << held << ", h = " << h);
+        Marcher made = marcher(scene, 1, {{"consistent"}, {"none"}, scheme}, h, with_friction({"coulomb"}));
+        const double end = path(made, 0, 0.5).back();
+        // Else it slides back past the middle.
+        CHECK((std::abs(end - place) < 5 * h * h * stiffness) == stays);
+        if (!stays) CHECK(std::abs(end) < 0.75 * place);
+      }
+      SceneSpec released = damped_block(1, stiffness, force, {held, 0.1});
+      released.initial.displacement = Formula(place);
+      released.initial.velocity = Formula(0.0);
+      Marcher made = marcher(released, 1, {{"consistent"}, {"none"}, scheme}, 1e-3, with_friction({"coulomb"}));
+      CHECK((std::abs(path(made, 0, 0.5).back() - place) < 1e-12) == stays);
+    }
+}
+
 TEST_CASE("friction without restitution: no impact gains energy, whatever couples normal and tangent", "[friction]") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(-1, 1), share(0.05, 0.95);

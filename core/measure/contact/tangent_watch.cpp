@@ -19,6 +19,9 @@ TangentWatch::TangentWatch(const Marcher& marcher, const WindowParts& window)
     tangents_.back().round = problem.round(stops.row[static_cast<std::size_t>(stop)]);
     tangents_.back().count = rows_.count() - row;
   }
+  for (const RunningSurface& one : problem.surfaces)
+    for (Tangent& tangent : tangents_)
+      if (tangent.first <= one.row && one.row < tangent.first + tangent.count) tangent.surfaces.push_back(one);
   work_.resize(tangents_.size() * static_cast<std::size_t>(window.count));
   // Of the initial state.
   const Eigen::VectorXd speeds = problem.tangents.rows * marcher.program().lanes.front().velocity;
@@ -30,12 +33,23 @@ TangentWatch::TangentWatch(const Marcher& marcher, const WindowParts& window)
       speed = speeds[row];
       if (!problem.motions.empty()) speed += problem.motions.sum(problem.tangents.on_motions.row(row), 0, true);
     }
+    for (const RunningSurface& surface : one.surfaces)
+      one.moves(surface, one.speed, surface.speed + (surface.history ? surface.history->rate(0) : 0.0));
   }
+}
+
+// A plane surface that moves leaves so much less, the rim of a round one moves beside its rows.
+void TangentWatch::Tangent::moves(const RunningSurface& surface, std::array<double, rows_and_rim>& of,
+                                  double by) const {
+  if (round)
+    of[rim] += by;
+  else
+    of[static_cast<std::size_t>(surface.row - first)] -= by;
 }
 
 double TangentWatch::Tangent::along(const std::array<double, 2>& normal) const {
   if (!round) return count == 1 ? speed[0] : std::hypot(speed[0], speed[1]);
-  const double circle = normal[0] * speed[1] - normal[1] * speed[0];
+  const double circle = normal[0] * speed[1] - normal[1] * speed[0] + speed[rim];
   return count == 2 ? std::abs(circle) : std::hypot(circle, normal[0] * speed[2] + normal[1] * speed[3]);
 }
 
@@ -48,12 +62,14 @@ void TangentWatch::know(const Marcher& marcher, const double* position, double t
   const bool moves = known_ && t > time_ + 1e-9 * h_;
   for (std::size_t i = 0; i < tangents_.size(); ++i) {
     Tangent& one = tangents_[i];
-    for (int k = 0; k < one.count; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      const double place = rows_.relative(one.first + k, position) + rows_.lift(marcher, one.first + k, t);
-      if (moves) one.speed[at] = (place - one.place[at]) / (t - time_);
-      one.place[at] = place;
-    }
+    std::array<double, Tangent::rows_and_rim> place{};
+    for (int k = 0; k < one.count; ++k)
+      place[static_cast<std::size_t>(k)] =
+          rows_.relative(one.first + k, position) + rows_.lift(marcher, one.first + k, t);
+    for (const RunningSurface& surface : one.surfaces)
+      one.moves(surface, place, surface.speed * t + (surface.history ? surface.history->value(t) : 0.0));
+    for (std::size_t k = 0; moves && k < place.size(); ++k) one.speed[k] = (place[k] - one.place[k]) / (t - time_);
+    one.place = place;
     if (!moves) continue;
     if (!one.waiting.empty())
       if (const int part = window_.of(one.time, 1e-6 * h_); part >= 0) {

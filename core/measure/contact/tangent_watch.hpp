@@ -42,13 +42,16 @@ class TangentWatch final : public StepObserver, public ContactListener {
     std::array<double, 2> normal{};
   };
   struct Tangent {
-    int first = 0, count = 1;                // its rows
-    bool round = false;                      // of a clearance
-    std::array<double, 4> place{}, speed{};  // at the last opening, over the sub-step before it
-    std::vector<Waiting> waiting = {};       // Σ I of instants that wait for V⁺, by their directions
-    double slid = 0;                         // Σ I |V⁻| of these
-    double time = 0;                         // of the last of them
+    int first = 0, count = 1;  // its rows
+    bool round = false;        // of a clearance
+    static constexpr std::size_t rim = 4, rows_and_rim = 5;
+    std::array<double, rows_and_rim> place{}, speed{};  // against the surface: at the last opening, over the sub-step
+    std::vector<RunningSurface> surfaces = {};          // that run along its rows, or of its rim
+    std::vector<Waiting> waiting = {};                  // Σ I of instants that wait for V⁺, by their directions
+    double slid = 0;                                    // Σ I |V⁻| of these
+    double time = 0;                                    // of the last of them
     double along(const std::array<double, 2>& normal) const;  // V; of a clearance without a sign
+    void moves(const RunningSurface& surface, std::array<double, rows_and_rim>& of, double by) const;
   };
   int tangent_of(int point) const {
     const auto j = static_cast<std::size_t>(point);

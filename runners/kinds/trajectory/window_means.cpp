@@ -18,6 +18,8 @@ WindowMeans::WindowMeans(const Json& settings, const Marcher& marcher, EnergyAud
   from_ = window.at("from").get<double>();
   to_ = window.at("to").get<double>();
   if (window.contains("parts") && window["parts"].is_number()) parts_ = window["parts"].get<int>();
+  constexpr double rounding = 1e-6;
+  too_many_ = parts_ > 0 && (to_ - from_) / marcher.program().h < (1 - rounding) * parts_;
   if (parts_ > 0 && marcher.law().reads()) audit.sample_every_step();
   for (std::vector<double>& one : series_) one.reserve(static_cast<std::size_t>(parts_));
   asks_.next_shown = next_shown(marcher);
@@ -80,13 +82,35 @@ void WindowMeans::see_step(const Marcher& marcher) {
   series_[force].push_back((end.impulse - begin_.impulse) / length);
   series_[rate].push_back((end.impacts - begin_.impacts) / length);
   series_[tip].push_back(squares_ / static_cast<double>(steps_));
+  lengths_.push_back(length);
   begin_ = end;
   squares_ = 0;
   steps_ = 0;
 }
 
+// Parts are whole steps, and where these do not divide the window some are longer than others.
+bool WindowMeans::uneven() const {
+  const auto [least, most] = std::minmax_element(lengths_.begin(), lengths_.end());
+  constexpr double rounding = 1e-6;
+  return *most - *least > rounding * *most;
+}
+
+double WindowMeans::mean_by_length(const std::vector<double>& series) const {
+  double sum = 0, all = 0;
+  for (std::size_t part = 0; part < series.size(); ++part) {
+    sum += lengths_[part] * series[part];
+    all += lengths_[part];
+  }
+  return sum / all;
+}
+
 void WindowMeans::put(CaseRecord& record) const {
   if (parts_ == 0) return;
+  if (too_many_) {
+    record.notes.push_back(
+        fmt::format("no means over the window: it has fewer steps than its {} parts; use fewer parts", parts_));
+    return;
+  }
   if (series_[tip].size() < static_cast<std::size_t>(parts_)) {
     record.notes.push_back(
         fmt::format("no means over the window: the run ended in part {} of {}", series_[tip].size() + 1, parts_));
@@ -100,6 +124,9 @@ void WindowMeans::put(CaseRecord& record) const {
       continue;
     }
     Interval found = block_bootstrap_mean(series_[static_cast<std::size_t>(mean)]);
+    const double apart = mean_by_length(series_[static_cast<std::size_t>(mean)]) - found.value;
+    if (uneven())
+      for (double* one : {&found.value, &found.low, &found.high}) *one += apart;
     // The series has the squares: a mean of roots would depend on the number of parts.
     if (mean == tip)
       for (double* one : {&found.value, &found.low, &found.high}) *one = std::sqrt(std::max(*one, 0.0));
@@ -130,9 +157,8 @@ void ForceWindow::stage_solved(const Marcher& marcher, const StageView& view) {
   if (view.contact_lanes & 1u)
     for (int j = 0; j < marcher.program().model->problem().points(); ++j)
       given_ += program.momentum * shares_[static_cast<std::size_t>(j)] * view.effort[0][j * marcher.width()];
-  const double t = view.time + program.facts.instant * marcher.program().h;
-  if (!program.closes_instant || !(lasts_ > 0) || t < from_ || t > to_) return;
-  add(given_ / lasts_, lasts_);
+  if (program.closes_instant && lasts_ > 0 && within(view.time + 0.5 * marcher.program().h))
+    add(given_ / lasts_, lasts_);
 }
 
 // Welford's sums: no difference of large squares.
@@ -145,26 +171,22 @@ void ForceWindow::add(double force, double lasts) {
 
 void ForceWindow::interval(Marcher& marcher, const StepInterval& steps) {
   const StageProgram& program = marcher.program().stages.front();
-  const double h = marcher.program().h, lasts = program.momentum, first = steps.from + program.facts.instant * h;
+  const double h = marcher.program().h, lasts = program.momentum, middle = steps.from + 0.5 * h;
   if (!(lasts > 0) || !program.reads_contact) return;
   if (!steps.closed.empty()) {
     long long step = 0;
     steps.each_stage([&](int, std::span<const double> efforts, std::span<const double>) {
-      const double t = first + static_cast<double>(step++) * h;
       double force = 0;
       for (std::size_t i = 0; i < efforts.size(); ++i)
         force += shares_[static_cast<std::size_t>(steps.closed[i].point)] * efforts[i];
-      if (t >= from_ && t <= to_) add(force, lasts);
+      if (within(middle + static_cast<double>(step++) * h)) add(force, lasts);
     });
     return;
   }
   // Instants without a force, in one: they have no spread of their own.
-  const double last = first + static_cast<double>(steps.steps - 1) * h;
-  // A step is at a bound of the window up to the rounding of two times.
-  constexpr double rounding = 1e-6;
-  const double begin = std::ceil((std::max(from_, first) - first) / h - rounding);
-  const double end = std::floor((std::min(to_, last) - first) / h + rounding);
-  if (end >= begin) add(0, (end - begin + 1) * lasts);
+  const double begin = std::max(0.0, std::ceil((from_ - middle) / h)),
+               end = std::min(static_cast<double>(steps.steps), std::ceil((to_ - middle) / h));
+  if (end > begin) add(0, (end - begin) * lasts);
 }
 
 double ForceWindow::deviation() const {

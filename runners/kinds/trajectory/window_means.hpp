@@ -12,11 +12,12 @@
 
 namespace ricochet {
 
-/// Means over the window of a trajectory, cut into equal parts: what a chaotic motion has in place of a path. Of each
-/// part: the energy lost at the stops and the momentum that they gave, both over its length (W, N). Then how often
-/// points closed in a second (1/s), and the square of the tip's absolute displacement, of whose mean the root is told
-/// (m). The mean over the parts has a 95 % interval by the stationary block bootstrap. That holds where the motion is
-/// stationary over the window. Parts that drift show as an interval that is too narrow, never too wide.
+/// Means over the window of a trajectory, cut into equal parts as far as whole steps allow: what a chaotic motion has
+/// in place of a path. Of each part: the energy lost at the stops and the momentum that they gave, both over its length
+/// (W, N). Then how often points closed in a second (1/s), and the square of the tip's absolute displacement, of whose
+/// mean the root is told (m). The mean over the parts has a 95 % interval by the stationary block bootstrap. That holds
+/// where the motion is stationary over the window. Parts that drift show as an interval that is too narrow, never too
+/// wide.
 class WindowMeans final : public StepObserver {
  public:
   static constexpr int fewest_parts = fewest_resampled;
@@ -45,6 +46,8 @@ class WindowMeans final : public StepObserver {
   void see_step(const Marcher& marcher);
   long long next_shown(const Marcher& marcher) const;
   double part_end() const;
+  bool uneven() const;
+  double mean_by_length(const std::vector<double>& series) const;
   Totals now(const Marcher& marcher) const;
 
   const EnergyAudit& audit_;
@@ -55,6 +58,8 @@ class WindowMeans final : public StepObserver {
   double squares_ = 0;
   long long steps_ = 0;
   std::array<std::vector<double>, means> series_;
+  std::vector<double> lengths_;  // of each part, s
+  bool too_many_ = false;        // parts, for the steps of the window
 };
 
 /// Whether the settings of a trajectory ask for means over an interval.
@@ -64,7 +69,7 @@ inline bool has_window(const Json& settings) {
 
 /// The contact force over an interval of time, as one lane marches. The efforts of an instant of contact give a free
 /// mass the momentum Σ ω p over its stages and points (N s). Over the largest ω of its stages (s) this is the force F.
-/// The instant weighs as much as that ω:
+/// The instant weighs as much as that ω, and is of the window where the middle of its step is:
 ///     F̄ = Σ ω F / Σ ω,   s² = Σ ω (F − F̄)² / Σ ω   (N),
 /// so that F̄ times the interval is the impulse, whatever the stages of the scheme. An effort that gives no momentum,
 /// of a projection, is no force. Allocates nothing.
@@ -83,6 +88,7 @@ class ForceWindow final : public StepObserver {
   double deviation() const;
 
  private:
+  bool within(double middle) const { return from_ <= middle && middle < to_; }
   void add(double force, double lasts);
 
   double from_ = 0, to_ = -1;

@@ -63,6 +63,15 @@ TEST_CASE("a mass held on a floor wears it by force times mean speed, 4 F a f") 
   }
 }
 
+TEST_CASE("a surface that runs under a mass at rest wears by force times its speed, without friction") {
+  TangentSpec runs{0, {}, "ux"};
+  runs.speed = 0.4;
+  SceneSpec scene = sliding(runs);
+  scene.initial.dofs = {};
+  const Watched run(marcher(scene, 1, {{"consistent"}, {"signorini"}, {"moreau-jean"}}, 1e-3), {0, 1}, 1);
+  CHECK(run.tangents.power(0) == Approx(force * runs.speed).epsilon(3e-3));  // a step of a thousand
+}
+
 TEST_CASE("a window counts what slides in it alone, and a stop without a tangent has none") {
   const Watched run(marcher(sliding({0, {}, "ux"}), 1, {{"consistent"}, {"signorini"}, {"newmark-dumont-paoli"}}, 1e-4),
                     {0.5, 0.6}, 1);
@@ -93,5 +102,13 @@ TEST_CASE("an oblique impact wears by impulse times speed along the surface, wha
     CHECK(run.tangents.power(0) == Approx(impulse * 0.7 / 0.1).epsilon(1e-9));
     CHECK(run.tangents.speed_at(0) == Approx(-0.7).epsilon(1e-9));
     CHECK(std::isnan(run.tangents.speed_at(1)));
+    // A surface that runs the other way is met so much faster.
+    SceneSpec running = scene;
+    running.stops.named[0].tangent->speed = 0.5;
+    const Watched faster(
+        marcher(running, 1, {{"consistent"}, {"signorini"}, {"newmark-dumont-paoli", {{"restitution", 1.0}}}}, h),
+        {0, 0.1}, std::round(0.1 / h) * h);
+    CHECK(faster.tangents.speed_at(0) == Approx(-1.2).epsilon(1e-9));
+    CHECK(faster.tangents.power(0) == Approx(impulse * 1.2 / 0.1).epsilon(1e-9));
   }
 }

@@ -32,4 +32,10 @@ TEST_CASE("plan tells what modes leave out at each stop, and that times the stif
   CHECK_THAT(both, Contains("stop mid: the modes leave out 1.4 % of the flexibility, 0.000301 m/N"));
   CHECK_THAT(both, Contains("what modes leave out times the stiffest spring, R κ with κ = 1000 N/m: mid 30 %"));
   CHECK_THAT(planned(R"("signorini")"), !Contains("stiffest spring"));
+  // A stop with a spring of its own is told by that.
+  std::string own = study;
+  own.replace(own.find("LAWS"), 4, R"({"name": "penalty", "stiffness": 10})");
+  own.replace(own.find(R"("upper": 0.01)"), 13, R"("upper": 0.01, "stiffness": 1000)");
+  write_text(here / "own.json", own);
+  CHECK_THAT(say(here, "plan own.json").out, Contains("mid 30 % (of its own 1000 N/m)"));
 }

@@ -1,5 +1,6 @@
 #include "runners/kinds/trajectory/window_means.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -65,6 +66,30 @@ TEST_CASE("window means: a root mean square does not depend on the number of par
   for (const double one : found) CHECK(one == Approx(found.front()).epsilon(1e-12));
 }
 
+TEST_CASE("window means: parts that are no whole number of steps weigh by their length") {
+  Json text = bouncing_study();
+  text["step"] = 0.1;
+  for (const int parts : {16, 30, 101, 639}) {
+    INFO(parts);
+    text["window"]["parts"] = parts;
+    const CaseRecord record = CaseRuns().first_of(text);
+    CHECK(64 * measure(record, "window_force").value() == Approx(measure(record, "impulse").value()).epsilon(1e-10));
+    CHECK(64 * measure(record, "window_impact_rate").value() ==
+          Approx(measure(record, "impacts").value()).epsilon(1e-10));
+  }
+  text["window"] = {{"from", 10}, {"to", 64}, {"parts", 17}};
+  const CaseRecord inside = CaseRuns().first_of(text);
+  CHECK(-measure(inside, "contact_force_mean").value() ==
+        Approx(measure(inside, "window_force").value()).epsilon(1e-10));
+  // 640 steps.
+  text["window"] = {{"from", 0}, {"to", 64}, {"parts", 641}};
+  const CaseRecord record = CaseRuns().first_of(text);
+  CHECK_FALSE(measure(record, "window_force"));
+  CHECK(std::find(record.notes.begin(), record.notes.end(),
+                  "no means over the window: it has fewer steps than its 641 parts; use fewer parts") !=
+        record.notes.end());
+}
+
 TEST_CASE("window means: twice the window is an interval narrower by about the root of two") {
   // Chaotic (ζ = 0, e = 0.8): parts are draws, so the ratio has a spread of its own of some 20 % for 64 parts.
   Json text = bouncing_study();
@@ -119,8 +144,7 @@ TEST_CASE("the mean force over a window is the impulse that came in it, whatever
   for (const CaseRecord& record : CaseRuns().of(bar_study())) {
     INFO(axis(record, "time").text() << " " << axis(record, "time.velocity").text());
     REQUIRE(record.status == Status::done);
-    // One stop, so that all efforts have one sign. An instant at an end of the window may fall in or out: a step of
-    // 300.
+    // One stop, so that all efforts have one sign. A start rule weighs otherwise: by less than a step of 300.
     CHECK(measure(record, "contact_force_mean").value() * 1.5 ==
           Approx(measure(record, "impulse").value()).epsilon(1.01 / 300));
     CHECK(measure(record, "contact_force_deviation").value() > 100);  // in and out of contact, 300 N
