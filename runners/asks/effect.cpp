@@ -9,6 +9,7 @@
 #include "runners/asks/pairs.hpp"
 #include "runners/asks/verbs.hpp"
 #include "runners/json/json_text.hpp"
+#include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet::asks {
@@ -23,10 +24,11 @@ struct Combination {
 /// What is told of two levels of one combination.
 struct Told {
   const Combination* where = nullptr;
-  std::string first, second;
-  std::optional<Pair> pair;
+  const Line *a = nullptr, *b = nullptr;
+  std::string first, second;  // their levels
+  std::optional<Pair> pair = {};
   Verdict verdict = Verdict::open;
-  std::string reason;
+  std::string reason = {};
   bool between = false;  // open, for the size asked lies within its interval
   bool applies = true;   // neither level is refused throughout
 };
@@ -48,15 +50,17 @@ void judge(Told& told, double from) {
   }
   const double floor = std::max(pair.first->floor, pair.second->floor);
   if (!pair.share) {
-    if (std::abs(pair.base + pair.difference) <= floor) {
+    const std::string first =
+        std::abs(pair.base) <= floor ? "the first is zero, or round-off" : "the first is not told from zero";
+    if (std::abs(pair.base) <= floor && std::abs(pair.base + pair.difference) <= floor) {
       told.reason = "both are zero, or round-off";
     } else if (!pair.u) {
       told.reason = pair.unknown;
     } else if (std::abs(pair.difference) > *pair.u) {
       told.verdict = Verdict::yes;
-      told.reason = "the first is zero, or round-off";
+      told.reason = first;
     } else {
-      told.reason = "the first is zero, and the second not told from it";
+      told.reason = first + ", and the second not told from it";
     }
     return;
   }
@@ -104,6 +108,7 @@ class EffectSpeaker {
     Answered out = begin_answer(lines_);
     out.figure = figure();
     if (auto open = open_without_values(lines_, out)) return *open;
+    if (told_.empty()) return never_alone(std::move(out), lines_, evidence_.study().spoken(ask_.subject()));
     std::vector<const Told*> yes, no, open;
     std::vector<char> shown(told_.size(), 0);
     // What decides comes first, what has no value last.
@@ -130,10 +135,9 @@ class EffectSpeaker {
   void combine() {
     InOrderMet<std::string, Combination> all;
     for (const Line& line : lines_.all) {
-      const std::string level = evidence_.level(line.point.first(), others_);
-      Combination& one = all[level + '\n' + line.stop];
+      Combination& one = all[evidence_.key(line.point.first(), others_) + '\n' + line.stop];
       one.stop = line.stop;
-      one.level = level;
+      one.level = evidence_.level(line.point.first(), others_);
       one.lines.push_back(&line);
     }
     for (auto& [key, one] : std::move(all).list()) combinations_.push_back(std::move(one));
@@ -152,10 +156,11 @@ class EffectSpeaker {
   }
 
   Told told_of(const Combination& where, const Line& a, const Line& b) const {
-    Told told{&where, own_level(a), own_level(b), {}, Verdict::open, ""};
+    const std::string apart = shared_parameters(a, b);
+    Told told{&where, &a, &b, own_level(a) + own_parameters(a, apart), own_level(b) + own_parameters(b, apart)};
     for (const Line* line : {&a, &b})
       if (!line->known() && told.reason.empty()) told.reason = line->point.none;
-    told.applies = applies(a) && applies(b);
+    told.applies = a.applies() && b.applies();
     if (!told.reason.empty()) return told;
     told.pair = pair_of(a.point, b.point);
     judge(told, from_);
@@ -168,9 +173,22 @@ class EffectSpeaker {
     return told;
   }
 
-  static bool applies(const Line& line) {
-    return std::any_of(line.point.cases.begin(), line.point.cases.end(),
-                       [](const CaseRecord* one) { return one->status != Status::refused; });
+  /// A parameter of contact that both have, otherwise: the names of their methods do not say it. "" of none.
+  std::string shared_parameters(const Line& a, const Line& b) const {
+    for (const std::string& column : own_) {
+      const std::string &first = evidence_.study().text(a.point.first(), column),
+                        &second = evidence_.study().text(b.point.first(), column);
+      const bool of_contact = std::any_of(std::begin(parameters_of_contact), std::end(parameters_of_contact),
+                                          [&](const char* name) { return column.ends_with(name); });
+      if (axis_role(column) == column || !of_contact || first.empty() || second.empty() || first == second) continue;
+      if (own_level(a).find(evidence_.level(a.point.first(), {column})) == std::string::npos) return column;
+    }
+    return "";
+  }
+  static constexpr const char* parameters_of_contact[] = {".restitution", ".stiffness", ".damping", ".friction"};
+  /// ", e = ½".
+  std::string own_parameters(const Line& line, const std::string& column) const {
+    return column.empty() ? "" : ", " + evidence_.level(line.point.first(), {column});
   }
 
   /// Whether the choice has a part in contact alone: the law, restitution.
@@ -235,14 +253,10 @@ class EffectSpeaker {
     return share && -nearly_all < *share && *share < times;
   }
 
-  const Line& line_of(const Combination& combination, const std::string& level) const {
-    return **std::find_if(combination.lines.begin(), combination.lines.end(),
-                          [&](const Line* line) { return own_level(*line) == level; });
-  }
   /// "from 0 with Dumont–Paoli to 3.4 ± 0.2 with Newmark".
   std::string values(const Told& one) const {
-    return fmt::format("from {} with {} to {} with {}", lines_.text(line_of(*one.where, one.first).estimate()),
-                       one.first, lines_.text(line_of(*one.where, one.second).estimate()), one.second);
+    return fmt::format("from {} with {} to {} with {}", lines_.text(one.a->estimate()), one.first,
+                       lines_.text(one.b->estimate()), one.second);
   }
 
   /// Of these, which have shares, those with the least share and the most.
@@ -283,8 +297,8 @@ class EffectSpeaker {
     if (list.empty()) return "";
     const auto odd = std::find_if(list.begin(), list.end(), [](const Told* one) { return !as_share(*one); });
     if (odd != list.end())
-      return fmt::format("from {} to {}", lines_.text(line_of(*(*odd)->where, (*odd)->first).estimate()),
-                         lines_.text(line_of(*(*odd)->where, (*odd)->second).estimate()));
+      return fmt::format("from {} to {}{}", lines_.text((*odd)->a->estimate()), lines_.text((*odd)->b->estimate()),
+                         place(**odd));
     const auto [least, most] = extremes(list);
     if (both_ways(*least, *most)) return fmt::format("by {} to {}", share_text(*least->pair), share_text(*most->pair));
     return (list.size() == 1 ? "by " : "by up to ") + share_text(*larger(*least, *most).pair);
@@ -381,6 +395,7 @@ class EffectSpeaker {
 void check_effect(const Ask& ask, const Study& study) {
   check_choice(ask, study, "effect", ask.subject());
   check_measure(ask, study, "on", ask.text("on"));
+  check_one_unit(ask, study, ask.text("on"));
   refuse_seeds(ask, "effect", "are no choice", ask.text("on"));
   if (ask.has("from") && ask.has("within"))
     throw InputError(ask.pointer("within"), "does not go together with \"from\"; expected one of them");

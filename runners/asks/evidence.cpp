@@ -299,8 +299,13 @@ LeftOut Evidence::left_out(const std::string& name, const Cases& cases) const {
     }
     LeftOut::Reason& group = groups[key];
     if (group.count++ == 0) group.text = why;
+    group.alike = group.alike && group.text == why;
   }
-  for (auto& [key, group] : std::move(groups).list()) out.reasons.push_back(std::move(group));
+  for (auto& [key, group] : std::move(groups).list()) {
+    if (const std::size_t colon = group.text.find(": "); !group.alike && colon != std::string::npos)
+      group.text.insert(colon, ", the first");
+    out.reasons.push_back(std::move(group));
+  }
   return out;
 }
 

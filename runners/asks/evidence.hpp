@@ -25,7 +25,8 @@ struct Estimate {
   bool grows = false;                ///< without bound as it is refined
   bool vanishes = false;             ///< falls to zero with the step
   std::string motion;                ///< "still falls with the step" of what is not settled
-  std::string few;                   ///< "is known by two steps alone", where they leave more than u
+  std::string few;                   ///< "is known by two steps alone", where they leave more than u; or by three
+  bool two = false;                  ///< whether two sizes alone tell it, and leave more than u
   double doubt = 1;                  ///< of what is not settled: so many times u may be between it and its limit
   std::optional<double> order;       ///< in the step
   std::size_t steps = 1, meshes = 1, seeds = 1;
@@ -76,7 +77,8 @@ bool doubtful(const Point& point);
 struct LeftOut {
   struct Reason {
     std::size_t count = 0;
-    std::string text;  ///< "refused: …"
+    std::string text;   ///< "refused: …"; of cases whose numbers differ with those of the first
+    bool alike = true;  ///< whether it is that of each
     std::string said() const { return std::to_string(count) + " " + text; }
   };
   std::size_t count = 0;
@@ -118,6 +120,10 @@ class Evidence {
   /// What is left out of these points, by reason.
   LeftOut left_out(const std::string& measure, const Cases& cases) const;
 
+  /// Equal for cases of the same levels in these columns.
+  std::string key(const CaseRecord& record, const std::vector<std::string>& columns) const {
+    return study_.key(record, columns);
+  }
   /// The levels of a case in these columns, in words: "hrz, 1e8 N/m". "" of none.
   std::string level(const CaseRecord& record, const std::vector<std::string>& columns) const;
   /// What comes before any number, a sentence each: that nothing moved, or no stop was touched; which

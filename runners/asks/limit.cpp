@@ -3,63 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runners/asks/bounds.hpp"
 #include "runners/asks/lines.hpp"
 #include "runners/asks/verbs.hpp"
 #include "runners/json/json_text.hpp"
 
 namespace ricochet::asks {
 namespace {
-
-struct Bounds {
-  std::optional<double> below, above;  // in the unit of the measure
-  bool holds(double value) const { return (!below || value < *below) && (!above || value > *above); }
-};
-
-/// Whether nothing happened in runs that could not show it.
-bool nothing_seen(const Point& point) {
-  return untouched(point) && doubtful(point);
-}
-
-std::string why_open(const Line& line, const Bounds& bounds) {
-  if (!line.known()) return line.point.none;
-  if (nothing_seen(line.point)) return "no stop is touched, in a doubtful run";
-  const Estimate& one = line.estimate();
-  if (!one.unknown().empty()) return one.unknown();
-  const bool all = one.has_interval() && bounds.holds(one.least()) && bounds.holds(one.most());
-  const bool within = !bounds.holds(one.low()) || !bounds.holds(one.high());
-  if (!all && !within) return "it " + one.unsettled();
-  return all ? "one seed is too near to it" : "the limit lies within its interval";
-}
-
-/// What of a line keeps to its bounds.
-struct Kept {
-  Verdict verdict = Verdict::open;
-  std::size_t draws = 0, beyond = 0;  ///< of seeds, where each has to keep to them
-};
-
-/// Yes where the interval holds; no where it is beyond. A mean over a window is one number, of which seeds are draws.
-/// Of what is no mean, as a peak, each seed has to hold, with what refinement leaves of it.
-Kept kept(const Line& line, const Bounds& bounds) {
-  Kept out;
-  if (!line.known() || !line.estimate().has_interval()) return out;
-  const Estimate& one = line.estimate();
-  const auto holds = [&](double low, double high) { return bounds.holds(low) && bounds.holds(high); };
-  const auto breaks = [&](double low, double high) {
-    return (bounds.below && low >= *bounds.below) || (bounds.above && high <= *bounds.above);
-  };
-  bool all = holds(one.least(), one.most()), beyond = breaks(one.least(), one.most());
-  if (const auto& draws = line.point.values.at(*line.point.finest); draws.size() > 1 && line.point.halves.empty()) {
-    const double refinement = one.doubt * (one.step.value_or(0) + one.mesh.value_or(0));
-    out.draws = draws.size();
-    for (const auto& [seed, value] : draws) {
-      all = all && holds(value - refinement, value + refinement);
-      out.beyond += breaks(value - refinement, value + refinement) ? 1 : 0;
-    }
-    beyond = beyond || out.beyond > 0;
-  }
-  out.verdict = beyond ? Verdict::no : all && !nothing_seen(line.point) ? Verdict::yes : Verdict::open;
-  return out;
-}
 
 /// "2 of 8 seeds are beyond"; "" where none is, or the limit does not speak of each.
 std::string beyond_text(const Kept& one) {
@@ -102,12 +52,12 @@ std::string kept_sentence(const Lines& lines, const Line& worst, const Bounds& b
                          {{worst.place()}});
 }
 
-std::string broken_sentence(const Lines& lines, const Marked& no, const Line& worst, const std::string& range,
-                            const std::string& seeds) {
-  const bool plural = is_plural(lines.words.words), some = no.size() < lines.all.size();
+std::string broken_sentence(const Lines& lines, const Marked& no, std::size_t judged, const Line& worst,
+                            const std::string& range, const std::string& seeds) {
+  const bool plural = is_plural(lines.words.words), some = no.size() < judged;
   const std::string where = set_name(lines, no);
   const std::string in_these = !some           ? ""
-                               : where.empty() ? fmt::format(" in {} of {}", no.size(), lines.all.size())
+                               : where.empty() ? fmt::format(" in {} of {}", no.size(), judged)
                                                : " " + where;
   return in_thirty_words(fmt::format("No: {} {} not {}{}; {} {}", lines.words.words, plural ? "are" : "is", range,
                                      in_these, plural ? "they are" : "it is", lines.text(worst.estimate())),
@@ -115,13 +65,13 @@ std::string broken_sentence(const Lines& lines, const Marked& no, const Line& wo
 }
 
 /// Reason and sentence.
-void say_open(Answered& out, const Lines& lines, const Marked& open, const Bounds& bounds, const std::string& range) {
+void say_open(Answered& out, const Lines& lines, const Marked& open, std::size_t judged, const Bounds& bounds,
+              const std::string& range) {
   const bool plural = is_plural(lines.words.words);
   const auto known = std::find_if(open.begin(), open.end(), [](const Line* line) { return line->known(); });
   const Line& first = known == open.end() ? *open.front() : **known;
   out.reason = why_open(first, bounds);
-  const std::string which =
-      open.size() < lines.all.size() ? fmt::format(" in {} of {}", open.size(), lines.all.size()) : "";
+  const std::string which = open.size() < judged ? fmt::format(" in {} of {}", open.size(), judged) : "";
   const std::string found =
       first.known() ? (plural ? "they are " : "it is ") + lines.text(first.estimate()) : "no value";
   out.sentence = in_thirty_words(
@@ -134,6 +84,7 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
   Answered out = begin_answer(lines);
   const Bounds bounds{ask.real("below"), ask.real("above")};
   Marked yes, no, open;
+  const bool any_applies = lines.any_applies();
   for (const Line& line : lines.all) {
     VerdictRow row = lines.row(line);
     const Kept found = kept(line, bounds);
@@ -142,7 +93,9 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
     if (verdict == Verdict::no && row.reason.empty()) row.reason = beyond_text(found);
     if (verdict == Verdict::open && row.reason.empty()) row.reason = why_open(line, bounds);
     out.rows.push_back(std::move(row));
-    (verdict == Verdict::yes ? yes : verdict == Verdict::no ? no : open).push_back(&line);
+    // What is refused is left out by name.
+    if (line.applies() || !any_applies)
+      (verdict == Verdict::yes ? yes : verdict == Verdict::no ? no : open).push_back(&line);
   }
   const auto [range, at] = range_of(lines, bounds);
   out.figure = bars(lines, at);
@@ -153,6 +106,7 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
     limit.value = one;
     out.rows.push_back(limit);
   }
+  const std::size_t judged = yes.size() + no.size() + open.size();
   // A limit that is broken anywhere is broken.
   out.passes = !no.empty() ? Verdict::no : open.empty() && !yes.empty() ? Verdict::yes : Verdict::open;
   out.verdict = word(*out.passes);
@@ -160,11 +114,11 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
     out.sentence = kept_sentence(lines, nearest(yes, bounds), bounds, range);
   else if (*out.passes == Verdict::no)
     out.sentence =
-        broken_sentence(lines, no, nearest(no, bounds), range, beyond_text(kept(nearest(no, bounds), bounds)));
+        broken_sentence(lines, no, judged, nearest(no, bounds), range, beyond_text(kept(nearest(no, bounds), bounds)));
   else if (auto without = open_without_values(lines, out))
     return *without;
   else
-    say_open(out, lines, open, bounds, range);
+    say_open(out, lines, open, judged, bounds, range);
   return out;
 }
 

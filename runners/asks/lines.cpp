@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "runners/answers/set_names.hpp"
@@ -17,6 +18,15 @@ namespace ricochet::asks {
 
 std::string Line::place() const {
   return (level.empty() ? "" : " with " + level) + (stop.empty() || one_stop ? "" : " at " + stop);
+}
+
+bool Line::applies() const {
+  return std::any_of(point.cases.begin(), point.cases.end(),
+                     [](const CaseRecord* one) { return one->status != Status::refused; });
+}
+
+bool Lines::any_applies() const {
+  return std::any_of(all.begin(), all.end(), [](const Line& line) { return line.applies(); });
 }
 
 std::vector<const Line*> Lines::known() const {
@@ -65,6 +75,26 @@ VerdictRow Lines::row(const Line& line) const {
 
 namespace {
 
+/// Whether a stop bounds a rotation.
+bool turns(const Json& study, const std::string& stop) {
+  if (!study.is_object() || !study.contains("scene") || !study["scene"].contains("stops")) return false;
+  const Json& stops = study["scene"]["stops"];
+  for (const Json& one : stops.is_array() ? stops : Json::array())
+    if (one.is_object() && one.value("name", "") == stop && one.contains("at") && one["at"].is_object()) {
+      const Json component = one["at"].value("component", Json());
+      return component == "rx" || component == "ry" || component == "rz";
+    }
+  return false;
+}
+
+/// What a unit of forces and displacements is of moments and rotations; "" where they share it.
+std::string unit_of_rotation(const std::string& unit) {
+  static const std::map<std::string, std::string> units = {
+      {"N", "N m"}, {"N s", "N m s"}, {"m", "rad"}, {"m/s", "rad/s"}};
+  const auto found = units.find(unit);
+  return found == units.end() ? "" : found->second;
+}
+
 /// The words of a measure without its stop.
 answers::MeasureWords words_of(const std::string& measure) {
   answers::MeasureWords words = answers::measure_words(measure);
@@ -94,6 +124,12 @@ Lines lines_of(const Ask& ask, const Evidence& evidence, const std::string& meas
     out.words.factor = 1;
     out.words.unit = info ? info->unit : "";
   }
+  if (std::all_of(names.begin(), names.end(),
+                  [&](const std::string& name) { return turns(evidence.results().study, split_measure(name).second); }))
+    if (const MeasureInfo* info = measure_info(names.front()); info && !unit_of_rotation(info->unit).empty()) {
+      out.words.factor = 1;
+      out.words.unit = unit_of_rotation(info->unit);
+    }
   // Levels are said in the study's order, whatever is asked of them.
   std::vector<std::string> ordered;
   for (const std::string& column : evidence.results().columns)
@@ -200,6 +236,18 @@ std::optional<Answered> open_without_values(const Lines& lines, Answered begun) 
   return begun;
 }
 
+Answered never_alone(Answered begun, const Lines& lines, const std::string& choice) {
+  begun.verdict = word(Verdict::open);
+  begun.passes = Verdict::open;
+  begun.reason = choice + " never differs alone";
+  for (const Line& line : lines.all) {
+    begun.rows.push_back(lines.row(line));
+    begun.rows.back().verdict = "value";
+  }
+  begun.sentence = fmt::format("Open: {}: no two cases that ran differ in nothing else.", begun.reason);
+  return begun;
+}
+
 std::string short_reason(const std::string& reason) {
   return reason.substr(0, reason.find(": "));
 }
@@ -226,7 +274,51 @@ void check_measure(const Ask& ask, const Study& study, const std::string& key, c
 
 void check_subject(const Ask& ask, const Study& study) {
   check_measure(ask, study, ask.verb->name, ask.subject());
+  check_one_unit(ask, study, ask.subject());
 }
+
+void check_one_unit(const Ask& ask, const Study& study, const std::string& measure) {
+  const auto [base, stop] = split_measure(measure);
+  const Json& stops = study.resolved.at("scene").at("stops");
+  if (!stop.empty() || !stops.is_array() || stops.empty()) return;
+  const MeasureInfo* info = measure_info(base + "[" + stops.front().at("name").get<std::string>() + "]");
+  if (!info || unit_of_rotation(info->unit).empty()) return;
+  std::vector<std::string> names;
+  if (ask.has("stops"))
+    names = ask.keys["stops"].get<std::vector<std::string>>();
+  else
+    for (const Json& one : stops) names.push_back(one.at("name").get<std::string>());
+  const auto turning =
+      std::find_if(names.begin(), names.end(), [&](const std::string& one) { return turns(study.resolved, one); });
+  const bool all = std::all_of(names.begin(), names.end(), [&](const auto& one) { return turns(study.resolved, one); });
+  if (turning == names.end() || all) return;
+  throw InputError(ask.pointer(ask.has("stops") ? "stops" : ask.verb->name),
+                   fmt::format("stop {} bounds a rotation: its {} is in {}, that of others in {}; name stops of one "
+                               "kind by \"stops\"",
+                               *turning, base, unit_of_rotation(info->unit), info->unit));
+}
+
+namespace {
+
+/// Whether two cases differ in a choice and in nothing else but what refines and what is drawn.
+bool differs_alone(const Ask& ask, const Study& study, const std::string& choice) {
+  std::map<std::string, std::set<std::string>> levels;  // by all else
+  for (const StudyCase& one : study.cases) {
+    if (!speaks_of(ask, one)) continue;
+    std::string own, others;
+    for (const auto& [axis, value] : one.axes) {
+      const bool is_own = axis == choice || (axis_role(choice) == choice && axis_role(axis) == choice);
+      if (is_own)
+        own += value.dump() + '\n';
+      else if (axis != seed_axis && !answers::is_refinement(axis))
+        others += axis + '=' + value.dump() + '\n';
+    }
+    levels[others].insert(own);
+  }
+  return std::any_of(levels.begin(), levels.end(), [](const auto& one) { return one.second.size() > 1; });
+}
+
+}  // namespace
 
 void check_choice(const Ask& ask, const Study& study, const std::string& key, const std::string& choice) {
   std::vector<std::string> varying, fixed;
@@ -240,7 +332,13 @@ void check_choice(const Ask& ask, const Study& study, const std::string& key, co
       if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
     }
   }
-  if (std::find(varying.begin(), varying.end(), choice) != varying.end()) return;
+  if (std::find(varying.begin(), varying.end(), choice) != varying.end()) {
+    if (!differs_alone(ask, study, choice))
+      throw InputError(ask.pointer(key), quote(choice) +
+                                             " never differs alone: cases that differ in it have other choices "
+                                             "otherwise, too; expected a study that crosses them");
+    return;
+  }
   // Seeds are draws: no verb takes them.
   std::erase(varying, seed_axis);
   const std::string expected =

@@ -16,6 +16,8 @@ struct Line {
   bool one_stop = false;                     ///< whether all lines are of this stop, which the measure's words name
 
   bool known() const { return point.estimate.has_value(); }
+  /// Whether some of its cases could run; what is refused throughout decides nothing where others could.
+  bool applies() const;
   const Estimate& estimate() const { return *point.estimate; }
   /// "with hrz, stiffness 1e8 N/m at end": what tells it from the other lines; "".
   std::string place() const;
@@ -30,6 +32,7 @@ struct Lines {
   std::vector<std::string> without;  ///< why cases have no value: "2 refused: …"
 
   std::vector<const Line*> known() const;
+  bool any_applies() const;
   /// A value of this measure in words, with its unit.
   std::string text(const Estimate& estimate) const;
   std::string number(double value, std::optional<double> u = {}) const;
@@ -56,6 +59,9 @@ Answered begin_answer(const Lines& lines);
 /// The answer of lines without any value to a question that has a yes or a no: open. Nothing where some has one.
 std::optional<Answered> open_without_values(const Lines& lines, Answered begun);
 
+/// The answer where no two lines differ in a choice alone: open.
+Answered never_alone(Answered begun, const Lines& lines, const std::string& choice);
+
 /// Why nothing is known, of lines without a value; "" where some has one.
 std::string nothing_known(const Lines& lines);
 
@@ -77,7 +83,9 @@ std::string some_of(const std::vector<std::string>& names, std::size_t most = 2)
 void check_measure(const Ask& ask, const Study& study, const std::string& key, const std::string& measure);
 /// The same of the measure after the verb.
 void check_subject(const Ask& ask, const Study& study);
-/// Refuses a choice or an axis that does not vary.
+/// Refuses a measure whose stops have different units, as forces and moments.
+void check_one_unit(const Ask& ask, const Study& study, const std::string& measure);
+/// Refuses a choice or an axis that does not vary, or in which no two cases differ alone.
 void check_choice(const Ask& ask, const Study& study, const std::string& key, const std::string& choice);
 
 /// Refuses seeds, which are draws, as the choice after a key: they `why`.

@@ -56,9 +56,8 @@ class Ranking {
     lines_ = lines_of(ask, evidence, ask.subject(), columns);
     InOrderMet<std::string, Order> orders;
     for (const Line& line : lines_.all) {
-      const std::string level = level_of(line);
-      Order& order = orders[level];
-      order.level = level;
+      Order& order = orders[evidence.key(line.point.first(), others_) + (over_ == over_stops ? "" : '\n' + line.stop)];
+      order.level = level_of(line);
       if (line.known())
         order.lines.push_back(&line);
       else if (std::any_of(line.point.cases.begin(), line.point.cases.end(),
@@ -94,6 +93,10 @@ class Ranking {
       out.sentence = fmt::format("No case has a value of {}: {}.", lines_.words.words, out.reason);
       return out;
     }
+    const bool alone = std::none_of(orders_.begin(), orders_.end(),
+                                    [](const auto& one) { return one.second.lines.size() + one.second.without > 1; });
+    if (alone && lines_.all.size() > 1)
+      return never_alone(std::move(out), lines_, over_ == over_stops ? "the stop" : evidence_.study().spoken(over_));
     for (const auto& [key, order] : orders_) add_rows(out, order);
     const Order& first = orders_[told_].second;
     const bool firm = is_firm(first);
@@ -171,7 +174,8 @@ class Ranking {
                                         : fmt::format("{}, not told apart (to {})", some_of(names, most > 1 ? 2 : 1),
                                                       lines_.text(top)));
     }
-    const std::size_t more = order.groups.size() > most ? order.groups.size() - most : 0;
+    std::size_t more = 0;
+    for (std::size_t g = most; g < order.groups.size(); ++g) more += order.groups[g].size();
     std::string what = lines_.words.words;
     for (const std::string said : {"the ", "largest "})
       if (what.starts_with(said)) what.erase(0, said.size());
@@ -199,9 +203,11 @@ class Ranking {
   /// Why a line has no place of its own: intervals touch, or one is not settled and may be farther off.
   static std::string why_together(const Order& order, const std::vector<std::size_t>& group, std::size_t k) {
     const Estimate& own = order.lines[k]->estimate();
+    if (!own.has_interval()) return own.unsettled().empty() ? own.unknown() : "it " + own.unsettled();
     std::string moving;
     for (const std::size_t other : group) {
       const Estimate& one = order.lines[other]->estimate();
+      if (!one.has_interval()) return order.names[other] + " has no interval";
       if (other != k && own.low() <= one.high() && one.low() <= own.high())
         return "its interval touches that of a neighbour";
       if (other != k && one.doubt > 1 && moving.empty()) moving = "a neighbour " + one.unsettled();
@@ -249,6 +255,7 @@ void check_rank(const Ask& ask, const Study& study) {
     if (ask.has("stops") && named.size() < two)
       throw InputError(ask.pointer("stops"), "nothing to rank: one stop; expected two or more");
     check_measure(ask, study, "rank", ask.subject() + "[" + stops.front().at("name").get<std::string>() + "]");
+    check_one_unit(ask, study, ask.subject());
     return;
   }
   check_subject(ask, study);

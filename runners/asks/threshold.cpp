@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "runners/asks/bounds.hpp"
 #include "runners/asks/lines.hpp"
 #include "runners/asks/verbs.hpp"
 #include "runners/json/json_text.hpp"
@@ -20,6 +21,7 @@ struct Condition {
   bool holds(double value) const {
     return passes ? value > *is : is ? value == *is : below ? value < *below : value > *above;
   }
+  Bounds bounds() const { return {below, passes ? is : above}; }
   /// "is always below 3 N".
   std::string text(const Lines& lines, const std::string& adverb = "") const {
     return (is_plural(lines.words.words) ? "are " : "is ") + adverb +
@@ -31,7 +33,7 @@ struct Condition {
   }
 };
 
-/// Yes or no where every case on every step and mesh says so, and so does the interval of what is no count.
+/// Yes or no where every case on every step and mesh says so; of what is no count as limits tell it.
 Verdict state(const Line& line, const Condition& condition, bool counts) {
   if (!line.known()) return Verdict::open;
   std::size_t holds = 0, all = 0;
@@ -45,8 +47,16 @@ Verdict state(const Line& line, const Condition& condition, bool counts) {
   if (one.beyond && condition.is && !condition.passes) return one.value > *condition.is ? Verdict::no : Verdict::open;
   if (counts || (condition.is && !condition.passes))
     return holds == all ? Verdict::yes : holds == 0 ? Verdict::no : Verdict::open;
-  const bool low = condition.holds(one.least()), high = condition.holds(one.most());
-  return low && high ? Verdict::yes : !low && !high && !condition.holds(one.value) ? Verdict::no : Verdict::open;
+  return kept(line, condition.bounds()).verdict;
+}
+
+/// Whether all its values are the one that is asked for.
+bool equals(const Line& line, const Condition& condition) {
+  if (!condition.is || !line.known()) return false;
+  for (const auto& [size, by_seed] : line.point.values)
+    for (const auto& [seed, value] : by_seed)
+      if (value != *condition.is) return false;
+  return true;
 }
 
 /// One series along the axis: all else the same.
@@ -58,6 +68,7 @@ struct Series {
   std::vector<std::pair<double, double>> between = {};
   bool becomes = true;    // from no to yes as the axis grows, at the first of these
   std::string what = {};  // of one without a threshold: "always", "never", "not told"
+  std::size_t open = 0;   // of a threshold: levels outside of where it changes that are open
 
   bool known() const {
     return std::any_of(points.begin(), points.end(), [](const auto& one) { return one.second->known(); });
@@ -80,6 +91,14 @@ void find_change(Series& series) {
     if (series.states[firm[k]] != series.states[firm[k - 1]])
       series.between.emplace_back(series.points[firm[k - 1]].first, series.points[firm[k]].first);
   series.becomes = series.states[firm.front()] == Verdict::no;
+  for (std::size_t k = 0; k < series.states.size() && !series.between.empty(); ++k) {
+    const auto inside = [&](const auto& one) {
+      return one.first < series.points[k].first && series.points[k].first < one.second;
+    };
+    if (series.states[k] == Verdict::open && series.points[k].second->applies() &&
+        std::none_of(series.between.begin(), series.between.end(), inside))
+      ++series.open;
+  }
   if (!series.between.empty()) return;
   const bool all = firm.size() == series.states.size();
   series.what = !all ? "not told" : series.states[firm.front()] == Verdict::yes ? "always" : "never";
@@ -102,9 +121,8 @@ class Threshold {
     condition_.passes = condition_.is && !counts;
     InOrderMet<std::string, Series> all;
     for (const Line& line : lines_.all) {
-      const std::string level = evidence.level(line.point.first(), others);
-      Series& series = all[level + '\n' + line.stop];
-      series.level = level;
+      Series& series = all[evidence.key(line.point.first(), others) + '\n' + line.stop];
+      series.level = evidence.level(line.point.first(), others);
       series.stop = line.stop;
       if (const auto x = number_in(evidence.study().text(line.point.first(), along_)))
         series.points.emplace_back(*x, &line);
@@ -158,10 +176,17 @@ class Threshold {
       first_end = std::min(first_end, end);
     }
     differ = differ || first_end <= last_begin;
-    out.passes = without.empty() ? Verdict::yes : Verdict::open;
-    out.verdict = without.empty() ? "told" : "in part";
+    std::size_t open = 0, levels = 0;
+    for (const Series* one : with) {
+      open += one->open;
+      levels += one->points.size();
+    }
+    out.passes = without.empty() && open == 0 ? Verdict::yes : Verdict::open;
+    out.verdict = without.empty() && open == 0 ? "told" : "in part";
+    if (open > 0) out.reason = fmt::format("open at {} of {} levels", open, levels);
     const Series& first = *with.front();
     std::vector<std::vector<std::string>> rest;
+    if (open > 0) rest.push_back({"; " + out.reason});
     if (!without.empty()) rest.push_back({unchanged(without, judged, place), unchanged(without, judged, nullptr)});
     if (!differ && with.size() > 1 && without.empty()) rest.push_back({in_all(with.size())});
     if (differ)
@@ -204,6 +229,14 @@ class Threshold {
     return text;
   }
 
+  /// Why a level is open.
+  std::string why_not(const Line& line) const {
+    if (!line.known()) return line.point.none;
+    if (condition_.is && !condition_.passes)
+      return line.estimate().unknown().empty() ? "steps and meshes disagree" : line.estimate().unknown();
+    return why_open(line, condition_.bounds());
+  }
+
   /// Of series that see no change.
   Answered say_unchanged(Answered out, const std::vector<const Series*>& without, const std::string& what,
                          const std::function<std::string(const Series&)>& place) const {
@@ -212,9 +245,10 @@ class Threshold {
       (one->what == "always" ? always : one->what == "never" ? never : open).push_back(one);
     if (always.empty() && never.empty()) {
       out.verdict = word(Verdict::open);
-      for (const auto& [x, line] : open.front()->points)
-        if (out.reason.empty()) out.reason = !line->known() ? line->point.none : line->estimate().unknown();
-      if (out.reason.empty()) out.reason = "steps and meshes disagree";
+      for (std::size_t k = 0; k < open.front()->points.size(); ++k)
+        if (const Line& line = *open.front()->points[k].second;
+            out.reason.empty() && open.front()->states[k] == Verdict::open)
+          out.reason = why_not(line);
       out.sentence = fmt::format("Open: where along {} {} {} is not told: {}.", axis_words(), lines_.words.words, what,
                                  out.reason);
       return out;
@@ -247,7 +281,14 @@ class Threshold {
   /// "is never below 3 N"; of what passes a value the side on which it stays, "is always above 3 N".
   std::string always_text(const std::string& which) const {
     if (!condition_.passes || which == "always") return condition_.text(lines_, which + " ");
-    return (is_plural(lines_.words.words) ? "are always below " : "is always below ") + lines_.given(*condition_.is);
+    std::size_t equal = 0, all = 0;
+    for (const Series& series : series_)
+      for (const auto& [x, line] : series.points) {
+        all += line->known() ? 1 : 0;
+        equal += equals(*line, condition_) ? 1 : 0;
+      }
+    const char* side = equal == 0 ? "always below " : equal == all ? "always " : "never above ";
+    return (is_plural(lines_.words.words) ? "are " : "is ") + (side + lines_.given(*condition_.is));
   }
 
   std::string x_text(double x) const {
@@ -259,9 +300,12 @@ class Threshold {
   void add_rows(Answered& out, const Series& series) const {
     for (std::size_t k = 0; k < series.points.size(); ++k) {
       VerdictRow row = lines_.row(*series.points[k].second);
+      const Line& line = *series.points[k].second;
       row.verdict = !condition_.passes || series.states[k] == Verdict::open ? word(series.states[k])
                     : series.states[k] == Verdict::yes                      ? "above"
+                    : equals(line, condition_)                              ? "equal"
                                                                             : "below";
+      if (series.states[k] == Verdict::open && row.reason.empty()) row.reason = why_not(line);
       out.rows.push_back(std::move(row));
     }
     VerdictRow row;

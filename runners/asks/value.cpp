@@ -15,6 +15,13 @@ std::string told(const Lines& lines, const Estimate& one) {
   return out;
 }
 
+/// Why the interval of a value that is settled may not hold; "" where nothing speaks against it.
+std::string why_unsure(const Line& line) {
+  const Estimate& one = line.estimate();
+  if (!one.unknown().empty()) return one.unknown();
+  return doubtful(line.point) ? "is of doubtful runs" : one.two ? one.few : "";
+}
+
 Answered answer_value(const Ask& ask, const Evidence& evidence) {
   const Lines lines = lines_of(ask, evidence, ask.subject());
   Answered out = begin_answer(lines);
@@ -23,11 +30,12 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
   std::size_t unsettled = 0, without = 0;
   for (const Line& line : lines.all) {
     VerdictRow row = lines.row(line);
-    row.verdict = !line.known()                        ? "no value"
-                  : !line.estimate().motion.empty()    ? "not settled"
-                  : !line.estimate().unknown().empty() ? "open"
-                                                       : "known";
-    if (row.reason.empty() && line.known()) row.reason = line.estimate().motion;
+    row.verdict = !line.known()                     ? "no value"
+                  : !line.estimate().motion.empty() ? "not settled"
+                  : !why_unsure(line).empty()       ? "open"
+                                                    : "known";
+    if (row.reason.empty() && line.known())
+      row.reason = line.estimate().motion.empty() ? why_unsure(line) : line.estimate().motion;
     unsettled += row.verdict == "not settled";
     without += row.verdict == "open";
     out.rows.push_back(std::move(row));
@@ -39,11 +47,13 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
     out.sentence = fmt::format("No case has a value of {}: {}.", lines.words.words, out.reason);
     return out;
   }
-  out.passes = unsettled + without == 0 && known.size() == lines.all.size() ? Verdict::yes : Verdict::open;
+  const bool all_known =
+      std::all_of(lines.all.begin(), lines.all.end(), [](const Line& line) { return line.known() || !line.applies(); });
+  out.passes = unsettled + without == 0 && all_known ? Verdict::yes : Verdict::open;
   out.verdict = unsettled > 0 ? "not settled" : without > 0 ? "open" : "known";
   constexpr std::size_t few = 3;
   std::string said;
-  std::vector<std::vector<std::string>> rest;
+  std::vector<std::string> places;
   if (known.size() <= few) {
     std::vector<std::string> parts;
     for (const Line* line : known) parts.push_back(told(lines, line->estimate()) + line->place());
@@ -56,8 +66,9 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
     said = low == high ? fmt::format("{}: {} in {}", name, low, all_text(known.size()))
                        : fmt::format("{}: from {} to {}", name, low, high);
     if (low != high)
-      rest = {{fmt::format(" (least{}, most{})", least.place(), most.place()), fmt::format(" (most{})", most.place())}};
+      places = {fmt::format(" (least{}, most{})", least.place(), most.place()), fmt::format(" (most{})", most.place())};
   }
+  std::vector<std::vector<std::string>> rest = {places};
   if (unsettled > 0) {
     const Line* first =
         *std::find_if(known.begin(), known.end(), [](const Line* l) { return !l->estimate().motion.empty(); });
@@ -65,8 +76,18 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
     said += unsettled == known.size() ? "; not settled: it " + out.reason
                                       : fmt::format("; {} of {} not settled", unsettled, known.size());
   } else if (without > 0) {
-    out.reason = known.front()->estimate().unknown();
-    said += "; what the step leaves open is not known";
+    const Line& first =
+        **std::find_if(known.begin(), known.end(), [](const Line* l) { return !why_unsure(*l).empty(); });
+    out.reason = why_unsure(first);
+    const std::string doubt = !first.estimate().unknown().empty() ? "; what the step leaves open is not known"
+                              : known.size() == 1                 ? "; it " + out.reason
+                              : without == known.size()
+                                  ? "; each " + out.reason
+                                  : fmt::format("; in {} of {} it {}", without, known.size(), out.reason);
+    // Where these are comes before it, and goes first.
+    rest = {{}};
+    for (const std::string& where : places) rest.front().push_back(where + doubt);
+    rest.front().push_back(doubt);
   }
   out.sentence = in_thirty_words(said, rest);
   return out;

@@ -94,8 +94,8 @@ class MotionsAlong {
     for (std::size_t c = 0; c < swept.records.size(); ++c)
       if (std::find(cases_.begin(), cases_.end(), swept.records[c]) != cases_.end())
         read(*swept.records[c], swept.diagram.cases[c]);
-    judge();
     find_heads();
+    judge();
   }
 
   asks::Answered answer() const {
@@ -103,7 +103,7 @@ class MotionsAlong {
     out.cases = told_.size();
     asks::leave_out(out, cases_, told_);
     Json drawn = Json::array();
-    add_row(out, "", "undecided", "of the range, over all cases", asks::per_cent * undecided_, {}, {}, "%");
+    add_row(out, "", "undecided", "of the range, over the finest cases", asks::per_cent * undecided_, {}, {}, "%");
     for (const CaseMotions& one : told_) {
       add_row(out, one.level, "undecided", "of the range", asks::per_cent * one.undecided, {}, {}, "%");
       for (const MotionStretch& part : one.stretches) {
@@ -164,12 +164,12 @@ class MotionsAlong {
     }
   }
 
-  /// The share of the range of which the cases together leave open what it does: none decides, or those that do agree
-  /// and others are open.
+  /// The share of the range of which the finest cases together leave open what it does: none decides, or those that do
+  /// agree and others are open.
   void judge() {
     std::map<double, std::size_t> speak;
-    for (const CaseMotions& one : told_)
-      for (const auto& [value, at] : one.at) ++speak[value];
+    for (const CaseMotions* one : heads_)
+      for (const auto& [value, at] : one->at) ++speak[value];
     std::size_t most = 0;
     for (const auto& [value, count] : speak) most = std::max(most, count);
     std::set<double> values;
@@ -179,8 +179,8 @@ class MotionsAlong {
     for (const auto& [value, width] : widths_of(values)) {
       std::set<std::string> met;
       bool open = false;
-      for (const CaseMotions& one : told_)
-        if (const auto at = one.at.find(value); at != one.at.end()) {
+      for (const CaseMotions* one : heads_)
+        if (const auto at = one->at.find(value); at != one->at.end()) {
           if (at->second.decided > 0) met.insert(at->second.text());
           open = open || at->second.decided == 0 || 2 * at->second.open > at->second.decided + at->second.open;
         }

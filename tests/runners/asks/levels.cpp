@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
+#include <ricochet/contract/said_format.hpp>
 #include <set>
 
 #include "runners/kinds/kind.hpp"
@@ -152,6 +153,129 @@ TEST_CASE("asks: two sizes decide three times what first order leaves of them") 
   CHECK(near.reason == "it is known by two steps alone");
   CHECK(below({4e-3, 2e-3}, 1.45).passes == Verdict::yes);
   CHECK(below({4e-3, 4e-4}, 1.25).passes == Verdict::yes);
+}
+
+TEST_CASE("asks: the order of three sizes alone may be chance, that of four is confirmed") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.error = 0.4;
+  const auto below = [&](const std::vector<double>& steps, double bound) {
+    made.steps = steps;
+    return answer_of(made.results(), {{"limit", "impulse"}, {"below", bound}});
+  };
+  // 1.4, 1.2, 1.1: u = 0.125 decides 0.375 away.
+  const Answered near = below({4e-3, 2e-3, 1e-3}, 1.4);
+  INFO(near.sentence);
+  CHECK(near.passes == Verdict::open);
+  CHECK(near.reason == "it is known by three steps alone");
+  CHECK(below({4e-3, 2e-3, 1e-3}, 1.5).passes == Verdict::yes);
+  CHECK(below({8e-3, 4e-3, 2e-3, 1e-3}, 1.2).passes == Verdict::yes);
+}
+
+TEST_CASE("asks: a value that two steps tell is open, one of four is known") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.error = 0.1;
+  const Json value = {{"value", "impulse"}};
+  CHECK(answer_of(made.results(), value).passes == Verdict::yes);
+  made.steps = {4e-3, 2e-3};
+  const Answered two = answer_of(made.results(), value);
+  INFO(two.sentence);
+  CHECK(two.passes == Verdict::open);
+  CHECK(two.rows.front().verdict == "open");
+  CHECK(two.sentence.ends_with("; it is known by two steps alone."));
+}
+
+TEST_CASE("asks: choices that never differ alone have no effect, no rank and no threshold") {
+  Made made;
+  made.choices = {{"time", {"s0", "s1"}}, {"time.restitution", {"0.5", "0.8"}}};
+  made.truth = [](const std::vector<std::size_t>& at) { return 1.0 + static_cast<double>(at[0]); };
+  made.error = 1e-3;
+  StudyResults results = made.results();
+  std::erase_if(results.cases,
+                [](const CaseRecord& one) { return (one.axes[0].second == "s0") != (one.axes[1].second == "0.5"); });
+  for (CaseRecord& record : results.cases) record.axes[1].second = std::stod(record.axes[1].second.get<std::string>());
+  for (const Json& ask : {Json{{"effect", "time.restitution"}, {"on", "impulse"}, {"within", 0.01}},
+                          Json{{"rank", "impulse"}, {"over", "time.restitution"}}}) {
+    const Answered answered = answer_of(results, ask);
+    INFO(answered.sentence);
+    CHECK(answered.passes == Verdict::open);
+    CHECK(answered.sentence.find("never differs alone") != std::string::npos);
+  }
+  // A role's levels are told with what both have of contact.
+  const Answered effect = answer_of(results, {{"effect", "time"}, {"on", "impulse"}, {"from", 0.05}});
+  INFO(effect.sentence);
+  CHECK(effect.rows.front().level == "s1, e = 0.8 against s0, e = ½");
+}
+
+TEST_CASE("asks: thresholds and limits speak alike of seeds, and of levels that are open") {
+  Made made;
+  made.choices = {{"stops.upper", {"1", "2", "3", "4"}}, {std::string(seed_axis), {"1", "2", "3", "4", "5", "6"}}};
+  made.error = 1e-6;
+  made.truth = [](const std::vector<std::size_t>& at) {
+    // At the second level one seed is beyond, and the mean is not.
+    return at[0] == 1 ? (at[1] == 3 ? 4.0 : 0.5) : static_cast<double>(at[0] < 1 ? 1 : 5);
+  };
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) record.axes[0].second = std::stod(record.axes[0].second.get<std::string>());
+  const Answered threshold = answer_of(results, {{"threshold", "impulse"}, {"below", 3.0}, {"along", "stops.upper"}}),
+                 limit = answer_of(results, {{"limit", "impulse"}, {"below", 3.0}});
+  INFO(threshold.sentence << "\n" << limit.sentence);
+  for (std::size_t k = 0; k < 4; ++k) CHECK(threshold.rows[k].verdict == limit.rows[k].verdict);
+  CHECK(threshold.sentence.starts_with("Between 1 and 2:"));
+}
+
+TEST_CASE("asks: a threshold says which levels beyond it are open, and passes nothing then") {
+  Made made;
+  made.choices = {{"stops.upper", {"1", "2", "3", "4"}}};
+  made.truth = [](const std::vector<std::size_t>& at) { return at[0] == 0 ? 1.0 : 2.0; };
+  made.error = 1e-3;
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) {
+    record.axes[0].second = std::stod(record.axes[0].second.get<std::string>());
+    // At the last level the limit is the value that is asked for.
+    const double h = axis(record, "step").number().value();
+    if (record.axes[0].second == 4.0) record.measures.front().second = 1.5 * (1 + 20 * h);
+  }
+  const Answered answered = answer_of(results, {{"threshold", "impulse"}, {"above", 1.5}, {"along", "stops.upper"}});
+  INFO(answered.sentence);
+  CHECK(answered.passes == Verdict::open);
+  CHECK(answered.sentence.find("open at 1 of 4 levels") != std::string::npos);
+}
+
+TEST_CASE("asks: a measure that is the value on every level is that, not below it") {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1"}}, {"stops.upper", {"1", "2"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 0.0; };
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) record.axes[1].second = std::stod(record.axes[1].second.get<std::string>());
+  // Others have shares.
+  results.cases.front().measures.front().second = -0.25;
+  const Answered answered = answer_of(results, {{"threshold", "impulse"}, {"is", 0.0}, {"along", "stops.upper"}});
+  INFO(answered.sentence);
+  CHECK(answered.sentence.find("always below 0") == std::string::npos);
+}
+
+TEST_CASE("asks: what is refused throughout is left out of a limit by name") {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.error = 1e-3;
+  StudyResults results = made.results();
+  double number = 3;
+  for (CaseRecord& record : results.cases)
+    if (record.axes[0].second == "m1") {
+      record.status = Status::refused;
+      record.measures.clear();
+      record.reasons = {said("step {} is too large", number++)};
+    }
+  const Answered answered = answer_of(results, {{"limit", "impulse"}, {"below", 2.0}});
+  INFO(answered.sentence);
+  CHECK(answered.passes == Verdict::yes);
+  // Numbers are those of the first.
+  CHECK(answered.aside.front() == "Left out: 4 refused, the first: step 3 is too large.");
 }
 
 TEST_CASE("asks: a limit is said with all digits that were given") {

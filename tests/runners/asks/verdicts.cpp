@@ -686,8 +686,8 @@ TEST_CASE("asks: cases that end alike but for their numbers are one line, and ma
     record.status = Status::diverged;
     record.reasons = {said("step {}, t = {} s: {}", static_cast<int>(end.value), end.value, told(end))};
   }
-  CHECK(asides() ==
-        std::vector<std::string>{"Left out: 20 diverged: step 7, t = 7 s: the energy 7 J passed the bound 2 J."});
+  CHECK(asides() == std::vector<std::string>{
+                        "Left out: 20 diverged, the first: step 7, t = 7 s: the energy 7 J passed the bound 2 J."});
   for (CaseRecord& record : results.cases) {
     const std::string mass = record.axes[0].second.get<std::string>();
     if (mass == "a" || mass == "b") continue;
@@ -695,8 +695,8 @@ TEST_CASE("asks: cases that end alike but for their numbers are one line, and ma
     record.reasons = {Said(mass + " does not apply")};
   }
   // Four each; the first two are told, in the order of the study.
-  CHECK(asides() ==
-        std::vector<std::string>{"Left out: 4 diverged: step 7, t = 7 s: the energy 7 J passed the bound 2 J.",
-                                 "Left out: 4 refused: c does not apply.",
-                                 "Left out: 12 more for 3 other reasons, which are in reasons.csv."});
+  CHECK(asides() == std::vector<std::string>{
+                        "Left out: 4 diverged, the first: step 7, t = 7 s: the energy 7 J passed the bound 2 J.",
+                        "Left out: 4 refused: c does not apply.",
+                        "Left out: 12 more for 3 other reasons, which are in reasons.csv."});
 }

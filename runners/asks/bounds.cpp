@@ -1,0 +1,46 @@
+#include "runners/asks/bounds.hpp"
+
+namespace ricochet::asks {
+namespace {
+
+/// Whether nothing happened in runs that could not show it.
+bool nothing_seen(const Point& point) {
+  return untouched(point) && doubtful(point);
+}
+
+}  // namespace
+
+Kept kept(const Line& line, const Bounds& bounds) {
+  Kept out;
+  if (!line.known() || !line.estimate().has_interval()) return out;
+  const Estimate& one = line.estimate();
+  const auto holds = [&](double low, double high) { return bounds.holds(low) && bounds.holds(high); };
+  const auto breaks = [&](double low, double high) {
+    return (bounds.below && low >= *bounds.below) || (bounds.above && high <= *bounds.above);
+  };
+  bool all = holds(one.least(), one.most()), beyond = breaks(one.least(), one.most());
+  if (const auto& draws = line.point.values.at(*line.point.finest); draws.size() > 1 && line.point.halves.empty()) {
+    const double refinement = one.doubt * (one.step.value_or(0) + one.mesh.value_or(0));
+    out.draws = draws.size();
+    for (const auto& [seed, value] : draws) {
+      all = all && holds(value - refinement, value + refinement);
+      out.beyond += breaks(value - refinement, value + refinement) ? 1 : 0;
+    }
+    beyond = beyond || out.beyond > 0;
+  }
+  out.verdict = beyond ? Verdict::no : all && !nothing_seen(line.point) ? Verdict::yes : Verdict::open;
+  return out;
+}
+
+std::string why_open(const Line& line, const Bounds& bounds) {
+  if (!line.known()) return line.point.none;
+  if (nothing_seen(line.point)) return "no stop is touched, in a doubtful run";
+  const Estimate& one = line.estimate();
+  if (!one.unknown().empty()) return one.unknown();
+  const bool all = one.has_interval() && bounds.holds(one.least()) && bounds.holds(one.most());
+  const bool within = !bounds.holds(one.low()) || !bounds.holds(one.high());
+  if (!all && !within) return "it " + one.unsettled();
+  return all ? "one seed is too near to it" : "the limit lies within its interval";
+}
+
+}  // namespace ricochet::asks
