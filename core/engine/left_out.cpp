@@ -88,6 +88,22 @@ std::optional<Refusal> refuse_restitution(const Program& program) {
            name)};
 }
 
+bool measures_the_end(const Program& program) {
+  if (!program.contact || program.problem->changed_by_law() || program.stages.empty()) return false;
+  const StageProgram& last = program.stages.back();
+  if (!last.reads_contact || last.gate || last.restores > 0) return false;
+  const auto numbers = [](const Combination& c) {
+    std::vector<double> all = c.slots;
+    all.resize(most_slots);
+    all.push_back(c.z);
+    all.push_back(c.w);
+    return all;
+  };
+  double at_end = 0, elsewhere = 0;
+  for (const Level& level : last.measure_levels) (level.at == 1 ? at_end : elsewhere) += std::abs(level.weight);
+  return at_end == 1 && elsewhere == 0 && numbers(last.measure) == numbers(program.plan.stages.back().update[0]);
+}
+
 namespace {
 
 // What stops have of their own that neither law nor scheme has a use for.

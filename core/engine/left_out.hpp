@@ -15,6 +15,9 @@ std::string let_fly(Program& program, const CompileOptions& options);
 /// Why a scheme cannot take the restitutions that stops have of their own, or nothing.
 std::optional<Refusal> refuse_restitution(const Program& program);
 
+/// Whether a law that touches nothing has seen every point between its stops where the step ends.
+bool measures_the_end(const Program& program);
+
 /// Says what a compiled program does without. What stops have of their own and neither law nor scheme has a use for
 /// is among it.
 void say_left_out(Program& program);

@@ -1,30 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/left_out.hpp>
 #include <ricochet/kernels/flight_kernels.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
 
 namespace ricochet {
-namespace {
-
-// Whether a law that touches nothing has seen every point between its stops where the step ends.
-bool measures_the_end(const Program& program) {
-  if (!program.contact || program.problem->changed_by_law() || program.stages.empty()) return false;
-  const StageProgram& last = program.stages.back();
-  if (!last.reads_contact || last.gate || last.restores > 0) return false;
-  const auto numbers = [](const Combination& c) {
-    std::vector<double> all = c.slots;
-    all.resize(most_slots);
-    all.push_back(c.z);
-    all.push_back(c.w);
-    return all;
-  };
-  double at_end = 0, elsewhere = 0;
-  for (const Level& level : last.measure_levels) (level.at == 1 ? at_end : elsewhere) += std::abs(level.weight);
-  return at_end == 1 && elsewhere == 0 && numbers(last.measure) == numbers(program.plan.stages.back().update[0]);
-}
-
-}  // namespace
 
 void EnergyTotals::add(const Works& works) {
   work_of_loads += works.loads;
