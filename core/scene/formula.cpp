@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -225,6 +226,20 @@ const std::string& Formula::text() const {
 }
 bool Formula::is_written() const {
   return !source_->given;
+}
+
+double Formula::operations() const {
+  // A table or a random load looks one piece up.
+  constexpr double of_function = 8;
+  if (!source_->varies()) return 0;
+  if (source_->given) return of_function;
+  const std::string& text = source_->text;
+  double count = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool called = text[i] == '(' && i > 0 && std::isalnum(static_cast<unsigned char>(text[i - 1])) != 0;
+    count += called ? of_function : std::string("+-*/^?<>=&|").find(text[i]) != std::string::npos ? 1 : 0;
+  }
+  return count;
 }
 
 namespace {

@@ -52,6 +52,8 @@ class Formula {
   bool uses_t() const;
   /// A constant that equals zero: what it feeds is left out.
   bool is_zero() const;
+  /// What an evaluation takes, in operators of its text: each of them one, a function eight. 0 of a constant.
+  double operations() const;
   const std::string& text() const;
   /// Whether its text is what is evaluated; else that only names it.
   bool is_written() const;

@@ -269,6 +269,21 @@ bool DistributedLoad::assemble_steady(double* out) const {
   return any && !result.isZero(0);
 }
 
+LoadWork DistributedLoad::work() const {
+  LoadWork work;
+  const auto add = [&](const Formula& one, double times, double numbers) {
+    work.evaluations += one.uses_t() ? times : 0;
+    work.operations += times * one.operations();
+    work.numbers += numbers;
+  };
+  for (const Term& term : terms_) add(term.history, 1, unknowns());
+  if (!has_formula()) return work;
+  const auto places = static_cast<double>(points_.size());
+  add(formula_, formula_.uses_x() ? places : 1, 4 * places);
+  if (basis_) work.numbers += static_cast<double>(size_) * unknowns();
+  return work;
+}
+
 void DistributedLoad::assemble(double t, double* out) const {
   assemble_formula(t, out);
   for (int k = 0; k < terms(); ++k) Eigen::Map<Eigen::VectorXd>(out, unknowns()) += scale(k, t) * shape(k);

@@ -20,6 +20,11 @@ namespace ricochet {
 class ContactLaw;
 struct ModalBasis;
 
+/// Counts of an assembly of the load vector.
+struct LoadWork {
+  double evaluations = 0, operations = 0, numbers = 0;
+};
+
 /// Assembles the load vector F_i(t) = ∫f(x,t) φ_i dx (N, N m) by 4-point Gauss quadrature per element; without
 /// elements, the force f(0,t) (N) itself. Terms are assembled once, f_k into F_k by the same quadrature and a force at
 /// x into φ_i(x), and then scaled: F(t) = ∫f φ dx + Σ g_k(t) F_k.
@@ -47,6 +52,9 @@ class DistributedLoad {
   int terms() const { return static_cast<int>(terms_.size()); }
   /// F_k (n).
   const Eigen::VectorXd& shape(int k) const { return terms_[static_cast<std::size_t>(k)].shape; }
+  /// What assembling F(t) takes: formulas that are evaluated, operators in these (Formula::operations) and numbers that
+  /// are added up.
+  LoadWork work() const;
   /// g_k(t); not finite where the formula is not.
   double scale(int k, double t) const { return terms_[static_cast<std::size_t>(k)].history.value(0, t); }
 
