@@ -3,6 +3,8 @@
 
 namespace ricochet {
 
+struct Program;
+
 /// Bytes that this process may still take without paging. That is what the machine has free, less where the process or
 /// its group is allowed less; infinite where nobody says.
 double available_memory();
@@ -31,6 +33,17 @@ double predict_flights(const SemiDiscrete& problem, const StepWork& work, long l
 /// Seconds of one forcing period of so many steps by flights. Some 60 steps^0.17 of them are visited, as bench_flight
 /// counts on a beam with six impacts a period.
 double predict_visits(const SemiDiscrete& problem, const StepWork& work, double steps);
+
+/// What observers of an integration ask of its steps, beside the audit of energies and the recorder of impacts.
+struct WatchWork {
+  int observers = 0;     ///< that are shown every step
+  double numbers = 0;    ///< that these read after each step: entries of rows
+  bool samples = false;  ///< whether the audit reads energies after every step
+};
+
+/// Seconds of a marched step beside predict_cost(): loads assembled, works and energies added up, stops that are
+/// touched, friction, observers.
+double predict_watch(const Program& program, const WatchWork& watch);
 
 /// A dense eigenproblem of more is not solved to march by modes.
 inline constexpr int most_marched_by_modes = 1000;

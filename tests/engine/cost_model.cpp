@@ -41,6 +41,17 @@ TEST_CASE("modes are found once, factors once per stage that solves") {
   CHECK(repeated(OperatorKind::band, 2, 0).predicted_setup_seconds / factor == Approx(2).epsilon(1e-12));
 }
 
+TEST_CASE("a step costs more the more look at it, the more they read") {
+  const Program program = repeated(OperatorKind::modal, 1, 0), twice = repeated(OperatorKind::modal, 2, 0);
+  const double unseen = predict_watch(program, {}), seen = predict_watch(program, {.observers = 1});
+  CHECK(unseen > 0);
+  CHECK(unseen < seen);
+  CHECK(seen < predict_watch(program, {.observers = 2}));
+  CHECK(seen < predict_watch(program, {.observers = 1, .numbers = 100}));
+  CHECK(seen < predict_watch(program, {.observers = 1, .samples = true}));
+  CHECK(seen < predict_watch(twice, {.observers = 1}));
+}
+
 TEST_CASE("the operator follows the number of contact points") {
   // Modal rows of H have no zeros: one point is cheap, all of them are not.
   SceneSpec scene = working_set();
