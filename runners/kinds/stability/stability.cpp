@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <ricochet/engine/compile.hpp>
+#include <ricochet/engine/cost_model.hpp>
 #include <ricochet/scene/whole_load.hpp>
 
 #include "runners/asks/kind_verbs.hpp"
@@ -200,18 +201,46 @@ bool rests(const SceneSpec& scene, const SemiDiscrete& problem) {
   return !is_driven(scene) && lane.position.isZero(0) && lane.velocity.isZero(0);
 }
 
+// Modes of the structure, open and held at each set of points, and the roots of the step on each mode. Points that are
+// held by springs have one dense step of all slots. 20 spectra more find the limit.
+double spectra_seconds(const SemiDiscrete& problem, const StepPlan& plan, const ContactLaw& law, bool touches,
+                       std::size_t steps) {
+  constexpr double cubic = 1e-8, root = 2e-6;
+  const double n = problem.dofs(), slots = static_cast<double>(plan.slots.size());
+  const double spectra = static_cast<double>(steps) + 20, sets = touches ? std::min(problem.points(), 20) + 1 : 0;
+  const double of_modes = cubic * n * n * n, of_roots = spectra * n * slots * root;
+  if (law.reads()) return of_modes + of_roots + spectra * sets * cubic * std::pow(slots * n, 3);
+  return (1 + sets) * (of_modes + of_roots);
+}
+
+// A step that observation marches, and its energies.
+double marched_step_seconds(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
+                            const StudyCase& study_case, const Registry& registry) {
+  const double unknown = 1e-6 + 2e-8 * problem->dofs();
+  try {
+    const auto compiled = compile(problem, plan, h, make_law(study_case, registry),
+                                  {scene_lane(*problem, study_case.contact.parameters)}, {});
+    const auto* program = std::get_if<Program>(&compiled);
+    return program ? program->predicted_step_seconds + predict_watch(*program, {.observers = 1, .samples = true})
+                   : unknown;
+  } catch (const IndefiniteStep&) {
+    return unknown;
+  }
+}
+
 }  // namespace
 
 CasePlan plan_stability(const StudyCase& study_case, const Registry& registry) {
   CasePlan out;
   const auto law = make_law(study_case, registry);
-  const auto discretised = discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry),
-                                      law.get(), &study_case.contact.parameters);
+  auto discretised = discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry), law.get(),
+                                &study_case.contact.parameters);
   if (const auto* refusal = std::get_if<Refusal>(&discretised)) {
     out.refusal = refusal->sentence.text;
     return out;
   }
-  const SemiDiscrete& problem = std::get<SemiDiscrete>(discretised);
+  const auto shared = std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(discretised)));
+  const SemiDiscrete& problem = *shared;
   out.notes = problem.notes;
   const auto scheme = make_scheme(study_case, registry);
   const std::vector<double> steps = steps_of(study_case);
@@ -222,11 +251,9 @@ CasePlan plan_stability(const StudyCase& study_case, const Registry& registry) {
   }
   out.coarsest_step = std::max(steps.front(), steps.back());
   out.finest_step = std::min(steps.front(), steps.back());
-  const auto n = static_cast<double>(problem.dofs());
-  // Eigenvalues of a step with the contact closed, per step of the range and for the bisection.
-  out.predicted_seconds = 1e-8 * n * n * n * static_cast<double>(std::min<std::size_t>(steps.size(), 40) + 20);
-  if (!study_case.settings.value("observe", true)) return out;
   const bool touches = problem.points() > 0 && !law->absent();
+  out.predicted_seconds = spectra_seconds(problem, std::get<StepPlan>(made), *law, touches, steps.size());
+  if (!study_case.settings.value("observe", true)) return out;
   if (touches && rests(study_case.scene, problem))
     out.notes.emplace_back(
         "closed: the scene is at rest, so what contact does is predicted and not observed; give it an initial state or "
@@ -239,7 +266,8 @@ CasePlan plan_stability(const StudyCase& study_case, const Registry& registry) {
     else if (touches)
       out.steps += 10 * free_steps;
   }
-  out.predicted_seconds += static_cast<double>(out.steps) * (6e-7 + 2e-8 * n);
+  out.predicted_seconds += static_cast<double>(out.steps) *
+                           marched_step_seconds(shared, std::get<StepPlan>(made), steps.front(), study_case, registry);
   return out;
 }
 
