@@ -150,6 +150,93 @@ TEST_CASE("forecast: a sweep and a range of steps take what their plans predict,
   }
 }
 
+namespace {
+
+// A tube between two supports, in two planes, pushed at one place, at stops that have names.
+Json pushed_tube(int stops, const Json& stop = Json::object()) {
+  Json study = Json::parse(R"study({
+    "name": "pushed", "kind": "trajectory",
+    "scene": {
+      "structure": {"type": "beam", "planes": 2, "length": 1.2, "section": {"type": "given", "EI": 500, "rhoS": 0.5},
+                    "damping": {"stiffness": 2e-5},
+                    "supports": [{"name": "a", "x": 0, "type": "pinned"}, {"name": "b", "x": 1.2, "type": "pinned"}]},
+      "stops": [], "load": [{"at": {"x": 0.7, "component": "uy"}, "force": "20*sin(300*t)"}]},
+    "mesh": {"elements": 12},
+    "methods": {"mass": "consistent", "contact": {"name": "penalty", "stiffness": 1e6}, "time": "newmark-dumont-paoli"},
+    "step": 1e-5, "duration": 0.5, "march": "every-step"})study");
+  for (int i = 0; i < stops; ++i) {
+    Json one = {
+        {"name", "s" + std::to_string(i)}, {"at", {{"x", 0.1 * (i + 1)}, {"component", "uy"}}}, {"lower", -1e-4}};
+    one.update(stop);
+    study["scene"]["stops"].push_back(one);
+  }
+  return study;
+}
+
+// Of the one case, without what a machine adds.
+CasePlan planned_alone(const Json& study) {
+  Planned planned(study);
+  REQUIRE(planned.study.cases.size() == 1);
+  const CasePlan plan = planned.cases.front().plan;
+  REQUIRE(plan.refusal.empty());
+  return plan;
+}
+double modelled_seconds(const Json& study) {
+  return planned_alone(study).predicted_seconds;
+}
+
+}  // namespace
+
+TEST_CASE("forecast: stops, their tangents and friction cost, each on top of the other") {
+  const Json tangent = {{"tangent", {{"component", "uz"}}}};
+  Json rubs = tangent;
+  rubs["friction"] = 0.3;
+  const double one = modelled_seconds(pushed_tube(1)), four = modelled_seconds(pushed_tube(4)),
+               eight = modelled_seconds(pushed_tube(8));
+  CHECK(one < four);
+  CHECK(four < eight);
+  const double slides = modelled_seconds(pushed_tube(4, tangent)), rubbed = modelled_seconds(pushed_tube(4, rubs));
+  CHECK(four < slides);
+  CHECK(slides < rubbed);
+  CHECK(modelled_seconds(pushed_tube(1, rubs)) < rubbed);
+}
+
+TEST_CASE("forecast: loads cost what evaluating them takes") {
+  const auto forces = [](int count, const Json& force) {
+    Json study = pushed_tube(1), load = Json::array();
+    for (int i = 0; i < count; ++i)
+      load.push_back({{"at", {{"x", 0.1 * (i + 1)}, {"component", "uy"}}}, {"force", force}});
+    study["scene"]["load"] = load;
+    return modelled_seconds(study);
+  };
+  const double plain = forces(1, "20*t"), harmonic = forces(1, "20*sin(300*t)");
+  CHECK(plain < harmonic);
+  CHECK(harmonic < forces(4, "20*sin(300*t)"));
+}
+
+TEST_CASE("forecast: a window whose parts are told costs more, and no step is free") {
+  Json study = pushed_tube(2), windowed = study;
+  windowed["window"] = {{"from", 0.1}, {"to", 0.5}, {"parts", 8}};
+  const CasePlan plan = planned_alone(study);
+  CHECK(plan.predicted_seconds < modelled_seconds(windowed));
+  // A loaded step that is shown to nobody but the audit took 0.6 µs and more wherever it was measured.
+  constexpr double floor = 2e-7;
+  CHECK(plan.predicted_seconds > floor * static_cast<double>(plan.steps));
+  study["duration"] = 5;
+  CHECK(modelled_seconds(study) / plan.predicted_seconds == Approx(10).epsilon(0.05));
+}
+
+TEST_CASE("forecast: a window makes every step of an unloaded march be shown") {
+  Json study = swinging_beam("trajectory");
+  study["mesh"]["elements"] = 8;
+  study["methods"]["mass"] = "consistent";
+  study["step"] = 5e-5;
+  study["march"] = "every-step";
+  const double alone = modelled_seconds(study);
+  study["window"] = {{"from", 0.1}, {"to", 0.2}};
+  CHECK(alone < modelled_seconds(study));
+}
+
 TEST_CASE("forecast: orbits that begin in the state of the scene are planned from there") {
   Json study = Json::parse(R"({
     "name": "behind", "kind": "bifurcation",
