@@ -388,7 +388,10 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   if (program.friction)
     if (auto refusal = refuse_jamming(program)) return *refusal;
   say_left_out(program);
-  if (!way.flies) return program;
+  if (!way.flies) {
+    program.predicted_step_seconds += predict_loads(program);
+    return program;
+  }
   if (const std::string cause = let_fly(program, options); !cause.empty()) {
     if (options.march == MarchWay::flights) return refuse_flight(cause);
     // Once more, with the operator that every step is cheapest with.

@@ -186,8 +186,8 @@ double predict_visits(const SemiDiscrete& problem, const StepWork& work, double 
 namespace {
 
 // Nanoseconds of what a step costs beside its solves, at one lane. Fitted by least squares of relative errors, none
-// negative, to 760 trajectories of beams: 13 schemes, 12 to 192 dofs, up to 8 stops, 64 sides, 4 points that rub. Each
-// is the lesser of two runs. With its own share of contact, the fit is within 0.32 and 1.6 of all of them.
+// negative, to 760 trajectories of beams: 13 schemes, 12 to 192 dofs, up to 8 stops, 64 sides, 4 points that rub. With
+// its own share of contact, the fit is within 0.32 and 1.6 of all of them; its numbers are then rounded.
 namespace watched {
 constexpr double free_step = 100;         // told to observers, not shown
 constexpr double step = 150, stage = 35;  // shown
@@ -256,15 +256,6 @@ StagesAsk stages_ask(const Program& program) {
   return ask;
 }
 
-double load_nanoseconds(const Program& program, const StagesAsk& ask) {
-  if (!program.load) return 0;
-  const LoadWork work = program.problem->load->work();
-  const double assembly = work.evaluations * watched::evaluation + work.operations * watched::operation +
-                          work.numbers * watched::load_number;
-  const double sums = ask.stages * (watched::load + 2 * watched::load_number * program.model->rows());
-  return sums + (program.load_constant ? 0 : ask.levels * assembly);
-}
-
 // While a stop is touched: the law, what its efforts move, and friction, which finds both again in each of its turns.
 double touched_nanoseconds(const Program& program, const StagesAsk& ask) {
   const double rows = program.friction ? program.model->rubbed().rows() : 0;
@@ -285,6 +276,16 @@ double state_entries(const Program& program, bool samples) {
 
 }  // namespace
 
+double predict_loads(const Program& program) {
+  if (!program.load) return 0;
+  const StagesAsk ask = stages_ask(program);
+  const LoadWork work = program.problem->load->work();
+  const double assembly = work.evaluations * watched::evaluation + work.operations * watched::operation +
+                          work.numbers * watched::load_number;
+  const double sums = ask.stages * (watched::load + 2 * watched::load_number * program.model->rows());
+  return 1e-9 * (sums + (program.load_constant ? 0 : ask.levels * assembly));
+}
+
 double predict_watch(const Program& program, const WatchWork& watch) {
   const SemiDiscrete& problem = *program.problem;
   const StagesAsk ask = stages_ask(program);
@@ -301,7 +302,7 @@ double predict_watch(const Program& program, const WatchWork& watch) {
                         ask.stages * (watched::stage + watched::number * program.model->rows());
   const double histories =
       static_cast<double>(problem.motions.histories.size()) * ((ask.of_contact + 1) * problem.points() + ask.levels);
-  const double nanoseconds = (1 - shown) * watched::free_step + shown * looked + load_nanoseconds(program, ask) +
+  const double nanoseconds = (1 - shown) * watched::free_step + shown * looked +
                              touched * touched_nanoseconds(program, ask) + watched::motion * histories;
   return 1e-9 * nanoseconds;
 }

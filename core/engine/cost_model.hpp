@@ -41,7 +41,9 @@ struct WatchWork {
   bool samples = false;  ///< whether the audit reads energies after every step
 };
 
-/// Seconds of a marched step beside predict_cost(): loads assembled, works and energies added up, stops that are
+/// Seconds of a marched step that loads take, of the whole block.
+double predict_loads(const Program& program);
+/// Seconds of a marched step beside what its program predicts: works and energies added up, stops that are
 /// touched, friction, observers.
 double predict_watch(const Program& program, const WatchWork& watch);
 

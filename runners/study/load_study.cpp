@@ -294,6 +294,19 @@ double count_cases(const std::vector<Axis>& lists, const std::vector<CaseAxis>& 
   return everything.count();
 }
 
+/// Whether anything in a scene is drawn.
+bool has_random(const Json& scene) {
+  if (!scene.is_structured()) return false;
+  if (scene.is_object() && scene.contains("psd")) return true;
+  return std::any_of(scene.begin(), scene.end(), [](const Json& one) { return has_random(one); });
+}
+
+void check_seeds(const std::vector<Axis>& lists, const Json& scene) {
+  for (const Axis& list : lists)
+    if (list.pointer == "/scene/seed" && list.values.size() > 1 && !has_random(scene))
+      throw InputError(list.pointer, "seeds draw random loads (psd), and this scene has none: all would be one case");
+}
+
 }  // namespace
 
 Study parse_study(const std::string& text, Catalogue& catalogue, Registry& registry,
@@ -316,6 +329,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   common.files = std::make_shared<StudyFiles>(folder, resolved["files"], resolved.value("outside", false));
   resolved.erase("files");
   check_kind(kind, resolved);
+  check_seeds(lists, resolved["scene"]);
   const std::vector<MeshChoice> meshes = meshes_of(resolved["mesh"], resolved["scene"]);
   auto methods = read_roles(resolved["methods"], has_friction(resolved["scene"]), catalogue, registry, folder);
   std::vector<MethodChoice> references;

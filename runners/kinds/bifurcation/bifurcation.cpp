@@ -113,6 +113,20 @@ Refined refined(const std::vector<double>& values, const Json& tolerance) {
 
 }  // namespace
 
+namespace {
+
+// Measured: 220 bytes for each kept period, and as much again for what is said of the orbit.
+constexpr double bytes_of_period = 220, bytes_of_orbit = 2000;
+
+// Lanes of a block of orbits that begin by themselves. Values that change the step have a factorisation each: there
+// only starts are lanes of one block.
+int lanes_abreast(const ForcedScenes& scenes, int first, int last, double starts, double values) {
+  const bool apart = scenes[last].refusal.empty() && scenes[last].group != scenes[first].group;
+  return static_cast<int>(std::clamp((apart ? 1.0 : values) * starts, 1.0, 8.0));
+}
+
+}  // namespace
+
 CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry) {
   CasePlan out;
   const std::vector<double> values = parameter_values(study_case.settings);
@@ -151,27 +165,28 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
   for (const StartSpec& start : starts)
     (start.kind == StartSpec::up || start.kind == StartSpec::down ? chains : singles) += 1;
   const double count = static_cast<double>(values.size()), period = study_case.steps_per_period;
-  const auto lanes = [&](int width) { return contact_share * scenes.predicted_step_seconds(0, width) / width; };
+  const auto lane = [&](int width) { return contact_share * scenes.predicted_step_seconds(0, width) / width; };
+  const int width =
+      lanes_abreast(scenes, representative, scenes.add(pointer, values.back(), own_state), singles, count);
   const double orbit = (transient + kept) * period;
   out.steps = static_cast<long long>(orbit * count * (chains + singles));
-  out.predicted_seconds = orbit * count * (singles * lanes(8) + chains * lanes(std::max(1, static_cast<int>(chains))));
+  out.predicted_seconds =
+      orbit * count * (singles * lane(width) + chains * lane(std::max(1, static_cast<int>(chains))));
   const Refined more = refined(values, settings.value("refine", Json(nullptr)));
   out.steps += static_cast<long long>(orbit * more.orbits * (chains + singles));
-  out.predicted_seconds += orbit * more.orbits * (chains + singles) * lanes(more.abreast);
+  out.predicted_seconds += orbit * more.orbits * (chains + singles) * lane(more.abreast);
   // Chains march abreast, through all values; the others in blocks. Refined values wait for both.
   const double alone = contact_share * scenes.predicted_step_seconds(0, 1);
-  const double block = contact_share * scenes.predicted_step_seconds(0, 8);
+  const double block = contact_share * scenes.predicted_step_seconds(0, width);
   const double rounds = more.orbits > 0 ? more.orbits / more.abreast : 0;
   out.chain_seconds =
       orbit * (chains > 0 ? count * alone : block) + orbit * rounds * (chains + singles > 0 ? block : 0);
-  // Measured: 220 bytes for each kept period, and as much again for what is said of the orbit.
-  constexpr double bytes_of_period = 220, bytes_of_orbit = 2000;
   out.bytes = (count + more.orbits) * (chains + singles) * (bytes_of_orbit + bytes_of_period * kept);
   // The orbit again, one column more than exponents, and the twin.
   const bool blind = exponents > 0 && tangents_miss_impacts(scenes.program(0, {scenes[representative].lane}));
   if (blind) out.notes.push_back(fmt::format("no exponents of orbits with impacts: {}", why_blind));
   if (exponents > 0 && !blind)
-    out.predicted_seconds += kept * period * count * (chains + singles) * (exponents + 3) * lanes(8);
+    out.predicted_seconds += kept * period * count * (chains + singles) * (exponents + 3) * lane(8);
   return out;
 }
 

@@ -154,7 +154,9 @@ class PointsAsk {
         continue;
       }
       if (!is_point_kind(point.kind) || std::isnan(point.parameter) || !(all_ || kinds_.contains(point.kind))) continue;
-      if (point.kind == "fold" && ((point.name < 0 && point.prominence < least) || is_doubling(point))) continue;
+      // A turn by less than its place is uncertain by may be one of the step.
+      const bool small = (point.name < 0 && point.prominence < least) || point.prominence <= 2 * point.half;
+      if (point.kind == "fold" && (small || is_doubling(point))) continue;
       Told told{&point, point.parameter, point.half, point.half};
       if (const auto& low = point.row.low, &high = point.row.high; low && high) {
         told.less = std::max(0.0, told.value - *low);
@@ -486,6 +488,8 @@ class PointsAsk {
 
   std::string kinds_text() const {
     std::vector<std::string> names(kinds_.begin(), kinds_.end());
+    if (kinds_.contains("contact"))
+      std::erase_if(names, [](const std::string& one) { return one == "first contact" || one == "lift-off"; });
     return fmt::format("{}", fmt::join(names, " or "));
   }
 

@@ -76,6 +76,18 @@ TEST_CASE("what a second case confirms is told before what one case alone has", 
   CHECK_THAT(single.sentence, Contains(", which no second case confirms;") && !Contains(" ± "));
 }
 
+TEST_CASE("a turn by less than its place is uncertain by is no fold", "[asks]") {
+  StudyResults made = synthetic::points();
+  REQUIRE(count(ask(with_tables(made), {"fold"}), "fold") > 0);
+  for (CaseRecord& record : made.cases)
+    for (Table& table : record.tables)
+      if (const auto column = find_column(table.columns, "prominence"); column && table.name == "special_points")
+        for (Row& row : table.rows) row[*column] = Cell(1e-9);
+  const asks::Answered out = ask(with_tables(std::move(made)), {"fold"});
+  INFO(out.sentence);
+  CHECK(count(out, "fold") == 0);
+}
+
 TEST_CASE("a kind that was not met is no where branches went on, and open where they stopped", "[asks]") {
   const StudyResults all = with_tables(synthetic::points());
   const asks::Answered out = ask(all, {"flip"});
