@@ -64,7 +64,7 @@ double largest_gain(const SceneSpec& scene, int elements, const Methods& methods
 
 }  // namespace
 
-TEST_CASE("a block that turns back under its static bound stays there, at every step; so does one that starts there",
+TEST_CASE("a block that turns back under its static bound stays there at every step, and so does one that starts there",
           "[friction]") {
   // k = 100 N/m; thrown so that it stops at 40 mm, where the spring pulls 4 N: ½ v² = ½ k x² + μ_d N x.
   const double stiffness = 100, place = 0.04, force = 10;

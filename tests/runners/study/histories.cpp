@@ -105,7 +105,7 @@ TEST_CASE("random loads: a seed is an axis, and each seed is another load") {
   CHECK(ends.size() == 3);
   Json sure = with_force("sin(t)");
   sure["scene"]["seed"] = {1, 2, 3};
-  CHECK_THROWS_WITH(studies.of(sure), Contains("/scene/seed") && Contains("seeds draw random loads (psd)"));
+  CHECK_THROWS_WITH(studies.of(sure), Contains("seeds draw random loads (psd)"));
 }
 
 TEST_CASE("a spectrum from a table is the one of the formula that the table samples") {

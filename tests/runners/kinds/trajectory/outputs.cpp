@@ -42,7 +42,7 @@ Json tube() {
                         {"name": "end", "at": {"x": 1.5}, "lower": -0.01, "upper": 0.01}]},
     "mesh": {"elements": 10},
     "methods": {"mass": "consistent", "contact": {"name": "penalty", "stiffness": 1e6}, "time": "newmark-dumont-paoli"},
-    "step": 5e-5, "duration": 0.1, "window": {"from": 0, "to": 0.1, "parts": 10}})json");
+    "step": 5e-5, "march": "every-step", "duration": 0.1, "window": {"from": 0, "to": 0.1, "parts": 10}})json");
 }
 
 const std::vector<double>& curve_of(const CaseRecord& record, const std::string& name) {
