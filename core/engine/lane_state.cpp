@@ -108,10 +108,14 @@ void Marcher::set_state_at(int column, const LaneState& state) {
     for (std::size_t k = 0; k < stage->effort.size(); ++k)
       for (int i = 0; i < stage->effort[k].rows(); ++i) {
         stage->effort[k].at(i, column) = *effort++;
-        active = active || (k == 0 && stage->effort[0].at(i, column) != 0);
+        active = active || ((k == 0 || column >= lanes()) && stage->effort[k].at(i, column) != 0);
       }
     if (stage->fastest.rows() > 0) stage->fastest.at(0, column) = *fastest++;
-    if (column >= lanes()) continue;
+    if (column >= lanes()) {
+      // Efforts of steps before that a tangent brings act in the next step: it looks at contact.
+      if (active) stage->contact_lanes |= 1u << (column % lanes());
+      continue;
+    }
     stage->contact_lanes &= ~(1u << column);
     stage->contact_lanes |= static_cast<std::uint32_t>(active) << column;
   }

@@ -1,5 +1,7 @@
 #include "runners/asks/bounds.hpp"
 
+#include <fmt/format.h>
+
 namespace ricochet::asks {
 namespace {
 
@@ -30,6 +32,11 @@ Kept kept(const Line& line, const Bounds& bounds) {
   }
   out.verdict = beyond ? Verdict::no : all && !nothing_seen(line.point) ? Verdict::yes : Verdict::open;
   return out;
+}
+
+std::string beyond_text(const Kept& one) {
+  if (one.beyond == 0) return "";
+  return fmt::format("{} of {} seeds {} beyond", one.beyond, one.draws, one.beyond == 1 ? "is" : "are");
 }
 
 std::string why_open(const Line& line, const Bounds& bounds) {

@@ -25,6 +25,9 @@ struct Kept {
 /// Of what is no mean, as a peak, each seed has to hold, with what refinement leaves of it.
 Kept kept(const Line& line, const Bounds& bounds);
 
+/// "2 of 8 seeds are beyond"; "" where none is, or the limit does not speak of each.
+std::string beyond_text(const Kept& one);
+
 /// Why that is open.
 std::string why_open(const Line& line, const Bounds& bounds);
 

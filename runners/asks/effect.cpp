@@ -40,6 +40,11 @@ void judge(Told& told, double from) {
     return;
   }
   const Pair& pair = *told.pair;
+  // What is the same to the last bit needs no scale.
+  if (pair.identical) {
+    told.verdict = Verdict::no;
+    return;
+  }
   if (pair.least) {
     const bool larger = pair.share && std::abs(*pair.share) > from;
     told.verdict = larger ? Verdict::yes : Verdict::open;

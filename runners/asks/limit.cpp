@@ -11,12 +11,6 @@
 namespace ricochet::asks {
 namespace {
 
-/// "2 of 8 seeds are beyond"; "" where none is, or the limit does not speak of each.
-std::string beyond_text(const Kept& one) {
-  if (one.beyond == 0) return "";
-  return fmt::format("{} of {} seeds {} beyond", one.beyond, one.draws, one.beyond == 1 ? "is" : "are");
-}
-
 using Marked = std::vector<const Line*>;
 
 /// "below 3 mm and above 1 mm", and both as the figure draws them.

@@ -249,7 +249,10 @@ Answered never_alone(Answered begun, const Lines& lines, const std::string& choi
 }
 
 std::string short_reason(const std::string& reason) {
-  return reason.substr(0, reason.find(": "));
+  const std::string first = ", the first";
+  std::string out = reason.substr(0, reason.find(": "));
+  if (out.ends_with(first)) out.resize(out.size() - first.size());
+  return out;
 }
 
 std::string some_of(const std::vector<std::string>& names, std::size_t most) {

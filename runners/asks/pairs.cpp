@@ -71,6 +71,11 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
     if (a && b && draws.size() == 1) halves[*finest][seed] = same ? 0 : std::hypot(*a, *b);
   }
   const double floor = std::max(first.floor, second.floor);
+  out.identical =
+      differences.size() > 1 && std::abs(out.base) > floor && first.halves == second.halves &&
+      std::all_of(differences.begin(), differences.end(), [](const auto& sized) {
+        return std::all_of(sized.second.begin(), sized.second.end(), [](const auto& one) { return one.second == 0; });
+      });
   const bool has_step = first.estimate && first.estimate->has_step;
   const auto own_u = [&](const Point& point) -> std::optional<double> {
     const bool there = point.finest == finest && point.estimate && point.estimate->has_interval();

@@ -159,7 +159,7 @@ class Threshold {
       const std::string where =
           place(first) + (not_monotone.size() < judged ? fmt::format(" ({} of {})", not_monotone.size(), judged) : "");
       out.sentence = in_thirty_words(fmt::format("Not monotone: {} {}", lines_.words.words, ranges(first, what)),
-                                     {{where, place(first)}});
+                                     {{where, fmt::format(" ({} of {})", not_monotone.size(), judged)}});
       return out;
     }
     if (with.empty()) return say_unchanged(out, without, what, place);
@@ -306,6 +306,8 @@ class Threshold {
                     : equals(line, condition_)                              ? "equal"
                                                                             : "below";
       if (series.states[k] == Verdict::open && row.reason.empty()) row.reason = why_not(line);
+      if (series.states[k] == Verdict::no && row.reason.empty() && !condition_.is)
+        row.reason = beyond_text(kept(line, condition_.bounds()));
       out.rows.push_back(std::move(row));
     }
     VerdictRow row;

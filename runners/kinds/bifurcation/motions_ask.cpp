@@ -128,18 +128,34 @@ class MotionsAlong {
   }
 
  private:
+  static void add_run(ValueMotions& at, const DiagramRun& run) {
+    run.decided() ? ++at.decided : ++at.open;
+    if (!run.decided()) return;
+    at.motions.emplace(motion_words(run.motion), run.attractor);
+    at.word = ricochet::text(run.motion);
+  }
+
   void read(const CaseRecord& record, const DiagramCase& of) {
     CaseMotions& out = told_.emplace_back();
     out.record = &record;
     out.level = evidence_.level(record, columns_);
+    std::map<int, std::map<double, const DiagramRun*>> by_start;
     for (const DiagramRun& run : of.runs) {
       if (!std::isfinite(run.parameter)) continue;
-      ValueMotions& at = out.at[run.parameter];
-      run.decided() ? ++at.decided : ++at.open;
-      if (!run.decided()) continue;
-      at.motions.emplace(motion_words(run.motion), run.attractor);
-      at.word = ricochet::text(run.motion);
+      by_start[run.start][run.parameter] = &run;
+      add_run(out.at[run.parameter], run);
     }
+    // Where the study refined, only starts whose motion changed were marched: others are as on both sides.
+    for (auto& [value, at] : out.at)
+      for (const auto& [start, runs] : by_start) {
+        const auto above = runs.lower_bound(value);
+        if (above == runs.end() || above == runs.begin() || above->first == value) continue;
+        const DiagramRun &low = *std::prev(above)->second, &high = *above->second;
+        if (low.decided() && high.decided() && motion_words(low.motion) == motion_words(high.motion))
+          add_run(at, low);
+        else
+          ++at.open;
+      }
     std::set<double> values;
     for (const auto& [value, at] : out.at) values.insert(value);
     for (const auto& [value, width] : widths_of(values)) {

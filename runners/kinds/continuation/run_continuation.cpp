@@ -228,9 +228,9 @@ class ContinuationRun {
     branch.trace = run.trace();
     if (!stopping && !over_budget_) stopping = stopping_point(branch, branch.trace);
     if (stopping) cut_at(branch.trace, *stopping);
-    if (const std::string& why = continued_.impossible(branch.trace.corners.back().parameter);
-        branch.trace.ends == TraceEnd::range && !why.empty())
-      branch.trace.end += "; " + why;
+    if (branch.trace.ends == TraceEnd::range && !branch.trace.corners.empty())
+      if (const std::string& why = continued_.impossible(branch.trace.corners.back().parameter); !why.empty())
+        branch.trace.end += "; " + why;
     if (over_budget_)
       branch.trace.end_by(TraceEnd::limit, fmt::format("the budget of {:g} s was spent", budget_of(case_)));
     checkpoints_.keep(branch.name, kept(run), sets_of(map_));

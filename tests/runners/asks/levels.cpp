@@ -223,7 +223,11 @@ TEST_CASE("asks: thresholds and limits speak alike of seeds, and of levels that 
   const Answered threshold = answer_of(results, {{"threshold", "impulse"}, {"below", 3.0}, {"along", "stops.upper"}}),
                  limit = answer_of(results, {{"limit", "impulse"}, {"below", 3.0}});
   INFO(threshold.sentence << "\n" << limit.sentence);
-  for (std::size_t k = 0; k < 4; ++k) CHECK(threshold.rows[k].verdict == limit.rows[k].verdict);
+  for (std::size_t k = 0; k < 4; ++k) {
+    CHECK(threshold.rows[k].verdict == limit.rows[k].verdict);
+    CHECK(threshold.rows[k].reason == limit.rows[k].reason);
+  }
+  CHECK(threshold.rows[1].reason == "1 of 6 seeds is beyond");
   CHECK(threshold.sentence.starts_with("Between 1 and 2:"));
 }
 

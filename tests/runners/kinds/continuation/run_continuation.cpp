@@ -1,6 +1,9 @@
 // Branches of a case, their rows, and what becomes of a case that is stopped.
 #include <algorithm>
+#include <cmath>
+#include <complex>
 #include <map>
+#include <numbers>
 #include <ricochet/measure/orbits/branch.hpp>
 
 #include "runners/kinds/bifurcation/bifurcation.hpp"
@@ -51,6 +54,29 @@ TEST_CASE("every row of a branch is an orbit, and rows go on from each other") {
   CHECK(arcs.size() == 2);
   const auto points = points_of(record);
   CHECK(std::count_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "end"; }) == 2);
+}
+
+TEST_CASE("orbits that touch nothing have the multipliers of their free motion, whatever efforts a scheme keeps") {
+  Json study = Json::parse(R"json({
+    "name": "free", "kind": "continuation",
+    "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.08,
+                            "force": {"amplitude": 0.6, "pulsation": 1}},
+              "stops": {"upper": 1.2, "at": "tip"}},
+    "methods": {"mass": "consistent", "contact": {"name": "penalty", "stiffness": 30, "evaluation": "averaged"},
+                "time": "moreau-jean"},
+    "parameter": {"pointer": "/scene/structure/force/pulsation", "from": 0.6, "to": 0.75},
+    "steps_per_period": 100, "orbits": [{"at": 0.65, "from": "rest", "periods": 200}]})json");
+  for (const char* time : {"moreau-jean", "newmark-dumont-paoli", "generalised-alpha"}) {
+    INFO(time);
+    study["methods"]["time"] = time;
+    const CaseRecord record = continued(study);
+    REQUIRE(record.status == Status::done);
+    const auto rows = rows_of(record);
+    REQUIRE(rows.size() > 4);
+    // e^{(−ζ ± i√(1−ζ²)) 2π/ω}, ζ = 0.04, to what the scheme damps and turns it by.
+    const double period = 2 * std::numbers::pi / *rows.front().parameter;
+    CHECK(std::abs(rows.front().multipliers.front().value()) == Approx(std::exp(-0.04 * period)).epsilon(0.02));
+  }
 }
 
 TEST_CASE("marks are solved where they are asked for, and a branch stops where the study says") {
