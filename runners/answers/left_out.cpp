@@ -14,7 +14,7 @@ std::string why_without(const std::string& name, const CaseRecord& record) {
   for (const auto& [item, reason] : record.left_out)
     if (item == name) return reason;
   const MeasureWords words = measure_words(name);
-  const bool of_energy = words.scale == "energy_brought_in" || words.most;
+  const bool of_energy = words.scale == "energy_brought_in" || words.most || name.starts_with("work_of_");
   if (!of_energy) return "";
   // Works are known together or not at all.
   if (!measure(record, "work_of_damping")) return no_work_form;

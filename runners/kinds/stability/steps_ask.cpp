@@ -60,6 +60,10 @@ class StepsAsk {
     range_ = fmt::format("{} to {} s", answers::short_number(from_), answers::short_number(range.value("to", 0.0)));
     const std::vector<std::string>& columns = evidence.results().columns;
     meshed_ = resolved.contains("mesh") || std::find(columns.begin(), columns.end(), "elements") != columns.end();
+    // Matrices and modes of another program have no mesh of their own.
+    const Json scene = resolved.is_object() ? resolved.value("scene", Json::object()) : Json::object();
+    const std::string type = scene.value("structure", Json::object()).value("type", "");
+    meshed_ = meshed_ && type != "assembled" && type != "modal";
     std::map<std::string, StepLimit> by_id;
     for (const LimitRow& row : rows) (row.closed ? by_id[row.id].closed : by_id[row.id].open) = row;
     for (const CaseRecord* one : cases_)
