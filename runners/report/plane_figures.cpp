@@ -60,21 +60,24 @@ class PlaneFigure : public AskFigure {
                     const std::string& across, const std::string& upwards, bool log_x, bool log_y) {
     std::vector<double> xs, ys = at_;
     std::vector<std::string> names;
-    bool intervals = false;
+    double widest = 0;
     for (const Series& one : all) {
       names.push_back(one.name);
       for (const Point& point : one.points) {
         xs.push_back(point.x);
         point.mark.add_to(ys);
-        intervals = intervals || point.mark.low;
+        if (point.mark.low) widest = std::max(widest, *point.mark.high - *point.mark.low);
       }
       if (one.floor) ys.push_back(*one.floor);
     }
     for (const auto& [low, high] : between) xs.insert(xs.end(), {low, high});
     if (xs.empty() || ys.empty()) return "";
-    // Whiskers stand side by side where they have the same place.
+    // Whiskers stand side by side where they have the same place. Marks without a whisker to be seen stay at theirs.
     const auto others = static_cast<double>(all.size() - 1);
-    const double apart = all.size() < 2 || !intervals ? 0 : std::min(5.0, 24.0 / others);
+    const auto [lowest, highest] = std::minmax_element(ys.begin(), ys.end());
+    constexpr double seen = 0.02;  // of the axis
+    const bool whiskers = log_y ? widest > 0 : widest > seen * (*highest - *lowest);
+    const double apart = all.size() < 2 || !whiskers ? 0 : std::min(5.0, 24.0 / others);
     const Frame in = frame(names, xs, ys, across, upwards, log_x, log_y, apart * others / 2 + dot + 2);
     for (const auto& [from, to] : between)
       draw_.box(in.x.at(from), in.top, in.x.at(to) - in.x.at(from), in.bottom - in.top, "between");

@@ -115,8 +115,12 @@ void viscosity_cell(HtmlTable& table, const Viscosity* v) {
   }
   const std::string range = range_text(v->numerical);
   const bool feeds = v->numerical.low < 0 && -v->numerical.low >= v->numerical.high;
+  // Without α it is told in the unit of time: of a second that is round-off.
+  constexpr double round_off = 1e-15;
   if (v->numerical.low == 0 && v->numerical.high == 0)
     table.text("0", "text");
+  else if (!v->share && std::max(std::abs(v->numerical.low), std::abs(v->numerical.high)) < round_off)
+    table.text("0 to round-off", "text");
   else if (!v->share)
     table.text(range + ": no α to compare with", "warned");
   else if (*v->share < 1e-12)
