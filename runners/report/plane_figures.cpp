@@ -72,12 +72,13 @@ class PlaneFigure : public AskFigure {
     }
     for (const auto& [low, high] : between) xs.insert(xs.end(), {low, high});
     if (xs.empty() || ys.empty()) return "";
-    // Whiskers stand side by side where they have the same place. Marks without a whisker to be seen stay at theirs.
+    // Whiskers stand side by side where they have the same place. Marks without a whisker to be seen stand as near to
+    // theirs as lets all be seen.
     const auto others = static_cast<double>(all.size() - 1);
     const auto [lowest, highest] = std::minmax_element(ys.begin(), ys.end());
     constexpr double seen = 0.02;  // of the axis
     const bool whiskers = log_y ? widest > 0 : widest > seen * (*highest - *lowest);
-    const double apart = all.size() < 2 || !whiskers ? 0 : std::min(5.0, 24.0 / others);
+    const double apart = all.size() < 2 ? 0 : whiskers ? std::min(5.0, 24.0 / others) : std::min(2.0, 8.0 / others);
     const Frame in = frame(names, xs, ys, across, upwards, log_x, log_y, apart * others / 2 + dot + 2);
     for (const auto& [from, to] : between)
       draw_.box(in.x.at(from), in.top, in.x.at(to) - in.x.at(from), in.bottom - in.top, "between");
