@@ -109,6 +109,13 @@ std::optional<double> pulsation_of(const Formula& formula) {
   return pulsation;
 }
 
+HarmonicParts harmonic_parts(const Eigen::VectorXd& start, const Eigen::VectorXd& quarter,
+                             const Eigen::VectorXd& half) {
+  HarmonicParts parts{0.5 * (start + half), {}, 0.5 * (start - half)};
+  parts.along = quarter - parts.constant;
+  return parts;
+}
+
 std::optional<double> DistributedLoad::pulsation() const {
   std::optional<double> pulsation;
   const auto takes = [&](const Formula& formula) {
@@ -128,8 +135,7 @@ std::optional<double> DistributedLoad::pulsation() const {
     assemble(turns * 2 * std::numbers::pi / *pulsation, load.data());
     return load;
   };
-  const Eigen::VectorXd start = at(0), half = at(0.5), constant = 0.5 * (start + half), along = at(0.25) - constant,
-                        across = 0.5 * (start - half);
+  const auto [constant, along, across] = harmonic_parts(at(0), at(0.25), at(0.5));
   const double size =
       constant.lpNorm<Eigen::Infinity>() + along.lpNorm<Eigen::Infinity>() + across.lpNorm<Eigen::Infinity>();
   constexpr double round_off = 1e-13;

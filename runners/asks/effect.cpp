@@ -181,11 +181,12 @@ class EffectSpeaker {
   /// A parameter of contact that both have, otherwise: the names of their methods do not say it. "" of none.
   std::string shared_parameters(const Line& a, const Line& b) const {
     for (const std::string& column : own_) {
-      const std::string &first = evidence_.study().text(a.point.first(), column),
-                        &second = evidence_.study().text(b.point.first(), column);
       const bool of_contact = std::any_of(std::begin(parameters_of_contact), std::end(parameters_of_contact),
                                           [&](const char* name) { return column.ends_with(name); });
-      if (axis_role(column) == column || !of_contact || first.empty() || second.empty() || first == second) continue;
+      if (axis_role(column) == column || !of_contact) continue;
+      const std::string &first = evidence_.study().text(a.point.first(), column),
+                        &second = evidence_.study().text(b.point.first(), column);
+      if (first.empty() || second.empty() || first == second) continue;
       if (own_level(a).find(evidence_.level(a.point.first(), {column})) == std::string::npos) return column;
     }
     return "";

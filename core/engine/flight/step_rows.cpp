@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 #include <ricochet/engine/flight/flight_motion.hpp>
+#include <ricochet/scene/pulsation.hpp>
 
 namespace ricochet {
 
@@ -94,8 +95,7 @@ MatrixXd load_over_drive(const Program& program, const Levels& levels, const Fli
     return load;
   }
   const double quarter = std::numbers::pi / 2 / program.load_pulsation;
-  const VectorXd half = at(2 * quarter), constant = 0.5 * (start + half), across = 0.5 * (start - half),
-                 along = at(quarter) - constant;
+  const auto [constant, along, across] = harmonic_parts(start, at(quarter), at(2 * quarter));
   const PhaseWeights phase(levels, program.load_pulsation, program.h);
   load.col(0) += phase.along * along - phase.across * across;
   load.col(1) += phase.across * along + phase.along * across;

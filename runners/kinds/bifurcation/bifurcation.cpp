@@ -111,10 +111,6 @@ Refined refined(const std::vector<double>& values, const Json& tolerance) {
   return {changes * halvings, static_cast<int>(std::clamp(changes, 1.0, 8.0))};
 }
 
-}  // namespace
-
-namespace {
-
 // Measured: 220 bytes for each kept period, and as much again for what is said of the orbit.
 constexpr double bytes_of_period = 220, bytes_of_orbit = 2000;
 

@@ -124,9 +124,10 @@ void WindowMeans::put(CaseRecord& record) const {
       continue;
     }
     Interval found = block_bootstrap_mean(series_[static_cast<std::size_t>(mean)]);
-    const double apart = mean_by_length(series_[static_cast<std::size_t>(mean)]) - found.value;
-    if (uneven())
+    if (uneven()) {
+      const double apart = mean_by_length(series_[static_cast<std::size_t>(mean)]) - found.value;
       for (double* one : {&found.value, &found.low, &found.high}) *one += apart;
+    }
     // The series has the squares: a mean of roots would depend on the number of parts.
     if (mean == tip)
       for (double* one : {&found.value, &found.low, &found.high}) *one = std::sqrt(std::max(*one, 0.0));
