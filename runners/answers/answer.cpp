@@ -75,7 +75,7 @@ const TableType<MeasureLimit>& limits_type() {
   return all;
 }
 
-Table limits_table(const Compared& study, const std::vector<std::string>& measures) {
+Table limits_table(const Choices& study, const std::vector<std::string>& measures) {
   const StudyResults& results = study.results();
   const TableType<MeasureLimit>& type = limits_type();
   Table table{type.name, type.text, axis_columns(results, study.columns()), {}};
@@ -113,7 +113,7 @@ Table limits_table(const Compared& study, const std::vector<std::string>& measur
   return table;
 }
 
-Table refinements_table(const Compared& study, const std::vector<std::string>& measures) {
+Table refinements_table(const Choices& study, const std::vector<std::string>& measures) {
   const StudyResults& results = study.results();
   Table table{"refinements",
               "The values that limits rest on: one row per method, measure, step at the finest mesh, and mesh at the "
@@ -142,7 +142,7 @@ Table refinements_table(const Compared& study, const std::vector<std::string>& m
   return table;
 }
 
-Table differences_table(const Compared& study, const std::vector<std::string>& measures) {
+Table differences_table(const Choices& study, const std::vector<std::string>& measures) {
   const StudyResults& results = study.results();
   Table table{"differences",
               "One row per choice, measure and combination of all other choices: how far apart the two levels are that "

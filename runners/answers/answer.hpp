@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/answers/compared.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/store/study_tables.hpp"
 
 namespace ricochet::answers {
@@ -27,7 +27,7 @@ struct Answer {
 };
 
 /// References that the study names and that refuse, a sentence each: errors are those against the others.
-std::vector<Sentence> refused_references(const Compared& study);
+std::vector<Sentence> refused_references(const Choices& study);
 /// What makes figures of finished cases doubtful: the sentence of the first case; of the others it may differ in
 /// numbers.
 struct Doubt {
@@ -38,11 +38,11 @@ struct Doubt {
 /// Doubts by kind, in the order of the study.
 std::vector<Doubt> doubts_of(const StudyResults& results);
 /// The same, a sentence each: "Doubtful: 2 of 3 cases (…): …"; of more than four kinds three.
-std::vector<Sentence> doubted(const Compared& study);
+std::vector<Sentence> doubted(const Choices& study);
 
 /// That nothing moved; or that no case touched a stop, with the largest displacement against the gap. Nothing where one
 /// did, or has no stops.
-std::optional<Sentence> say_untouched(const Compared& study);
+std::optional<Sentence> say_untouched(const Choices& study);
 
 /// Why there is no value of what is known by works alone.
 inline constexpr const char* no_work_form = "the scheme declares no work form";
@@ -63,10 +63,10 @@ struct MeasureLimit {
 const TableType<MeasureLimit>& limits_type();
 
 /// limits: one row per method and measure.
-Table limits_table(const Compared& study, const std::vector<std::string>& measures);
+Table limits_table(const Choices& study, const std::vector<std::string>& measures);
 /// refinements: the values that limits rest on, one row per method, measure and size.
-Table refinements_table(const Compared& study, const std::vector<std::string>& measures);
+Table refinements_table(const Choices& study, const std::vector<std::string>& measures);
 /// differences: one row per choice, measure and combination of all other choices.
-Table differences_table(const Compared& study, const std::vector<std::string>& measures);
+Table differences_table(const Choices& study, const std::vector<std::string>& measures);
 
 }  // namespace ricochet::answers

@@ -25,7 +25,7 @@ std::string why_without(const std::string& name, const CaseRecord& record) {
 namespace {
 
 /// Where no case has moved at all, and none had energy.
-std::optional<Sentence> say_unmoved(const Compared& study) {
+std::optional<Sentence> say_unmoved(const Choices& study) {
   std::size_t still = 0;
   for (const CaseRecord& record : study.results().cases) {
     if (record.status != Status::done) continue;
@@ -45,7 +45,7 @@ std::optional<Sentence> say_unmoved(const Compared& study) {
 }
 
 /// How a sentence on these cases ends, in which no contact law did anything.
-const char* end_of(const Compared& study, const Cases& cases) {
+const char* end_of(const Choices& study, const Cases& cases) {
   const bool several = std::any_of(cases.begin(), cases.end(), [&](const CaseRecord* one) {
     return study.level(*one, "contact") != study.level(*cases.front(), "contact");
   });
@@ -53,7 +53,7 @@ const char* end_of(const Compared& study, const Cases& cases) {
 }
 
 /// Where every case with a contact law is compared with a reference, and neither touches a stop.
-std::optional<Sentence> say_no_contact(const Compared& study) {
+std::optional<Sentence> say_no_contact(const Choices& study) {
   Cases done = with_status(all_cases(study.results()), Status::done);
   std::erase_if(done, [](const CaseRecord* one) { return !measure(*one, "contact_time"); });
   const bool none = !done.empty() && std::all_of(done.begin(), done.end(), [](const CaseRecord* one) {
@@ -67,7 +67,7 @@ std::optional<Sentence> say_no_contact(const Compared& study) {
 
 }  // namespace
 
-std::optional<Sentence> say_untouched(const Compared& study) {
+std::optional<Sentence> say_untouched(const Choices& study) {
   if (auto unmoved = say_unmoved(study)) return unmoved;
   if (auto untouched = say_no_contact(study)) return untouched;
   double gap = 0, largest = 0;

@@ -10,11 +10,11 @@
 namespace ricochet::answers {
 namespace {
 
-double elements_or_one(const Compared& study, const CaseRecord& record) {
+double elements_or_one(const Choices& study, const CaseRecord& record) {
   return study.elements(record).value_or(1);
 }
 
-double step_or_one(const Compared& study, const CaseRecord& record) {
+double step_or_one(const Choices& study, const CaseRecord& record) {
   return study.step(record).value_or(1);
 }
 
@@ -73,7 +73,7 @@ namespace {
 
 /// The limit of a method whose `grid` and `done` are filled, at its finest case. `share`: its values are shares, whose
 /// floor is round-off of 1. `coarser`: values on other meshes, in modes.
-void find_limit(const Compared& study, const MeasureWords& words, bool share, const std::vector<Valued>& coarser,
+void find_limit(const Choices& study, const MeasureWords& words, bool share, const std::vector<Valued>& coarser,
                 Method& method) {
   const auto& best = *std::max_element(method.done.begin(), method.done.end(), [&](const Valued& a, const Valued& b) {
     return study.finer(*b.record, *a.record);
@@ -107,7 +107,7 @@ void find_limit(const Compared& study, const MeasureWords& words, bool share, co
 
 }  // namespace
 
-MeasureLimits limits_of(const Compared& study, const std::string& name, bool conservative, const Cases& cases) {
+MeasureLimits limits_of(const Choices& study, const std::string& name, bool conservative, const Cases& cases) {
   MeasureLimits out;
   out.words = measure_words(name);
   if (!conservative && out.words.truth) {
@@ -222,7 +222,7 @@ Matters ChoiceRow::matters() const {
   return difference - u > tolerance ? Matters::yes : difference + u <= tolerance ? Matters::no : Matters::open;
 }
 
-ChoiceEffect choice_effect(const Compared& study, const MeasureLimits& limits, const std::string& choice,
+ChoiceEffect choice_effect(const Choices& study, const MeasureLimits& limits, const std::string& choice,
                            const std::vector<std::string>& own) {
   ChoiceEffect out;
   out.choice = choice;
@@ -252,7 +252,7 @@ ChoiceEffect choice_effect(const Compared& study, const MeasureLimits& limits, c
   return out;
 }
 
-std::vector<ChoiceEffect> choice_effects(const Compared& study, const MeasureLimits& limits) {
+std::vector<ChoiceEffect> choice_effects(const Choices& study, const MeasureLimits& limits) {
   std::vector<ChoiceEffect> out;
   const auto add = [&](const std::string& choice, const std::vector<std::string>& own) {
     ChoiceEffect effect = choice_effect(study, limits, choice, own);

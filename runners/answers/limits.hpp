@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "runners/answers/compared.hpp"
 #include "runners/answers/numbers_in_words.hpp"
+#include "runners/report/choices.hpp"
 
 namespace ricochet::answers {
 
@@ -54,7 +54,7 @@ std::optional<double> energy_kept(const MeasureWords& words, const CaseRecord& r
 std::optional<double> scaled_value(const MeasureWords& words, const CaseRecord& record);
 
 /// Of the cases given, all of one study. `conservative`: the truth of the measure and its direction hold.
-MeasureLimits limits_of(const Compared& study, const std::string& measure, bool conservative, const Cases& cases);
+MeasureLimits limits_of(const Choices& study, const std::string& measure, bool conservative, const Cases& cases);
 
 /// Whether loads in time, supports or stops in motion worked in a case: steady loads have a potential.
 bool is_driven(const CaseRecord& record);
@@ -66,7 +66,7 @@ bool keeps_energy(const StudyResults& results, const Cases& cases);
 
 /// The tier of each method that has a limit, 1 the best, or the least where no direction is better; 0 of those that
 /// grow, gain energy or belong to none. None of methods in several scenes, and of more than 120.
-std::vector<std::size_t> tier_places(const Compared& study, const MeasureLimits& limits);
+std::vector<std::size_t> tier_places(const Choices& study, const MeasureLimits& limits);
 
 /// What differences are shares of, one number for all methods that are compared. It is 1 where the measure is a share
 /// (of 1, or of the energy brought in). Else it is the largest magnitude of the scale measure, or, without one, of the
@@ -105,9 +105,9 @@ struct ChoiceEffect {
 
 /// What these columns of a choice move, over all combinations of the others. What gains energy is left out; the scale
 /// is one for all methods of a scene.
-ChoiceEffect choice_effect(const Compared& study, const MeasureLimits& limits, const std::string& choice,
+ChoiceEffect choice_effect(const Choices& study, const MeasureLimits& limits, const std::string& choice,
                            const std::vector<std::string>& own);
 /// Every choice that varies, in the study's order, with those asked for by one of their columns first.
-std::vector<ChoiceEffect> choice_effects(const Compared& study, const MeasureLimits& limits);
+std::vector<ChoiceEffect> choice_effects(const Choices& study, const MeasureLimits& limits);
 
 }  // namespace ricochet::answers

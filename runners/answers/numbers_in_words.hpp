@@ -3,6 +3,7 @@
 #include <string>
 
 #include "runners/store/record.hpp"
+#include "runners/table/text.hpp"
 
 /// \file
 /// Numbers as sentences say them: no digit that the uncertainty does not bear.
@@ -22,11 +23,6 @@ struct MeasureWords {
 };
 /// Of a measure that its kind declares; words of its key where it says none.
 MeasureWords measure_words(const std::string& measure);
-
-/// `digits` significant digits, at least as many as a whole number below 1e5 has; exponents short: "1.2e-5".
-std::string short_number(double value, int digits = 4);
-/// 0.5 as "½", 0.25 as "¼", 0.75 as "¾"; else short_number().
-std::string fraction_text(double value);
 
 /// A value as its uncertainty u allows: to one digit of u, two where that begins with 1. Near 100 %, 100 − v keeps two
 /// digits. Without an uncertainty four digits.

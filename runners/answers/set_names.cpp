@@ -66,7 +66,7 @@ std::vector<std::string> one_notation(std::vector<std::string> values) {
 
 }  // namespace
 
-SetNames::SetNames(const Compared& study, Cases methods, std::vector<std::string> columns)
+SetNames::SetNames(const Choices& study, Cases methods, std::vector<std::string> columns)
     : study_(study), methods_(std::move(methods)), columns_(std::move(columns)) {
   std::vector<std::string> done;
   for (const std::string& column : columns_) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/answers/compared.hpp"
+#include "runners/report/choices.hpp"
 
 namespace ricochet::answers {
 
@@ -12,8 +12,8 @@ namespace ricochet::answers {
 class SetNames {
  public:
   /// `methods`: a case of each; told apart by `columns`.
-  SetNames(const Compared& study, Cases methods, std::vector<std::string> columns);
-  SetNames(const Compared& study, Cases methods) : SetNames(study, methods, study.columns()) {}
+  SetNames(const Choices& study, Cases methods, std::vector<std::string> columns);
+  SetNames(const Choices& study, Cases methods) : SetNames(study, methods, study.columns()) {}
 
   /// A rule of one to three attributes ("the singular mass with β = ½"), or an end of a number ("stiffness 1e6 N/m and
   /// more"). A union of at most three rules, four where nothing else is exact. Up to three labels. All but such a set.
@@ -67,7 +67,7 @@ class SetNames {
   const Attribute* widest(std::size_t levels, const std::string& but = "") const;
   std::string common(const Picked& chosen, std::size_t count) const;
 
-  const Compared& study_;
+  const Choices& study_;
   Cases methods_;
   std::vector<std::string> columns_;
   std::vector<Attribute> attributes_;

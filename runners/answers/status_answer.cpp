@@ -29,7 +29,7 @@ struct Listed {
   std::vector<Cases> cases;
 };
 
-Listed methods_of(const Compared& study) {
+Listed methods_of(const Choices& study) {
   InOrderMet<std::string, Cases> groups;
   for (const CaseRecord& record : study.results().cases) groups[study.key(record)].push_back(&record);
   Listed out;
@@ -58,7 +58,7 @@ Clause status_clause(const std::string& status, std::string who, std::size_t cas
 }
 
 /// " at h = 1e-8 and 1e-9 s" where the cases are those of some steps only.
-std::string at_steps(const Compared& study, const Cases& cases) {
+std::string at_steps(const Choices& study, const Cases& cases) {
   std::set<double> some, all;
   for (const CaseRecord* record : cases)
     if (const auto h = study.step(*record)) some.insert(*h);
@@ -79,7 +79,7 @@ std::string at_steps(const Compared& study, const Cases& cases) {
 }
 
 /// "Doubtful: 4 of 48 cases (those with …): why."; `how`: the status and the word for it.
-Sentence told_of(const Compared& study, const Listed& methods, const SetNames& names,
+Sentence told_of(const Choices& study, const Listed& methods, const SetNames& names,
                  const std::pair<std::string, std::string>& how, const Cases& some, const std::string& reason) {
   const std::size_t total = study.results().cases.size();
   const std::set<const CaseRecord*> chosen(some.begin(), some.end());
@@ -116,7 +116,7 @@ std::vector<Doubt> doubts_of(const StudyResults& results) {
   return out;
 }
 
-std::vector<Sentence> doubted(const Compared& study) {
+std::vector<Sentence> doubted(const Choices& study) {
   constexpr std::size_t most = 4;
   const std::vector<Doubt> doubts = doubts_of(study.results());
   std::vector<Sentence> out;
@@ -133,7 +133,7 @@ std::vector<Sentence> doubted(const Compared& study) {
   return out;
 }
 
-std::vector<Sentence> refused_references(const Compared& study) {
+std::vector<Sentence> refused_references(const Choices& study) {
   std::vector<Sentence> out;
   InOrderMet<std::string, std::size_t> counts;
   const std::string begins = refused_reference;

@@ -12,7 +12,7 @@ constexpr double nothing_gained = 1e-11;
 /// What keeps the energy is within this share of it.
 constexpr double keeps_within = 0.01;
 
-bool one_scene(const Compared& study, const std::vector<const Method*>& methods) {
+bool one_scene(const Choices& study, const std::vector<const Method*>& methods) {
   const std::vector<std::string> scene = study.scene_columns();
   const std::string first = study.key(methods.front()->first(), scene);
   return std::all_of(methods.begin(), methods.end(),
@@ -21,14 +21,15 @@ bool one_scene(const Compared& study, const std::vector<const Method*>& methods)
 
 }  // namespace
 
-std::vector<std::size_t> tier_places(const Compared& study, const MeasureLimits& limits) {
+std::vector<std::size_t> tier_places(const Choices& study, const MeasureLimits& limits) {
   constexpr std::size_t a_dozen = 12, many = 120;
   const std::vector<const Method*> methods = limits.with_limit();
   std::vector<std::size_t> out(methods.size(), 0);
   const MeasureWords& words = limits.words;
-  const bool told = methods.size() <= 1 ||
-                    (study.asked().empty() &&
-                     (words.decades || (one_scene(study, methods) && methods.size() <= (words.direction ? many : a_dozen))));
+  const bool told =
+      methods.size() <= 1 ||
+      (study.asked().empty() &&
+       (words.decades || (one_scene(study, methods) && methods.size() <= (words.direction ? many : a_dozen))));
   if (!told || methods.empty()) return out;
   double scale = scale_of(words, methods);
   if (scale <= 0) scale = 1;

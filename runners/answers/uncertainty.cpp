@@ -92,7 +92,7 @@ MeasureWords prefixed(MeasureWords words, double scale) {
 namespace {
 
 // "rms force at bar-a: 0.17 to 0.19 N; methods differ by 0.02; the step leaves 4e-4, the mesh 2e-4".
-std::string interval_text(const Compared& study, const MeasureLimits& limits, const Spread& spread) {
+std::string interval_text(const Choices& study, const MeasureLimits& limits, const Spread& spread) {
   const MeasureWords words = prefixed(limits.words, spread.scale());
   const std::string name = capitalised(words.words);
   const std::optional<double> margin = spread.margin();
@@ -155,7 +155,7 @@ const TableType<StopRange>& uncertainty_type() {
   return all;
 }
 
-Table uncertainty_table(const Compared& study) {
+Table uncertainty_table(const Choices& study) {
   std::vector<StopRange> rows;
   for (const std::string& name : measures_of_stops(study.results())) {
     const MeasureLimits limits = limits_of(study, name, false, all_cases(study.results()));

@@ -3,6 +3,7 @@
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/limits.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/table/row_type.hpp"
 
 namespace ricochet::answers {
@@ -23,7 +24,7 @@ const TableType<StopRange>& uncertainty_type();
 ///
 /// over the methods, each at its finest step and mesh. Gaps are the largest u that a method's refinement leaves,
 /// sampling half the 95 % interval of a mean over the parts of a window. The interval is blank of a single step.
-Table uncertainty_table(const Compared& study);
+Table uncertainty_table(const Choices& study);
 
 /// Words whose numbers are thousandths or millionths where the unit is W or m: mW below 0.1 W, µW below 1e-4 W. `scale`
 /// is the largest value, in the unit.

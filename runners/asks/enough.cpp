@@ -205,8 +205,7 @@ class Enough {
 
   /// "28 seeds, or windows of 4.8 s".
   static std::string draws_words(const Need& need) {
-    const std::string windows =
-        !need.duration ? "" : fmt::format("windows of {} s", answers::short_number(*need.duration, 2));
+    const std::string windows = !need.duration ? "" : fmt::format("windows of {} s", short_number(*need.duration, 2));
     if (!need.seeds) return windows;
     return fmt::format("{:.0f} seeds", *need.seeds) + (windows.empty() ? "" : ", or " + windows);
   }
@@ -221,10 +220,10 @@ class Enough {
   std::string less_would_do(const Line& line, const Need& need) const {
     if (!need.seeds && !need.duration) return "";
     const std::size_t seeds = line.estimate().seeds;
-    const std::string had = (seeds > 1 ? fmt::format("of {} seeds ", seeds) : "of ") +
-                            (evidence_.window() > 0 ? fmt::format("{}{} s ", seeds > 1 ? "with " : "",
-                                                                  answers::short_number(evidence_.window(), 3))
-                                                    : "");
+    const std::string had =
+        (seeds > 1 ? fmt::format("of {} seeds ", seeds) : "of ") +
+        (evidence_.window() > 0 ? fmt::format("{}{} s ", seeds > 1 ? "with " : "", short_number(evidence_.window(), 3))
+                                : "");
     return fmt::format("; {}{} would do", had, draws_words(need));
   }
 

@@ -125,7 +125,7 @@ std::vector<std::string> Evidence::choices(const Cases& cases, const std::string
   const bool refines = !info || !info->of_each_size;
   std::vector<std::string> out = varying(cases);
   std::erase_if(out, [&](const std::string& column) {
-    return column == seed_axis || contains(own, column) || (refines && answers::is_refinement(column));
+    return column == seed_axis || contains(own, column) || (refines && is_refinement(column));
   });
   return out;
 }
@@ -335,7 +335,7 @@ std::string Evidence::level(const CaseRecord& record, const std::vector<std::str
 namespace {
 
 /// Which methods end with more energy than was brought in; "" where none does.
-std::string energy_made(const answers::Compared& study) {
+std::string energy_made(const Choices& study) {
   const StudyResults& results = study.results();
   const answers::MeasureLimits limits =
       answers::limits_of(study, "energy_left", answers::keeps_energy(results), all_cases(results));
@@ -352,7 +352,7 @@ std::string energy_made(const answers::Compared& study) {
   if (making.empty()) return "";
   const auto with = [&](const std::string& who) {
     return fmt::format("Energy is made with {}: it ends with up to {} times what was brought in.", who,
-                       answers::short_number(most, 2));
+                       short_number(most, 2));
   };
   if (making.size() == firsts.size()) return with("every method");
   const std::string named = with(answers::SetNames(study, firsts).of(making));

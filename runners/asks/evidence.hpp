@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "runners/answers/compared.hpp"
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/asks/ask.hpp"
+#include "runners/report/choices.hpp"
 
 namespace ricochet::asks {
 
@@ -93,9 +93,9 @@ std::optional<double> least_of(const CaseRecord& record, const std::string& meas
 /// The results of a study as verbs look at them.
 class Evidence {
  public:
-  explicit Evidence(const answers::Compared& study) : study_(study) {}
+  explicit Evidence(const Choices& study) : study_(study) {}
 
-  const answers::Compared& study() const { return study_; }
+  const Choices& study() const { return study_; }
   const StudyResults& results() const { return study_.results(); }
 
   /// The cases that an ask speaks of: those of its `where`, without references.
@@ -142,7 +142,7 @@ class Evidence {
   /// counted in whole steps (`by_steps`: of which the points know the size) these steps. 0 of others.
   double resolution(const std::string& measure, const Point& point, bool by_steps) const;
 
-  const answers::Compared& study_;
+  const Choices& study_;
 };
 
 /// Whether a level that a study names is the one of a case: 1e6 and 1000000 are.

@@ -47,7 +47,7 @@ std::string Lines::number(double value, std::optional<double> u) const {
 
 std::string Lines::given(double value) const {
   constexpr int digits = 12;  // what a decimal number times a power of ten keeps
-  return answers::short_number(words.factor * value, digits) + (words.unit.empty() ? "" : " " + words.unit);
+  return short_number(words.factor * value, digits) + (words.unit.empty() ? "" : " " + words.unit);
 }
 
 VerdictRow Lines::row(const Line& line) const {
@@ -313,7 +313,7 @@ bool differs_alone(const Ask& ask, const Study& study, const std::string& choice
       const bool is_own = axis == choice || (axis_role(choice) == choice && axis_role(axis) == choice);
       if (is_own)
         own += value.dump() + '\n';
-      else if (axis != seed_axis && !answers::is_refinement(axis))
+      else if (axis != seed_axis && !is_refinement(axis))
         others += axis + '=' + value.dump() + '\n';
     }
     levels[others].insert(own);

@@ -274,7 +274,7 @@ std::string doubt_rank(const Ask&, const Study& study) {
   constexpr std::size_t few = 8;
   if (plan.seeds > 1 && plan.seeds < few)
     return fmt::format("{} seeds: the interval of a mean is ± {} times the scatter between them", plan.seeds,
-                       answers::short_number(half_interval_over_scatter(plan.seeds), 2));
+                       short_number(half_interval_over_scatter(plan.seeds), 2));
   return "";
 }
 

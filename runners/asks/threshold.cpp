@@ -209,8 +209,8 @@ class Threshold {
     const auto& [first, begin] = of.between.front();
     const auto& [end, last] = of.between.back();
     return fmt::format("{} in one range of {}, from {}–{} to {}–{}",
-                       of.becomes ? what : condition_.text(lines_, "not "), axis_words(), answers::short_number(first),
-                       answers::short_number(begin), answers::short_number(end), x_text(last));
+                       of.becomes ? what : condition_.text(lines_, "not "), axis_words(), short_number(first),
+                       short_number(begin), short_number(end), x_text(last));
   }
 
   /// "; always with penalty; not told with 3 of 6": what those without a threshold are.
@@ -292,8 +292,9 @@ class Threshold {
   }
 
   std::string x_text(double x) const {
-    const std::string number = answers::short_number(x);
-    return unit_.empty() && answers::is_refinement(along_) ? number + " " + along_ : number + unit_;
+    const std::string number = short_number(x);
+    if (!unit_.empty()) return number + " " + unit_;
+    return is_refinement(along_) ? number + " " + along_ : number;
   }
   const std::string& axis_words() const { return axis_words_; }
 
@@ -314,7 +315,7 @@ class Threshold {
     row.measure = along_;
     row.level = series.level;
     row.stop = series.stop;
-    row.unit = unit_.empty() ? "" : unit_.substr(1);
+    row.unit = unit_;
     row.verdict = series.between.empty() ? series.what : series.between.size() == 1 ? "threshold" : "not monotone";
     if (series.between.empty()) out.rows.push_back(row);
     for (const auto& [low, high] : series.between) {
@@ -344,7 +345,7 @@ class Threshold {
             {"measure", lines_.words.words},
             {"unit", lines_.words.unit},
             {"along", axis_words()},
-            {"along_unit", unit_.empty() ? "" : unit_.substr(1)},
+            {"along_unit", unit_},
             {"rows", rows},
             {"at", at},
             {"between", between}};

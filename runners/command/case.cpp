@@ -75,7 +75,7 @@ std::string own_tables_text(const CaseRecord& record) {
 std::string ledger_text(const Kind& kind, const Study& study, const CaseRecord& again) {
   StudyResults alone = results_header(study);
   alone.cases = {again};
-  kind.analysis(alone, answers::Compared(alone));
+  kind.analysis(alone, Choices(alone));
   const Table* ledger = find_table(alone.derived, "energy_ledger");
   if (!ledger || ledger->rows.empty()) return "";
   TextTable table({"", "J"});

@@ -123,7 +123,7 @@ class Kind {
 
   /// Appends the tables that follow from the cases to results.derived: those that the cases carry. `study`: the same
   /// results as a comparison.
-  virtual Analysis analysis(StudyResults& results, const answers::Compared& study) const;
+  virtual Analysis analysis(StudyResults& results, const Choices& study) const;
   /// The measures that an answer is made of where the study names none.
   virtual std::vector<std::string> observed(const StudyResults&) const { return {}; }
   /// `curves` without rows: the sampled series that a case leaves in curves/ID.csv. Without columns: none.

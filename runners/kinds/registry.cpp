@@ -41,7 +41,7 @@ CaseRecord Kind::march(const StudyCase&, const Registry&, const std::atomic<bool
   throw std::logic_error("a case of kind " + format.name + " is more than one integration");
 }
 
-Analysis Kind::analysis(StudyResults& results, const answers::Compared&) const {
+Analysis Kind::analysis(StudyResults& results, const Choices&) const {
   collect_tables(results);
   return {};
 }

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/quantity.hpp"
 #include "runners/table/text.hpp"
 
 namespace ricochet::report::ask_figures {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "runners/report/assets.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/html.hpp"
 #include "runners/store/study_tables.hpp"
 #include "runners/study/axis_meaning.hpp"
@@ -24,14 +24,14 @@ std::vector<std::string_view> scripts(std::initializer_list<const char*> names) 
   return out;
 }
 
-std::vector<Table> page_tables(const StudyResults& results, const KindPage& page) {
-  const CaseView view(results);
+std::vector<Table> page_tables(const Choices& choices, const KindPage& page) {
+  const StudyResults& results = choices.results();
   std::vector<Table> out;
   const auto add = [&](Table table) {
     if (!find_table(results.derived, table.name) && !table.rows.empty()) out.push_back(std::move(table));
   };
-  for (const auto& make : page.derived) add(make(view));
-  add(effects_said(view));
+  for (const auto& make : page.derived) add(make(choices));
+  add(effects_said(choices));
   return out;
 }
 
@@ -112,18 +112,18 @@ std::string effects_sentence(const MeasureShares& measure) {
 }
 
 /// What the shares are not of: cases without the measure, choices that do not vary.
-std::string effects_caveats(const CaseView& view, const MeasureShares& measure) {
+std::string effects_caveats(const Choices& choices, const MeasureShares& measure) {
   std::string out, statuses;
   size_t without = 0;
   for (const Status status : {Status::refused, Status::diverged, Status::failed, Status::done}) {
     size_t count = 0;
-    for (const CaseRecord* record : view.with_status(status))
+    for (const CaseRecord* record : with_status(all_cases(choices.results()), status))
       count += !ricochet::measure(*record, measure.name).has_value();
     without += count;
     if (count) statuses += fmt::format("{}{} {}", statuses.empty() ? "" : ", ", count, word(status));
   }
   const auto single = [&](const MeasureShare& share) {
-    return share.share == 0 && share.order == 1 && !view.varies(share.factor);
+    return share.share == 0 && share.order == 1 && !choices.varies(share.factor);
   };
   std::string fixed;
   for (const MeasureShare& share : measure.shares)
@@ -136,8 +136,8 @@ std::string effects_caveats(const CaseView& view, const MeasureShares& measure) 
     for (const std::string& choice : choices_in(share.factor)) told.insert(choice);
   }
   std::string untold;
-  for (const std::string& column : view.results().columns)
-    if (const std::string choice = axis_role(column); view.varies(column) && told.insert(choice).second)
+  for (const std::string& column : choices.results().columns)
+    if (const std::string choice = axis_role(column); choices.varies(column) && told.insert(choice).second)
       untold += (untold.empty() ? "" : ", ") + spoken_choice(choice);
   constexpr double much = 0.05;
   if (!measure.told())
@@ -148,7 +148,7 @@ std::string effects_caveats(const CaseView& view, const MeasureShares& measure) 
         1 - sum > much ? fmt::format("; {} of the spread is theirs, or of no choice", effects_percent(1 - sum)) : "");
   if (without)
     out += fmt::format(" {} of {} have no value ({}){}.", without,
-                       count_text(view.results().cases.size(), "case", "cases"), statuses,
+                       count_text(choices.results().cases.size(), "case", "cases"), statuses,
                        measure.told() ? "; what they would be is estimated from the others" : "");
   if (!fixed.empty()) out += fmt::format(" One level only, so no share: {}.", fixed);
   return out;
@@ -156,7 +156,7 @@ std::string effects_caveats(const CaseView& view, const MeasureShares& measure) 
 
 }  // namespace
 
-Table effects_said(const CaseView& view) {
+Table effects_said(const Choices& choices) {
   Table out{"effects_said",
             "One row per measure: what the shares of effects.csv say, in words.",
             {{"measure", "", "Name of the measure, a column of cases.csv."},
@@ -166,7 +166,7 @@ Table effects_said(const CaseView& view) {
              {"rest", "1", "Number of small shares that a chart shows together."},
              {"rest_share", "1", "What these explain together."}},
             {}};
-  for (const MeasureShares& measure : measure_shares(view.results())) {
+  for (const MeasureShares& measure : measure_shares(choices.results())) {
     size_t rest = 0;
     double together = 0;
     for (size_t k = most_shares; k < measure.shares.size(); ++k) {
@@ -174,16 +174,16 @@ Table effects_said(const CaseView& view) {
       together += measure.shares[k].share;
     }
     out.rows.push_back(
-        {measure.name, measure.log, effects_sentence(measure), effects_caveats(view, measure), rest, together});
+        {measure.name, measure.log, effects_sentence(measure), effects_caveats(choices, measure), rest, together});
   }
   return out;
 }
 
-std::string effects_html(const CaseView& view) {
-  const std::vector<MeasureShares> all = measure_shares(view.results());
+std::string effects_html(const Choices& choices) {
+  const std::vector<MeasureShares> all = measure_shares(choices.results());
   if (all.empty()) return "";
   // What the study observes first; where it observes none of these, all of them.
-  const std::vector<answers::Clause> said = answers::answers_type().read(view.results().derived);
+  const std::vector<answers::Clause> said = answers::answers_type().read(choices.results().derived);
   const auto main = [&](const MeasureShares& measure) {
     return std::any_of(said.begin(), said.end(), [&](const auto& one) { return one.measure == measure.name; });
   };
@@ -193,7 +193,7 @@ std::string effects_html(const CaseView& view) {
   for (const MeasureShares& measure : all) {
     (mains == 0 || main(measure) ? first : rest) +=
         fmt::format("<li>{}<span class=\"fine\">{}</span></li>\n", escape(effects_sentence(measure)),
-                    escape(effects_caveats(view, measure)));
+                    escape(effects_caveats(choices, measure)));
     for (const MeasureShare& share : measure.shares)
       if (share.share >= 1e-3) {
         table.row().text(in_words(measure.name) + (measure.log ? " (log)" : "")).text(share.factor);

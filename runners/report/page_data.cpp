@@ -6,6 +6,7 @@
 #include <map>
 
 #include "runners/report/curve_data.hpp"
+#include "runners/report/quantity.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/study_tables.hpp"
@@ -50,31 +51,31 @@ PageJson table_json(const Table& table) {
   return {{"columns", std::move(columns)}, {"rows", table.rows.size()}, {"cells", std::move(cells)}};
 }
 
-PageJson axes_json(const CaseView& view) {
+PageJson axes_json(const Choices& choices) {
   PageJson out = PageJson::array();
-  for (const std::string& column : view.results().columns) {
+  for (const std::string& column : choices.results().columns) {
     PageJson texts = PageJson::array(), numbers = PageJson::array(), at = PageJson::array();
     std::map<std::string, int> places;
-    for (const CaseRecord* record : view.all()) {
-      std::string text = CaseView::text(*record, column);
+    for (const CaseRecord* record : all_cases(choices.results())) {
+      std::string text = axis_words(*record, column);
       if (text.empty()) {
         at.push_back(-1);
         continue;
       }
       const auto [place, fresh] = places.emplace(text, static_cast<int>(texts.size()));
       if (fresh) {
-        const auto number = CaseView::number(*record, column);
+        const auto number = axis(*record, column).number();
         texts.push_back(std::move(text));
         numbers.push_back(number ? PageJson(*number) : PageJson());
       }
       at.push_back(place->second);
     }
     out.push_back({{"name", column},
-                   {"said", axis_text(view.results(), column)},
-                   {"role", role_of(column)},
+                   {"said", axis_text(choices.results(), column)},
+                   {"role", axis_role(column)},
                    {"word", label_word(column)},
-                   {"unit", view.unit_of(column)},
-                   {"varies", view.varies(column)},
+                   {"unit", choices.unit_of(column)},
+                   {"varies", choices.varies(column)},
                    {"texts", std::move(texts)},
                    {"numbers", std::move(numbers)},
                    {"at", std::move(at)}});
@@ -82,13 +83,13 @@ PageJson axes_json(const CaseView& view) {
   return out;
 }
 
-PageJson cases_json(const CaseView& view) {
+PageJson cases_json(const Choices& choices) {
   PageJson out = {{"id", PageJson::array()},          {"status", PageJson::array()},
                   {"reason", PageJson::array()},      {"partial", PageJson::array()},
                   {"steps", PageJson::array()},       {"setup_seconds", PageJson::array()},
                   {"run_seconds", PageJson::array()}, {"mass", PageJson::array()},
                   {"colour", PageJson::array()},      {"measures", PageJson::object()}};
-  const Cases all = view.all();
+  const Cases all = all_cases(choices.results());
   for (size_t c = 0; c < all.size(); ++c) {
     const CaseRecord& record = *all[c];
     out["id"].push_back(record.id);
@@ -98,8 +99,8 @@ PageJson cases_json(const CaseView& view) {
     out["steps"].push_back(record.steps);
     out["setup_seconds"].push_back(record.setup_seconds);
     out["run_seconds"].push_back(record.run_seconds);
-    out["mass"].push_back(view.mass_place(record));
-    out["colour"].push_back(view.colour(record));
+    out["mass"].push_back(choices.mass_place(record));
+    out["colour"].push_back(choices.colour(record));
     for (const auto& [name, value] : record.measures) {
       PageJson& column = out["measures"][name];
       if (column.is_null()) column = PageJson(all.size(), nullptr);
@@ -126,27 +127,27 @@ std::string answered_measure(const StudyResults& results) {
   return said.empty() ? "" : said.front().measure;
 }
 
-PageJson tables_json(const CaseView& view, const KindPage& kind) {
+PageJson tables_json(const Choices& choices, const KindPage& kind) {
   PageJson out = PageJson::object();
   std::vector<std::string_view> names = kind.tables;
   names.insert(names.end(), {"differences", "effects", "effects_said"});
   for (const std::string_view name : names)
-    if (const Table* table = find_table(view.results().derived, name)) out[table->name] = table_json(*table);
+    if (const Table* table = find_table(choices.results().derived, name)) out[table->name] = table_json(*table);
   return out;
 }
 
-PageJson own_json(const CaseView& view, const KindPage& kind) {
+PageJson own_json(const Choices& choices, const KindPage& kind) {
   PageJson out = PageJson::object();
-  for (const CaseRecord* record : view.all())
+  for (const CaseRecord* record : all_cases(choices.results()))
     for (const std::string_view name : kind.own_tables)
       if (const Table* table = find_table(record->tables, name))
         out[std::string(name)][record->id] = table_json(*table);
   return out;
 }
 
-PageJson curves_json(const CaseView& view, const KindPage& kind, const CurveChoice& choice, CurveData& curves) {
+PageJson curves_json(const Choices& choices, const KindPage& kind, const CurveChoice& choice, CurveData& curves) {
   PageJson out = PageJson::object();
-  for (const CaseRecord* record : view.all())
+  for (const CaseRecord* record : all_cases(choices.results()))
     for (const std::string_view column : kind.curves)
       if (choice.holds(record->id))
         if (auto names = curves.series(*record, "t", std::string(column)))
@@ -171,27 +172,27 @@ void share_times(PageJson& curves, Blocks& blocks) {
 
 }  // namespace
 
-PageData page_data(const CaseView& view, const KindPage& kind, const StudyResults& all) {
-  const StudyResults& results = view.results();
+PageData page_data(const Choices& choices, const KindPage& kind, const StudyResults& all) {
+  const StudyResults& results = choices.results();
   size_t series = 0;
-  const CurveChoice choice(view, all);
+  const CurveChoice choice(choices, all);
   for (const CaseRecord& record : results.cases)
     if (!record.curve.columns.empty() && choice.holds(record.id)) series += kind.curves.size() + 1;
   CurveData curves(sample_limit(series));
   PageJson out = {{"study", {{"name", results.name}, {"kind", results.kind}, {"resolved", results.study}}}};
-  out["axes"] = axes_json(view);
+  out["axes"] = axes_json(choices);
   out["roles"] = method_roles();
-  out["masses"] = view.masses();
+  out["masses"] = choices.masses();
   out["words"] = results.method_words;
-  out["cases"] = cases_json(view);
+  out["cases"] = cases_json(choices);
   out["measures"] = measures_json(out["cases"]);
-  out["tables"] = tables_json(view, kind);
-  out["own"] = own_json(view, kind);
-  out["curves"] = curves_json(view, kind, choice, curves);
+  out["tables"] = tables_json(choices, kind);
+  out["own"] = own_json(choices, kind);
+  out["curves"] = curves_json(choices, kind, choice, curves);
   out["curve_files"] = has_curve_files(all);
-  out["panel"] = panel_data(view, curves);
-  out["snapshots"] = snapshot_data(view, curves);
-  if (kind.data) out[kind.data_key] = kind.data(view, curves);
+  out["panel"] = panel_data(choices, curves);
+  out["snapshots"] = snapshot_data(choices, curves);
+  if (kind.data) out[kind.data_key] = kind.data(choices, curves);
   std::string less = kind.curves.empty() ? "" : choice.sentence();
   if (const std::string thinned = curves.thinning(has_curve_files(all)); !thinned.empty())
     less += (less.empty() ? "" : " ") + thinned;
@@ -222,17 +223,17 @@ std::set<std::size_t> chosen(const std::vector<CaseGroup>& groups, const std::st
 
 }  // namespace
 
-CurveChoice::CurveChoice(const CaseView& view, const StudyResults& all) {
+CurveChoice::CurveChoice(const Choices& choices, const StudyResults& all) {
   Cases drawn;
-  for (const CaseRecord* record : view.all())
+  for (const CaseRecord* record : all_cases(choices.results()))
     if (!record->curve.columns.empty()) drawn.push_back(record);
   with_curves_ = drawn.size();
   files_ = has_curve_files(all);
   where_ = where_curves_are(all);
-  const std::vector<CaseGroup> groups = view.group(drawn, view.varying_without({"step"}));
+  const std::vector<CaseGroup> groups = choices.group(drawn, choices.varying_without({"step"}));
   all_ = groups.size() <= most_curve_rows || drawn.size() <= most_curve_cases;
   if (all_) return;
-  for (const std::size_t place : chosen(groups, answered_measure(view.results())))
+  for (const std::size_t place : chosen(groups, answered_measure(choices.results())))
     for (const CaseRecord* record : groups[place].cases) ids_.insert(record->id);
 }
 

@@ -3,7 +3,7 @@
 #include <set>
 #include <string>
 
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/curve_data.hpp"
 #include "runners/report/kind_page.hpp"
 #include "runners/store/record.hpp"
@@ -33,15 +33,15 @@ struct PageData {
 ///   curve_files  whether each case with a curve has its file
 ///   and what the kind adds under its own key
 /// The page holds the cases with their measures, and else what figures of the kind read.
-/// `all`: results of which the view may hold a part; they decide whether there are files of curves.
-PageData page_data(const CaseView& view, const KindPage& kind, const StudyResults& all);
+/// `all`: results of which the choices may hold a part; they decide whether there are files of curves.
+PageData page_data(const Choices& choices, const KindPage& kind, const StudyResults& all);
 
 /// The cases of which a page holds curves over time. All are held where they fit the charts of a figure: 24 rows of
 /// cases that differ in the step alone, or 96 cases. Else 24 such rows at most are. Up to 8 are those with the least of
 /// what the answer speaks of first, and 8 those with the most. The others are spread evenly over the study.
 class CurveChoice {
  public:
-  CurveChoice(const CaseView& view, const StudyResults& all);
+  CurveChoice(const Choices& choices, const StudyResults& all);
   bool holds(const std::string& id) const { return all_ || ids_.count(id) > 0; }
   /// "Curves over time: this page holds those of 70 of 912 cases …", and where all are. "" where all are held and each
   /// has its file.
@@ -62,26 +62,26 @@ class CurveChoice {
 ///     portraits  by case the names of blocks with tip displacement and velocity, a few hundred points of the curve
 ///
 /// Of a study of many cases only the ledger.
-nlohmann::ordered_json panel_data(const CaseView& view, CurveData& blocks);
+nlohmann::ordered_json panel_data(const Choices& choices, CurveData& blocks);
 
 /// The snapshots of the cases that have some, as the player reads them. By case the places, points and stops, the units
 /// of the counts and the names of its blocks. Where all of them would make the page big, every second instant of each
 /// case, every third, … is left: `stride`. Forces are then the mean over the longer time.
-nlohmann::ordered_json snapshot_data(const CaseView& view, CurveData& blocks);
+nlohmann::ordered_json snapshot_data(const Choices& choices, CurveData& blocks);
 
 /// All cases with status, reason and every measure: sortable, filterable; units in the header, the measure's text as
-/// its tooltip and in a list below. `all`: results of which the view may hold a part; they decide whether there are
+/// its tooltip and in a list below. `all`: results of which the choices may hold a part; they decide whether there are
 /// files of curves.
-std::string case_table_html(const CaseView& view, const StudyResults& all);
+std::string case_table_html(const Choices& choices, const StudyResults& all);
 
 /// What `compile` left out of the cases, the same item and reason put together.
-std::string left_out_html(const CaseView& view);
+std::string left_out_html(const Choices& choices);
 
 /// The notes of the cases, put together.
-std::string notes_html(const CaseView& view);
+std::string notes_html(const Choices& choices);
 
 /// Compiler, processor, libraries, and the resolved study.
-std::string environment_html(const CaseView& view);
+std::string environment_html(const Choices& choices);
 
 /// The derived tables of the results as folded HTML tables that a click on a header sorts. The first rows of each, and
 /// how many more its CSV file has. Empty where nothing was derived.

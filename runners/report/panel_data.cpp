@@ -28,11 +28,11 @@ PanelJson head_json(const Column& column) {
   return {{"name", column.name}, {"unit", column.unit}, {"text", column.text}};
 }
 
-PanelJson ledger_json(const CaseView& view) {
+PanelJson ledger_json(const Choices& choices) {
   PanelJson out = PanelJson::object();
-  const Table* ledger = find_table(view.results().derived, "energy_ledger");
+  const Table* ledger = find_table(choices.results().derived, "energy_ledger");
   if (!ledger) return out;
-  const size_t first = 1 + view.results().columns.size();
+  const size_t first = 1 + choices.results().columns.size();
   for (size_t c = first; c < ledger->columns.size(); ++c) out["columns"].push_back(head_json(ledger->columns[c]));
   for (const Row& row : ledger->rows) {
     PanelJson cells = PanelJson::array();
@@ -45,9 +45,9 @@ PanelJson ledger_json(const CaseView& view) {
   return out;
 }
 
-PanelJson impacts_json(const CaseView& view) {
+PanelJson impacts_json(const Choices& choices) {
   PanelJson out = PanelJson::object();
-  for (const CaseRecord* record : view.all()) {
+  for (const CaseRecord* record : all_cases(choices.results())) {
     const NumberTable* impacts = find_table(record->numbers, "impacts");
     // Those of an orbit are another table: its own panel has them.
     if (!impacts || !impacts->numbers("t") || impacts->rows() == 0) continue;
@@ -69,10 +69,11 @@ PanelJson impacts_json(const CaseView& view) {
   return out;
 }
 
-PanelJson portraits_json(const CaseView& view, CurveData& blocks) {
+PanelJson portraits_json(const Choices& choices, CurveData& blocks) {
   PanelJson out = PanelJson::array();
-  const size_t limit = std::min(most_points, most_points_of_all / std::max<size_t>(1, view.all().size()));
-  for (const CaseRecord* record : view.all()) {
+  const size_t limit =
+      std::min(most_points, most_points_of_all / std::max<size_t>(1, all_cases(choices.results()).size()));
+  for (const CaseRecord* record : all_cases(choices.results())) {
     const auto u = curve_column(record->curve, "tip_displacement"), v = curve_column(record->curve, "tip_velocity");
     if (!u || !v || u->empty() || u->size() != v->size()) continue;
     std::vector<double> some_u, some_v;
@@ -91,11 +92,11 @@ PanelJson portraits_json(const CaseView& view, CurveData& blocks) {
 
 }  // namespace
 
-PanelJson panel_data(const CaseView& view, CurveData& blocks) {
-  PanelJson out = {{"ledger", ledger_json(view)}, {"most_impacts", most_impacts}};
-  if (view.all().size() > most_cases) return out;
-  out["impacts"] = impacts_json(view);
-  out["portraits"] = portraits_json(view, blocks);
+PanelJson panel_data(const Choices& choices, CurveData& blocks) {
+  PanelJson out = {{"ledger", ledger_json(choices)}, {"most_impacts", most_impacts}};
+  if (all_cases(choices.results()).size() > most_cases) return out;
+  out["impacts"] = impacts_json(choices);
+  out["portraits"] = portraits_json(choices, blocks);
   return out;
 }
 
@@ -186,10 +187,10 @@ PageJson one_case(const std::string& id, const Snapshots& shots, CurveData& bloc
 
 }  // namespace
 
-PageJson snapshot_data(const CaseView& view, CurveData& blocks) {
+PageJson snapshot_data(const Choices& choices, CurveData& blocks) {
   std::vector<std::pair<std::string, Snapshots>> found;
   size_t bytes = 0;
-  for (const CaseRecord* record : view.all())
+  for (const CaseRecord* record : all_cases(choices.results()))
     if (const NumberTable* table = find_table(record->numbers, snapshots_name))
       if (auto shots = snapshots_of(*table); shots && !shots->t.empty()) {
         bytes += 2 * shots->displacement.size() + 6 * shots->force.size() + 8 * shots->t.size();
@@ -200,9 +201,9 @@ PageJson snapshot_data(const CaseView& view, CurveData& blocks) {
   PageJson out = {{"stride", stride}, {"cases", PageJson::object()}};
   for (const auto& [id, shots] : found) out["cases"][id] = one_case(id, thinned(shots, stride), blocks);
   const PageJson::json_pointer supports("/scene/structure/supports");
-  if (view.results().study.contains(supports)) {
+  if (choices.results().study.contains(supports)) {
     out["supports"] = PageJson::array();
-    for (const auto& one : view.results().study.at(supports)) {
+    for (const auto& one : choices.results().study.at(supports)) {
       const auto& x = one.at("x");
       out["supports"].push_back({{"x", x.is_array() ? x.front() : x}, {"type", one.at("type")}});
     }

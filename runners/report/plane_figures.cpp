@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runners/report/case_view.hpp"
 #include "runners/report/figure_drawing.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/quantity.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet::report::ask_figures {

@@ -7,7 +7,7 @@
 #include <unordered_set>
 
 #include "runners/report/assets.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/curve_data.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/kind_page.hpp"
@@ -83,22 +83,22 @@ std::string script(const std::string& attributes, const std::string& content) {
 
 }  // namespace
 
-std::string answer_html(const CaseView& view, const KindPage& kind) {
-  if (view.results().cases.empty()) return "<p>No case has run yet.</p>\n";
+std::string answer_html(const Choices& choices, const KindPage& kind) {
+  if (choices.results().cases.empty()) return "<p>No case has run yet.</p>\n";
   const std::string answer = asked_html(kind.asked);
-  if (answer.empty() && view.with_status(Status::done).empty())
+  if (answer.empty() && with_status(all_cases(choices.results()), Status::done).empty())
     return "<p>No case has finished with a result; the table below says why.</p>\n";
   return answer;
 }
 
 }  // namespace report
 
-std::string render_report(const StudyResults& results, const report::KindPage& kind) {
+std::string render_report(const Choices& choices, const report::KindPage& kind) {
   using namespace report;
-  const CaseView view(results);
+  const StudyResults& results = choices.results();
   const std::optional<StudyResults> some = shown_cases(results);
-  const std::optional<CaseView> fewer = some ? std::make_optional<CaseView>(*some) : std::nullopt;
-  const CaseView& shown = fewer ? *fewer : view;
+  const std::optional<Choices> fewer = some ? std::make_optional<Choices>(*some) : std::nullopt;
+  const Choices& shown = fewer ? *fewer : choices;
   PageData data = page_data(shown, kind, results);
   if (some) data.thinning = shown_sentence(*some, results) + (data.thinning.empty() ? "" : " ") + data.thinning;
   const auto truth = [](bool value) { return value ? Fill::type::bool_true : Fill::type::bool_false; };
@@ -106,26 +106,26 @@ std::string render_report(const StudyResults& results, const report::KindPage& k
   page.set("name", results.name);
   page.set("kind", results.kind);
   page.set("style", std::string(asset("page.css")) + std::string(asset("panel.css")) + page_margins(results));
-  page.set("summary", summary_html(view, kind.summary ? kind.summary(view) : ""));
+  page.set("summary", summary_html(choices, kind.summary ? kind.summary(choices) : ""));
   if (const std::string sketch = scene_svg(results.study); !sketch.empty())
     page.set("sketch", sketch + scene_svg(results.study, true));
   if (!results.question.empty()) page.set("question", results.question);
   page.set("counts", counts_text(results));
   page.set("banners", banners(results));
-  page.set("answer", answer_html(view, kind));
-  if (const std::string beneath = kind.answer ? kind.answer(view) : ""; !beneath.empty())
+  page.set("answer", answer_html(choices, kind));
+  if (const std::string beneath = kind.answer ? kind.answer(choices) : ""; !beneath.empty())
     page.set("beneath", html_section(beneath));
   page.set("masses", truth(kind.masses));
   if (!data.thinning.empty()) page.set("thinning", data.thinning);
-  if (const std::string methods = kind.methods ? kind.methods(view) : ""; !methods.empty())
+  if (const std::string methods = kind.methods ? kind.methods(choices) : ""; !methods.empty())
     page.set("methods", html_section(methods));
-  if (const std::string effects = effects_html(view); !effects.empty()) page.set("effects", html_section(effects));
+  if (const std::string effects = effects_html(choices); !effects.empty()) page.set("effects", html_section(effects));
   page.set("cases", case_table_html(shown, results));
   if (const std::string tables = derived_tables_html(results); !tables.empty())
     page.set("tables", html_section(tables));
-  page.set("left_out", left_out_html(view));
-  page.set("notes", notes_html(view));
-  page.set("environment", environment_html(view));
+  page.set("left_out", left_out_html(choices));
+  page.set("notes", notes_html(choices));
+  page.set("environment", environment_html(choices));
   // Scripts follow what they work on; the data are too long to pass through a template.
   std::string out = filled("page", page) + script("", script_text(page_program(kind)));
   out += script(" type=\"application/json\" id=\"page-data\"", script_json(data.results));
@@ -145,7 +145,7 @@ Ids chosen(const StudyResults& results) {
   std::set<std::pair<std::string, std::string>> met;
   for (const CaseRecord& record : results.cases)
     for (const std::string& column : results.columns)
-      if (ids.size() < most_shown_cases / 4 && met.emplace(column, CaseView::text(record, column)).second)
+      if (ids.size() < most_shown_cases / 4 && met.emplace(column, axis_words(record, column)).second)
         ids.insert(record.id);
   std::vector<const CaseRecord*> by_lot;
   for (const CaseRecord& record : results.cases) by_lot.push_back(&record);

@@ -9,15 +9,15 @@
 namespace ricochet::report {
 
 /// The section "Answer" as HTML: what the kind says, or why there is nothing to say.
-std::string answer_html(const CaseView& view, const KindPage& kind);
+std::string answer_html(const Choices& choices, const KindPage& kind);
 
 }  // namespace ricochet::report
 
 namespace ricochet {
 
-/// The report of a study as one HTML file. It uses no network (a Content-Security-Policy forbids it): its scripts, which
-/// draw the charts, stand in it. `kind` says what the kind of study shows.
-std::string render_report(const StudyResults& results, const report::KindPage& kind);
+/// The report of a study as one HTML file. It uses no network (a Content-Security-Policy forbids it): its scripts,
+/// which draw the charts, stand in it. `kind` says what the kind of study shows.
+std::string render_report(const Choices& choices, const report::KindPage& kind);
 
 }  // namespace ricochet
 

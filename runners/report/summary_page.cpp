@@ -6,6 +6,7 @@
 
 #include "runners/report/assets.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/quantity.hpp"
 #include "runners/report/scene_sketch.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/record_values.hpp"
@@ -91,14 +92,14 @@ std::string ran_text(const StudyResults& results, const std::string& role) {
   using Values = std::vector<std::string>;
   std::vector<std::string> own;
   for (const std::string& column : results.columns)
-    if (column != role && role_of(column) == role) own.push_back(column);
+    if (column != role && axis_role(column) == role) own.push_back(column);
   InOrderMet<std::string, InOrderMet<std::string, InOrderMet<std::string, bool>>> methods;
   for (const CaseRecord& record : results.cases) {
-    const std::string name = CaseView::text(record, role);
+    const std::string name = axis_words(record, role);
     if (record.status == Status::refused || name.empty()) continue;
     auto& parameters = methods[name];
     for (const std::string& column : own)
-      if (const std::string value = CaseView::text(record, column); !value.empty())
+      if (const std::string value = axis_words(record, column); !value.empty())
         parameters[column.substr(role.size() + 1)][value] = true;
   }
   Values out;
@@ -115,16 +116,16 @@ std::string ran_text(const StudyResults& results, const std::string& role) {
 }
 
 /// Roles with the methods that a case ran with, then every other axis with its values.
-Fill methods_fill(const CaseView& view) {
+Fill methods_fill(const Choices& choices) {
   Fill out{Fill::type::list};
   std::vector<std::string> roles;
-  for (const std::string& column : view.results().columns)
-    if (const std::string role = role_of(column); std::find(roles.begin(), roles.end(), role) == roles.end())
+  for (const std::string& column : choices.results().columns)
+    if (const std::string role = axis_role(column); std::find(roles.begin(), roles.end(), role) == roles.end())
       roles.push_back(role);
   for (const std::string& role : roles) {
-    const std::string ran = ran_text(view.results(), role), unit = view.unit_of(role);
+    const std::string ran = ran_text(choices.results(), role), unit = choices.unit_of(role);
     if (!ran.empty())
-      out << pair_fill("role", axis_text(view.results(), role) + (unit.empty() ? "" : " (" + unit + ")"), "values",
+      out << pair_fill("role", axis_text(choices.results(), role) + (unit.empty() ? "" : " (" + unit + ")"), "values",
                        ran);
   }
   return out;
@@ -214,8 +215,8 @@ std::string study_fingerprint(const StudyResults& results) {
   return content_hash(content).substr(0, digits);
 }
 
-std::string summary_html(const CaseView& view, const std::string& measures) {
-  const StudyResults& results = view.results();
+std::string summary_html(const Choices& choices, const std::string& measures) {
+  const StudyResults& results = choices.results();
   if (results.cases.empty()) return "";
   Fill with;
   with.set("name", results.name);
@@ -224,7 +225,7 @@ std::string summary_html(const CaseView& view, const std::string& measures) {
   with.set("numbers", numbers_fill(results));
   with.set("lines", answer_fill(results));
   with.set("measures", measures);
-  with.set("methods", methods_fill(view));
+  with.set("methods", methods_fill(choices));
   with.set("limits", limits_fill(results));
   with.set("identity", identity_fill(results));
   return filled("summary", with);

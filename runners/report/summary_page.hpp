@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/store/record.hpp"
 
 namespace ricochet::report {
@@ -28,7 +28,7 @@ std::string study_fingerprint(const StudyResults& results);
 /// What a file of qualification keeps of a study, made to fit one sheet. Its parts: question, sketch of the scene with
 /// its numbers, answer, measures (HTML of the kind), place for the figure, methods, limits, identity. The first page of
 /// a printed report.
-std::string summary_html(const CaseView& view, const std::string& measures = "");
+std::string summary_html(const Choices& choices, const std::string& measures = "");
 
 /// The style of the printed pages' margins: which study, which fingerprint, when it ran, which page of how many.
 std::string page_margins(const StudyResults& results);

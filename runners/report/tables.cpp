@@ -4,9 +4,10 @@
 #include <cmath>
 #include <functional>
 
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/page_data.hpp"
+#include "runners/report/quantity.hpp"
 #include "runners/report/summary_page.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/study_tables.hpp"
@@ -21,9 +22,9 @@ constexpr size_t most_full_rows = 100;  // of the table of all cases with every 
 constexpr size_t columns_on_paper = 11, rows_on_paper = 150;
 
 /// Measures that at least one case has, in the declared order, others after them.
-std::vector<std::string> measures_present(const CaseView& view) {
+std::vector<std::string> measures_present(const Choices& choices) {
   InOrderMet<std::string, bool> met;
-  for (const CaseRecord& record : view.results().cases)
+  for (const CaseRecord& record : choices.results().cases)
     for (const auto& [name, value] : record.measures) met[name] = true;
   std::vector<std::string> out;
   for (const MeasureInfo& info : all_measures())
@@ -60,12 +61,13 @@ CaseCell number_cell(std::optional<double> value, int digits) {
   return value && std::isfinite(*value) ? CaseCell{number_text(*value, digits), ""} : CaseCell{"", ""};
 }
 
-CaseColumn axis_column(const CaseView& view, const std::string& column) {
+CaseColumn axis_column(const Choices& choices, const std::string& column) {
   const auto cell = [column](const CaseRecord& record) {
-    const std::string text = CaseView::text(record, column);
-    return CaseCell{text, text.empty() || CaseView::number(record, column) ? "" : "text"};
+    const std::string text = axis_words(record, column);
+    return CaseCell{text, text.empty() || axis(record, column).number() ? "" : "text"};
   };
-  return {column, with_unit({column, view.unit_of(column)}), "Axis of the study", "axis", !view.varies(column), cell};
+  return {column, with_unit({column, choices.unit_of(column)}), "Axis of the study", "axis", !choices.varies(column),
+          cell};
 }
 
 CaseColumn measure_cells(const std::string& name) {
@@ -81,7 +83,7 @@ CaseColumn measure_cells(const std::string& name) {
 }
 
 /// Which case it is, what became of it, what sets it apart, what it measured; last what a first look leaves out.
-std::vector<CaseColumn> case_columns(const CaseView& view, const std::vector<std::string>& measures, bool files) {
+std::vector<CaseColumn> case_columns(const Choices& choices, const std::vector<std::string>& measures, bool files) {
   const auto worked = [](const CaseRecord& record, double value) {
     return record.status == Status::refused ? CaseCell{"", ""} : number_cell(value, 5);
   };
@@ -89,16 +91,16 @@ std::vector<CaseColumn> case_columns(const CaseView& view, const std::vector<std
                                   files ? "Identity of the case: its row in cases.csv and its file in curves/"
                                         : "Identity of the case: its row in cases.csv",
                                   "text", false,
-                                  [&view](const CaseRecord& record) {
-                                    return CaseCell{record.id, "text", view.colour(record)};
+                                  [&choices](const CaseRecord& record) {
+                                    return CaseCell{record.id, "text", choices.colour(record)};
                                   }},
                                  {"status", "status", "done, refused (does not apply), diverged or failed", "text",
                                   false, [](const CaseRecord& record) {
                                     return CaseCell{status_mark(record.status) + " " + word(record.status),
                                                     std::string("status ") + word(record.status)};
                                   }}};
-  for (const std::string& column : view.results().columns) out.push_back(axis_column(view, column));
-  const Cases all = view.all();
+  for (const std::string& column : choices.results().columns) out.push_back(axis_column(choices, column));
+  const Cases all = all_cases(choices.results());
   if (std::any_of(all.begin(), all.end(), [](const CaseRecord* record) { return !record->reasons.empty(); }))
     out.push_back({"reason", "reason", "Why a case has no result", "text", false, [](const CaseRecord& record) {
                      return CaseCell{record.reason(), "reason"};
@@ -120,8 +122,8 @@ std::vector<CaseColumn> case_columns(const CaseView& view, const std::vector<std
 }
 
 /// What of the table's columns and rows is not on paper, "" where all is.
-std::string off_paper(const CaseView& view, const std::vector<CaseColumn>& columns) {
-  const size_t cases = view.results().cases.size(), rows = cases > rows_on_paper ? cases - rows_on_paper : 0;
+std::string off_paper(const Choices& choices, const std::vector<CaseColumn>& columns) {
+  const size_t cases = choices.results().cases.size(), rows = cases > rows_on_paper ? cases - rows_on_paper : 0;
   const size_t shown = static_cast<size_t>(
       std::count_if(columns.begin(), columns.end(), [](const CaseColumn& column) { return !column.extra; }));
   const size_t hidden = columns.size() - std::min(shown, columns_on_paper);
@@ -132,16 +134,16 @@ std::string off_paper(const CaseView& view, const std::vector<CaseColumn>& colum
 }
 
 /// A condition that is true of something here, to show how one is written.
-std::string filter_example(const CaseView& view, const std::vector<std::string>& measures) {
-  if (!view.with_status(Status::refused).empty()) return "words, or status = refused";
+std::string filter_example(const Choices& choices, const std::vector<std::string>& measures) {
+  if (!with_status(all_cases(choices.results()), Status::refused).empty()) return "words, or status = refused";
   return measures.empty() ? "words, or status = done" : fmt::format("words, or {} > 0", measures.front());
 }
 
 /// Entries of lists that cases carry, each once with the cases that have it.
 template <class Entry, class List>
-std::vector<std::pair<Entry, Cases>> grouped(const CaseView& view, List list) {
+std::vector<std::pair<Entry, Cases>> grouped(const Choices& choices, List list) {
   InOrderMet<Entry, Cases> out;
-  for (const CaseRecord* record : view.all())
+  for (const CaseRecord* record : all_cases(choices.results()))
     for (const Entry& entry : list(*record)) out[entry].push_back(record);
   return std::move(out).list();
 }
@@ -166,10 +168,10 @@ std::optional<Fill> glossary_of(const std::vector<std::string>& measures) {
 
 }  // namespace
 
-std::string case_table_html(const CaseView& view, const StudyResults& all) {
-  const StudyResults& results = view.results();
+std::string case_table_html(const Choices& choices, const StudyResults& all) {
+  const StudyResults& results = choices.results();
   if (results.cases.empty()) return "<p>No case has run yet.</p>\n";
-  const std::vector<std::string> measures = measures_present(view);
+  const std::vector<std::string> measures = measures_present(choices);
   Fill with, statuses{Fill::type::list};
   for (const auto& [status, count] : status_counts(results)) {
     Fill one;
@@ -178,7 +180,7 @@ std::string case_table_html(const CaseView& view, const StudyResults& all) {
     one.set("count", std::to_string(count));
     statuses << one;
   }
-  std::vector<CaseColumn> columns = case_columns(view, measures, has_curve_files(all));
+  std::vector<CaseColumn> columns = case_columns(choices, measures, has_curve_files(all));
   // Cells that are out of sight are left out of a page of many cases, which they would fill.
   const size_t all_columns = columns.size();
   if (results.cases.size() > most_full_rows) std::erase_if(columns, [](const CaseColumn& one) { return one.extra; });
@@ -191,7 +193,7 @@ std::string case_table_html(const CaseView& view, const StudyResults& all) {
     head.set("classes", one.classes + (one.extra ? " extra" : ""));
     headers << head;
   }
-  if (const std::string left = off_paper(view, columns); !left.empty()) with.set("off_paper", left);
+  if (const std::string left = off_paper(choices, columns); !left.empty()) with.set("off_paper", left);
   std::string rows;
   for (const CaseRecord& record : results.cases) {
     rows +=
@@ -203,7 +205,7 @@ std::string case_table_html(const CaseView& view, const StudyResults& all) {
     }
   }
   with.set("statuses", statuses);
-  with.set("example", filter_example(view, measures));
+  with.set("example", filter_example(choices, measures));
   with.set("columns", headers);
   if (columns.size() < all_columns)
     with.set("hidden", fmt::format("{} more columns", all_columns - columns.size()));
@@ -211,21 +213,21 @@ std::string case_table_html(const CaseView& view, const StudyResults& all) {
     with.set("full", Fill::type::bool_true);
   with.set("rows", std::move(rows));
   if (results.cases.size() > most_full_rows) with.set("later", Fill::type::bool_true);
-  const std::vector<std::string> constants = view.constants();
+  const std::vector<std::string> constants = choices.constants();
   if (!constants.empty()) with.set("constants", fmt::format("{}", fmt::join(constants, " · ")));
   if (const auto glossary = glossary_of(measures)) with.set("glossary", *glossary);
   return filled("cases", with);
 }
 
-std::string left_out_html(const CaseView& view) {
+std::string left_out_html(const Choices& choices) {
   Fill with, entries{Fill::type::list};
   const auto groups = grouped<std::pair<std::string, std::string>>(
-      view, [](const CaseRecord& r) -> const auto& { return r.left_out; });
+      choices, [](const CaseRecord& r) -> const auto& { return r.left_out; });
   for (const auto& [entry, cases] : groups) {
     Fill one;
     one.set("item", entry.first);
     one.set("reason", entry.second);
-    one.set("cases", view.describe(cases));
+    one.set("cases", choices.describe(cases));
     entries << one;
   }
   with.set("any", groups.empty() ? Fill::type::bool_false : Fill::type::bool_true);
@@ -233,18 +235,18 @@ std::string left_out_html(const CaseView& view) {
   return filled("left_out", with);
 }
 
-std::string notes_html(const CaseView& view) {
+std::string notes_html(const Choices& choices) {
   Fill with, entries{Fill::type::list};
   const auto groups = grouped<std::string>(
-      view, [](const CaseRecord& r) -> const auto& { return r.notes; });
+      choices, [](const CaseRecord& r) -> const auto& { return r.notes; });
   bool any = !groups.empty();
-  for (const ReasonRow& row : reasons_type().read(view.results().derived)) {
+  for (const ReasonRow& row : reasons_type().read(choices.results().derived)) {
     if (row.status != word(Status::done)) continue;
     Fill one;
     one.set("note", row.reason);
     one.set("cases", row.cases == 1
-                         ? view.name_of(row.first)
-                         : fmt::format("{} cases, of this kind; this is {}", row.cases, view.name_of(row.first)));
+                         ? choices.name_of(row.first)
+                         : fmt::format("{} cases, of this kind; this is {}", row.cases, choices.name_of(row.first)));
     entries << one;
     any = true;
   }
@@ -252,23 +254,23 @@ std::string notes_html(const CaseView& view) {
   for (const auto& [note, cases] : groups) {
     Fill one;
     one.set("note", note);
-    one.set("cases", view.describe(cases));
+    one.set("cases", choices.describe(cases));
     entries << one;
   }
   with.set("entries", entries);
   return filled("notes", with);
 }
 
-std::string environment_html(const CaseView& view) {
+std::string environment_html(const Choices& choices) {
   Fill with, entries{Fill::type::list};
-  for (const auto& [name, value] : view.results().environment.entries) {
+  for (const auto& [name, value] : choices.results().environment.entries) {
     Fill one;
     one.set("name", name);
     one.set("value", value);
     entries << one;
   }
   with.set("entries", entries);
-  with.set("study", view.results().study.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  with.set("study", choices.results().study.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   return filled("environment", with);
 }
 

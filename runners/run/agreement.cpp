@@ -116,21 +116,20 @@ std::vector<std::string> measures_of(const CaseRecord& stored, const CaseRecord&
 
 AgreementOf::AgreementOf(const AnalysedResults& results)
     : results_(results), keeps_energy_(answers::keeps_energy(results)) {
-  for (const CaseRecord* record : all_cases(results)) methods_[results.compared.key(*record)].push_back(record);
+  for (const CaseRecord* record : all_cases(results)) methods_[results.choices.key(*record)].push_back(record);
 }
 
 StudyResults AgreementOf::of_its_method(const CaseRecord& stored, const CaseRecord& again) const {
   StudyResults alone;
   static_cast<StudyHeader&>(alone) = results_;
-  for (const CaseRecord* record : methods_.at(results_.compared.key(stored))) {
+  for (const CaseRecord* record : methods_.at(results_.choices.key(stored))) {
     alone.cases.push_back(*record);
     if (record == &stored) alone.cases.back().measures = again.measures;
   }
   return alone;
 }
 
-std::optional<double> AgreementOf::left_open(const answers::Compared& method, const std::string& name,
-                                             double value) const {
+std::optional<double> AgreementOf::left_open(const Choices& method, const std::string& name, double value) const {
   const answers::MeasureLimits limits = answers::limits_of(method, name, keeps_energy_, all_cases(method.results()));
   for (const answers::Method* one : limits.with_limit()) {
     const Limit& limit = *one->limit;
@@ -145,7 +144,7 @@ AgreementOf::Measures AgreementOf::measures(const CaseRecord& stored, const Case
                                             const RoundOff& round_off) const {
   Measures found;
   const StudyResults method = of_its_method(stored, again);
-  const answers::Compared compared(method);
+  const Choices choices(method);
   for (const std::string& name : measures_of(stored, again)) {
     const auto kept = measure(stored, name), value = measure(again, name);
     if (!kept || !value) {
@@ -156,7 +155,7 @@ AgreementOf::Measures AgreementOf::measures(const CaseRecord& stored, const Case
     const MeasureInfo* info = measure_info(name);
     const double off = std::abs(*value - *kept);
     if (off <= round_off.tolerance(info ? info->unit : "", *value)) continue;
-    const auto u = left_open(compared, name, *value);
+    const auto u = left_open(choices, name, *value);
     if (u && off <= *u) {
       ++found.within_u;
       found.largest = std::max(found.largest, off / *u);

@@ -40,7 +40,7 @@ class AgreementOf {
   /// The cases of the method that differ in step and mesh alone, this one with what was computed again.
   StudyResults of_its_method(const CaseRecord& stored, const CaseRecord& again) const;
   /// u of a measure that has this value; nothing where the method says none.
-  std::optional<double> left_open(const answers::Compared& method, const std::string& measure, double value) const;
+  std::optional<double> left_open(const Choices& method, const std::string& measure, double value) const;
 
   const AnalysedResults& results_;
   bool keeps_energy_;

@@ -20,7 +20,7 @@ using asks::VerdictRow;
 
 /// A measure, or an axis, in words.
 std::string words_of(const std::string& name) {
-  return name.empty() ? "" : measure_info(name) ? answers::measure_words(name).words : answers::spoken(name);
+  return name.empty() ? "" : measure_info(name) ? answers::measure_words(name).words : spoken(name);
 }
 
 std::string unit_of(const VerdictRow& row) {
@@ -30,9 +30,8 @@ std::string unit_of(const VerdictRow& row) {
 }  // namespace
 
 std::string value_cell(const VerdictRow& row) {
-  if (!row.value && row.low && row.high && *row.low == *row.high) return answers::short_number(*row.low);
-  if (!row.value)
-    return row.low && row.high ? answers::short_number(*row.low) + " to " + answers::short_number(*row.high) : "";
+  if (!row.value && row.low && row.high && *row.low == *row.high) return short_number(*row.low);
+  if (!row.value) return row.low && row.high ? short_number(*row.low) + " to " + short_number(*row.high) : "";
   answers::MeasureWords words;
   words.unit = unit_of(row);
   words.decades = words.unit != "%" && answers::measure_words(row.measure).decades;
@@ -97,7 +96,7 @@ report::AskedAnswers asked_answers(const AnalysedResults& results) {
       aside.push_back(fmt::format("Ask {} requires a yes and has none.", ask.number));
     out.parts.push_back({ask.number, answered.sentence, std::move(aside), asked_rows(answered), answered.figure});
   }
-  for (const answers::Sentence& doubt : answers::doubted(results.compared)) out.first.push_back(doubt.text);
+  for (const answers::Sentence& doubt : answers::doubted(results.choices)) out.first.push_back(doubt.text);
   return out;
 }
 

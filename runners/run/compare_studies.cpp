@@ -6,7 +6,6 @@
 #include <set>
 
 #include "runners/json/json_text.hpp"
-#include "runners/report/case_view.hpp"
 #include "runners/report/summary_page.hpp"
 #include "runners/run/choice_effects.hpp"
 #include "runners/store/fingerprint.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/html.hpp"
 #include "runners/run/compare_studies.hpp"
 #include "runners/store/fingerprint.hpp"
@@ -51,18 +51,19 @@ std::string cases_text(const StudyComparison& found, const StudyResults& a, cons
   std::string out = fmt::format("cases: {} in both{}, {} only in A, {} only in B, {} with another status\n",
                                 found.pairs.size(), found.by_id ? "" : " (by their parameters: the ids differ)",
                                 found.only_a.size(), found.only_b.size(), changed.size());
-  const auto named = [](const report::CaseView& view, const char* which) {
-    return [&view, which](const CaseRecord* record) {
-      return fmt::format("only in {}: {} ({})", which, record->id, brief_text(view.name(*record)));
+  const auto named = [](const Choices& choices, const char* which) {
+    return [&choices, which](const CaseRecord* record) {
+      return fmt::format("only in {}: {} ({})", which, record->id, brief_text(choices.short_name(*record)));
     };
   };
-  const report::CaseView view_a(a), view_b(b);
+  const Choices view_a(a), view_b(b);
   out += lines_of(found.only_a, most_cases, named(view_a, "A"));
   out += lines_of(found.only_b, most_cases, named(view_b, "B"));
   return out + lines_of(changed, most_cases, [&](const CasePair& pair) {
            const std::string reason = (pair.b->reasons.empty() ? pair.a : pair.b)->reason();
-           return fmt::format("{} ({}): {} → {}{}", pair.a->id, brief_text(view_a.name(*pair.a)), shown_status(*pair.a),
-                              shown_status(*pair.b), reason.empty() ? "" : ", " + brief_text(reason));
+           return fmt::format("{} ({}): {} → {}{}", pair.a->id, brief_text(view_a.short_name(*pair.a)),
+                              shown_status(*pair.a), shown_status(*pair.b),
+                              reason.empty() ? "" : ", " + brief_text(reason));
          });
 }
 

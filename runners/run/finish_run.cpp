@@ -10,7 +10,7 @@
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/asks/default_asks.hpp"
 #include "runners/kinds/kind.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/summary_page.hpp"
 #include "runners/run/asked_text.hpp"
@@ -35,7 +35,7 @@ void say(std::FILE* out, std::string_view text) {
 
 namespace {
 
-Analysis analysis_of(StudyResults& results, const answers::Compared& study) {
+Analysis analysis_of(StudyResults& results, const Choices& study) {
   results.derived.clear();
   const Kind* kind = find_kind(results.kind);
   if (kind) return kind->analysis(results, study);
@@ -52,8 +52,8 @@ std::vector<std::string> observed_by_name(const StudyResults& results) {
 }
 
 /// What the study asks, or what its kind asks where it asks nothing.
-asks::Asked asked_of(const StudyResults& results, const answers::Compared& compared, const Analysis& analysis) {
-  const asks::Evidence evidence(compared);
+asks::Asked asked_of(const StudyResults& results, const Choices& choices, const Analysis& analysis) {
+  const asks::Evidence evidence(choices);
   const std::vector<asks::Ask> given = asks::asks_of(results.study);
   if (!given.empty()) return asks::answer_asks(given, evidence, analysis.verbs);
   const Kind* kind = find_kind(results.kind);
@@ -70,9 +70,9 @@ asks::Asked asked_of(const StudyResults& results, const answers::Compared& compa
 
 AnalysedResults::AnalysedResults(StudyResults results)
     : StudyResults(std::move(results)),
-      compared(*this),
-      analysis(analysis_of(*this, compared)),
-      asked(asked_of(*this, compared, analysis)) {
+      choices(*this),
+      analysis(analysis_of(*this, choices)),
+      asked(asked_of(*this, choices, analysis)) {
   // The answer says the shares, and stands before them.
   const auto before_shares = static_cast<std::ptrdiff_t>(derived.size());
   const auto add = [&](Table table) {
@@ -80,11 +80,11 @@ AnalysedResults::AnalysedResults(StudyResults results)
   };
   add(effects_table(*this));
   if (const Kind* of_study = find_kind(kind); !of_study || !of_study->format.default_asks)
-    for (Table& table : evidence_tables(compared)) add(std::move(table));
-  for (Table table : {asked_table(compared, asked), asks::verdicts_table(asked)})
+    for (Table& table : evidence_tables(choices)) add(std::move(table));
+  for (Table table : {asked_table(choices, asked), asks::verdicts_table(asked)})
     if (!table.rows.empty()) derived.insert(derived.begin() + before_shares, std::move(table));
   add(reasons_table(*this));
-  for (Table& table : report::page_tables(*this, analysis.page)) add(std::move(table));
+  for (Table& table : report::page_tables(choices, analysis.page)) add(std::move(table));
 }
 
 Table reasons_table(const StudyResults& results) {
@@ -198,7 +198,7 @@ std::vector<std::string> observed_measures(const StudyResults& results) {
   return names;
 }
 
-Table asked_table(const answers::Compared& study, const asks::Asked& asked) {
+Table asked_table(const Choices& study, const asks::Asked& asked) {
   answers::Answer answer;
   const auto say = [&](const std::string& text, const char* status) {
     answer.say(text, answers::Clause{.form = "asked", .status = status});
@@ -214,7 +214,7 @@ Table asked_table(const answers::Compared& study, const asks::Asked& asked) {
   return answer.table();
 }
 
-std::vector<Table> evidence_tables(const answers::Compared& study) {
+std::vector<Table> evidence_tables(const Choices& study) {
   const std::vector<std::string> measures = observed_measures(study.results());
   return {answers::limits_table(study, measures), answers::refinements_table(study, measures),
           answers::differences_table(study, measures)};

@@ -40,10 +40,10 @@ int tell_results(std::FILE* out, const AnalysedResults& results, const std::file
                  const std::string& how, bool table = false);
 
 /// answers: what comes first, a sentence for each ask, what is doubtful and what is left out.
-Table asked_table(const answers::Compared& study, const asks::Asked& asked);
+Table asked_table(const Choices& study, const asks::Asked& asked);
 
 /// What an answer by observed measures rests on: limits, refinements and differences of these.
-std::vector<Table> evidence_tables(const answers::Compared& study);
+std::vector<Table> evidence_tables(const Choices& study);
 
 /// The measures that a study observes: its key "observe", else what its kind asks of such results; those that some
 /// finished case has.

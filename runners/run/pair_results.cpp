@@ -8,8 +8,8 @@
 #include <tuple>
 #include <utility>
 
-#include "runners/answers/compared.hpp"
 #include "runners/asks/evidence.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"
 
@@ -57,8 +57,7 @@ std::vector<std::string> chosen_columns(const StudyResults& a, const StudyResult
   std::vector<std::string> out;
   for (const StudyResults* one : {&a, &b})
     for (const std::string& column : one->columns)
-      if (!answers::is_refinement(column) && std::find(out.begin(), out.end(), column) == out.end())
-        out.push_back(column);
+      if (!is_refinement(column) && std::find(out.begin(), out.end(), column) == out.end()) out.push_back(column);
   return out;
 }
 

@@ -20,7 +20,7 @@ namespace ricochet {
 namespace {
 
 std::string render(const AnalysedResults& results) {
-  return render_report(results, page_of_study(results));
+  return render_report(results.choices, page_of_study(results));
 }
 
 constexpr double short_run = 1;          // s

@@ -150,6 +150,47 @@ double to_digits(double value, int digits) {
   return number_in(fmt::format("{:.{}e}", value, digits - 1)).value_or(value);
 }
 
+std::string with_minus(std::string text) {
+  if (text.starts_with('-')) text.replace(0, 1, "−");
+  return text;
+}
+
+std::string short_number(double value, int digits) {
+  if (value == 0) return "0";
+  if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
+  constexpr double small = 1e-3;
+  if (std::abs(value) < small) {
+    // "1e-4", not 0.0001.
+    std::string text = fmt::format("{:.{}e}", value, digits - 1);
+    const std::size_t at = text.find('e');
+    std::string mantissa = text.substr(0, at);
+    if (mantissa.find('.') != std::string::npos) {
+      mantissa.erase(mantissa.find_last_not_of('0') + 1);
+      if (mantissa.ends_with('.')) mantissa.pop_back();
+    }
+    return with_minus(fmt::format("{}e{}", mantissa, number_in(text.substr(at + 1)).value_or(0)));
+  }
+  constexpr double written_out = 1e5;
+  // Of the rounded one: 9.9 to one digit is 10, not 1e1.
+  value =
+      to_digits(value, std::max(digits, std::abs(value) >= 1 ? static_cast<int>(std::log10(std::abs(value))) + 1 : 0));
+  const int whole =
+      std::abs(value) >= 1 && std::abs(value) < written_out ? static_cast<int>(std::log10(std::abs(value))) + 1 : 0;
+  std::string text = fmt::format("{:.{}g}", value, std::max(digits, whole));
+  if (const std::size_t at = text.find('e'); at != std::string::npos) {
+    const double exponent = number_in(text.substr(at + 1)).value_or(0);
+    text = fmt::format("{}e{}", text.substr(0, at), exponent);
+  }
+  return with_minus(text);
+}
+
+std::string fraction_text(double value) {
+  if (value == 0.5) return "½";
+  if (value == 0.25) return "¼";
+  if (value == 0.75) return "¾";
+  return short_number(value);
+}
+
 std::size_t shown_width(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));

@@ -49,6 +49,12 @@ std::string shell_quoted(std::string text);
 
 /// A number rounded to so many significant digits.
 double to_digits(double value, int digits);
+/// A text of a number with a minus sign as it is printed.
+std::string with_minus(std::string text);
+/// `digits` significant digits, at least as many as a whole number below 1e5 has; exponents short: "1.2e-5".
+std::string short_number(double value, int digits = 4);
+/// 0.5 as "½", 0.25 as "¼", 0.75 as "¾"; else short_number().
+std::string fraction_text(double value);
 
 // What a terminal shows: tables and spans of time as plain text.
 

@@ -172,7 +172,7 @@ void coordinator(int side, double from, const fs::path& folder) {
   double reported = 0;
   runner.render = [&](const AnalysedResults& results) {
     const double begin = processor_seconds();
-    std::string page = render_report(results, page_of_study(results));
+    std::string page = render_report(results.choices, page_of_study(results));
     reported += processor_seconds() - begin;
     return page;
   };

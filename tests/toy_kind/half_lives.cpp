@@ -20,15 +20,15 @@ report::KindPage half_lives_page() {
   page.scripts = {
       R"js(ricochet.figure("half-lives", (data) => { window.drawnHalfLives = data.rows("halves"); return []; });)js"};
   page.tables = {"halves"};
-  page.derived = {[](const report::CaseView& view) {
+  page.derived = {[](const Choices& choices) {
     Table out{"halves", "One row per case: when half is reached.", {{"case", "", ""}, {"after", "s", "Time."}}, {}};
-    for (const CaseRecord* record : view.all())
+    for (const CaseRecord* record : all_cases(choices.results()))
       if (const Table* own = find_table(record->tables, "half_lives"))
         out.rows.push_back({record->id, own->rows[0][1]});
     return out;
   }};
-  page.answer = [](const report::CaseView& view) {
-    const Table* halves = find_table(view.results().derived, "halves");
+  page.answer = [](const Choices& choices) {
+    const Table* halves = find_table(choices.results().derived, "halves");
     return "<p>Half is reached in " + std::to_string(halves ? halves->rows.size() : 0) + " cases.</p>\n";
   };
   return page;
@@ -81,7 +81,7 @@ class HalfLives final : public Kind {
   std::string outcome(const CaseRecord& record) const override {
     return "the slowest takes " + std::to_string(*measure(record, "longest_half_life")) + " s";
   }
-  Analysis analysis(StudyResults& results, const answers::Compared&) const override {
+  Analysis analysis(StudyResults& results, const Choices&) const override {
     collect_tables(results);
     return {half_lives_page()};
   }

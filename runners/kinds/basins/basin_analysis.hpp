@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "runners/kinds/sweep/sweep_tables.hpp"
-#include "runners/report/case_view.hpp"
 #include "runners/store/record.hpp"
 
 /// \file

@@ -15,7 +15,8 @@
 #include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/kinds/sweep/motion_asks.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
+#include "runners/report/quantity.hpp"
 
 namespace ricochet {
 namespace {
@@ -122,8 +123,7 @@ class MotionsAlong {
                 change.low, change.high, parameter_.unit);
     }
     say(out);
-    out.figure = {
-        {"form", "ranges"}, {"x", answers::spoken(parameter_.name)}, {"x_unit", parameter_.unit}, {"rows", drawn}};
+    out.figure = {{"form", "ranges"}, {"x", spoken(parameter_.name)}, {"x_unit", parameter_.unit}, {"rows", drawn}};
     return out;
   }
 
@@ -207,7 +207,7 @@ class MotionsAlong {
   /// The finest case of each method.
   void find_heads() {
     std::vector<std::string> methods = columns_;
-    std::erase_if(methods, [](const std::string& one) { return answers::is_refinement(one); });
+    std::erase_if(methods, [](const std::string& one) { return is_refinement(one); });
     std::map<std::string, std::size_t> place;
     for (const CaseMotions& one : told_) {
       const auto [at, fresh] = place.emplace(study_.key(*one.record, methods), heads_.size());
@@ -247,8 +247,7 @@ class MotionsAlong {
   }
 
   static std::string change_text(const MotionChange& change, const std::string& unit) {
-    const std::string period = "period ", low = answers::short_number(change.low, 5),
-                      high = answers::short_number(change.high, 5);
+    const std::string period = "period ", low = short_number(change.low, 5), high = short_number(change.high, 5);
     const bool both = change.from.starts_with(period) && change.to.starts_with(period);
     return fmt::format("{} to {} ({}–{}{})", change.from, both ? change.to.substr(period.size()) : change.to, low, high,
                        unit);
@@ -329,7 +328,7 @@ class MotionsAlong {
   }
 
   const asks::Evidence& evidence_;
-  const answers::Compared& study_;
+  const Choices& study_;
   Cases cases_;
   std::vector<std::string> columns_;
   report::Quantity parameter_;

@@ -16,9 +16,9 @@ namespace {
 
 std::string seconds_text(double seconds) {
   constexpr double thousand = 1e3, micro = 1e6;
-  if (seconds >= 1) return answers::short_number(seconds, 2) + " s";
-  return seconds >= 1 / thousand ? answers::short_number(thousand * seconds, 2) + " ms"
-                                 : answers::short_number(micro * seconds, 2) + " µs";
+  if (seconds >= 1) return short_number(seconds, 2) + " s";
+  return seconds >= 1 / thousand ? short_number(thousand * seconds, 2) + " ms"
+                                 : short_number(micro * seconds, 2) + " µs";
 }
 
 struct Timed {
@@ -288,7 +288,7 @@ class CheapestAsk {
   }
 
   const asks::Evidence& evidence_;
-  const answers::Compared& study_;
+  const Choices& study_;
   std::string error_;
   double within_;
   Cases cases_;

@@ -270,7 +270,7 @@ CaseRecord ComparisonKind::march(const StudyCase& study_case, const Registry& re
   return run_case(study_case, registry, stop);
 }
 
-void ComparisonKind::put_tables(StudyResults& results, const answers::Compared& study,
+void ComparisonKind::put_tables(StudyResults& results, const Choices& study,
                                 std::vector<Table> (*costs)(const StudyResults&)) {
   results.derived.push_back(errors_table(results));
   results.derived.push_back(orders_table(results));

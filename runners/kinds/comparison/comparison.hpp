@@ -51,7 +51,7 @@ class ComparisonKind : public Kind {
   ComparisonKind(const char* name, const char* text, std::vector<Field> keys, const std::vector<MeasureInfo>& of_cases,
                  std::vector<std::string> verbs, Json (*default_asks)(const Json& resolved));
   /// Appends errors and orders, then what `costs` says of them (may be null), then what the cases carry.
-  static void put_tables(StudyResults& results, const answers::Compared& study,
+  static void put_tables(StudyResults& results, const Choices& study,
                          std::vector<Table> (*costs)(const StudyResults&) = nullptr);
 };
 
@@ -79,10 +79,10 @@ KindPage comparison_page();
 
 /// Where errors follow their fitted order, with the ends of that line. It is the longest run of points above their
 /// floor within a factor of two of e = C x^p. Axes as in `orders`.
-Table order_lines(const CaseView& view);
+Table order_lines(const Choices& choices);
 
 /// How many orders are confirmed, refuted and undecided; methods × errors with orders and verdicts. Then every order
 /// with its interval and reason, what is not confirmed first. Empty without the table `orders`.
-std::string orders_html(const CaseView& view);
+std::string orders_html(const Choices& choices);
 
 }  // namespace ricochet::report

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "runners/answers/compared.hpp"
 #include "runners/asks/evidence.hpp"
+#include "runners/report/choices.hpp"
 
 namespace ricochet {
 
 /// order_runs: one row per method, error and refined quantity.
-Table order_runs_table(const answers::Compared& study);
+Table order_runs_table(const Choices& study);
 
 /// One method's errors along a refinement, at the finest of the other.
 struct MethodRun {
@@ -23,10 +23,10 @@ struct MethodRun {
 };
 
 /// Of every method with two sizes or more, among these cases. `refined`: "step" or "elements".
-std::vector<MethodRun> runs_of(const answers::Compared& study, const Cases& cases, const std::string& error,
+std::vector<MethodRun> runs_of(const Choices& study, const Cases& cases, const std::string& error,
                                const std::string& refined);
 /// Among all cases.
-std::vector<MethodRun> runs_of(const answers::Compared& study, const std::string& error, const std::string& refined);
+std::vector<MethodRun> runs_of(const Choices& study, const std::string& error, const std::string& refined);
 
 /// "the error of the impact times"; "impact times" alone, where that says which error it is.
 std::string error_words(const std::string& error);

@@ -12,12 +12,12 @@
 #include "runners/answers/set_names.hpp"
 #include "runners/asks/kind_verbs.hpp"
 #include "runners/kinds/comparison/comparison_answers.hpp"
+#include "runners/report/quantity.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet {
 namespace {
 
-using answers::short_number;
 using Run = OrderRun::Verdict;
 
 /// What is found of one method.
@@ -177,7 +177,7 @@ class OrderAsk {
         if (refined == "step" && one.declared)
           parts.push_back(std::abs(run.order - *one.declared) <= orders_agree
                               ? "as declared"
-                              : "the scheme declares " + answers::fraction_text(*one.declared));
+                              : "the scheme declares " + fraction_text(*one.declared));
         break;
       case Run::stops:
         parts.push_back("the error ends at " + with_unit(run.smallest) + share);
@@ -301,7 +301,7 @@ class OrderAsk {
   }
 
   const asks::Evidence& evidence_;
-  const answers::Compared& study_;
+  const Choices& study_;
   std::string error_, unit_;
   Cases cases_;
 };

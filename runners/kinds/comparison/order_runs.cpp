@@ -9,11 +9,11 @@ namespace ricochet {
 
 using namespace answers;
 
-std::vector<MethodRun> runs_of(const Compared& study, const std::string& error, const std::string& refined) {
+std::vector<MethodRun> runs_of(const Choices& study, const std::string& error, const std::string& refined) {
   return runs_of(study, all_cases(study.results()), error, refined);
 }
 
-std::vector<MethodRun> runs_of(const Compared& study, const Cases& all, const std::string& error,
+std::vector<MethodRun> runs_of(const Choices& study, const Cases& all, const std::string& error,
                                const std::string& refined) {
   InOrderMet<std::string, Cases> methods;
   for (const CaseRecord* record : all) methods[study.key(*record)].push_back(record);
@@ -57,7 +57,7 @@ std::vector<MethodRun> runs_of(const Compared& study, const Cases& all, const st
   return out;
 }
 
-Table order_runs_table(const Compared& study) {
+Table order_runs_table(const Choices& study) {
   const StudyResults& results = study.results();
   Table table{
       "order_runs",

@@ -20,14 +20,14 @@ std::string point_kind(std::string asked) {
 }
 
 std::string point_value(double value, std::optional<double> half) {
-  if (!half || !(*half > 1e-12 * std::abs(value))) return answers::short_number(value, 7);
+  if (!half || !(*half > 1e-12 * std::abs(value))) return short_number(value, 7);
   int places = -static_cast<int>(std::floor(std::log10(*half)));
   constexpr double begins_with_one = 1.95;
   const bool fine = *half * std::pow(10, places) < begins_with_one;
   constexpr int most = 15;
   std::string text = fmt::format("{:.{}f}", value, std::clamp(places + fine, 0, most));
   if (text.starts_with('-')) text.replace(0, 1, "−");
-  return text + " ± " + answers::short_number(*half, fine ? 2 : 1);
+  return text + " ± " + short_number(*half, fine ? 2 : 1);
 }
 
 namespace {

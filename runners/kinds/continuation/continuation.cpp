@@ -60,7 +60,7 @@ class ContinuationKind final : public Kind {
     };
     return runner;
   }
-  Analysis analysis(StudyResults& results, const answers::Compared& study) const override {
+  Analysis analysis(StudyResults& results, const Choices& study) const override {
     const SweptColumns swept = swept_columns(results);
     describe_continuation(results.cases, swept);
     collect_tables(results, [](const std::string& table) { return table == special_points_type().name; });

@@ -212,7 +212,7 @@ void convergence_rows(const StudyPoints& study, const std::vector<std::vector<Po
 
 }  // namespace
 
-PointAnalysis::PointAnalysis(const answers::Compared& study)
+PointAnalysis::PointAnalysis(const Choices& study)
     : points(study), presence(presence_rows(points)), shifts(shift_rows(points)) {
   for (std::size_t name = 0; name < points.names().size(); ++name) {
     std::vector<PointConvergence>& own = convergence.emplace_back();

@@ -56,7 +56,7 @@ struct ToldPoint {
 
 /// What the special points of a study come to over its cases. Empty where no case left a branch.
 struct PointAnalysis {
-  explicit PointAnalysis(const answers::Compared& study);
+  explicit PointAnalysis(const Choices& study);
   /// Appends point_presence, point_shifts, point_orders and point_limits, and puts special_points behind `branches`:
   /// with names, and without folds that have none and that steps may have invented. Their parameter goes back by less
   /// than StudyPoints::least_fold().

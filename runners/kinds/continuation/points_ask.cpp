@@ -14,7 +14,8 @@
 #include "runners/kinds/continuation/point_tables.hpp"
 #include "runners/kinds/continuation/point_words.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
+#include "runners/report/quantity.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet {
@@ -73,7 +74,7 @@ class PointsAsk {
     std::map<std::string, std::size_t> best;
     std::vector<std::string> order;
     std::vector<std::string> methods = columns_;
-    std::erase_if(methods, [](const std::string& one) { return answers::is_refinement(one); });
+    std::erase_if(methods, [](const std::string& one) { return is_refinement(one); });
     for (std::size_t c = 0; c < owners.size(); ++c) {
       if (std::find(cases_.begin(), cases_.end(), owners[c]) == cases_.end()) continue;
       followed_.insert(owners[c]);
@@ -118,7 +119,7 @@ class PointsAsk {
     tell_absent(out);
     say(out);
     out.figure = {{"form", "branches"},
-                  {"x", answers::spoken(parameter_.name)},
+                  {"x", spoken(parameter_.name)},
                   {"x_unit", parameter_.unit},
                   {"y", "displacement of the tip"},
                   {"y_unit", "m"},
@@ -187,7 +188,7 @@ class PointsAsk {
   /// leaves open unknown.
   void refine(Told& told, std::size_t owner, const StudyPoint& point) const {
     for (const PointConvergence::Along& along : of_.points.convergence(owner, point.name).along) {
-      if (!answers::is_refinement(of_.points.axes()[along.axis].column) || !along.limit.open) continue;
+      if (!is_refinement(of_.points.axes()[along.axis].column) || !along.limit.open) continue;
       told.value += along.limit.correction;
       told.less += *along.limit.open;
       told.more += *along.limit.open;
@@ -260,12 +261,11 @@ class PointsAsk {
       for (const PointOrderRow& order : of_.orders)
         if (order.name == of_.points.names()[static_cast<std::size_t>(told.point->name)].text &&
             order.method == one.record->id && order.verdict == order_told)
-          parts.push_back(
-              fmt::format("order {} in {}", answers::short_number(*order.order, 2), answers::spoken(order.refined)));
+          parts.push_back(fmt::format("order {} in {}", short_number(*order.order, 2), spoken(order.refined)));
     for (const PointLimitRow& limit : of_.limits)
       if (told.point->name >= 0 && limit.id == one.record->id && limit.reference &&
           limit.name == of_.points.names()[static_cast<std::size_t>(told.point->name)].text)
-        parts.push_back(fmt::format("reference {}", answers::short_number(*limit.reference, 7)));
+        parts.push_back(fmt::format("reference {}", short_number(*limit.reference, 7)));
     row.reason = fmt::format("{}", fmt::join(parts, "; "));
     row.cases = 1;
     row.left_out = 0;
@@ -289,9 +289,8 @@ class PointsAsk {
     }
     // How far it went is no interval of its end.
     if (std::isfinite(branch.from))
-      row.reason +=
-          (row.reason.empty() ? "" : "; ") +
-          fmt::format("goes from {} to {}", answers::short_number(branch.from, 6), answers::short_number(branch.to, 6));
+      row.reason += (row.reason.empty() ? "" : "; ") +
+                    fmt::format("goes from {} to {}", short_number(branch.from, 6), short_number(branch.to, 6));
     out.rows.push_back(std::move(row));
   }
 
@@ -321,7 +320,7 @@ class PointsAsk {
       const std::string at = text.starts_with(kind) ? text.substr(kind.size()) : " " + text;
       out.aside.push_back(fmt::format(
           "{} of {} cases have no {}{}{}{}.", absent, reached, point_words(kind).thing, at, unit(),
-          least ? fmt::format(", though their branches go on to {} at least", answers::short_number(*least, 4)) : ""));
+          least ? fmt::format(", though their branches go on to {} at least", short_number(*least, 4)) : ""));
     }
     if (lacking > most)
       out.aside.push_back(fmt::format("{} more points are not in every case: point_presence.csv.", lacking - most));
@@ -345,7 +344,7 @@ class PointsAsk {
           names.emplace(of_.points.names()[static_cast<std::size_t>(told.point->name)].text, told.point);
     for (const PointShiftRow& shift : of_.shifts) {
       const auto found = names.find(shift.name);
-      if (found == names.end() || answers::is_refinement(shift.choice) || !shift.shift) continue;
+      if (found == names.end() || is_refinement(shift.choice) || !shift.shift) continue;
       asks::VerdictRow row;
       row.measure = std::string("shift of the ") + point_words(found->second->kind).thing;
       row.level = shift.value + " against " + shift.reference_value + ", " + shift.name;
@@ -374,13 +373,13 @@ class PointsAsk {
     const char* does = point_words(told.point->kind).does;
     if (told.confirmed && wide > lopsided * narrow) {
       constexpr int digits = 5;
-      const std::string low = answers::short_number(told.value - told.less, digits),
-                        high = answers::short_number(told.value + told.more, digits);
+      const std::string low = short_number(told.value - told.less, digits),
+                        high = short_number(told.value + told.more, digits);
       if (low != high) return fmt::format("{} between {} and {}", does, low, high);
     }
     constexpr int few = 4;  // digits of what one case alone has
     return fmt::format("{} at {}", does,
-                       told.confirmed ? point_value(told.value, wide) : answers::short_number(told.value, few));
+                       told.confirmed ? point_value(told.value, wide) : short_number(told.value, few));
   }
 
   /// How the branches of all methods end.
@@ -410,7 +409,7 @@ class PointsAsk {
   std::string text(const Ends& ends) const {
     if (ends.branches == 1 && ends.stopped)
       return fmt::format("the branch stops inside the range at {}{}",
-                         answers::short_number(ends.stopped->end->parameter.value_or(ends.stopped->to), 6), unit());
+                         short_number(ends.stopped->end->parameter.value_or(ends.stopped->to), 6), unit());
     if (ends.branches == 1 && ends.first->end) return "the branch " + end_words(ends.first->end->ended);
     if (ends.known == 0) return "no end of a branch is told";
     if (ends.inside == 0 && ends.asked > 0)
@@ -501,7 +500,7 @@ class PointsAsk {
   }
 
   const asks::Evidence& evidence_;
-  const answers::Compared& study_;
+  const Choices& study_;
   const PointAnalysis& of_;
   Cases cases_;
   std::set<const CaseRecord*> followed_;

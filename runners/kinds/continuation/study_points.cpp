@@ -37,7 +37,7 @@ double signed_arc(const SpecialRow& row) {
 
 }  // namespace
 
-StudyPoints::StudyPoints(const answers::Compared& study) : study_(study) {
+StudyPoints::StudyPoints(const Choices& study) : study_(study) {
   if (study.varies("steps_per_period"))
     axes_.push_back({"steps_per_period", "step", "h", [&](const CaseRecord& one) { return study.step(one); }});
   if (study.varies(study.mesh_column()))
@@ -304,7 +304,7 @@ std::vector<std::string> StudyPoints::differences(std::size_t a, std::size_t b) 
 
 std::string StudyPoints::level(std::size_t owner, const std::string& choice) const {
   const std::string& text = study_.text(*cases_[owner], choice);
-  return answers::is_refinement(choice) ? text : study_.level(*cases_[owner], choice);
+  return is_refinement(choice) ? text : study_.level(*cases_[owner], choice);
 }
 
 void StudyPoints::give_names() {
@@ -326,7 +326,7 @@ void StudyPoints::give_names() {
   const auto text = [&](std::size_t k, int digits) {
     const StudyPoint& point = *names_[k].point;
     const std::string period = point.period > 1 ? fmt::format("period {} ", point.period) : "";
-    return fmt::format("{}{} at {}", period, point.kind, answers::short_number(limits[k], digits));
+    return fmt::format("{}{} at {}", period, point.kind, short_number(limits[k], digits));
   };
   constexpr int fewest = 4, most = 9;
   for (std::size_t k = 0; k < names_.size(); ++k) {

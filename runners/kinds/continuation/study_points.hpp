@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "runners/answers/compared.hpp"
 #include "runners/kinds/continuation/continuation_tables.hpp"
+#include "runners/report/choices.hpp"
 
 /// \file
 /// The special points of a study over its cases: which are the same, and how they move as a case is refined.
@@ -56,10 +56,10 @@ struct PointConvergence {
 
 class StudyPoints {
  public:
-  explicit StudyPoints(const answers::Compared& study);
+  explicit StudyPoints(const Choices& study);
   StudyPoints(const StudyPoints&) = delete;
 
-  const answers::Compared& study() const { return study_; }
+  const Choices& study() const { return study_; }
   /// Those that left branches.
   const Cases& cases() const { return cases_; }
   /// The finest case of the first method; null without cases.
@@ -117,7 +117,7 @@ class StudyPoints {
   bool finer(std::size_t a, std::size_t b) const;
   std::optional<double> end_of(std::size_t owner, const std::string& branch) const;
 
-  const answers::Compared& study_;
+  const Choices& study_;
   std::vector<RefinedAxis> axes_;
   std::vector<std::string> method_columns_;
   Cases cases_;

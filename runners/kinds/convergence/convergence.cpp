@@ -11,7 +11,7 @@ class ConvergenceKind final : public ComparisonKind {
   ConvergenceKind()
       : ComparisonKind("convergence", "Each case is compared with a reference, and orders are fitted to the errors.",
                        comparison_keys(), comparison_measures(), {"order"}, default_order_asks) {}
-  Analysis analysis(StudyResults& results, const answers::Compared& study) const override {
+  Analysis analysis(StudyResults& results, const Choices& study) const override {
     put_tables(results, study);
     return {report::comparison_page(), {{"order", order_ask}}};
   }

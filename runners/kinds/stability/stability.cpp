@@ -14,7 +14,7 @@
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/march/prepare_case.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/html.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/fields.hpp"
@@ -156,7 +156,7 @@ class StabilityKind final : public Kind {
     };
     return runner;
   }
-  Analysis analysis(StudyResults& results, const answers::Compared&) const override {
+  Analysis analysis(StudyResults& results, const Choices&) const override {
     describe_stability(results.cases);
     collect_tables(results);
     const auto limits = std::make_shared<const std::vector<LimitRow>>(step_limit_rows(results));

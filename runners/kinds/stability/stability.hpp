@@ -54,17 +54,16 @@ asks::Answered steps_ask(const asks::Ask& ask, const asks::Evidence& evidence, c
 // What a report shows: spectral radii, and where steps are stable.
 namespace ricochet::report {
 
-class CaseView;
 struct KindPage;
 
 KindPage stability_page();
 
 /// One row per method and contact state: predicted and observed step limit, how they agree, marginal roots, and what
 /// grows first. Empty without the table `step_limits`.
-std::string stability_html(const CaseView& view);
+std::string stability_html(const Choices& choices);
 
 /// One row per time scheme: what a free mass keeps of its speed at a rigid stop, and ρ∞. Empty without the table
 /// `restitution`.
-std::string restitution_html(const CaseView& view);
+std::string restitution_html(const Choices& choices);
 
 }  // namespace ricochet::report

@@ -47,7 +47,7 @@ bool by_the_stop(double open, double closed) {
 std::string step_words(double step) {
   const double digit = std::pow(10.0, std::floor(std::log10(step)) - 2);
   constexpr double round_off = 1e-9;
-  return answers::short_number(std::floor(step / digit * (1 + round_off)) * digit, 3);
+  return short_number(std::floor(step / digit * (1 + round_off)) * digit, 3);
 }
 
 class StepsAsk {
@@ -57,7 +57,7 @@ class StepsAsk {
     const Json& resolved = evidence.results().study;
     const Json range = resolved.is_object() ? resolved.value("steps", Json::object()) : Json::object();
     from_ = range.value("from", 0.0);
-    range_ = fmt::format("{} to {} s", answers::short_number(from_), answers::short_number(range.value("to", 0.0)));
+    range_ = fmt::format("{} to {} s", short_number(from_), short_number(range.value("to", 0.0)));
     const std::vector<std::string>& columns = evidence.results().columns;
     meshed_ = resolved.contains("mesh") || std::find(columns.begin(), columns.end(), "elements") != columns.end();
     // Matrices and modes of another program have no mesh of their own.
@@ -304,7 +304,7 @@ class StepsAsk {
   }
 
   const asks::Evidence& evidence_;
-  const answers::Compared& study_;
+  const Choices& study_;
   Cases cases_;
   std::vector<std::string> columns_;
   std::vector<StepLimit> limits_;

@@ -209,10 +209,10 @@ Table attractors_table(const StudyDiagram& study) {
                  to = diagram.values[static_cast<std::size_t>(extent.last)];
     const PresenceLabel label = label_presence(presence_of(diagram, extent, attractor), study.axes);
     const Proportion fraction = fraction_of(diagram, extent, attractor);
-    const std::string range = extent.first == extent.last
-                                  ? "at " + short_number(from)
-                                  : fmt::format("{} to {}, {}", short_number(from), short_number(to),
-                                                count_of(extent.values.size(), "value"));
+    const std::string range =
+        extent.first == extent.last
+            ? "at " + six_digits(from)
+            : fmt::format("{} to {}, {}", six_digits(from), six_digits(to), count_of(extent.values.size(), "value"));
     rows.push_back({attractor, label.label, static_cast<int>(extent.cases.size()), from, to, text(extent.motion.regime),
                     period_of(extent.motion), symmetric(extent), fraction.value, fraction.low, fraction.high,
                     label.presence,

@@ -117,7 +117,7 @@ Table numerical_viscosity_table(const StudyDiagram& study);
 /// "signorini with 0.5": the levels of a case on the chosen axes.
 std::string level_name(const std::vector<ChoiceAxis>& axes, const std::vector<std::size_t>& chosen, std::size_t c);
 /// "0.0791792".
-std::string short_number(double value);
+std::string six_digits(double value);
 /// "83 %"; "0.4 %".
 std::string percent(double share);
 /// "1 case", "3 cases".

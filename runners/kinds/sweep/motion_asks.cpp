@@ -82,7 +82,7 @@ class MotionEffect {
     agrees_ = ask.has("within");
     from_ = ask.share_asked();
     for (const std::string& column : evidence.varying(cases_))
-      if (!answers::is_refinement(column) && std::find(own_.begin(), own_.end(), column) == own_.end())
+      if (!is_refinement(column) && std::find(own_.begin(), own_.end(), column) == own_.end())
         others_.push_back(column);
     find_pairs();
   }
@@ -130,7 +130,7 @@ class MotionEffect {
     InOrderMet<std::string, InOrderMet<std::string, Cases>> groups;
     for (const CaseRecord* one : cases_)
       if (motions_(*one)) groups[study_.key(*one, others_)][study_.key(*one, own_)].push_back(one);
-    const bool refined = own_.size() == 1 && answers::is_refinement(own_.front());
+    const bool refined = own_.size() == 1 && is_refinement(own_.front());
     for (const auto& [others, levels] : groups.list()) {
       std::vector<std::pair<std::string, Cases>> list = levels.list();
       alone_ += list.size() == 1;
@@ -323,7 +323,7 @@ class MotionEffect {
   }
 
   const asks::Ask& ask_;
-  const answers::Compared& study_;
+  const Choices& study_;
   const MotionsOf& motions_;
   std::string places_;
   std::vector<std::string> own_, others_;

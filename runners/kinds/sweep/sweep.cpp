@@ -90,7 +90,7 @@ CaseRunner SweepKind::start(const RunContext& context) const {
   return runner;
 }
 
-Analysis SweepKind::analysis(StudyResults& results, const answers::Compared&) const {
+Analysis SweepKind::analysis(StudyResults& results, const Choices&) const {
   const SweptColumns swept = swept_columns(results);
   describe_sweep(results.cases, swept);
   collect_tables(results, derived_as_dynamics);

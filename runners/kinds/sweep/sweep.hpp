@@ -24,7 +24,7 @@ Field swept_pointer();
 class SweepKind : public Kind {
  public:
   CaseRunner start(const RunContext& context) const override;
-  Analysis analysis(StudyResults& results, const answers::Compared& study) const override;
+  Analysis analysis(StudyResults& results, const Choices& study) const override;
   std::string contradiction(const CaseRecord& record) const override;
   nlohmann::ordered_json alone(const StudyResults& results, const CaseRecord& record) const override;
   bool has_points() const override { return true; }

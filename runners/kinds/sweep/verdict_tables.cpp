@@ -66,8 +66,8 @@ class Verdicts {
 
   std::string place(const Stretch& stretch) const {
     const double first = value(stretch.front()), last = value(stretch.back());
-    if (stretch.size() == 1) return fmt::format("At {} {}", parameter(), short_number(first));
-    return fmt::format("For {} {} to {} ({})", parameter(), short_number(first), short_number(last),
+    if (stretch.size() == 1) return fmt::format("At {} {}", parameter(), six_digits(first));
+    return fmt::format("For {} {} to {} ({})", parameter(), six_digits(first), six_digits(last),
                        count_of(stretch.size(), "value"));
   }
   std::string parameter() const { return study_.parameter.empty() ? "the parameter" : study_.parameter; }
@@ -233,7 +233,7 @@ std::string level_name(const std::vector<ChoiceAxis>& axes, const std::vector<st
   return out;
 }
 
-std::string short_number(double value) {
+std::string six_digits(double value) {
   return fmt::format("{:.6g}", value);
 }
 

@@ -355,7 +355,7 @@ class TrajectoryKind final : public Kind {
                    const std::atomic<bool>& stop) const override {
     return run_case(study_case, registry, stop);
   }
-  Analysis analysis(StudyResults& results, const answers::Compared& study) const override {
+  Analysis analysis(StudyResults& results, const Choices& study) const override {
     describe_contact(results.cases);
     collect_tables(results);
     for (Table table : {energy_ends_table(results), energy_ledger_table(results), answers::uncertainty_table(study)})

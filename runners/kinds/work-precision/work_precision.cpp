@@ -42,7 +42,7 @@ class WorkPrecisionKind final : public ComparisonKind {
     };
     return runner;
   }
-  Analysis analysis(StudyResults& results, const answers::Compared& study) const override {
+  Analysis analysis(StudyResults& results, const Choices& study) const override {
     put_tables(results, study, [](const StudyResults& of) -> std::vector<Table> {
       return {work_precision_table(of), precision_targets_table(of)};
     });

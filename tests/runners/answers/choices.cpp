@@ -15,7 +15,7 @@ TEST_CASE("a paired difference is never wider than the sum of its two limits, no
   for (int draw = 0; draw < 100; ++draw) {
     const StudyResults results = full_factorial({{"mass", {"one", "other"}}}, {8e-4, 4e-4, 2e-4, 1e-4},
                                                 [&](const auto&, double) { return 0.5 + 0.1 * normal(random); });
-    const answers::Compared study(results);
+    const Choices study(results);
     const answers::MeasureLimits limits = answers::limits_of(study, "energy_left", true, all_cases(results));
     const auto methods = limits.with_limit();
     REQUIRE(methods.size() == 2);
@@ -28,8 +28,8 @@ TEST_CASE("a paired difference is never wider than the sum of its two limits, no
 }
 
 TEST_CASE("a mass of the scene is never called by the name of a role") {
-  CHECK(answers::spoken("mass") == "the mass matrix");
-  CHECK(answers::spoken("structure.mass") == "the mass of the oscillator");
-  CHECK(answers::spoken("structure.masses.0.mass") == "the point mass");
-  CHECK(answers::spoken("structure.young") == "Young's modulus");
+  CHECK(spoken("mass") == "the mass matrix");
+  CHECK(spoken("structure.mass") == "the mass of the oscillator");
+  CHECK(spoken("structure.masses.0.mass") == "the point mass");
+  CHECK(spoken("structure.young") == "Young's modulus");
 }

@@ -13,7 +13,7 @@ namespace {
 
 struct Named {
   StudyResults results;
-  answers::Compared study;
+  Choices study;
   Cases firsts;
   explicit Named(const std::vector<synthetic::Choice>& choices)
       : results(synthetic::full_factorial(choices, {1e-4}, [](const auto&, double) { return 0.5; })), study(results) {
@@ -55,7 +55,7 @@ TEST_CASE("a parameter that one method alone has is told with it") {
                 [](const CaseRecord& one) { return one.axes[0].second == "hard" && one.axes[1].second == "2"; });
   for (CaseRecord& one : results.cases)
     if (one.axes[0].second == "hard") one.axes[1].second = nullptr;
-  const answers::Compared study(results);
+  const Choices study(results);
   Cases firsts;
   Members strong;
   for (const CaseRecord& record : results.cases) {

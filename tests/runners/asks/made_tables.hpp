@@ -48,8 +48,8 @@ struct Made {
 
 /// What a made study answers to one ask.
 inline Answered answer_of(const StudyResults& results, const Json& ask) {
-  const answers::Compared compared(results);
-  return answer_asks({ask_of(ask, 1)}, Evidence(compared), {}).all.front().second;
+  const Choices choices(results);
+  return answer_asks({ask_of(ask, 1)}, Evidence(choices), {}).all.front().second;
 }
 
 inline std::size_t words_in(const std::string& sentence) {

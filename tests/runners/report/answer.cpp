@@ -14,7 +14,7 @@ namespace {
 /// The answer to what the cases have measured by now.
 std::string answer_of(StudyResults results) {
   const AnalysedResults analysed(std::move(results));
-  return answer_html(CaseView(analysed), page_of_study(analysed));
+  return answer_html(Choices(analysed), page_of_study(analysed));
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ TEST_CASE("other measurements, another answer", "[report]") {
   StudyResults results = synthetic::results();
   for (CaseRecord& record : results.cases)
     for (auto& [name, value] : record.measures)
-      if (name == "energy_left") value = CaseView::text(record, "mass") == "consistent" ? 1 : 0.5;
+      if (name == "energy_left") value = axis_words(record, "mass") == "consistent" ? 1 : 0.5;
   CHECK_THAT(answer_of(results), Contains("from 50 % to 100 %"));
 }
 

@@ -70,9 +70,9 @@ TEST_CASE("the chart of the kind stands beside the ask that it answers", "[repor
 TEST_CASE("what was not asked stands beneath what was", "[report][asks]") {
   const StudyResults results = synthetic::results();
   KindPage kind;
-  kind.answer = [](const CaseView&) { return std::string("<p>the kind's own</p>"); };
+  kind.answer = [](const Choices&) { return std::string("<p>the kind's own</p>"); };
   kind.asked.parts = {part_of(1, 3)};
-  const std::string page = render_report(results, kind);
+  const std::string page = render_report(Choices(results), kind);
   const std::size_t asked = page.find("id=\"ask-1\""), beneath = page.find("id=\"beneath\""),
                     own = page.find("the kind's own");
   REQUIRE(own != std::string::npos);

@@ -8,6 +8,7 @@
 #include "runners/kinds/basins/page/page.hpp"
 #include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
+#include "runners/report/quantity.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"
 #include "tests/runners/report/rendered.hpp"
@@ -89,9 +90,9 @@ TEST_CASE("a swept value has the unit that the study keeps, and a formula is mul
 
 TEST_CASE("the page has every section point, but for repeats of periodic orbits", "[report]") {
   const StudyResults results = synthetic::dynamics();
-  const CaseView view(results);
+  const Choices choices(results);
   CurveData curves(1000);
-  const std::string said = put_points(view, curves);
+  const std::string said = put_points(choices, curves);
   for (const CaseRecord& record : results.cases) {
     const std::vector<OrbitRow> orbits = orbits_of(record);
     const auto orbit = numbers_of<std::uint16_t>(curves, record.id + "/points/orbit:u16");
@@ -132,8 +133,8 @@ TEST_CASE("thinning is said, keeps every orbit, and keeps to its budget", "[repo
   PageBudget budget;
   budget.points = 3000;
   budget.portraits = 2000;
-  const CaseView view(results);
-  CHECK_THAT(put_points(view, curves, budget), Contains("left out of the clouds"));
+  const Choices choices(results);
+  CHECK_THAT(put_points(choices, curves, budget), Contains("left out of the clouds"));
   size_t written = 0, orbits_with = 0, orbits_drawn = 0;
   for (const CaseRecord& record : results.cases) {
     const auto orbit = numbers_of<std::uint16_t>(curves, record.id + "/points/orbit:u16");
@@ -144,7 +145,7 @@ TEST_CASE("thinning is said, keeps every orbit, and keeps to its budget", "[repo
   CHECK(orbits_drawn == orbits_with);
   // Of orbits that repeat every branch is still there.
   CurveData whole(1000);
-  put_points(view, whole);
+  put_points(choices, whole);
   for (const CaseRecord& record : results.cases) {
     const std::vector<OrbitRow> orbits = orbits_of(record);
     std::map<std::uint16_t, size_t> all, some;
@@ -156,7 +157,7 @@ TEST_CASE("thinning is said, keeps every orbit, and keeps to its budget", "[repo
   // Shares are rounded upwards, by less than one point per orbit.
   CHECK(written <= budget.points + orbits_with);
   CHECK(written >= budget.points / 2);
-  CHECK_THAT(put_portraits(view, curves, budget), Contains("carries the portraits of"));
+  CHECK_THAT(put_portraits(choices, curves, budget), Contains("carries the portraits of"));
   // A portrait is there whole (201 samples here) or not at all.
   std::map<std::uint16_t, size_t> samples;
   for (const std::uint16_t o : numbers_of<std::uint16_t>(curves, results.cases[0].id + "/portrait/orbit:u16"))
@@ -175,11 +176,11 @@ TEST_CASE("nothing is written of cases that left nothing", "[report]") {
   }
   results.derived.clear();
   CurveData curves(1000);
-  const CaseView view(results);
-  CHECK(orbit_data(view, curves).is_null());
+  const Choices choices(results);
+  CHECK(orbit_data(choices, curves).is_null());
   CHECK(curves.blocks().empty());
-  CHECK(page_tables(results, bifurcation_page()).empty());
-  CHECK(dynamics_answer_html(view).empty());
+  CHECK(page_tables(Choices(results), bifurcation_page()).empty());
+  CHECK(dynamics_answer_html(choices).empty());
   const std::string page = synthetic::rendered(results);
   CHECK_THAT(page, Contains("No case has finished with a result"));
 }
@@ -187,7 +188,7 @@ TEST_CASE("nothing is written of cases that left nothing", "[report]") {
 TEST_CASE("what the script knows of an orbit is its row of values", "[report]") {
   const StudyResults results = synthetic::dynamics();
   CurveData curves(1000);
-  const nlohmann::ordered_json data = orbit_data(CaseView(results), curves);
+  const nlohmann::ordered_json data = orbit_data(Choices(results), curves);
   CHECK(data["parameter"] == nlohmann::ordered_json({"support.amplitude", "m"}));
   const CaseRecord& record = results.cases[1];
   const nlohmann::ordered_json& one = data["cases"][record.id];
@@ -206,7 +207,7 @@ TEST_CASE("what the script knows of an orbit is its row of values", "[report]") 
 
 TEST_CASE("the tables of methods tell regimes, grazing and viscosity by their numbers", "[report]") {
   const StudyResults results = synthetic::dynamics();
-  const std::string html = dynamics_answer_html(CaseView(results));
+  const std::string html = dynamics_answer_html(Choices(results));
   CHECK_THAT(html, Contains("Grazing, start rest: 0.0792"));
   // α = 1e-4: 5e-5 is half of it, 2e-9 a fifty-thousandth.
   CHECK_THAT(html, Contains("▲ 5e-5: 50 % of α</td>") && Contains(">2e-9: 0.002 % of α</td>"));
@@ -218,7 +219,7 @@ TEST_CASE("the tables of methods tell regimes, grazing and viscosity by their nu
 }
 
 TEST_CASE("tables of attractors, agreement, shifts and changes", "[report]") {
-  const std::string html = dynamics_tables_html(CaseView(synthetic::dynamics()));
+  const std::string html = dynamics_tables_html(Choices(synthetic::dynamics()));
   CHECK_THAT(html, Contains("<h3>Attractors</h3>") && Contains("common to all") && Contains("&lt;only&gt;"));
   CHECK_THAT(html, Contains("66 % (60 % to 71 %)"));
   CHECK_THAT(html, Contains("<h3>Agreement of methods</h3>") && Contains(">100</td>") && Contains(">74</td>"));
@@ -244,9 +245,9 @@ TEST_CASE("images of basins hold every cell, and their difference counts those t
     differ += a != b;
   }
   CHECK(differ > 0);
-  const CaseView view(results);
+  const Choices choices(results);
   CurveData curves(1000);
-  const nlohmann::ordered_json data = basin_data(view, basins, curves);
+  const nlohmann::ordered_json data = basin_data(choices, basins, curves);
   CHECK(data["grids"] == nlohmann::ordered_json({"full", "poor"}));
   CHECK(data["x"][0] == "factor of initial.displacement");
   const Table counts = basin_counts(basins);
@@ -262,7 +263,7 @@ TEST_CASE("images of basins hold every cell, and their difference counts those t
   for (const FractionRow& row : basins.fractions)
     if (row.id == "poor") in_fractions += static_cast<size_t>(row.cells);
   CHECK(in_fractions == both);
-  const std::string html = basins_html(view, basins);
+  const std::string html = basins_html(choices, basins);
   CHECK_THAT(html, Contains("periodic 3") && Contains(std::to_string(differ) + "</td>"));
   // The same colours whatever the order of the cases.
   StudyResults turned = synthetic::basins(40, 0.2);

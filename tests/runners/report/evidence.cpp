@@ -6,8 +6,10 @@
 
 #include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/work-precision/page/page.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/axis_rows.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/kind_page.hpp"
+#include "runners/report/quantity.hpp"
 #include "tests/runners/report/evidence_results.hpp"
 
 using namespace ricochet;
@@ -27,11 +29,11 @@ const Table& table(const StudyResults& results, const std::string& name) {
 
 TEST_CASE("without derived tables there is no evidence", "[report]") {
   const StudyResults results = synthetic::results();
-  const CaseView view(results);
-  CHECK(page_tables(results, work_precision_page()).empty());
-  CHECK(orders_html(view).empty());
-  CHECK(work_precision_html(view).empty());
-  CHECK(effects_html(view).empty());
+  const Choices choices(results);
+  CHECK(page_tables(Choices(results), work_precision_page()).empty());
+  CHECK(orders_html(choices).empty());
+  CHECK(work_precision_html(choices).empty());
+  CHECK(effects_html(choices).empty());
 }
 
 TEST_CASE("rows are found by the axes of a case", "[report]") {
@@ -84,11 +86,11 @@ TEST_CASE("the Pareto front is what nothing beats", "[report]") {
 
 TEST_CASE("the cheapest method is the one that a search over all cases finds", "[report]") {
   const StudyResults results = synthetic::comparison();
-  const CaseView view(results);
-  const std::string html = work_precision_html(view);
-  const WorkPrecision work(view);
+  const Choices choices(results);
+  const std::string html = work_precision_html(choices);
+  const WorkPrecision work(choices);
   for (const std::string& error : work.errors()) {
-    const auto points = work.points(view.all(), error);
+    const auto points = work.points(all_cases(choices.results()), error);
     for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
       const WorkPoint* best = nullptr;
       for (const WorkPoint& p : points)
@@ -99,7 +101,7 @@ TEST_CASE("the cheapest method is the one that a search over all cases finds", "
       INFO(error << " " << tolerance);
       const std::string row = "<td class=\"text\">" + with_unit({error, error_quantity(error).unit}) +
                               "</td><td class=\"number\">" + power_text(tolerance) + "</td><td>" +
-                              view.label(*best->record, view.varying_without({"step"})) + "</td>";
+                              choices.short_label(*best->record, choices.varying_without({"step"})) + "</td>";
       CHECK(contains(html, row));
     }
   }
@@ -118,8 +120,8 @@ TEST_CASE("an error below its floor wins nothing", "[report]") {
 
 TEST_CASE("orders are a table with verdicts counted", "[report]") {
   const StudyResults results = synthetic::comparison({1e-3, 5e-4}, {10, 20});
-  const CaseView view(results);
-  const std::string html = orders_html(view);
+  const Choices choices(results);
+  const std::string html = orders_html(choices);
   // 5 schemes, 3 errors, 2 meshes; of them one scheme has order 2 where 1 is declared.
   CHECK(contains(html, "30 orders against what the methods declare: 24 confirmed, 6 refuted."));
   CHECK(contains(html, "0.97 [0.90, 1.08]"));
@@ -140,13 +142,13 @@ TEST_CASE("orders are a table with verdicts counted", "[report]") {
       for (auto& row : t.rows) row[8] = row[9] = row[10] = row[11] = nullptr;
     if (t.name == "order_verdicts") t = order_verdicts_table(table(none, "orders"));
   }
-  CHECK(contains(orders_html(CaseView(none)), "none with a declared order"));
+  CHECK(contains(orders_html(Choices(none)), "none with a declared order"));
 }
 
 TEST_CASE("effects are sentences and bars", "[report]") {
   const StudyResults results = synthetic::comparison();
-  const CaseView view(results);
-  const std::string html = effects_html(view);
+  const Choices choices(results);
+  const std::string html = effects_html(choices);
   CHECK(contains(html,
                  "81 % of the spread of error.tip-linf (on a logarithmic scale) comes from the step, 9 % from the mass "
                  "matrix, 5.5 % from its interaction with the mass matrix."));
@@ -163,7 +165,7 @@ TEST_CASE("a measure without shares says so", "[report]") {
   for (Table& t : results.derived)
     if (t.name == "effects")
       for (auto& row : t.rows) row[2] = row[3] = row[4] = 0.0;
-  CHECK(contains(effects_html(CaseView(results)), "No shares for energy end."));
+  CHECK(contains(effects_html(Choices(results)), "No shares for energy end."));
 }
 
 TEST_CASE("orders are written with two decimals", "[report]") {

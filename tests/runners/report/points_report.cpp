@@ -11,19 +11,19 @@ using Catch::Matchers::Contains;
 
 TEST_CASE("the page has branches, points, multipliers and turns", "[report]") {
   const StudyResults all = with_tables(synthetic::points());
-  const answers::Compared compared(all);
-  const PointAnalysis points(compared);
-  const std::string html = report::points_html(report::CaseView(all), points);
+  const Choices choices(all);
+  const PointAnalysis points(choices);
+  const std::string html = report::points_html(Choices(all), points);
   CHECK_THAT(html, Contains("fold at 0.1006") && Contains("order in h") && Contains("12 without"));
-  CHECK_THAT(report::point_methods_html(report::CaseView(all), points), Contains("mesh leaves open"));
+  CHECK_THAT(report::point_methods_html(Choices(all), points), Contains("mesh leaves open"));
   const std::string page = synthetic::rendered(all);
   CHECK_THAT(page, Contains("point_levels") && Contains("smooth0-20-8000/branch/parameter:f64"));
 }
 
 TEST_CASE("cases that lack a point are marked where the finest of a method alone has it", "[report]") {
   const StudyResults all = synthetic::points();
-  const answers::Compared compared(all);
-  const Table levels = report::point_levels(PointAnalysis(compared));
+  const Choices choices(all);
+  const Table levels = report::point_levels(PointAnalysis(choices));
   const auto column = [&](const char* name) { return find_column(levels.columns, name).value(); };
   std::size_t absent = 0, found = 0;
   for (const Row& row : levels.rows) {

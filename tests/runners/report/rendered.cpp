@@ -16,12 +16,12 @@ struct OwnAnalysis {
     analysis = find_kind(own.kind)->analysis(own, study);
   }
   StudyResults own;
-  answers::Compared study;
+  Choices study;
   Analysis analysis;
 };
 
 StudyResults with_tables_of(const report::KindPage& page, StudyResults results) {
-  for (Table& table : report::page_tables(results, page)) results.derived.push_back(std::move(table));
+  for (Table& table : report::page_tables(Choices(results), page)) results.derived.push_back(std::move(table));
   return results;
 }
 
@@ -34,7 +34,8 @@ StudyResults with_page_tables(StudyResults results) {
 
 std::string rendered(const StudyResults& results) {
   const OwnAnalysis own(results);
-  return render_report(with_tables_of(own.analysis.page, results), own.analysis.page);
+  const StudyResults with_tables = with_tables_of(own.analysis.page, results);
+  return render_report(Choices(with_tables), own.analysis.page);
 }
 
 }  // namespace ricochet::synthetic

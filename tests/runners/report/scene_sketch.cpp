@@ -83,7 +83,7 @@ TEST_CASE("every structure is drawn, a study without a scene has no sketch", "[r
 TEST_CASE("a summary names what ran, what did not, and by what it is known again", "[report]") {
   StudyResults results = synthetic::results();
   results.study = beam();
-  const std::string html = report::summary_html(report::CaseView(results));
+  const std::string html = report::summary_html(Choices(results));
   CHECK_THAT(html, Contains(results.question));
   CHECK_THAT(html, Contains("newmark-dumont-paoli (beta 0.25, 0.5)"));
   CHECK_THAT(html, Contains(report::study_fingerprint(results)));

@@ -40,13 +40,13 @@ TEST_CASE("ranges are read with what both contact states say of a cell", "[repor
 
 TEST_CASE("the table says limits, agreement, marginal roots", "[report]") {
   const StudyResults all = with_tables(synthetic::stability());
-  const std::string html = stability_html(CaseView(all));
+  const std::string html = stability_html(Choices(all));
   CHECK_THAT(html, Contains("root −1 on &lt;the kernel&gt;") && Contains("nothing to march") && Contains("none"));
   CHECK_THAT(fmt::format("{}", fmt::join(answer_lines(all), "\n")),
              Contains("Marches have another limit than the spectrum with 4 of 8"));
   CHECK(html.find("<the kernel>") == std::string::npos);
   StudyResults other;
   other.kind = "trajectory";
-  CHECK(stability_html(CaseView(other)).empty());
-  CHECK(page_tables(other, stability_page()).empty());
+  CHECK(stability_html(Choices(other)).empty());
+  CHECK(page_tables(Choices(other), stability_page()).empty());
 }

@@ -106,13 +106,13 @@ inline CaseRecord make_case(const std::string& mass, const std::string& velocity
 /// The tables that the answer of a study of trajectories speaks of, from the measures that its cases have now.
 inline void derive_energies(StudyResults& out) {
   out.derived = {energy_ends_table(out), energy_ledger_table(out)};
-  const answers::Compared compared(out);
-  for (Table& table : evidence_tables(compared)) out.derived.push_back(std::move(table));
-  const asks::Evidence evidence(compared);
+  const Choices choices(out);
+  for (Table& table : evidence_tables(choices)) out.derived.push_back(std::move(table));
+  const asks::Evidence evidence(choices);
   const asks::Asked asked =
       asks::answer_asks(asks::asks_of_measures(evidence, observed_measures(out), false), evidence, {});
   out.derived.push_back(asks::verdicts_table(asked));
-  out.derived.push_back(asked_table(compared, asked));
+  out.derived.push_back(asked_table(choices, asked));
 }
 
 /// Masses × time methods × steps, some refused, some diverged.

@@ -45,7 +45,7 @@ TEST_CASE("removing the finest step never makes an answer surer") {
     const double a = uniform(random), b = uniform(random), p = 0.5 + 3 * uniform(random);
     const auto value = [&](int mass, int, double step) { return 0.5 + 0.1 * mass * a + b * std::pow(1e3 * step, p); };
     const auto uncertainty = [&](const std::vector<double>& steps) {
-      const std::vector<Table> tables = evidence_tables(answers::Compared(study(value, steps, 1)));
+      const std::vector<Table> tables = evidence_tables(Choices(study(value, steps, 1)));
       double most = 0;
       const TableReader rows(tables.front());
       for (std::size_t row = 0; row < rows.size(); ++row)

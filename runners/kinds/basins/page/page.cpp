@@ -8,8 +8,9 @@
 
 #include "runners/json/json_text.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/quantity.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet::report {
@@ -18,18 +19,18 @@ KindPage basins_page(std::shared_ptr<const BasinAnalysis> basins) {
   KindPage page;
   page.scripts = scripts({"basins"});
   page.tables = {"basin_counts", "basin_failures"};
-  page.derived = {[basins](const CaseView&) { return basin_counts(*basins); },
-                  [basins](const CaseView&) { return basin_failures(*basins); }};
-  page.answer = [basins](const CaseView& view) { return basins_html(view, *basins); };
+  page.derived = {[basins](const Choices&) { return basin_counts(*basins); },
+                  [basins](const Choices&) { return basin_failures(*basins); }};
+  page.answer = [basins](const Choices& choices) { return basins_html(choices, *basins); };
   page.data_key = "basins";
-  page.data = [basins](const CaseView& view, CurveData& blocks) { return basin_data(view, *basins, blocks); };
+  page.data = [basins](const Choices& choices, CurveData& blocks) { return basin_data(choices, *basins, blocks); };
   page.masses = false;
   return page;
 }
 
-nlohmann::ordered_json basin_data(const CaseView& view, const BasinAnalysis& basins, CurveData& blocks) {
+nlohmann::ordered_json basin_data(const Choices& choices, const BasinAnalysis& basins, CurveData& blocks) {
   std::set<std::string> shown;
-  for (const CaseRecord& record : view.results().cases) shown.insert(record.id);
+  for (const CaseRecord& record : choices.results().cases) shown.insert(record.id);
   Json labels = Json::array(), grids = Json::array();
   for (const BasinLabel& label : basins.labels)
     labels.push_back({label.name, label.colour, label.decided, label.start});
@@ -39,10 +40,10 @@ nlohmann::ordered_json basin_data(const CaseView& view, const BasinAnalysis& bas
     grids.push_back(image.record->id);
   }
   Quantity x{"x", ""}, y{"y", ""};
-  const nlohmann::ordered_json& study = view.results().study;
+  const nlohmann::ordered_json& study = choices.results().study;
   if (const auto axes = study.find("axes"); axes != study.end() && axes->is_array() && axes->size() == 2) {
-    x = swept_quantity(view.results(), (*axes)[0], x.name);
-    y = swept_quantity(view.results(), (*axes)[1], y.name);
+    x = swept_quantity(choices.results(), (*axes)[0], x.name);
+    y = swept_quantity(choices.results(), (*axes)[1], y.name);
   }
   return {{"x", {x.name, x.unit}}, {"y", {y.name, y.unit}},       {"xs", basins.xs},
           {"ys", basins.ys},       {"labels", std::move(labels)}, {"grids", std::move(grids)}};
@@ -96,7 +97,7 @@ Table basin_failures(const BasinAnalysis& basins) {
 namespace {
 
 /// Attractors × cases: share of the cells.
-std::string fractions_html(const CaseView& view, const std::vector<FractionRow>& rows) {
+std::string fractions_html(const Choices& choices, const std::vector<FractionRow>& rows) {
   if (rows.empty()) return "";
   InOrderMet<std::string, bool> cases;
   InOrderMet<int, std::map<std::string, const FractionRow*>> attractors;  // by case
@@ -106,7 +107,7 @@ std::string fractions_html(const CaseView& view, const std::vector<FractionRow>&
   }
   HtmlTable table("Share of the decided cells that ends in each attractor, with its 95 % interval.",
                   {{"ends in"}, {"class"}});
-  for (const auto& [one, met] : cases.list()) table.add({view.name_of(one)});
+  for (const auto& [one, met] : cases.list()) table.add({choices.name_of(one)});
   for (const auto& [attractor, of_cases] : attractors.list()) {
     const FractionRow& last = *of_cases.rbegin()->second;
     table.row(fmt::format("attractor {}", attractor)).text(regime_text(last.regime, last.period));
@@ -123,7 +124,7 @@ std::string fractions_html(const CaseView& view, const std::vector<FractionRow>&
   return table.html();
 }
 
-std::string uncertainty_html(const CaseView& view, const std::vector<UncertaintyRow>& rows) {
+std::string uncertainty_html(const Choices& choices, const std::vector<UncertaintyRow>& rows) {
   HtmlTable table(
       "Uncertainty exponent s, with its 95 % interval: the share of cells with an uncertain end falls as "
       "(uncertainty)<sup>s</sup>. 1 is a smooth boundary, 0 one that no accuracy resolves (Grebogi, McDonald, Ott and "
@@ -134,12 +135,12 @@ std::string uncertainty_html(const CaseView& view, const std::vector<Uncertainty
     if (value) text = number_text(*value, 3);
     if (value && low && high) text += fmt::format(" ({} to {})", number_text(*low, 3), number_text(*high, 3));
     const char* said = !value || !high ? "–" : *high < 1 ? "fractal boundary" : "a smooth boundary is not excluded";
-    table.row(view.name_of(id)).number(share ? share_text(*share) : "–").text(text).text(said);
+    table.row(choices.name_of(id)).number(share ? share_text(*share) : "–").text(text).text(said);
   }
   return table.html();
 }
 
-std::string differences_html(const CaseView& view, const std::vector<BasinDifferenceRow>& rows) {
+std::string differences_html(const Choices& choices, const std::vector<BasinDifferenceRow>& rows) {
   HtmlTable table(
       "Cells that end elsewhere with another method: in another motion, or on another orbit of that motion.",
       {{"case"},
@@ -151,7 +152,7 @@ std::string differences_html(const CaseView& view, const std::vector<BasinDiffer
   std::set<std::pair<std::string, std::string>> said;
   for (const auto& [one, other, cells, differ, motions, share] : rows) {
     if (one == other || !said.emplace(std::min(one, other), std::max(one, other)).second) continue;  // each pair once
-    table.row(view.name_of(one)).text(view.name_of(other)).number(number_text(cells));
+    table.row(choices.name_of(one)).text(choices.name_of(other)).number(number_text(cells));
     table.number(number_text(motions)).number(number_text(differ)).number(share ? share_text(*share) : "–");
   }
   return table.html();
@@ -159,10 +160,10 @@ std::string differences_html(const CaseView& view, const std::vector<BasinDiffer
 
 }  // namespace
 
-std::string basins_html(const CaseView& view, const BasinAnalysis& basins) {
+std::string basins_html(const Choices& choices, const BasinAnalysis& basins) {
   if (basins.images.empty()) return "";
-  return fractions_html(view, basins.fractions) + differences_html(view, basins.differences) +
-         uncertainty_html(view, basins.uncertainty);
+  return fractions_html(choices, basins.fractions) + differences_html(choices, basins.differences) +
+         uncertainty_html(choices, basins.uncertainty);
 }
 
 }  // namespace ricochet::report

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "runners/kinds/basins/basin_analysis.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/curve_data.hpp"
 #include "runners/report/kind_page.hpp"
 
@@ -20,11 +20,11 @@ Table basin_failures(const BasinAnalysis& basins);
 
 /// What the cells end in by case, how fractal the boundary is, how many cells depend on the method. Empty where no case
 /// has cells.
-std::string basins_html(const CaseView& view, const BasinAnalysis& basins);
+std::string basins_html(const Choices& choices, const BasinAnalysis& basins);
 
 /// What the page's script knows of the grids of basins: axes, labels, and the cases that have one. A label is [name,
 /// colour, whether it is an attractor, whether a motion begins there]. Cells go into blocks ID/cells (indices of
 /// labels).
-nlohmann::ordered_json basin_data(const CaseView& view, const BasinAnalysis& basins, CurveData& blocks);
+nlohmann::ordered_json basin_data(const Choices& choices, const BasinAnalysis& basins, CurveData& blocks);
 
 }  // namespace ricochet::report

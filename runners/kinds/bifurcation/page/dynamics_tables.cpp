@@ -8,8 +8,9 @@
 #include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/quantity.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -147,9 +148,10 @@ std::string viscosity_caption(const std::map<std::string, Viscosity>& viscositie
 }
 
 /// Methods × regimes, with the viscosity of each method.
-std::string regime_table(const CaseView& view, const Cases& cases, const std::map<std::string, GroupCounts>& by_case) {
+std::string regime_table(const Choices& choices, const Cases& cases,
+                         const std::map<std::string, GroupCounts>& by_case) {
   const GroupCounts all = total_of(by_case);
-  const std::map<std::string, Viscosity> viscosities = viscosities_of(view.results());
+  const std::map<std::string, Viscosity> viscosities = viscosities_of(choices.results());
   HtmlTable table("Orbits (values × starts) by regime." + viscosity_caption(viscosities), {{"method"}});
   for (size_t group = 0; group < all.size(); ++group)
     if (all[group] > 0) table.add({regime_groups[group].name, true, "", regime_groups[group].colour});
@@ -157,7 +159,7 @@ std::string regime_table(const CaseView& view, const Cases& cases, const std::ma
   for (const CaseRecord* record : cases) {
     const GroupCounts& counts = by_case.at(record->id);
     const size_t total = std::accumulate(counts.begin(), counts.end(), size_t{0});
-    table.row(view.name(*record), "", record->partial ? " <em>(partial)</em>" : "");
+    table.row(choices.short_name(*record), "", record->partial ? " <em>(partial)</em>" : "");
     for (size_t group = 0; group < all.size(); ++group) {
       if (all[group] == 0) continue;
       if (counts[group] == 0)
@@ -174,15 +176,15 @@ std::string regime_table(const CaseView& view, const Cases& cases, const std::ma
 
 }  // namespace
 
-std::string dynamics_answer_html(const CaseView& view) {
-  const std::map<std::string, GroupCounts> counts = count_groups(view.results());
+std::string dynamics_answer_html(const Choices& choices) {
+  const std::map<std::string, GroupCounts> counts = count_groups(choices.results());
   Cases cases;
-  for (const CaseRecord* record : view.all())
+  for (const CaseRecord* record : all_cases(choices.results()))
     if (counts.contains(record->id)) cases.push_back(record);
   if (cases.empty()) return "";
-  const Quantity parameter = swept_parameter(view.results());
-  return regime_sentence(total_of(counts)) + grazing_sentence(view.results(), cases, parameter) +
-         regime_table(view, cases, counts);
+  const Quantity parameter = swept_parameter(choices.results());
+  return regime_sentence(total_of(counts)) + grazing_sentence(choices.results(), cases, parameter) +
+         regime_table(choices, cases, counts);
 }
 
 namespace {
@@ -220,17 +222,17 @@ std::string attractors_html(const StudyResults& results) {
   return titled("Attractors", table);
 }
 
-std::string shifts_html(const CaseView& view, const Quantity& parameter) {
-  const std::vector<ShiftRow> rows = shifts_type().read(view.results().derived);
+std::string shifts_html(const Choices& choices, const Quantity& parameter) {
+  const std::vector<ShiftRow> rows = shifts_type().read(choices.results().derived);
   if (rows.empty()) return "";
   HtmlTable table(
       fmt::format("Where the changes of the reference ({}) lie in the other methods, in {}. Bold: the interval of the "
                   "shift leaves out zero.",
-                  escape(view.name_of(rows.back().reference)), escape(with_unit(parameter))),
+                  escape(choices.name_of(rows.back().reference)), escape(with_unit(parameter))),
       {{"method"}, {"start"}, {"change"}, {"kind"}, {"reference"}, {"here"}, {"shift"}, {"interval"}, {""}});
   for (const ShiftRow& row : rows) {
     const bool beyond = row.low && row.high && (*row.low > 0 || *row.high < 0);
-    table.row(view.name_of(row.id)).text(row.start).text(row.from + " → " + row.to).text(row.kind);
+    table.row(choices.name_of(row.id)).text(row.start).text(row.from + " → " + row.to).text(row.kind);
     table.number(row.reference_value, 7).number(row.value, 7);
     if (row.shift)
       table.number(number_text(*row.shift, 3), exact_text(*row.shift), beyond ? "kept" : "");
@@ -243,14 +245,14 @@ std::string shifts_html(const CaseView& view, const Quantity& parameter) {
   return titled("Shifts of the changes", table);
 }
 
-std::string changes_html(const CaseView& view, const Quantity& parameter) {
+std::string changes_html(const Choices& choices, const Quantity& parameter) {
   HtmlTable table(fmt::format("Where regimes change, as {}; width: of the interval that holds the change.",
                               escape(with_unit(parameter))),
                   {{"method"}, {"start"}, {"kind"}, {"change"}, {"value"}, {"width"}});
-  for (const CaseRecord* record : view.all()) {
+  for (const CaseRecord* record : all_cases(choices.results())) {
     const auto known = [](double value) { return std::isnan(value) ? std::nullopt : std::optional(value); };
     for (const ChangeRow& row : changes_of(*record)) {
-      table.row(view.name(*record)).text(row.start).text(row.kind).text(row.from + " → " + row.to);
+      table.row(choices.short_name(*record)).text(row.start).text(row.kind).text(row.from + " → " + row.to);
       table.number(known(row.value), 9).number(known(row.high - row.low), 2);
     }
   }
@@ -264,8 +266,8 @@ std::string heat_style(double share) {
                      share > 0.83 ? "#fff" : "#000");
 }
 
-std::string agreement_html(const CaseView& view) {
-  const std::vector<AgreementRow> rows = agreement_type().read(view.results().derived);
+std::string agreement_html(const Choices& choices) {
+  const std::vector<AgreementRow> rows = agreement_type().read(choices.results().derived);
   if (rows.empty()) return "";
   const std::vector<std::string> cases = distinct(rows, &AgreementRow::id),
                                  others = distinct(rows, &AgreementRow::other);
@@ -273,10 +275,10 @@ std::string agreement_html(const CaseView& view) {
   for (const AgreementRow& row : rows) place[{row.id, row.other}] = &row;
   HtmlTable table("Values and starts at which two methods find the same class, in per cent of those that both decide.",
                   {{"method"}}, "matrix heat");
-  for (size_t k = 0; k < others.size(); ++k) table.add({std::to_string(k + 1), true, view.name_of(others[k])});
+  for (size_t k = 0; k < others.size(); ++k) table.add({std::to_string(k + 1), true, choices.name_of(others[k])});
   for (const std::string& one : cases) {
     const auto number = std::find(others.begin(), others.end(), one) - others.begin() + 1;
-    table.row(fmt::format("{} {}", number, view.name_of(one)));
+    table.row(fmt::format("{} {}", number, choices.name_of(one)));
     for (const std::string& other : others) {
       const auto found = place.find({one, other});
       if (found == place.end() || !found->second->share) {
@@ -288,8 +290,8 @@ std::string agreement_html(const CaseView& view) {
           fmt::format("{:.0f}", 100 * *row.share),
           fmt::format(
               " class=\"number\" style=\"{}\" title=\"{} and {}: the same class in {} of {} values and starts{}\"",
-              heat_style(std::clamp(*row.share, 0.0, 1.0)), escape(view.name_of(one)), escape(view.name_of(other)),
-              number_text(row.same), number_text(row.compared),
+              heat_style(std::clamp(*row.share, 0.0, 1.0)), escape(choices.name_of(one)),
+              escape(choices.name_of(other)), number_text(row.same), number_text(row.compared),
               row.share_attractor ? ", the same attractor in " + share_text(*row.share_attractor) : ""));
     }
   }
@@ -298,10 +300,10 @@ std::string agreement_html(const CaseView& view) {
 
 }  // namespace
 
-std::string dynamics_tables_html(const CaseView& view) {
-  const Quantity parameter = swept_parameter(view.results());
-  return attractors_html(view.results()) + agreement_html(view) + shifts_html(view, parameter) +
-         changes_html(view, parameter);
+std::string dynamics_tables_html(const Choices& choices) {
+  const Quantity parameter = swept_parameter(choices.results());
+  return attractors_html(choices.results()) + agreement_html(choices) + shifts_html(choices, parameter) +
+         changes_html(choices, parameter);
 }
 
 }  // namespace ricochet::report

@@ -10,6 +10,7 @@
 
 #include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
+#include "runners/report/quantity.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet::report {
@@ -183,9 +184,9 @@ void put_intervals(const std::vector<OrbitRow>& orbits, bool logarithmic, OrbitJ
 
 }  // namespace
 
-std::string put_points(const CaseView& view, CurveData& curves, const PageBudget& budget) {
+std::string put_points(const Choices& choices, CurveData& curves, const PageBudget& budget) {
   std::vector<Section> sections;
-  for (const CaseRecord* record : view.all())
+  for (const CaseRecord* record : all_cases(choices.results()))
     if (auto section = section_of(*record)) sections.push_back(std::move(*section));
   std::vector<size_t> wants;
   size_t stored = 0, apart = 0, drawn = 0;
@@ -230,7 +231,7 @@ std::string put_points(const CaseView& view, CurveData& curves, const PageBudget
   return out + ". All are in points.csv.";
 }
 
-std::string put_portraits(const CaseView& view, CurveData& curves, const PageBudget& budget) {
+std::string put_portraits(const Choices& choices, CurveData& curves, const PageBudget& budget) {
   struct Stored {
     const CaseRecord* record;
     PortraitColumns columns;
@@ -239,7 +240,7 @@ std::string put_portraits(const CaseView& view, CurveData& curves, const PageBud
   const NumberType<PortraitColumns> type = portraits_type();
   std::vector<Stored> all;
   size_t samples = 0, count = 0, kept = 0;
-  for (const CaseRecord* record : view.all()) {
+  for (const CaseRecord* record : all_cases(choices.results())) {
     const NumberTable* table = type.find(record->numbers);
     const PortraitColumns columns = table ? type.read(*table) : PortraitColumns();
     if (!columns.time || !columns.displacement || !columns.velocity) continue;
@@ -275,8 +276,8 @@ std::string put_portraits(const CaseView& view, CurveData& curves, const PageBud
       kept, count);
 }
 
-OrbitJson orbit_data(const CaseView& view, CurveData& curves) {
-  const StudyResults& results = view.results();
+OrbitJson orbit_data(const Choices& choices, CurveData& curves) {
+  const StudyResults& results = choices.results();
   const auto attractors = attractors_of(results);
   const Quantity parameter = swept_parameter(results);
   OrbitJson groups = OrbitJson::array(), kinds = OrbitJson::array();
@@ -284,7 +285,7 @@ OrbitJson orbit_data(const CaseView& view, CurveData& curves) {
   for (const StartKind& kind : start_kinds) kinds.push_back({kind.name, kind.symbol});
   OrbitJson out = {{"parameter", {parameter.name, parameter.unit}}, {"groups", groups}, {"kinds", kinds}};
   OrbitJson cases = OrbitJson::object();
-  for (const CaseRecord* record : view.all()) {
+  for (const CaseRecord* record : all_cases(choices.results())) {
     const Table* table = find_table(record->tables, values_name);
     if (!table || table->rows.empty()) continue;
     const std::vector<OrbitRow> orbits = orbits_in(*table);
@@ -315,7 +316,7 @@ OrbitJson orbit_data(const CaseView& view, CurveData& curves) {
   }
   if (cases.empty()) return nullptr;
   out["cases"] = std::move(cases);
-  out["said"] = {put_points(view, curves), put_portraits(view, curves)};
+  out["said"] = {put_points(choices, curves), put_portraits(choices, curves)};
   return out;
 }
 

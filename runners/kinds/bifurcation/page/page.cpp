@@ -7,7 +7,7 @@
 
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 
 namespace ricochet::report {
 
@@ -58,7 +58,7 @@ DistanceTable read_distances(const StudyResults& results) {
 
 }  // namespace
 
-Table distance_spreads(const CaseView& view) {
+Table distance_spreads(const Choices& choices) {
   Table out{"distance_spreads",
             "One row per case and kind of distance: the distances to the reference case over all values and starts. "
             "The row without a case is the null level, of two halves of one orbit.",
@@ -73,7 +73,7 @@ Table distance_spreads(const CaseView& view) {
              {"smallest", "1", "Smallest distance above zero."},
              {"largest", "1", "Largest distance."}},
             {}};
-  const DistanceTable distances = read_distances(view.results());
+  const DistanceTable distances = read_distances(choices.results());
   for (int k = 0; k < 2; ++k)
     for (const auto& [id, by_parameter] : distances.of[k]) {
       std::vector<double> all;
@@ -91,15 +91,15 @@ Table distance_spreads(const CaseView& view) {
   return out;
 }
 
-Table distance_medians(const CaseView& view) {
+Table distance_medians(const Choices& choices) {
   Table out{"distance_medians",
             "One row per case, kind of distance and value of the parameter. Rows without a case are the null level.",
             {{"case", "", "Identity of the case: its row in cases.csv; nothing for the null level."},
              {"kind", "", "wasserstein or hausdorff."},
-             {"parameter", swept_columns(view.results()).parameter.unit, "Value of the swept parameter."},
+             {"parameter", swept_columns(choices.results()).parameter.unit, "Value of the swept parameter."},
              {"median", "1", "Median distance over the starts."}},
             {}};
-  DistanceTable distances = read_distances(view.results());
+  DistanceTable distances = read_distances(choices.results());
   for (int k = 0; k < 2; ++k)
     for (auto& [id, by_parameter] : distances.of[k])
       for (auto& [parameter, values] : by_parameter) {
@@ -110,7 +110,7 @@ Table distance_medians(const CaseView& view) {
   return out;
 }
 
-Table exponent_methods(const CaseView& view) {
+Table exponent_methods(const Choices& choices) {
   Table out{"exponent_methods",
             "One row per method of exponents: how many orbits it was used for.",
             {{"method", "", "tangent, tangent+jump or twin."},
@@ -120,7 +120,7 @@ Table exponent_methods(const CaseView& view) {
             {}};
   std::map<std::string, size_t> counts;
   size_t all = 0, marginal = 0;
-  for (const CaseRecord* record : view.all())
+  for (const CaseRecord* record : all_cases(choices.results()))
     for (const OrbitRow& orbit : orbits_of(*record)) {
       if (!orbit.largest_exponent()) continue;
       ++counts[orbit.exponent_method];

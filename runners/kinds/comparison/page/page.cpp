@@ -6,8 +6,10 @@
 
 #include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/axis_rows.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/quantity.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet::report {
@@ -58,11 +60,12 @@ std::optional<OrderLine> longest_line(const std::vector<LinePoint>& points, doub
 }
 
 /// All cases; for elements, those at the smallest step of their method: what the orders in elements are fitted to.
-Cases cases_along(const CaseView& view, const std::string& refined) {
-  if (refined == "step") return view.all();
+Cases cases_along(const Choices& choices, const std::string& refined) {
+  if (refined == "step") return all_cases(choices.results());
   Cases out;
-  const auto step = [](const CaseRecord* r) { return CaseView::number(*r, "step").value_or(HUGE_VAL); };
-  for (const CaseGroup& group : view.group(view.all(), view.varying_without({"step", "elements"}))) {
+  const auto step = [](const CaseRecord* r) { return axis(*r, "step").number().value_or(HUGE_VAL); };
+  for (const CaseGroup& group :
+       choices.group(all_cases(choices.results()), choices.varying_without({"step", "elements"}))) {
     double smallest = HUGE_VAL;
     for (const CaseRecord* r : group.cases) smallest = std::min(smallest, step(r));
     for (const CaseRecord* r : group.cases)
@@ -73,34 +76,35 @@ Cases cases_along(const CaseView& view, const std::string& refined) {
 
 }  // namespace
 
-Table order_lines(const CaseView& view) {
-  const AxisRows<ErrorRow> errors(view.results(), errors_type(),
+Table order_lines(const Choices& choices) {
+  const AxisRows<ErrorRow> errors(choices.results(), errors_type(),
                                   [](const ErrorRow& row) -> std::vector<std::string> { return {row.error}; });
-  const AxisRows<OrderRow> orders(view.results(), orders_type(), [](const OrderRow& row) -> std::vector<std::string> {
-    return {row.refined, row.error};
-  });
+  const AxisRows<OrderRow> orders(choices.results(), orders_type(),
+                                  [](const OrderRow& row) -> std::vector<std::string> {
+                                    return {row.refined, row.error};
+                                  });
   Table out{"order_lines",
             "One row per line of a convergence figure: the longest run of points above their floor within a factor of "
             "two of e = C x^p.",
             {},
             {}};
-  for (const Column& column : axis_columns(view.results(), orders.axes())) out.columns.push_back(column);
+  for (const Column& column : axis_columns(choices.results(), orders.axes())) out.columns.push_back(column);
   for (Column column : std::initializer_list<Column>{
            {"refined", "", "step or elements: what the line runs along."},
            {"error", "", "Name of the error."},
            {"order", "1", "The fitted power p."},
            {"from", "that of what is refined", "First abscissa of the line."},
            {"to", "that of what is refined", "Last abscissa of the line."},
-           {"error_from", error_unit(view.results()), "Height of the line at its first abscissa."},
-           {"error_to", error_unit(view.results()), "Height of the line at its last abscissa."}})
+           {"error_from", error_unit(choices.results()), "Height of the line at its first abscissa."},
+           {"error_to", error_unit(choices.results()), "Height of the line at its last abscissa."}})
     out.columns.push_back(std::move(column));
   for (const std::string refined : {"step", "elements"}) {
-    std::vector<std::string> method = view.varying();
+    std::vector<std::string> method = choices.varying();
     std::erase(method, refined);
     if (refined == "elements") std::erase(method, "step");
-    for (CaseGroup& group : view.group(cases_along(view, refined), method)) {
+    for (CaseGroup& group : choices.group(cases_along(choices, refined), method)) {
       std::stable_sort(group.cases.begin(), group.cases.end(), [&](const CaseRecord* a, const CaseRecord* b) {
-        return CaseView::number(*a, refined).value_or(0) < CaseView::number(*b, refined).value_or(0);
+        return axis(*a, refined).number().value_or(0) < axis(*b, refined).number().value_or(0);
       });
       for (const std::string& error : errors.values(&ErrorRow::error)) {
         std::optional<size_t> row;
@@ -108,7 +112,7 @@ Table order_lines(const CaseView& view) {
         for (const CaseRecord* record : group.cases) {
           if (!row) row = orders.find(*record, {refined, error}, {refined});
           const auto found = errors.find(*record, {error});
-          const auto x = CaseView::number(*record, refined), value = found ? errors[*found].value : x;
+          const auto x = axis(*record, refined).number(), value = found ? errors[*found].value : x;
           if (found && x && value && record->status == Status::done)
             points.push_back({*x, *value, errors[*found].floor.value_or(0)});
         }
@@ -157,7 +161,7 @@ struct Method {
   std::vector<const OrderRow*> rows;
 };
 
-std::vector<Method> methods(const CaseView& view, const AxisRows<OrderRow>& rows) {
+std::vector<Method> methods(const Choices& choices, const AxisRows<OrderRow>& rows) {
   std::vector<Method> out;
   for (size_t row = 0; row < rows.size(); ++row) {
     // What the row does not say (the element count of a refinement of elements) is not said.
@@ -170,9 +174,9 @@ std::vector<Method> methods(const CaseView& view, const AxisRows<OrderRow>& rows
     }
     auto found = std::find_if(out.begin(), out.end(), [&](const Method& m) { return m.key == key; });
     if (found == out.end()) {
-      const CaseRecord* example = rows.example(row, view.results());
-      found = out.insert(out.end(), {example ? view.name(*example, columns) : "the one method",
-                                     example ? view.colour(*example) : "",
+      const CaseRecord* example = rows.example(row, choices.results());
+      found = out.insert(out.end(), {example ? choices.short_name(*example, columns) : "the one method",
+                                     example ? choices.colour(*example) : "",
                                      key,
                                      rows[row].refined,
                                      {}});
@@ -252,11 +256,11 @@ std::string counts(const StudyResults& results) {
 
 }  // namespace
 
-std::string orders_html(const CaseView& view) {
-  const AxisRows<OrderRow> rows(view.results(), orders_type());
+std::string orders_html(const Choices& choices) {
+  const AxisRows<OrderRow> rows(choices.results(), orders_type());
   if (rows.empty()) return "";
-  const std::vector<Method> all = methods(view, rows);
-  return counts(view.results()) + matrix(rows.values(&OrderRow::error), all) + details(all);
+  const std::vector<Method> all = methods(choices, rows);
+  return counts(choices.results()) + matrix(rows.values(&OrderRow::error), all) + details(all);
 }
 
 }  // namespace ricochet::report

@@ -9,6 +9,7 @@
 #include "runners/kinds/continuation/continuation_tables.hpp"
 #include "runners/kinds/continuation/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
+#include "runners/report/quantity.hpp"
 #include "runners/table/table_reader.hpp"
 #include "runners/table/text.hpp"
 
@@ -205,12 +206,12 @@ std::string put_beneath(const nlohmann::ordered_json& study, CurveData& curves) 
 
 }  // namespace
 
-nlohmann::ordered_json branch_data(const CaseView& view, CurveData& curves) {
+nlohmann::ordered_json branch_data(const Choices& choices, CurveData& curves) {
   std::vector<std::pair<const CaseRecord*, std::vector<BranchRow>>> all;
   std::vector<Portraits> portraits;
   Written written;
   size_t stored = 0, drawn = 0, samples = 0;
-  for (const CaseRecord* record : view.all()) {
+  for (const CaseRecord* record : all_cases(choices.results())) {
     const Table* table = find_table(record->tables, branches_name);
     if (!table || table->rows.empty()) continue;
     all.emplace_back(record, branch_rows_in(*table));
@@ -219,7 +220,7 @@ nlohmann::ordered_json branch_data(const CaseView& view, CurveData& curves) {
     for (const auto& [name, one] : portraits.back().orbits) samples += one.samples;
   }
   if (all.empty()) return nullptr;
-  const Quantity parameter = swept_parameter(view.results());
+  const Quantity parameter = swept_parameter(choices.results());
   nlohmann::ordered_json out = {{"parameter", {parameter.name, parameter.unit}}};
   nlohmann::ordered_json cases = nlohmann::ordered_json::object();
   const size_t stride = (stored + most_rows - 1) / most_rows;
@@ -233,7 +234,7 @@ nlohmann::ordered_json branch_data(const CaseView& view, CurveData& curves) {
     written = {written.portraits + one.portraits, written.samples + one.samples};
   }
   out["cases"] = std::move(cases);
-  const std::string beneath = put_beneath(view.results().study, curves);
+  const std::string beneath = put_beneath(choices.results().study, curves);
   out["said"] = drawn < stored ? fmt::format("{} of {} orbits are drawn; all are in branches.csv.", drawn, stored) : "";
   // Two numbers of four bytes for each sample, four thirds of that as text.
   if (written.portraits > 0)

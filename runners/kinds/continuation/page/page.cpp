@@ -13,6 +13,7 @@
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/quantity.hpp"
 
 namespace ricochet::report {
 
@@ -20,10 +21,10 @@ KindPage continuation_page(std::shared_ptr<const PointAnalysis> points) {
   KindPage page;
   page.scripts = scripts({"branches", "branch_panel", "branch_figure", "special_points", "multipliers", "turns"});
   page.tables = {"special_points", "turns", "point_presence", "point_levels", "point_lines"};
-  page.derived = {[points](const CaseView&) { return point_levels(*points); },
-                  [points](const CaseView&) { return point_lines(*points); }};
-  page.answer = [points](const CaseView& view) { return points_html(view, *points); };
-  page.methods = [points](const CaseView& view) { return point_methods_html(view, *points); };
+  page.derived = {[points](const Choices&) { return point_levels(*points); },
+                  [points](const Choices&) { return point_lines(*points); }};
+  page.answer = [points](const Choices& choices) { return points_html(choices, *points); };
+  page.methods = [points](const Choices& choices) { return point_methods_html(choices, *points); };
   page.data_key = "branches";
   page.data = branch_data;
   page.masses = false;
@@ -92,9 +93,9 @@ std::ptrdiff_t told_place(const PointAnalysis& of, const std::string& name) {
 
 }  // namespace
 
-std::string points_html(const CaseView& view, const PointAnalysis& of) {
+std::string points_html(const Choices& choices, const PointAnalysis& of) {
   const PointCells rows(of);
-  std::vector<HtmlTable::Head> columns = {{"point"}, {with_unit(swept_parameter(view.results())), true}};
+  std::vector<HtmlTable::Head> columns = {{"point"}, {with_unit(swept_parameter(choices.results())), true}};
   for (const std::string& one : rows.refined) columns.push_back({order_head(one), true});
   columns.push_back({"cases that have it", true, "Without: a branch passed the place. Elsewhere: none came there."});
   // What the answer tells; then what most is known of: orders, cases that have it; changes of contact last.
@@ -128,9 +129,9 @@ std::string points_html(const CaseView& view, const PointAnalysis& of) {
   return table.size() > 0 ? table.html() : "";
 }
 
-std::string point_methods_html(const CaseView& view, const PointAnalysis& of) {
+std::string point_methods_html(const Choices& choices, const PointAnalysis& of) {
   const PointCells rows(of);
-  std::vector<HtmlTable::Head> columns = {{"point"}, {"method"}, {with_unit(swept_parameter(view.results())), true}};
+  std::vector<HtmlTable::Head> columns = {{"point"}, {"method"}, {with_unit(swept_parameter(choices.results())), true}};
   for (const std::string& one : rows.refined) columns.push_back({order_head(one), true});
   for (const char* one : {"step leaves open", "mesh leaves open", "stiffness leaves open", "reference", "from it"})
     columns.push_back({one, true});
@@ -139,9 +140,10 @@ std::string point_methods_html(const CaseView& view, const PointAnalysis& of) {
       "finest point. Order: by differences of successive sizes.",
       columns);
   for (const PointLimitRow& row : of.limits) {
-    const CaseRecord* record = view.find(row.id);
+    const CaseRecord* record = choices.find(row.id);
     if (!record || !row.limit) continue;
-    table.row(row.name).text(view.label(*record, view.varying_without({"elements", "modes", "steps_per_period"})));
+    table.row(row.name).text(
+        choices.short_label(*record, choices.varying_without({"elements", "modes", "steps_per_period"})));
     table.number(limit_text(row), exact_text(*row.limit));
     rows.order_cells(table, row);
     for (const auto& open : {row.step_open, row.mesh_open, row.law_open}) table.number(open, 2);

@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "runners/kinds/continuation/point_tables.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/curve_data.hpp"
 #include "runners/report/kind_page.hpp"
 
@@ -15,9 +15,9 @@ KindPage continuation_page(std::shared_ptr<const PointAnalysis> points);
 
 /// One row per point that has a name: where it goes with the first method that has it, its orders, how many cases have
 /// it. Empty without such points.
-std::string points_html(const CaseView& view, const PointAnalysis& of);
+std::string points_html(const Choices& choices, const PointAnalysis& of);
 /// The same by method, with what step, mesh and stiffness leave open, and the reference.
-std::string point_methods_html(const CaseView& view, const PointAnalysis& of);
+std::string point_methods_html(const Choices& choices, const PointAnalysis& of);
 
 /// How far the points with names are from their limit: one row per name, refinement and case.
 Table point_levels(const PointAnalysis& of);
@@ -30,6 +30,6 @@ Table point_lines(const PointAnalysis& of);
 /// more than `rows` rows an even choice of each branch is kept, with special points and changes of stability; `said`
 /// tells so. Portraits are blocks ID/orbit/…: place of the row, first sample, stops of the tip; samples u and v; runs
 /// of contact.
-nlohmann::ordered_json branch_data(const CaseView& view, CurveData& curves);
+nlohmann::ordered_json branch_data(const Choices& choices, CurveData& curves);
 
 }  // namespace ricochet::report

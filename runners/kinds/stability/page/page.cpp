@@ -4,7 +4,7 @@
 
 #include "runners/kinds/stability/stability.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/kind_page.hpp"
 
@@ -14,23 +14,23 @@ KindPage stability_page() {
   KindPage page;
   page.scripts = scripts({"stability_tables", "limit_dots", "spectral_radius", "stability_map"});
   page.tables = {"stability_cells", "step_limits", "stability_disagreements"};
-  page.answer = [](const CaseView& view) { return stability_html(view) + restitution_html(view); };
+  page.answer = [](const Choices& choices) { return stability_html(choices) + restitution_html(choices); };
   return page;
 }
 
-std::string restitution_html(const CaseView& view) {
+std::string restitution_html(const Choices& choices) {
   HtmlTable table(
       "What a free mass keeps of its speed at a rigid stop, over the phases of the step at which it arrives. It "
       "follows from the plan of each scheme alone. Beyond 1 the mass is thrown back faster than it came. ρ∞: what a "
       "step leaves of the highest frequencies.",
       {{"time scheme"}, {"least", true}, {"mean", true}, {"most", true}, {"ρ∞", true}});
   // It depends on the scheme alone: one row for cases that differ in the rest.
-  const auto columns = view.varying_without({"mass", "contact", "elements"});
+  const auto columns = choices.varying_without({"mass", "contact", "elements"});
   std::set<std::string> said;
-  for (const RestitutionRow& row : restitution_type().read(view.results().derived)) {
-    const CaseRecord* record = view.find(row.id);
-    if (!record || !said.insert(view.label(*record, columns)).second) continue;
-    table.row(view.name(*record, columns));
+  for (const RestitutionRow& row : restitution_type().read(choices.results().derived)) {
+    const CaseRecord* record = choices.find(row.id);
+    if (!record || !said.insert(choices.short_label(*record, columns)).second) continue;
+    table.row(choices.short_name(*record, columns));
     for (const auto& value : {row.least, row.mean, row.most, row.rho_inf})
       table.number(value ? number_text(*value, 3) : "–");
   }
@@ -54,7 +54,7 @@ std::string why(const LimitRow& row) {
 
 }  // namespace
 
-std::string stability_html(const CaseView& view) {
+std::string stability_html(const Choices& choices) {
   HtmlTable table(
       "Step limits in seconds. Open: the structure alone. Closed: predicted with points held on both sides, the worst "
       "of several sets. It is observed in the scene itself, which is open as well: the ratio is to the smaller of both "
@@ -65,11 +65,11 @@ std::string stability_html(const CaseView& view) {
        {"observed limit", true},
        {"observed / predicted", true},
        {"marginal roots, and what grows at the first step that is not stable"}});
-  for (const LimitRow& row : step_limits_type().read(view.results().derived)) {
-    const CaseRecord* record = view.find(row.id);
+  for (const LimitRow& row : step_limits_type().read(choices.results().derived)) {
+    const CaseRecord* record = choices.find(row.id);
     if (!record || !row.counted) continue;
-    const auto columns = row.closed ? view.varying() : view.varying_without({"contact"});
-    table.row(view.name(*record, columns), view.colour(*record)).text(row.closed ? "closed" : "open");
+    const auto columns = row.closed ? choices.varying() : choices.varying_without({"contact"});
+    table.row(choices.short_name(*record, columns), choices.colour(*record)).text(row.closed ? "closed" : "open");
     table.number(limit_text(row.predicted, row.prediction)).number(limit_text(row.observed, row.observation));
     table.number(row.ratio ? number_text(*row.ratio, 4) : "–").text(why(row), "reason");
   }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runners/kinds/sweep/sweep_tables.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/quantity.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
@@ -58,8 +58,8 @@ inline bool logarithmic_sweep(double low, double high) {
 /// The parameter that a study of kind `bifurcation` sweeps.
 Quantity swept_parameter(const StudyResults& results);
 
-/// What a pointer of the study goes through, as axes of figures name it; a factor of a formula has no unit. `name` where
-/// it is no pointer.
+/// What a pointer of the study goes through, as axes of figures name it; a factor of a formula has no unit. `name`
+/// where it is no pointer.
 Quantity swept_quantity(const StudyResults& results, const nlohmann::ordered_json& where, const std::string& name);
 
 }  // namespace ricochet::report

@@ -26,7 +26,7 @@ KindPage trajectory_page() {
   return page;
 }
 
-Table energy_changes(const CaseView& view) {
+Table energy_changes(const Choices& choices) {
   Table out{"energy_changes",
             "One row per case: where its energy ends, told from its start.",
             {{"case", "", "Identity of the case: its row in cases.csv."},
@@ -34,14 +34,14 @@ Table energy_changes(const CaseView& view) {
              {"gained", "", "Whether the energy grew."},
              {"conservative", "", "Whether nothing but contact and the method changes energies in this study."}},
             {}};
-  const bool kept = answers::keeps_energy(view.results());
-  for (const CaseRecord* record : view.all())
+  const bool kept = answers::keeps_energy(choices.results());
+  for (const CaseRecord* record : all_cases(choices.results()))
     if (const auto ratio = ricochet::measure(*record, "energy_left"))
       out.rows.push_back({record->id, std::abs(*ratio - 1), *ratio > 1, kept});
   return out;
 }
 
-Table orbit_points(const CaseView& view) {
+Table orbit_points(const Choices& choices) {
   Table out{"orbit_points",
             "One sample of a place within its clearance, of the finest case of a method.",
             {{"case", "", "Identity of the case: its row in cases.csv."},
@@ -54,7 +54,7 @@ Table orbit_points(const CaseView& view) {
   constexpr std::size_t most_methods = 6, most_dots = 4000;
   std::vector<std::pair<const CaseRecord*, const NumberTable*>> tables;
   std::size_t rows = 0;
-  for (const Cases& cases : methods_from_finest(answers::Compared(view.results()))) {
+  for (const Cases& cases : methods_from_finest(Choices(choices.results()))) {
     const NumberTable* table = orbits_type().find(cases.front()->numbers);
     if (!table || table->rows() == 0 || tables.size() == most_methods) continue;
     tables.emplace_back(cases.front(), table);
@@ -146,8 +146,8 @@ void add_row(HtmlTable& table, const std::string& name, const SummaryMeasure& on
 
 }  // namespace
 
-std::string summary_measures_html(const CaseView& view) {
-  const StudyResults& results = view.results();
+std::string summary_measures_html(const Choices& choices) {
+  const StudyResults& results = choices.results();
   const auto& scene = results.study.contains("scene") ? results.study.at("scene") : nlohmann::ordered_json();
   if (!scene.contains("stops") || scene.at("stops").is_null()) return "";
   SummaryMeasures all = of_stops(answers::uncertainty_type().read(results.derived));

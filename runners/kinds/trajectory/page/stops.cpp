@@ -4,11 +4,11 @@
 #include <cmath>
 #include <map>
 
-#include "runners/answers/compared.hpp"
 #include "runners/answers/limits.hpp"
 #include "runners/answers/uncertainty.hpp"
 #include "runners/kinds/trajectory/page/page.hpp"
 #include "runners/kinds/trajectory/stop_tables.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/html.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/table_reader.hpp"
@@ -65,7 +65,7 @@ void widen_band(Band& band, const std::vector<double>& finest, const std::vector
 
 }  // namespace
 
-std::vector<Cases> methods_from_finest(const answers::Compared& study) {
+std::vector<Cases> methods_from_finest(const Choices& study) {
   InOrderMet<std::string, Cases> groups;
   for (const CaseRecord* record : with_status(all_cases(study.results()), Status::done))
     groups[study.key(*record)].push_back(record);
@@ -78,8 +78,8 @@ std::vector<Cases> methods_from_finest(const answers::Compared& study) {
   return out;
 }
 
-std::string stops_html(const CaseView& view) {
-  const std::vector<answers::StopRange> all = answers::uncertainty_type().read(view.results().derived);
+std::string stops_html(const Choices& choices) {
+  const std::vector<answers::StopRange> all = answers::uncertainty_type().read(choices.results().derived);
   if (all.empty()) return "";
   std::vector<std::string> stops;
   std::map<std::pair<std::string, std::string>, const answers::StopRange*> rows;
@@ -118,8 +118,7 @@ std::string stops_html(const CaseView& view) {
         continue;
       }
       const auto [least, largest] = ends(*found->second);
-      const std::string low = answers::short_number(words.factor * least, 3),
-                        high = answers::short_number(words.factor * largest, 3),
+      const std::string low = short_number(words.factor * least, 3), high = short_number(words.factor * largest, 3),
                         text = low == high ? low : low + " to " + high;
       html.number(found->second->low ? text : text + " ?", found->second->sentence);
     }
@@ -127,7 +126,7 @@ std::string stops_html(const CaseView& view) {
   return html.html();
 }
 
-Table shock_points(const CaseView& view) {
+Table shock_points(const Choices& choices) {
   Table out{"shock_points",
             "One of the largest shocks of the finest case of a method.",
             {{"case", "", "Identity of the case: its row in cases.csv."},
@@ -142,7 +141,7 @@ Table shock_points(const CaseView& view) {
     Row row;
   };
   std::vector<Point> points;
-  for (const Cases& cases : methods_from_finest(answers::Compared(view.results()))) {
+  for (const Cases& cases : methods_from_finest(Choices(choices.results()))) {
     const CaseRecord& record = *cases.front();
     const NumberTable* table = shocks_type().find(record.numbers);
     if (!table || table->rows() == 0) continue;
@@ -161,7 +160,7 @@ Table shock_points(const CaseView& view) {
   return out;
 }
 
-Table spectrum_bands(const CaseView& view) {
+Table spectrum_bands(const Choices& choices) {
   Table out{"spectrum_bands",
             "One frequency of one spectrum: between which densities all methods are.",
             {{"of", "", "Name of the stop or the point."},
@@ -174,7 +173,7 @@ Table spectrum_bands(const CaseView& view) {
             {}};
   std::map<std::string, Band> bands;
   std::vector<double> frequencies;
-  for (const Cases& cases : methods_from_finest(answers::Compared(view.results()))) {
+  for (const Cases& cases : methods_from_finest(Choices(choices.results()))) {
     std::vector<double> own;
     const auto finest = densities(*cases.front(), &own);
     if (own.size() > frequencies.size()) frequencies = own;

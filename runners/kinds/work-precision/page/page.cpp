@@ -8,8 +8,9 @@
 
 #include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/quantity.hpp"
 
 namespace ricochet::report {
 
@@ -19,19 +20,19 @@ KindPage work_precision_page() {
                           "step_cost", "order_dots", "errors"});
   page.tables.push_back("work_points");
   page.derived.push_back(work_points);
-  page.answer = [](const CaseView& view) { return work_precision_html(view) + orders_html(view); };
+  page.answer = [](const Choices& choices) { return work_precision_html(choices) + orders_html(choices); };
   return page;
 }
 
-WorkPrecision::WorkPrecision(const CaseView& view)
-    : rows_(view.results(), work_precision_type(),
+WorkPrecision::WorkPrecision(const Choices& choices)
+    : rows_(choices.results(), work_precision_type(),
             [](const WorkRow& row) -> std::vector<std::string> { return {row.error}; }),
-      errors_(view.results(), errors_type(),
+      errors_(choices.results(), errors_type(),
               [](const ErrorRow& row) -> std::vector<std::string> { return {row.error}; }) {}
 
-std::vector<std::string> scene_columns(const CaseView& view) {
+std::vector<std::string> scene_columns(const Choices& choices) {
   std::vector<std::string> scene;
-  std::copy_if(view.varying().begin(), view.varying().end(), std::back_inserter(scene), is_scene);
+  std::copy_if(choices.varying().begin(), choices.varying().end(), std::back_inserter(scene), is_scene);
   return scene;
 }
 
@@ -84,27 +85,27 @@ bool told_from_front(const WorkPoint& point, const std::vector<WorkPoint>& point
 namespace {
 
 /// The method of a case, its step, and its time.
-void case_cells(HtmlTable& table, const CaseView& view, const TargetCase& one) {
-  const CaseRecord* record = view.find(one.id.value_or(""));
+void case_cells(HtmlTable& table, const Choices& choices, const TargetCase& one) {
+  const CaseRecord* record = choices.find(one.id.value_or(""));
   if (!record) {
     table.absent(false, "no other").absent(false).absent();
     return;
   }
   std::vector<std::string> methods;
-  std::copy_if(view.varying().begin(), view.varying().end(), std::back_inserter(methods), is_method);
-  std::string how = exact_text(CaseView::number(*record, "step").value_or(0)) + " s";
-  if (view.varies("elements")) how += ", " + CaseView::text(*record, "elements") + " elements";
-  table.text(view.name(*record, methods)).text(how);
+  std::copy_if(choices.varying().begin(), choices.varying().end(), std::back_inserter(methods), is_method);
+  std::string how = exact_text(axis(*record, "step").number().value_or(0)) + " s";
+  if (choices.varies("elements")) how += ", " + axis_words(*record, "elements") + " elements";
+  table.text(choices.short_name(*record, methods)).text(how);
   table.number(number_text(one.seconds.value_or(0), 3),
                number_text(one.low.value_or(0), 4) + " to " + number_text(one.high.value_or(0), 4) + " s");
 }
 
 }  // namespace
 
-std::string work_precision_html(const CaseView& view) {
+std::string work_precision_html(const Choices& choices) {
   const TableType<TargetRow> type = precision_targets_type();
-  if (!type.find(view.results().derived)) return "";
-  const std::vector<std::string> scene = scene_columns(view);
+  if (!type.find(choices.results().derived)) return "";
+  const std::vector<std::string> scene = scene_columns(choices);
   std::vector<HtmlTable::Head> heads = {
       {"error"},     {"at most", true}, {"cheapest"},           {"with step"},      {"run time (s)", true},
       {"runner-up"}, {"with step"},     {"run time (s)", true}, {"speed-up", true}, {"spreads"}};
@@ -114,16 +115,16 @@ std::string work_precision_html(const CaseView& view) {
       "least time of the steps that were run. Spread: fastest to slowest repeat (in the time's tooltip); where the "
       "spreads overlap, the two are not told apart.",
       std::move(heads));
-  for (const TargetRow& row : type.read(view.results().derived)) {
+  for (const TargetRow& row : type.read(choices.results().derived)) {
     Quantity quantity = error_quantity(row.error);
     quantity.name = row.error;
     table.row().text(with_unit(quantity), "text");
-    const CaseRecord* record = view.find(row.first.id.value_or(""));
-    if (!scene.empty()) table.text(record ? view.label(*record, scene) : "");
+    const CaseRecord* record = choices.find(row.first.id.value_or(""));
+    if (!scene.empty()) table.text(record ? choices.short_label(*record, scene) : "");
     const double at_most = row.at_most.value_or(0);
     table.number(power_text(row.share.value_or(at_most)), row.share ? exact_text(at_most) : "");
-    case_cells(table, view, row.first);
-    case_cells(table, view, row.other);
+    case_cells(table, choices, row.first);
+    case_cells(table, choices, row.other);
     if (row.speed_up)
       table.number(number_text(*row.speed_up, 3) + " ×").text(row.overlap == true ? "overlap" : "apart");
     else
@@ -152,13 +153,13 @@ struct SceneFronts {
 
 }  // namespace
 
-Table work_points(const CaseView& view) {
+Table work_points(const Choices& choices) {
   Table out{"work_points",
             "One row per case and error: a point of work against precision.",
             {{"case", "", "Identity of the case: its row in cases.csv."},
              {"error", "", "Name of the error."},
-             {"value", error_unit(view.results()), "The error; nothing where the case has none."},
-             {"floor", error_unit(view.results()),
+             {"value", error_unit(choices.results()), "The error; nothing where the case has none."},
+             {"floor", error_unit(choices.results()),
               "Errors below it are not told apart: what the reference itself is uncertain by."},
              {"seconds", "s", "Processor time of marching, the median over the repeats."},
              {"low", "s", "The fastest repeat."},
@@ -170,9 +171,9 @@ Table work_points(const CaseView& view) {
              {"on_front_of_steps", "", "Whether no case of the scene has fewer steps and a smaller error."},
              {"none", "", "Why there is no point."}},
             {}};
-  const WorkPrecision work(view);
+  const WorkPrecision work(choices);
   if (work.empty()) return out;
-  const auto scenes = view.group(view.all(), scene_columns(view));
+  const auto scenes = choices.group(all_cases(choices.results()), scene_columns(choices));
   for (const std::string& error : work.errors())
     for (const CaseGroup& scene : scenes) {
       SceneFronts fronts;

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "runners/kinds/comparison/comparison_tables.hpp"
-#include "runners/report/case_view.hpp"
+#include "runners/report/axis_rows.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/kind_page.hpp"
 
 /// \file
@@ -15,11 +16,11 @@ KindPage work_precision_page();
 
 /// Each timed error as a point of work against precision: its floor, and its time per step. Also whether it lies on the
 /// Pareto fronts of its scene, or why it has no point.
-Table work_points(const CaseView& view);
+Table work_points(const Choices& choices);
 
 /// For each error and each 10⁻ᵏ, the method that reaches it in the least time with a step that was run. Also the
 /// runner-up, the speed-up, and whether their spreads overlap. Empty without the table `precision_targets`.
-std::string work_precision_html(const CaseView& view);
+std::string work_precision_html(const Choices& choices);
 
 // What the charts and tables of work and precision share.
 
@@ -36,7 +37,7 @@ struct WorkPoint {
 /// The results as work against precision.
 class WorkPrecision {
  public:
-  explicit WorkPrecision(const CaseView& view);
+  explicit WorkPrecision(const Choices& choices);
 
   bool empty() const { return rows_.empty(); }
   std::vector<std::string> errors() const { return rows_.values(&WorkRow::error); }
@@ -53,7 +54,7 @@ class WorkPrecision {
 };
 
 /// Columns that make another scene of it: neither methods, nor mesh, nor step.
-std::vector<std::string> scene_columns(const CaseView& view);
+std::vector<std::string> scene_columns(const Choices& choices);
 
 /// Indices of the points that no other beats in both known error and `work`, by increasing error; equal ones all count.
 std::vector<size_t> pareto_front(const std::vector<WorkPoint>& points, double (*work)(const WorkPoint&));

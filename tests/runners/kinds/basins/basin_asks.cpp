@@ -50,8 +50,8 @@ Grids study_of(const std::vector<std::vector<GridCell>>& grids, const std::vecto
 }
 
 asks::Answered ask(const Grids& grids, const Json& keys) {
-  const answers::Compared compared(grids.results);
-  const asks::Evidence evidence(compared);
+  const Choices choices(grids.results);
+  const asks::Evidence evidence(choices);
   const asks::Ask asked = asks::ask_of(keys, 1);
   return asked.has("effect") ? effect_on_basins(asked, evidence, grids.analysis)
                              : motions_of_basins(asked, evidence, grids.analysis);

@@ -55,8 +55,8 @@ Made study_of(const std::vector<std::vector<MotionClass>>& motions, std::mt19937
 }
 
 asks::Answered ask(const Made& made, const Json& keys) {
-  const answers::Compared compared(made.results);
-  const asks::Evidence evidence(compared);
+  const Choices choices(made.results);
+  const asks::Evidence evidence(choices);
   const asks::Ask asked = asks::ask_of(keys, 1);
   return asked.has("effect") ? effect_on_sweep(asked, evidence, made.swept)
                              : motions_of_sweep(asked, evidence, made.swept);

@@ -45,8 +45,8 @@ StudyResults study_of(const std::vector<Scheme>& schemes, double size = 1) {
 }
 
 asks::Answered ask(const StudyResults& results, const Json& keys) {
-  const answers::Compared compared(results);
-  const asks::Evidence evidence(compared);
+  const Choices choices(results);
+  const asks::Evidence evidence(choices);
   const asks::Ask one = asks::ask_of(keys, 1);
   return one.has("order") ? order_ask(one, evidence) : cheapest_ask(one, evidence);
 }

@@ -16,9 +16,9 @@ using Catch::Matchers::Contains;
 namespace {
 
 asks::Answered ask(const StudyResults& results, const std::vector<std::string>& kinds) {
-  const answers::Compared compared(results);
-  const PointAnalysis points(compared);
-  return points_ask(asks::ask_of({{"points", kinds}}, 1), asks::Evidence(compared), points);
+  const Choices choices(results);
+  const PointAnalysis points(choices);
+  return points_ask(asks::ask_of({{"points", kinds}}, 1), asks::Evidence(choices), points);
 }
 
 std::size_t count(const asks::Answered& out, const std::string& measure) {

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "runners/answers/compared.hpp"
 #include "runners/kinds/continuation/point_tables.hpp"
 #include "runners/kinds/continuation/point_words.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/run/finish_run.hpp"
 #include "runners/table/table_reader.hpp"
 #include "tests/runners/report/synthetic_points.hpp"
@@ -14,8 +14,8 @@ using namespace ricochet;
 namespace {
 
 std::vector<std::string> told_of(const StudyResults& all) {
-  const answers::Compared compared(all);
-  const PointAnalysis points(compared);
+  const Choices choices(all);
+  const PointAnalysis points(choices);
   std::vector<std::string> out;
   for (const ToldPoint& one : points.told) out.push_back(one.point().kind);
   return out;

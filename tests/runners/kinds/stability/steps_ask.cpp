@@ -41,8 +41,8 @@ asks::Answered ask(const std::vector<Spring>& springs, const std::function<void(
     rows.push_back(open);
     rows.push_back(closed);
   }
-  const answers::Compared compared(results);
-  return steps_ask(asks::ask_of({{"steps", "limit"}}, 1), asks::Evidence(compared), rows);
+  const Choices choices(results);
+  return steps_ask(asks::ask_of({{"steps", "limit"}}, 1), asks::Evidence(choices), rows);
 }
 
 }  // namespace

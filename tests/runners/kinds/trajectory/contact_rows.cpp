@@ -136,7 +136,7 @@ TEST_CASE("tables of contact come back from a store with units and meanings, und
     for (Table& table : record.tables)
       for (Column& column : table.columns.own()) column.unit = column.text = "";
   }
-  find_kind("trajectory")->analysis(results, answers::Compared(results));
+  find_kind("trajectory")->analysis(results, Choices(results));
   std::vector<Table> tables = number_heads(results);
   tables.insert(tables.end(), results.derived.begin(), results.derived.end());
   int seen = 0;

@@ -27,13 +27,13 @@ StudyResults three_steps(const std::string& stop) {
     if (!stop.empty()) record.measures.emplace_back("rms_force[" + stop + "]", forces[k]);
     if (!stop.empty()) record.measures.emplace_back("peak_force[" + stop + "]", 2 * forces[k]);
   }
-  const answers::Compared study(results);
+  const Choices study(results);
   results.derived = {answers::limits_table(study, {"impulse"}), answers::uncertainty_table(study)};
   return results;
 }
 
 std::string page(const StudyResults& results) {
-  return report::summary_measures_html(report::CaseView(results));
+  return report::summary_measures_html(Choices(results));
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ Cell told(const Table& table, const char* column) {
 }
 
 Table uncertain(const StudyResults& results) {
-  return answers::uncertainty_table(answers::Compared(results));
+  return answers::uncertainty_table(Choices(results));
 }
 
 }  // namespace

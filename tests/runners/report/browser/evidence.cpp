@@ -4,14 +4,14 @@
 #include <cmath>
 #include <set>
 
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "tests/runners/report/browser/browser.hpp"
 #include "tests/runners/report/evidence_results.hpp"
 
 using namespace ricochet;
 using namespace ricochet::browser;
+using Choices;
 using Catch::Matchers::Contains;
-using report::CaseView;
 
 namespace {
 
@@ -186,7 +186,7 @@ TEST_CASE("figures of evidence draw the derived tables", "[report][browser]") {
   for (const browser::Json& item : items_of(figure(said.at("coarse"), "error-elements"), 0, is_curve))
     drawn.insert(item.at("value")[1].get<double>());
   for (const CaseRecord& record : coarse.cases)
-    if (CaseView::number(record, "step") == 1e-4)
+    if (axis(record, "step").number() == 1e-4)
       if (const auto value = ricochet::measure(record, "error.tip-linf")) expected.insert(*value);
   CHECK(drawn == expected);
 

@@ -14,7 +14,7 @@
 
 using namespace ricochet;
 using namespace ricochet::browser;
-using report::CaseView;
+using Choices;
 
 namespace {
 

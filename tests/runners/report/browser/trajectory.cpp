@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-#include "runners/report/case_view.hpp"
+#include "runners/report/choices.hpp"
 #include "runners/report/html.hpp"
 #include "tests/runners/report/browser/browser.hpp"
 #include "tests/runners/report/rendered.hpp"
@@ -13,8 +13,8 @@
 
 using namespace ricochet;
 using namespace ricochet::browser;
+using Choices;
 using Catch::Matchers::Contains;
-using report::CaseView;
 
 namespace {
 
@@ -49,7 +49,7 @@ std::vector<std::pair<double, double>> some_numbers() {
 }
 
 void check_facets(const StudyResults& results, const browser::Json& page) {
-  const CaseView view(results);
+  const Choices view(results);
   for (const char* id : {"final-energy-step", "energy", "tip", "force", "penetration-step", "impacts-step"})
     CHECK(has_figure(page, id));
   const browser::Json& energy = figure(page, "energy");
@@ -163,7 +163,7 @@ void check_zeros(const browser::Json& page) {
 }
 
 void check_unfinished(const StudyResults& results, const browser::Json& page) {
-  const CaseView view(results);
+  const Choices view(results);
   size_t marks = 0, gutter = 0;
   for (const browser::Json& chart : figure(page, "energy").at("charts"))
     if (!chart.at("views").empty())
@@ -174,7 +174,7 @@ void check_unfinished(const StudyResults& results, const browser::Json& page) {
           CHECK_THAT(series.at("data")[0].at("text").get<std::string>(),
                      Catch::Matchers::StartsWith("diverged at t = "));
         }
-  CHECK(marks == view.with_status(Status::diverged).size());
+  CHECK(marks == with_status(all_cases(view.results()), Status::diverged).size());
   // In a strip that is wider than its axis, so that marks at the ends are whole.
   for (const browser::Json& chart : figure(page, "final-energy-step").at("charts")) {
     const browser::Json& drawn = chart.at("views")[0];
@@ -185,7 +185,8 @@ void check_unfinished(const StudyResults& results, const browser::Json& page) {
       CHECK(drawn.at("frames")[drawn.at("yAxis")[1].at("frame").get<size_t>()].at("pad") > 0);
     }
   }
-  CHECK(gutter == view.with_status(Status::diverged).size() + view.with_status(Status::refused).size());
+  CHECK(gutter == with_status(all_cases(view.results()), Status::diverged).size() +
+                      with_status(all_cases(view.results()), Status::refused).size());
 }
 
 }  // namespace

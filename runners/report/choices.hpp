@@ -2,27 +2,49 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runners/store/record_values.hpp"
 
 /// \file
-/// The methods that a study compares, as sentences speak of them.
-namespace ricochet::answers {
+/// What tells the cases of a study apart, as sentences, tables and figures speak of it.
+namespace ricochet {
 
 /// Whether a column is refined rather than chosen: step, steps_per_period, elements, modes.
 bool is_refinement(const std::string& column);
 
-/// A study as a comparison. A *choice* is a role with its parameters ("time"), or an axis of the scene. A *method* is
-/// one level of every choice that varies. What is left of a case is its step and its mesh.
-class Compared {
+/// The value of an axis of a case as text, "" where the case has none.
+std::string axis_words(const CaseRecord& record, std::string_view column);
+/// The same of a cell that a table has of it.
+std::string axis_words(const Cell& cell);
+
+/// What a short label puts before a value: the last part of the column and a blank; "" for a method's own name.
+std::string label_word(const std::string& column);
+
+/// Cases that agree in some axes.
+struct CaseGroup {
+  std::string label;
+  Cases cases;
+};
+
+/// A study as a comparison. A *role* is a method's name with its parameters: "mass" stands for the columns mass,
+/// mass.velocity, … A *choice* is a role, or an axis of the scene. A *method* is one level of every choice that varies.
+/// What is left of a case is its step and its mesh. Cases are those of the results, by their address.
+class Choices {
  public:
-  explicit Compared(const StudyResults& results);
+  explicit Choices(const StudyResults& results);
 
   const StudyResults& results() const { return results_; }
   /// What the study asks to be compared: a choice or one of its columns; "" where it asks for none.
   const std::string& asked() const { return asked_; }
-  bool varies(const std::string& column) const;
+  /// Columns in which two methods differ, in the study's order; one that a case has and another has not is among them.
+  const std::vector<std::string>& varying() const { return varying_; }
+  bool varies(std::string_view column) const;
+  /// But for these columns or roles.
+  std::vector<std::string> varying_without(const std::vector<std::string>& columns) const;
+  /// Columns that have one value in every case, as "column value".
+  std::vector<std::string> constants() const;
   /// Columns of choices that vary, in the study's order, and the choices that they belong to.
   const std::vector<std::string>& columns() const { return columns_; }
   const std::vector<std::string>& choices() const { return choices_; }
@@ -30,6 +52,10 @@ class Compared {
   /// Choices that are no methods.
   std::vector<std::string> scene_columns() const;
 
+  /// The values of a column as texts, in order of appearance; cases without the column do not count.
+  const std::vector<std::string>& values(const std::string& column) const;
+  /// The place of the case's value among these; nothing where it has none.
+  std::optional<std::size_t> place(const CaseRecord& record, const std::string& column) const;
   /// The value of a column as text; "" where the case has none.
   const std::string& text(const CaseRecord& record, const std::string& column) const;
   /// Tells methods apart.
@@ -57,8 +83,8 @@ class Compared {
   std::string table_words(const std::string& column, const std::string& value) const;
   /// A method's or a mass matrix's own word: "rigid stops" of "signorini".
   std::string method_words(const std::string& role, const std::string& name) const;
-  /// The unit of a column, with a space before it; "".
-  std::string unit_of(const std::string& column) const;
+  /// The unit of a column as the study keeps it; "" for words, ratios and counts.
+  const std::string& unit_of(const std::string& column) const;
   /// Numbers of a column over all cases, ascending, each once.
   const std::vector<double>& numbers_of(const std::string& column) const;
 
@@ -77,15 +103,47 @@ class Compared {
   /// "h = 1e-6 s", "4000 steps per period".
   std::string step_words(double step) const;
 
+  /// A short label of a case out of these columns (all that vary): "singular, velocity P1 · beta 0.25"; only what
+  /// varies is said.
+  std::string short_label(const CaseRecord& record, const std::vector<std::string>& columns) const;
+  std::string short_label(const CaseRecord& record) const { return short_label(record, varying_); }
+  /// The same, never empty: "the one method" where nothing varies.
+  std::string short_name(const CaseRecord& record, const std::vector<std::string>& columns) const;
+  std::string short_name(const CaseRecord& record) const { return short_name(record, varying_); }
+  /// Cases grouped by the values of `columns`, in order of appearance, with these as short labels.
+  std::vector<CaseGroup> group(const Cases& cases, const std::vector<std::string>& columns) const;
+  /// The short name of the case of this id; the id where there is none.
+  std::string name_of(const std::string& id) const;
+  /// The case of this id, as a table names it; null where there is none.
+  const CaseRecord* find(std::string_view id) const;
+  /// What sets some of these cases apart from all: "all 24 cases", "12 of 24 cases (mass singular)".
+  std::string describe(const Cases& cases) const;
+
+  /// Mass matrices with every parameter that varies, in order of appearance.
+  const std::vector<std::string>& masses() const { return masses_; }
+  /// The place of the case's mass matrix among these; their number where it has none (a reference).
+  std::size_t mass_place(const CaseRecord& record) const;
+  /// Colour of the case's mass matrix, the same in all charts (Okabe and Ito 2008: distinct for colour-blind readers).
+  std::string colour(const CaseRecord& record) const;
+
  private:
+  /// What cases have in a column.
+  struct Values {
+    std::vector<std::string> texts;  // each once
+    std::vector<std::size_t> at;     // of each case, its place among the texts
+    std::vector<double> numbers;     // ascending, each once
+    std::string unit;
+  };
+  const Values* known(const std::string& column) const;
   std::string owner(const std::string& column) const;
   std::string own_words(const std::string& column, const std::string& value) const;
+  std::string unit_after(const std::string& column) const;
+  std::string mass_label(const CaseRecord& record) const;
 
   const StudyResults& results_;
   std::string asked_;
-  std::vector<std::string> varying_, columns_, choices_;
-  std::map<std::string, std::vector<std::string>> texts_;  // of a varying column, by case
-  std::map<std::string, std::vector<double>> numbers_;
+  std::map<std::string, Values> values_;
+  std::vector<std::string> varying_, columns_, choices_, masses_;
   std::string steps_;                                              // the column of steps
   std::map<std::string, std::map<std::string, bool>> differs_in_;  // role → name\ncolumn: some cases of it differ there
 };
@@ -98,4 +156,4 @@ std::string spoken(const std::string& choice);
 /// "the singular P1 mass" of its level; other levels as they are.
 std::string level_phrase(const std::string& choice, const std::string& level);
 
-}  // namespace ricochet::answers
+}  // namespace ricochet

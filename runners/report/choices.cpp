@@ -1,18 +1,26 @@
-#include "runners/answers/compared.hpp"
+#include "runners/report/choices.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
 
-#include "runners/answers/numbers_in_words.hpp"
-#include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/quantity.hpp"
 #include "runners/study/axis_meaning.hpp"
+#include "runners/table/in_order_met.hpp"
 #include "runners/table/text.hpp"
 
-namespace ricochet::answers {
+namespace ricochet {
 namespace {
+
+constexpr const char* mass_colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#444444"};
+constexpr std::size_t no_value = static_cast<std::size_t>(-1);
+
+bool is_among(const std::vector<std::string>& list, std::string_view item) {
+  return std::find(list.begin(), list.end(), item) != list.end();
+}
 
 std::string last_part(const std::string& column) {
   const std::size_t dot = column.rfind('.');
@@ -92,29 +100,51 @@ std::string spaced(std::string text) {
 
 }  // namespace
 
+std::string axis_words(const Cell& cell) {
+  const auto number = cell.whole() ? std::nullopt : cell.number();
+  return number ? report::exact_text(*number) : cell.text();
+}
+
+std::string axis_words(const CaseRecord& record, std::string_view column) {
+  for (const auto& [name, value] : record.axes)
+    if (name == column) return axis_words(cell_of(value));
+  return "";
+}
+
+std::string label_word(const std::string& column) {
+  if (is_method_role(column)) return "";
+  return (axis_role(column) == column ? column : last_part(column)) + " ";
+}
+
 bool is_refinement(const std::string& column) {
   return column == "step" || column == "elements" || column == "modes" || column == "steps_per_period";
 }
 
-Compared::Compared(const StudyResults& results) : results_(results) {
+Choices::Choices(const StudyResults& results) : results_(results) {
   if (const auto found = results.study.find("compare"); found != results.study.end() && found->is_string())
     asked_ = found->get<std::string>();
   for (const std::string& column : results.columns) {
-    std::vector<std::string> texts;
-    std::vector<std::string> methods;  // without references
-    for (const CaseRecord& record : results.cases) {
-      texts.push_back(report::CaseView::text(record, column));
-      if (!is_reference(record)) methods.push_back(texts.back());
-    }
+    Values& own = values_[column];
+    own.unit = report::shown_unit(axis_column(results, column).unit);
+    std::map<std::string, std::size_t> places;
     std::set<double> numbers;
-    for (const std::string& one : texts)
-      if (const auto number = number_in(one)) numbers.insert(*number);
+    std::set<std::size_t> methods;  // without references
+    for (const CaseRecord& record : results.cases) {
+      std::size_t at = no_value;
+      if (std::string value = axis_words(record, column); !value.empty()) {
+        const auto [place, fresh] = places.emplace(value, own.texts.size());
+        at = place->second;
+        if (fresh) {
+          if (const auto number = number_in(value)) numbers.insert(*number);
+          own.texts.push_back(std::move(value));
+        }
+      }
+      own.at.push_back(at);
+      if (!is_reference(record)) methods.insert(at);
+    }
+    own.numbers = {numbers.begin(), numbers.end()};
     if (column == "step" || column == "steps_per_period") steps_ = column;
-    const bool varies =
-        std::any_of(methods.begin(), methods.end(), [&](const auto& one) { return one != methods.front(); });
-    texts_[column] = std::move(texts);
-    numbers_[column] = {numbers.begin(), numbers.end()};
-    if (!varies) continue;
+    if (methods.size() < 2) continue;
     varying_.push_back(column);
     // A refinement that is asked for is a choice.
     if (is_refinement(column) && column != asked_) continue;
@@ -127,87 +157,128 @@ Compared::Compared(const StudyResults& results) : results_(results) {
   for (const std::string& column : columns_) {
     const std::string role = axis_role(column);
     if (role == column) continue;
-    const auto names = texts_.find(role);
     std::map<std::string, std::string> first;
-    for (std::size_t k = 0; k < results.cases.size(); ++k) {
-      const std::string name = names == texts_.end() ? "" : names->second[k];
-      const auto [at, fresh] = first.emplace(name, texts_[column][k]);
-      if (!fresh && at->second != texts_[column][k]) differs_in_[column][name] = true;
+    for (const CaseRecord& record : results.cases) {
+      const auto [at, fresh] = first.emplace(text(record, role), text(record, column));
+      if (!fresh && at->second != text(record, column)) differs_in_[column][at->first] = true;
     }
+  }
+  for (const CaseRecord& record : results.cases) {
+    if (is_reference(record)) continue;
+    if (const std::string mass = mass_label(record); !is_among(masses_, mass)) masses_.push_back(mass);
   }
 }
 
-bool Compared::varies(const std::string& column) const {
-  return std::find(varying_.begin(), varying_.end(), column) != varying_.end();
+const Choices::Values* Choices::known(const std::string& column) const {
+  const auto found = values_.find(column);
+  return found == values_.end() ? nullptr : &found->second;
 }
 
-std::vector<std::string> Compared::columns_of(const std::string& choice) const {
+const std::vector<std::string>& Choices::values(const std::string& column) const {
+  static const std::vector<std::string> none;
+  const Values* own = known(column);
+  return own ? own->texts : none;
+}
+
+std::optional<std::size_t> Choices::place(const CaseRecord& record, const std::string& column) const {
+  const Values* own = known(column);
+  const std::size_t at = own ? own->at[static_cast<std::size_t>(&record - results_.cases.data())] : no_value;
+  return at == no_value ? std::nullopt : std::optional(at);
+}
+
+bool Choices::varies(std::string_view column) const {
+  return is_among(varying_, column);
+}
+
+std::vector<std::string> Choices::varying_without(const std::vector<std::string>& columns) const {
+  std::vector<std::string> out;
+  for (const std::string& column : varying_)
+    if (!is_among(columns, column) && !is_among(columns, axis_role(column))) out.push_back(column);
+  return out;
+}
+
+std::vector<std::string> Choices::constants() const {
+  std::vector<std::string> out;
+  if (results_.cases.empty()) return out;
+  for (const std::string& column : results_.columns) {
+    const std::string& value = text(results_.cases.front(), column);
+    if (!varies(column) && !value.empty()) out.push_back(column + " " + value + unit_after(column));
+  }
+  return out;
+}
+
+std::vector<std::string> Choices::columns_of(const std::string& choice) const {
   std::vector<std::string> own;
   for (const std::string& column : columns_)
     if (axis_role(column) == choice || column == choice) own.push_back(column);
   return own;
 }
 
-std::vector<std::string> Compared::scene_columns() const {
+std::vector<std::string> Choices::scene_columns() const {
   std::vector<std::string> own;
   for (const std::string& column : columns_)
     if (axis_role(column) == column && !is_method_role(column) && column != "march") own.push_back(column);
   return own;
 }
 
-const std::string& Compared::text(const CaseRecord& record, const std::string& column) const {
+const std::string& Choices::text(const CaseRecord& record, const std::string& column) const {
   static const std::string none;
-  const auto found = texts_.find(column);
-  if (found == texts_.end()) return none;
-  return found->second[static_cast<std::size_t>(&record - results_.cases.data())];
+  const auto at = place(record, column);
+  return at ? values_.at(column).texts[*at] : none;
 }
 
-std::string Compared::key(const CaseRecord& record) const {
+std::string Choices::key(const CaseRecord& record) const {
   return key(record, columns_);
 }
 
-std::string Compared::key(const CaseRecord& record, const std::vector<std::string>& columns) const {
+std::string Choices::key(const CaseRecord& record, const std::vector<std::string>& columns) const {
   std::string key;
   for (const std::string& column : columns) key += text(record, column) + '\x1f';
   return key;
 }
 
-std::string Compared::method_words(const std::string& role, const std::string& name) const {
+std::string Choices::method_words(const std::string& role, const std::string& name) const {
   const auto found = results_.method_words.find(role + " " + name);
   return found == results_.method_words.end() ? name : found->second;
 }
 
-std::string Compared::unit_of(const std::string& column) const {
-  const std::string unit = report::shown_unit(axis_column(results_, column).unit);
+const std::string& Choices::unit_of(const std::string& column) const {
+  static const std::string none;
+  const Values* own = known(column);
+  return own ? own->unit : none;
+}
+
+std::string Choices::unit_after(const std::string& column) const {
+  const std::string& unit = unit_of(column);
   return unit.empty() ? "" : " " + unit;
 }
 
-const std::vector<double>& Compared::numbers_of(const std::string& column) const {
+const std::vector<double>& Choices::numbers_of(const std::string& column) const {
   static const std::vector<double> none;
-  const auto found = numbers_.find(column);
-  return found == numbers_.end() ? none : found->second;
+  const Values* own = known(column);
+  return own ? own->numbers : none;
 }
 
-std::string Compared::owner(const std::string& column) const {
+std::string Choices::owner(const std::string& column) const {
   const std::string word = word_of(column);
   const bool alone = std::none_of(varying_.begin(), varying_.end(),
                                   [&](const std::string& other) { return other != column && word_of(other) == word; });
   return alone ? "" : owner_of(column, results_.study);
 }
 
-std::string Compared::spoken(const std::string& choice) const {
+std::string Choices::spoken(const std::string& choice) const {
   const std::string own = owner_of(choice, results_.study);
   if (choice.starts_with("bodies.")) return "the " + report::in_words(last_part(choice)) + " of " + own;
-  const std::string words = answers::spoken(choice);
+  const std::string words = ricochet::spoken(choice);
   return choice.starts_with("stops.") && !owner(choice).empty() ? words + " at " + own : words;
 }
 
-std::string Compared::value_words(const std::string& column, const std::string& value) const {
+std::string Choices::value_words(const std::string& column, const std::string& value) const {
   const std::string own = owner(column);
   return (own.empty() ? "" : own + " ") + own_words(column, value);
 }
 
-std::string Compared::own_words(const std::string& column, const std::string& value) const {
+std::string Choices::own_words(const std::string& column, const std::string& value) const {
   const std::string role = axis_role(column);
   if (column == role && is_method_role(role)) return method_words(role, value);
   const auto number = number_in(value);
@@ -215,33 +286,30 @@ std::string Compared::own_words(const std::string& column, const std::string& va
   if (role != column) {
     const std::string name = last_part(column);
     if (const std::string letter = symbol(name); !letter.empty() && number)
-      return letter + " = " + fraction_text(*number) + unit_of(column);
+      return letter + " = " + fraction_text(*number) + unit_after(column);
     if (is_table(value)) return table_words(column, value);
     // "implicit evaluation", "second-order start"; of a mass matrix the value says it: "P1".
     if (!number && value != "true" && value != "false")
       return role == "mass" ? value : value + " " + report::in_words(name);
-    return report::in_words(name) + " " + shown + unit_of(column);
+    return report::in_words(name) + " " + shown + unit_after(column);
   }
   if (column == "march") return spaced(value);
   for (const AxisWords& words : scene_words)
     if (column == words.column) {
-      const std::string unit = *words.after ? words.after : number ? unit_of(column) : "";
+      const std::string unit = *words.after ? words.after : number ? unit_after(column) : "";
       return std::string(words.before) + (*words.before ? " " : "") + shown + unit;
     }
-  return report::in_words(last_part(column)) + " " + shown + (number ? unit_of(column) : "");
+  return report::in_words(last_part(column)) + " " + shown + (number ? unit_after(column) : "");
 }
 
-std::string Compared::table_words(const std::string& column, const std::string& value) const {
-  std::vector<std::string> tables;
-  for (const CaseRecord& one : results_.cases)
-    if (const std::string& other = text(one, column);
-        is_table(other) && std::find(tables.begin(), tables.end(), other) == tables.end())
-      tables.push_back(other);
+std::string Choices::table_words(const std::string& column, const std::string& value) const {
+  std::vector<std::string> tables = values(column);
+  std::erase_if(tables, [](const std::string& one) { return !is_table(one); });
   const auto number = std::find(tables.begin(), tables.end(), value) - tables.begin() + 1;
   return report::in_words(last_part(column)) + (tables.size() > 1 ? " table " + std::to_string(number) : " table");
 }
 
-std::string Compared::level(const CaseRecord& record, const std::string& choice) const {
+std::string Choices::level(const CaseRecord& record, const std::string& choice) const {
   if (axis_role(choice) == choice && !is_method_role(choice))
     return text(record, choice).empty() ? "" : value_words(choice, text(record, choice));
   std::string out;
@@ -258,14 +326,14 @@ std::string Compared::level(const CaseRecord& record, const std::string& choice)
   return out;
 }
 
-std::string Compared::label(const CaseRecord& record, const std::vector<std::string>& choices) const {
+std::string Choices::label(const CaseRecord& record, const std::vector<std::string>& choices) const {
   std::string out;
   for (const std::string& choice : choices)
     if (const std::string one = level(record, choice); !one.empty()) out += (out.empty() ? "" : ", ") + one;
   return out;
 }
 
-std::string Compared::words(const CaseRecord& record, const std::vector<std::string>& columns) const {
+std::string Choices::words(const CaseRecord& record, const std::vector<std::string>& columns) const {
   std::string out, last;
   for (const std::string& column : columns) {
     const std::string& value = text(record, column);
@@ -282,7 +350,7 @@ std::string Compared::words(const CaseRecord& record, const std::vector<std::str
   return out;
 }
 
-std::string Compared::name(const CaseRecord& record, const std::vector<std::string>& choices) const {
+std::string Choices::name(const CaseRecord& record, const std::vector<std::string>& choices) const {
   std::string scheme, mass, law, rest;
   for (const std::string& choice : choices) {
     const std::string one = level(record, choice);
@@ -304,42 +372,111 @@ std::string Compared::name(const CaseRecord& record, const std::vector<std::stri
   return out.empty() ? "the one method" : out;
 }
 
-std::optional<double> Compared::step(const CaseRecord& record) const {
+std::optional<double> Choices::step(const CaseRecord& record) const {
   if (steps_.empty()) return std::nullopt;
   const auto number = number_in(text(record, steps_));
   if (!number || *number <= 0) return std::nullopt;
   return steps_ == "step" ? *number : 1 / *number;
 }
 
-std::optional<double> Compared::elements(const CaseRecord& record) const {
+std::optional<double> Choices::elements(const CaseRecord& record) const {
   if (!varies("modes")) return number_in(text(record, "elements"));
   if (const auto modes = number_in(text(record, "modes"))) return modes;
   // All dofs of the mesh are more than any number of modes that is named.
-  const auto known = numbers_.find("modes");
-  return known == numbers_.end() || known->second.empty() ? std::nullopt : std::optional(2 * known->second.back());
+  const std::vector<double>& modes = numbers_of("modes");
+  return modes.empty() ? std::nullopt : std::optional(2 * modes.back());
 }
 
-bool Compared::finer(const CaseRecord& a, const CaseRecord& b) const {
+bool Choices::finer(const CaseRecord& a, const CaseRecord& b) const {
   const auto size = [&](const CaseRecord& one) {
     return std::pair(elements(one).value_or(1), number_in(text(one, "elements")).value_or(1));
   };
   return size(a) != size(b) ? size(a) > size(b) : step(a).value_or(1) < step(b).value_or(1);
 }
 
-std::string Compared::mesh_words(double size) const {
+std::string Choices::mesh_words(double size) const {
   if (!varies("modes")) return short_number(size) + " elements";
   return size > numbers_of("modes").back() ? "all dofs" : short_number(size) + " modes";
 }
 
-bool Compared::on_finest_mesh(const CaseRecord& record) const {
+bool Choices::on_finest_mesh(const CaseRecord& record) const {
   if (!varies("modes") || !varies("elements")) return true;
   const auto elements = number_in(text(record, "elements"));
-  return !elements || *elements == numbers_.at("elements").back();
+  return !elements || *elements == numbers_of("elements").back();
 }
 
-std::string Compared::step_words(double step) const {
+std::string Choices::step_words(double step) const {
   return steps_ == "steps_per_period" ? short_number(1 / step) + " steps per period"
                                       : "h = " + short_number(step) + " s";
+}
+
+std::string Choices::short_label(const CaseRecord& record, const std::vector<std::string>& columns) const {
+  if (is_reference(record)) return record.id;
+  std::string out, last;
+  for (const std::string& column : columns) {
+    const std::string& value = text(record, column);
+    if (value.empty() || values(column).size() < 2) continue;
+    const std::string role = axis_role(column);
+    out += (out.empty() ? "" : role == last ? ", " : " · ") + label_word(column) + value + unit_after(column);
+    last = role;
+  }
+  return out;
+}
+
+std::string Choices::short_name(const CaseRecord& record, const std::vector<std::string>& columns) const {
+  const std::string label = short_label(record, columns);
+  return label.empty() ? "the one method" : label;
+}
+
+std::vector<CaseGroup> Choices::group(const Cases& cases, const std::vector<std::string>& columns) const {
+  std::vector<CaseGroup> groups;
+  for (Cases& same : groups_of(cases, columns))
+    groups.push_back({short_label(*same.front(), columns), std::move(same)});
+  return groups;
+}
+
+std::string Choices::name_of(const std::string& id) const {
+  const CaseRecord* record = find(id);
+  return record ? short_name(*record) : id;
+}
+
+const CaseRecord* Choices::find(std::string_view id) const {
+  const auto found = std::find_if(results_.cases.begin(), results_.cases.end(),
+                                  [&](const CaseRecord& record) { return record.id == id; });
+  return found == results_.cases.end() ? nullptr : &*found;
+}
+
+std::string Choices::describe(const Cases& cases) const {
+  const std::size_t total = results_.cases.size();
+  if (cases.size() == total) return total == 1 ? "the one case" : fmt::format("all {} cases", total);
+  std::string what;
+  for (const std::string& column : varying_) {
+    InOrderMet<std::size_t, bool> met;
+    for (const CaseRecord* record : cases)
+      if (const auto at = place(*record, column)) met[*at] = true;
+    std::vector<std::string> inside;
+    for (const auto& [at, yes] : met.list()) inside.push_back(values(column)[at]);
+    if (!inside.empty() && inside.size() < values(column).size())
+      what += fmt::format("{}{} {}", what.empty() ? "" : "; ", column, fmt::join(inside, ", "));
+  }
+  return fmt::format("{} of {} cases{}", cases.size(), total, what.empty() ? "" : " (" + what + ")");
+}
+
+std::string Choices::mass_label(const CaseRecord& record) const {
+  std::string out = text(record, "mass");
+  for (const std::string& column : results_.columns) {
+    if (column == "mass" || axis_role(column) != "mass" || values(column).size() < 2) continue;
+    if (const std::string& value = text(record, column); !value.empty()) out += ", " + label_word(column) + value;
+  }
+  return out;
+}
+
+std::size_t Choices::mass_place(const CaseRecord& record) const {
+  return static_cast<std::size_t>(std::find(masses_.begin(), masses_.end(), mass_label(record)) - masses_.begin());
+}
+
+std::string Choices::colour(const CaseRecord& record) const {
+  return mass_colours[mass_place(record) % std::size(mass_colours)];
 }
 
 std::vector<std::string> without(std::vector<std::string> columns, const std::vector<std::string>& own) {
@@ -364,4 +501,4 @@ std::string level_phrase(const std::string& choice, const std::string& level) {
   return choice == "mass" && !level.empty() ? "the " + level + " mass" : level;
 }
 
-}  // namespace ricochet::answers
+}  // namespace ricochet
