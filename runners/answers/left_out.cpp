@@ -13,6 +13,9 @@ namespace ricochet::answers {
 std::string why_without(const std::string& name, const CaseRecord& record) {
   for (const auto& [item, reason] : record.left_out)
     if (item == name) return reason;
+  // What is told of the time in contact alone.
+  if (const std::size_t stop = name.find('['); stop != std::string::npos)
+    if (measure(record, "contact_time" + name.substr(stop)) == 0.0) return "the stop is never touched";
   const MeasureWords words = measure_words(name);
   const bool of_energy = words.scale == "energy_brought_in" || words.most || name.starts_with("work_of_");
   if (!of_energy) return "";

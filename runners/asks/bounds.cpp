@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace ricochet::asks {
 namespace {
 
@@ -10,11 +12,18 @@ bool nothing_seen(const Point& point) {
   return untouched(point) && doubtful(point);
 }
 
+/// Whether no case has steps that resolve its contacts.
+bool unresolved(const Point& point) {
+  return !point.behind.empty() && std::all_of(point.behind.begin(), point.behind.end(), [](const CaseRecord* one) {
+    return measure(*one, contact_steps_measure).value_or(fewest_contact_steps) < fewest_contact_steps;
+  });
+}
+
 }  // namespace
 
 Kept kept(const Line& line, const Bounds& bounds) {
   Kept out;
-  if (!line.known() || !line.estimate().has_interval()) return out;
+  if (!line.known() || !line.estimate().has_interval() || unresolved(line.point)) return out;
   const Estimate& one = line.estimate();
   const auto holds = [&](double low, double high) { return bounds.holds(low) && bounds.holds(high); };
   const auto breaks = [&](double low, double high) {
@@ -41,6 +50,7 @@ std::string beyond_text(const Kept& one) {
 
 std::string why_open(const Line& line, const Bounds& bounds) {
   if (!line.known()) return line.point.none;
+  if (unresolved(line.point)) return "contact is not resolved by any step";
   if (nothing_seen(line.point)) return "no stop is touched, in a doubtful run";
   const Estimate& one = line.estimate();
   if (!one.unknown().empty()) return one.unknown();

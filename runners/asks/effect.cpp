@@ -145,7 +145,10 @@ class EffectSpeaker {
       one.level = evidence_.level(line.point.first(), others_);
       one.lines.push_back(&line);
     }
-    for (auto& [key, one] : std::move(all).list()) combinations_.push_back(std::move(one));
+    for (auto& [key, one] : std::move(all).list()) {
+      order_levels(one.lines);
+      combinations_.push_back(std::move(one));
+    }
     for (const Combination& one : combinations_)
       for (std::size_t a = 0; a < one.lines.size(); ++a)
         for (std::size_t b = a + 1; b < one.lines.size(); ++b)
@@ -158,6 +161,17 @@ class EffectSpeaker {
       if (const auto found = deciding(first, end, any)) decides_.push_back(*found);
       first = end;
     }
+  }
+
+  /// Numbers ascending, however the study lists them: a share is of the lower level. Words stay in the study's order.
+  void order_levels(std::vector<const Line*>& lines) const {
+    if (own_.size() != 1) return;
+    const auto number = [&](const Line* line) {
+      return number_in(evidence_.study().text(line->point.first(), own_.front()));
+    };
+    if (std::all_of(lines.begin(), lines.end(), [&](const Line* line) { return number(line).has_value(); }))
+      std::stable_sort(lines.begin(), lines.end(),
+                       [&](const Line* a, const Line* b) { return *number(a) < *number(b); });
   }
 
   Told told_of(const Combination& where, const Line& a, const Line& b) const {

@@ -192,12 +192,16 @@ class Enough {
       const double beyond = scatter * half_interval_over_scatter(n) / half;
       out.seeds = n < large ? static_cast<double>(n) : two_digits_above(static_cast<double>(n) * beyond * beyond);
     }
-    if (evidence_.window() > 0) out.duration = longer * evidence_.window();
+    // The law of 1/√T is that of many correlation times: no window of a tenth tells what a shorter one has.
+    constexpr double shortest = 0.1;
+    if (evidence_.window() > 0) out.duration = std::max(longer, shortest) * evidence_.window();
     // An orbit repeats in one period at least.
     if (const double kept = evidence_.kept_periods(); kept > 0)
       out.periods = std::max(1.0, two_digits_above(longer * kept));
     // A longer window of a load that repeats holds nothing new.
-    if (out.duration && *out.duration > evidence_.repeats_after()) {
+    // The mean over a whole repetition has no scatter of its own, a part of it has.
+    if (out.duration &&
+        (*out.duration > evidence_.repeats_after() || evidence_.window() >= evidence_.repeats_after())) {
       out.duration.reset();
       if (one.seeds == 1) out.seeds = std::ceil(longer);
     }

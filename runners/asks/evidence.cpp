@@ -76,6 +76,7 @@ std::vector<std::string> Evidence::measures(const Ask& ask, const std::string& n
   std::vector<std::string> stops;
   if (ask.has("stops")) stops = ask.keys["stops"].get<std::vector<std::string>>();
   std::vector<std::string> out;
+  std::vector<std::string> untouched;
   const auto gather = [&](bool whole) {
     const auto add = [&](const std::string& one) {
       const auto [base, stop] = split_measure(one);
@@ -84,12 +85,22 @@ std::vector<std::string> Evidence::measures(const Ask& ask, const std::string& n
     };
     for (const CaseRecord& record : results().cases) {
       for (const auto& [one, value] : record.measures) add(one);
-      // What has no limit under a law has a line all the same.
+      // What has no limit under a law has a line all the same, and so has a stop that is never touched.
       for (const auto& [item, why] : record.left_out) add(item);
+      if (whole || record.status != Status::done) continue;
+      for (const auto& [one, value] : record.measures)
+        if (const auto [base, stop] = split_measure(one); base == "contact_time" && value == 0 && !stop.empty())
+          untouched.push_back(stop);
     }
   };
   // Each stop for itself: what several stops have together is a sum that no stop has.
   gather(false);
+  // Of a measure of stops that some stop has.
+  if (!out.empty())
+    for (const std::string& stop : untouched)
+      if (const std::string one = name + "[" + stop + "]";
+          (stops.empty() || contains(stops, stop)) && !contains(out, one))
+        out.push_back(one);
   if (const bool by_stop = !stops.empty() || ask.text("over") == "stops"; !by_stop && out.size() < 2) {
     const std::vector<std::string> single = std::move(out);
     out.clear();

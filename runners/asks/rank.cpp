@@ -128,6 +128,15 @@ class Ranking {
                ? fmt::format("; {} surely first in {} of {}", first.names.front(), surely_first, orders_.size())
                : "; none surely first",
            !turned.empty() ? "; another elsewhere" : ""});
+    if (first.without > 0) {
+      // Each of those without a value may be the largest.
+      const std::string why = lines_.without.empty() ? "" : " (" + some_of(lines_.without, 1) + ")";
+      out.sentence = in_thirty_words(
+          fmt::format("Open: which {} is the largest is not told: {} of {} {} no value", lines_.words.words,
+                      first.without, first.lines.size() + first.without, first.without == 1 ? "has" : "have"),
+          {{why, ""}, {first.level.empty() ? "" : ", with " + first.level, ""}});
+      return out;
+    }
     std::string must;
     for (std::size_t most = 3; most > 0; --most)
       if (must = capitalised_order(first, most); fits(must)) break;

@@ -67,8 +67,9 @@ struct Series {
   /// Where it changes: between which values, in their order.
   std::vector<std::pair<double, double>> between = {};
   bool becomes = true;    // from no to yes as the axis grows, at the first of these
-  std::string what = {};  // of one without a threshold: "always", "never", "not told"
-  std::size_t open = 0;   // of a threshold: levels outside of where it changes that are open
+  std::string what = {};  // of one without a threshold: "always", "never", "not told"; "always below" of a value
+  std::optional<bool> holds = {};  // what is asked, where no level says otherwise
+  std::size_t open = 0;            // of a threshold: levels outside of where it changes that are open
 
   bool known() const {
     return std::any_of(points.begin(), points.end(), [](const auto& one) { return one.second->known(); });
@@ -79,7 +80,7 @@ std::string in_all(std::size_t series) {
   return ", in " + all_text(series);
 }
 
-void find_change(Series& series) {
+void find_change(Series& series, const Condition& condition) {
   std::vector<std::size_t> firm;
   for (std::size_t k = 0; k < series.states.size(); ++k)
     if (series.states[k] != Verdict::open) firm.push_back(k);
@@ -101,7 +102,21 @@ void find_change(Series& series) {
   }
   if (!series.between.empty()) return;
   const bool all = firm.size() == series.states.size();
-  series.what = !all ? "not told" : series.states[firm.front()] == Verdict::yes ? "always" : "never";
+  if (!all) {
+    series.what = "not told";
+    return;
+  }
+  series.holds = series.states[firm.front()] == Verdict::yes;
+  if (!condition.passes) {
+    series.what = *series.holds ? "always" : "never";
+    return;
+  }
+  std::size_t equal = 0;
+  for (const auto& [x, line] : series.points) equal += equals(*line, condition) ? 1 : 0;
+  series.what = *series.holds                   ? "always above"
+                : equal == 0                    ? "always below"
+                : equal == series.points.size() ? "always equal to"
+                                                : "never above";
 }
 
 class Threshold {
@@ -131,7 +146,7 @@ class Threshold {
       std::stable_sort(series.points.begin(), series.points.end(),
                        [](const auto& a, const auto& b) { return a.first < b.first; });
       for (const auto& [x, line] : series.points) series.states.push_back(state(*line, condition_, counts));
-      find_change(series);
+      find_change(series, condition_);
       series_.push_back(std::move(series));
     }
   }
@@ -193,9 +208,8 @@ class Threshold {
       rest.push_back({fmt::format("; levels differ: {} and {}{}", x_text(first.between.front().first),
                                   x_text(first.between.front().second), place(first)),
                       "; levels differ"});
-    const std::string there = condition_.passes
-                                  ? fmt::format("there, and {} beyond", first.becomes ? "larger" : "smaller")
-                                  : std::string(first.becomes ? "from" : "up to") + " there";
+    const std::string there =
+        condition_.passes ? passing(with, condition_) : std::string(first.becomes ? "from" : "up to") + " there";
     out.sentence = in_thirty_words(
         fmt::format("Between {} and {}: {} {} {}", x_text(low), x_text(high), lines_.words.words, what, there), rest);
     return out;
@@ -217,7 +231,9 @@ class Threshold {
   static std::string unchanged(const std::vector<const Series*>& without, std::size_t judged,
                                const std::function<std::string(const Series&)>& place) {
     std::string text;
-    for (const char* what : {"always", "never", "not told"}) {
+    InOrderMet<std::string, bool> kinds;
+    for (const Series* one : without) kinds[one->what] = true;
+    for (const auto& [what, yes] : kinds.list()) {
       const Series* first = nullptr;
       std::size_t count = 0;
       for (const Series* one : without)
@@ -227,6 +243,19 @@ class Threshold {
       text += fmt::format("; {}{}", what, where.empty() ? fmt::format(" with {} of {}", count, judged) : where);
     }
     return text;
+  }
+
+  /// What it is on both sides of a value that it passes: "there, and larger beyond"; of one that it keeps on a side,
+  /// "from there, and larger before".
+  static std::string passing(const std::vector<const Series*>& with, const Condition& condition) {
+    const bool grows = with.front()->becomes;
+    const bool kept = std::all_of(with.begin(), with.end(), [&](const Series* one) {
+      for (std::size_t k = 0; k < one->points.size(); ++k)
+        if (one->states[k] == Verdict::no && !equals(*one->points[k].second, condition)) return false;
+      return true;
+    });
+    if (kept) return grows ? "up to there, and larger beyond" : "from there, and larger before";
+    return grows ? "there, and larger beyond" : "there, and smaller beyond";
   }
 
   /// Why a level is open.
@@ -241,8 +270,7 @@ class Threshold {
   Answered say_unchanged(Answered out, const std::vector<const Series*>& without, const std::string& what,
                          const std::function<std::string(const Series&)>& place) const {
     std::vector<const Series*> always, never, open;
-    for (const Series* one : without)
-      (one->what == "always" ? always : one->what == "never" ? never : open).push_back(one);
+    for (const Series* one : without) (one->holds ? (*one->holds ? always : never) : open).push_back(one);
     if (always.empty() && never.empty()) {
       out.verdict = word(Verdict::open);
       for (std::size_t k = 0; k < open.front()->points.size(); ++k)
@@ -253,42 +281,47 @@ class Threshold {
                                  out.reason);
       return out;
     }
-    const auto some = [&](const char* word, const std::vector<const Series*>& list) {
-      return list.size() == 1 ? fmt::format("{}{}", word, place(*list.front()))
-                              : fmt::format("{} with {} of {}", word, list.size(), without.size());
+    const auto some = [&](const std::vector<const Series*>& list, const std::string& than) {
+      const std::string side = common(list) + than;
+      return list.size() == 1 ? fmt::format("{}{}", side, place(*list.front()))
+                              : fmt::format("{} with {} of {}", side, list.size(), without.size());
     };
     if (!always.empty() && !never.empty()) {
       out.verdict = word(Verdict::open);
       out.reason = "levels differ, none changes along the axis";
-      out.sentence = in_thirty_words(fmt::format("No change along {}: {} {} {}, {}", axis_words(), lines_.words.words,
-                                                 what, some("always", always), some("never", never)),
+      // Of a value that it might pass: "is always above 200 N with 9e4 N/m, always below it with 1e4 N/m".
+      const std::string told = condition_.passes
+                                   ? fmt::format("{} {}, {}", is_plural(lines_.words.words) ? "are" : "is",
+                                                 some(always, " " + lines_.given(*condition_.is)), some(never, " it"))
+                                   : fmt::format("{} {}, {}", what, some(always, ""), some(never, ""));
+      out.sentence = in_thirty_words(fmt::format("No change along {}: {} {}", axis_words(), lines_.words.words, told),
                                      {{open.empty() ? "" : fmt::format("; open with {}", open.size())}});
       return out;
     }
-    const std::string& which = (always.empty() ? never : always).front()->what;
+    const std::string which = common(always.empty() ? never : always);
     const Series& first = *without.front();
     out.verdict = open.empty() ? (condition_.passes ? "never" : which) : "in part";
     const std::size_t all = without.size() - open.size();
-    out.sentence = in_thirty_words(
-        fmt::format("{} {}, from {} to {}", answers::capitalised(lines_.words.words), always_text(which),
-                    x_text(first.points.front().first), x_text(first.points.back().first)),
-        {{open.empty() && all > 1 ? in_all(all)
-          : open.empty()          ? ""
-                                  : fmt::format(", with {} of {}; open with the others", all, without.size())}});
+    out.sentence =
+        in_thirty_words(fmt::format("{} {}, from {} to {}", answers::capitalised(lines_.words.words), which_text(which),
+                                    x_text(first.points.front().first), x_text(first.points.back().first)),
+                        {{open.empty() && all > 1 ? in_all(all)
+                          : open.empty()          ? ""
+                                         : fmt::format(", with {} of {}; open with the others", all, without.size())}});
     return out;
   }
 
-  /// "is never below 3 N"; of what passes a value the side on which it stays, "is always above 3 N".
-  std::string always_text(const std::string& which) const {
-    if (!condition_.passes || which == "always") return condition_.text(lines_, which + " ");
-    std::size_t equal = 0, all = 0;
-    for (const Series& series : series_)
-      for (const auto& [x, line] : series.points) {
-        all += line->known() ? 1 : 0;
-        equal += equals(*line, condition_) ? 1 : 0;
-      }
-    const char* side = equal == 0 ? "always below " : equal == all ? "always " : "never above ";
-    return (is_plural(lines_.words.words) ? "are " : "is ") + (side + lines_.given(*condition_.is));
+  /// What these are in common: of a value that they might pass "never above" where some equal it and some do not.
+  static std::string common(const std::vector<const Series*>& list) {
+    const bool alike =
+        std::all_of(list.begin(), list.end(), [&](const Series* one) { return one->what == list.front()->what; });
+    return alike ? list.front()->what : "never above";
+  }
+
+  /// "is never below 3 N"; of a value that it might pass the side on which it stays, "is always above 3 N".
+  std::string which_text(const std::string& which) const {
+    if (!condition_.passes) return condition_.text(lines_, which + " ");
+    return fmt::format("{} {} {}", is_plural(lines_.words.words) ? "are" : "is", which, lines_.given(*condition_.is));
   }
 
   std::string x_text(double x) const {

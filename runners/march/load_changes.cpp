@@ -82,10 +82,18 @@ constexpr double beyond_ends = 0.1, beyond_neighbours = 0.5, jumps = 0.25;  // o
 constexpr long long fewest_looks = 500, most_looks = 2500, steps_per_look = 4;
 constexpr std::size_t most_numbers = 64, most_told = 3;
 
-/// A part of the load as a function of time, N, and its text.
+/// A part of what drives as a function of time, its text, and the table that it is made of, where it is.
 struct Signal {
   std::function<double(double)> at;
   std::string text;
+  const TimeTable* table = nullptr;
+};
+
+/// Signals of one unit, and what a sentence calls them.
+struct Drive {
+  std::string what;
+  std::vector<Signal> signals;
+  double largest = 0;  ///< at least
 };
 
 /// One step of a signal: its ends, and what was met between them.
@@ -94,8 +102,13 @@ struct Seen {
   double begin = 0, end = 0, low = 0, high = 0, low_at = 0, high_at = 0;
 };
 
-std::vector<Signal> signals_of(const SceneSpec& scene) {
-  std::vector<Signal> signals;
+/// The load, N; the motions of supports, stops and surfaces whose tables give them, each as it gives it.
+std::vector<Drive> drives_of(const SceneSpec& scene) {
+  std::vector<Drive> drives(1);
+  drives.front().what = "the load";
+  for (const HarmonicForce& one : harmonic_forces(scene))
+    drives.front().largest = std::max(drives.front().largest, std::abs(one.force.amplitude));
+  std::vector<Signal>& signals = drives.front().signals;
   const double length = structure_length(scene), tip = tip_position(scene);
   const double whole = length > 0 ? length : 1;
   const LoadSpec& load = scene.load;
@@ -110,9 +123,17 @@ std::vector<Signal> signals_of(const SceneSpec& scene) {
       for (const double x : {0.0, 0.37 * length, 0.5 * length, 0.81 * length, length})
         size = std::max(size, whole * std::abs(term.shape.value(x, 0)));
     if (size > 0)
-      signals.push_back({[f = term.history, size](double t) { return size * f.value(0, t); }, term.history.text()});
+      signals.push_back({[f = term.history, size](double t) { return size * f.value(0, t); },
+                         term.table ? "" : term.history.text(), term.table.get()});
   }
-  return signals;
+  for (const GivenMotion& one : given_motions(scene))
+    if (const TimeTable* table = one.motion->table.get()) {
+      const auto curve = std::make_shared<const PiecewiseCubic>(PiecewiseCubic::interpolate(*table));
+      Drive& drive = drives.emplace_back();
+      drive.what = one.what;
+      drive.signals.push_back({[curve](double t) { return curve->value(t); }, "", table});
+    }
+  return drives;
 }
 
 /// The numbers of a formula within ]0, end[, where conditions and pulses of it mostly are.
@@ -138,6 +159,7 @@ class SignalSampler {
   SignalSampler(const Signal& signal, double h, long long steps) : signal_(signal), h_(h), steps_(steps) {
     look_evenly();
     look_around_numbers();
+    if (signal.table) look_at_entries(*signal.table);
     std::sort(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) { return a.step < b.step; });
   }
 
@@ -225,6 +247,26 @@ class SignalSampler {
     }
   }
 
+  // Between entries a table has nothing of its own; those at an instant are seen by the march.
+  void look_at_entries(const TimeTable& table) {
+    constexpr double at_instant = 1e-9;  // of a step
+    constexpr long long most_entries = 100000;
+    const double end = time(steps_);
+    long long looked = 0, last = -1;
+    for (double shift = 0; table.times.front() + shift < end; shift += table.period) {
+      for (const double entry : table.times) {
+        const double t = entry + shift, whole = std::floor(t / h_), part = t / h_ - whole;
+        if (t <= 0 || t >= end || part < at_instant || part > 1 - at_instant) continue;
+        if (++looked > most_entries) return;
+        const auto step = static_cast<long long>(whole);
+        if (step != last) seen_.push_back(begin(step, value(time(step))));
+        last = step;
+        sample(seen_.back(), t);
+      }
+      if (!(table.period > 0)) return;
+    }
+  }
+
   // Whether half of the change is in an eighth of the step.
   bool is_jump(const Seen& one) {
     double left = time(one.step), right = time(one.step + 1), at_left = one.begin, at_right = one.end;
@@ -254,15 +296,13 @@ Said some_of(const std::vector<std::string>& times) {
 
 }  // namespace
 
-std::vector<Said> load_changes(const SceneSpec& shared, double step, long long steps) {
-  std::vector<Said> changes;
-  if (!shared.load.uses_t() || steps < 1) return changes;
-  const SceneSpec scene = shared;  // formulas keep their variables inside: evaluate our own copies
-  const std::vector<Signal> signals = signals_of(scene);
+namespace {
+
+void tell_changes(const Drive& drive, double step, long long steps, std::vector<Said>& changes) {
   std::vector<SignalSampler> samplers;
-  double largest = 0;
-  for (const HarmonicForce& one : harmonic_forces(scene)) largest = std::max(largest, std::abs(one.force.amplitude));
-  for (const Signal& signal : signals)
+  samplers.reserve(drive.signals.size());
+  double largest = drive.largest;
+  for (const Signal& signal : drive.signals)
     largest = std::max(largest, samplers.emplace_back(signal, step, steps).largest());
   std::set<double> passing;
   std::set<long long> jumping;
@@ -274,12 +314,22 @@ std::vector<Said> load_changes(const SceneSpec& shared, double step, long long s
     times.push_back(fmt::format("{:.9g}", last = t));
   }
   if (!times.empty())
-    changes.push_back(said("the load comes and goes within a step of {:g} s, at t = {}", step, some_of(times)));
+    changes.push_back(drive.what + said(" comes and goes within a step of {:g} s, at t = {}", step, some_of(times)));
   times.clear();
   for (const long long one : jumping)
     times.push_back(
         fmt::format("{:.9g} to {:.9g}", static_cast<double>(one) * step, static_cast<double>(one + 1) * step));
-  if (!times.empty()) changes.push_back(said("the load jumps within a step, at t = {}", some_of(times)));
+  if (!times.empty()) changes.push_back(drive.what + said(" jumps within a step, at t = {}", some_of(times)));
+}
+
+}  // namespace
+
+std::vector<Said> load_changes(const SceneSpec& shared, double step, long long steps) {
+  std::vector<Said> changes;
+  if (steps < 1) return changes;
+  const SceneSpec scene = shared;  // formulas keep their variables inside: evaluate our own copies
+  for (const Drive& drive : drives_of(scene))
+    if (!drive.signals.empty()) tell_changes(drive, step, steps, changes);
   return changes;
 }
 

@@ -32,16 +32,17 @@ class GapWatch {
   double times_ = 0, first_ = 0;
 };
 
-/// What steps of `step` (s) from t = 0 on do not resolve of a load that is a formula in t, a sentence each. The load
-/// comes and goes within a step (no step sees it, or one instant alone), or it jumps. L being the largest load:
+/// What steps of `step` (s) from t = 0 on do not resolve of a load that is a formula in t, or a table, and of motions
+/// in tables, a sentence each. It comes and goes within a step (no step sees it, or one instant alone), or it jumps. L
+/// being the largest load, or what a table gives of a motion at most:
 ///
 ///     comes and goes    inside of a step it is beyond both of its ends by more than L/10, or at one end it is beyond
 ///                       the ends before and behind by more than L/2 (both are met by a wave of six steps and less);
 ///     jumps             by more than L/4 in a step, half of it or more in an eighth of that step.
 ///
 /// Looks at a quarter of the steps, 500 to 2500 of them, spread evenly. It looks closely around the numbers that stand
-/// in the formulas, 64 of each at most. What it does not find may be there. Costs half a millisecond at most where a
-/// formula takes 100 ns. Empty where no load is a formula in t.
+/// in the formulas, 64 of each at most, and at the entries of tables, 10⁵ of each. What it does not find of a formula
+/// may be there. Costs half a millisecond at most where a formula takes 100 ns, and some 100 ns an entry.
 std::vector<Said> load_changes(const SceneSpec& scene, double step, long long steps);
 
 /// What a run of `duration` (s) shows of a structure whose slowest period is more than a hundred times as long: nothing

@@ -20,6 +20,10 @@ std::optional<double> measure(const CaseRecord& record, const std::string& name)
 /// Adds a measure to the record; one that is not finite is left out.
 void put_measure(CaseRecord& record, const std::string& name, double value);
 
+/// Steps in half a period of a compliant contact. Fewer than `fewest_contact_steps` do not resolve it.
+inline constexpr const char* contact_steps_measure = "contact_steps";
+inline constexpr double fewest_contact_steps = 8;
+
 /// The case's value on this axis; nothing where it has no such axis.
 Cell axis(const CaseRecord& record, const std::string& column);
 

@@ -99,8 +99,8 @@ Limit settling(const Tail& t, const std::vector<SizedValue>& values, const std::
   return out;
 }
 
-/// Without a truth.
-Limit plain_limit(const std::vector<SizedValue>& values, double floor) {
+/// As the last sizes tell it, without a truth.
+Limit by_last_sizes(const std::vector<SizedValue>& values, double floor) {
   Limit out = at_finest(values);
   const std::size_t n = values.size();
   if (n == 1) return out;
@@ -144,6 +144,28 @@ Limit plain_limit(const std::vector<SizedValue>& values, double floor) {
   out.uncertainty = out.range;
   out.low = t.lowest();
   out.high = t.highest();
+  return out;
+}
+
+/// By how much later values lie beyond what three coarser sizes, or more, told as settled; 0 where they hold them all.
+double missed(const std::vector<SizedValue>& values, double floor) {
+  constexpr std::size_t fewest = 3;
+  double most = 0;
+  for (std::size_t m = fewest; m < values.size(); ++m) {
+    const Limit told = by_last_sizes({values.begin(), values.begin() + static_cast<std::ptrdiff_t>(m)}, floor);
+    if (told.status != LimitStatus::settles) continue;
+    for (std::size_t k = m; k < values.size(); ++k)
+      if (const double off = std::abs(values[k].value - told.value); off > *told.uncertainty)
+        most = std::max(most, off);
+  }
+  return most;
+}
+
+/// Without a truth. Where no order is confirmed, the coarser sizes show how far such an interval may be off.
+Limit plain_limit(const std::vector<SizedValue>& values, double floor) {
+  Limit out = by_last_sizes(values, floor);
+  if (out.status == LimitStatus::settles && !out.order)
+    set(out, out.status, std::max(*out.uncertainty, missed(values, floor)));
   return out;
 }
 

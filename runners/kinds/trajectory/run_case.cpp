@@ -18,6 +18,7 @@
 #include "runners/kinds/trajectory/stop_tables.hpp"
 #include "runners/kinds/trajectory/trajectory.hpp"
 #include "runners/kinds/trajectory/window_means.hpp"
+#include "runners/march/contact_steps.hpp"
 #include "runners/march/load_changes.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
@@ -433,6 +434,10 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   if (const PluginManual* law = registry.manual(Role::contact, study_case.contact.name))
     doubts.push_back(beyond_table(study_case.contact, *law, measure(record, "deepest_penetration").value_or(0)));
   doubts.push_back(struck.told(marcher, largest_restitution(study_case, *problem, registry)));
+  const auto resolved =
+      contact_steps(study_case, marcher, recorder, measure(record, "deepest_penetration").value_or(0), registry);
+  if (resolved) put_measure(record, contact_steps_measure, resolved->steps);
+  doubts.push_back(unresolved(resolved));
   add_doubts(record, doubts);
   if (orbits.any()) record.numbers.push_back(orbits.finish());
   if (snapshots.taken()) record.numbers.push_back(table_of(snapshots.finish()));

@@ -76,6 +76,35 @@ TEST_CASE("an interval holds the limit of what impacts leave within a step, and 
   CHECK(held(5, false) > 0.88);
 }
 
+TEST_CASE("an interval without a confirmed order is as wide as a coarser one missed") {
+  // A plateau of three sizes, left by the fourth: mean force of springs by the mid-point rule.
+  const std::vector<double> values = {4.65, 4.60, 4.594, 4.71, 4.69};
+  std::vector<SizedValue> sequence;
+  for (std::size_t k = 0; k < values.size(); ++k) sequence.push_back({std::pow(0.5, k), values[k]});
+  const auto early = limit_of({sequence.begin(), sequence.begin() + 3}, 1e-12), late = limit_of(sequence, 1e-12);
+  REQUIRE((early && late));
+  CHECK(early->status == LimitStatus::settles);
+  CHECK(*early->uncertainty < 0.02);
+  CHECK(*late->uncertainty >= 4.71 - 4.594);
+  // Whatever the sequence: an interval that a later value missed is no measure of the last.
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  for (int draw = 0; draw < 500; ++draw) {
+    std::vector<SizedValue> one;
+    for (int k = 0; k < 6; ++k) one.push_back({std::pow(0.5, k), 1 + std::pow(0.5, k) * 0.1 * normal(random)});
+    const auto whole = limit_of(one, 1e-12);
+    if (whole->status != LimitStatus::settles || whole->order) continue;
+    for (std::size_t m = 3; m < one.size(); ++m) {
+      const auto told = limit_of({one.begin(), one.begin() + static_cast<std::ptrdiff_t>(m)}, 1e-12);
+      if (told->status != LimitStatus::settles) continue;
+      for (std::size_t k = m; k < one.size(); ++k) {
+        const double off = std::abs(one[k].value - told->value);
+        CHECK((off <= *told->uncertainty || off <= *whole->uncertainty));
+      }
+    }
+  }
+}
+
 TEST_CASE("statuses: one, same, two, moves, wanders, blows up, vanishes, reaches the truth") {
   const auto status = [](std::vector<double> values, std::optional<double> truth = {}, double floor = 1e-14) {
     std::vector<SizedValue> sized;

@@ -262,6 +262,99 @@ TEST_CASE("asks: a measure that is the value on every level is that, not below i
   CHECK(answered.sentence.find("always below 0") == std::string::npos);
 }
 
+TEST_CASE("asks: of a value that levels keep on a side, or equal, no series is said to have it") {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1"}}, {"stops.upper", {"1", "2", "3"}}};
+  const auto answered = [&](const std::function<double(const std::vector<std::size_t>&)>& truth, double is) {
+    made.truth = truth;
+    StudyResults results = made.results();
+    for (CaseRecord& record : results.cases)
+      record.axes[1].second = std::stod(record.axes[1].second.get<std::string>());
+    return answer_of(results, {{"threshold", "impulse"}, {"is", is}, {"along", "stops.upper"}});
+  };
+  const auto says = [](const Answered& one, const std::string& words) {
+    INFO(one.sentence);
+    CHECK(one.sentence.find(words) != std::string::npos);
+  };
+  // One above, one below, everywhere.
+  const Answered sides = answered([](const auto& at) { return at[0] == 0 ? 3.5 : 1.5; }, 2);
+  says(sides, "is always above 2 with ");
+  says(sides, "always below it with ");
+  // One falls to the value and keeps it; the other stays above it.
+  const Answered kept = answered([](const auto& at) { return at[0] == 0 && at[1] > 0 ? 2.0 : 3.5; }, 2);
+  says(kept, "is 2 from there, and larger before");
+  says(kept, "; always above with ");
+  CHECK(kept.sentence.find("smaller") == std::string::npos);
+}
+
+TEST_CASE("asks: an effect of numbers is a share of the lower level, in whatever order they are listed") {
+  std::set<std::string> sentences;
+  for (const bool turned : {false, true}) {
+    Made made;
+    made.choices = {{"stops.upper", turned ? std::vector<std::string>{"2", "1"} : std::vector<std::string>{"1", "2"}}};
+    made.truth = [=](const std::vector<std::size_t>& at) { return (at[0] == 0) == turned ? 1.45 : 1.0; };
+    made.error = 1e-4;
+    StudyResults results = made.results();
+    for (CaseRecord& record : results.cases)
+      record.axes[0].second = std::stod(record.axes[0].second.get<std::string>());
+    const Answered answered = answer_of(results, {{"effect", "stops.upper"}, {"on", "impulse"}, {"from", 0.4}});
+    CHECK(answered.passes == Verdict::yes);
+    sentences.insert(answered.sentence);
+  }
+  CHECK(sentences.size() == 1);
+}
+
+TEST_CASE("asks: where one that is ranked has no value, none is called the largest") {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1", "m2"}}};
+  made.truth = [](const std::vector<std::size_t>& at) { return static_cast<double>(at[0]); };
+  made.error = 1e-3;
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases)
+    if (record.axes[0].second != "m0") record.measures.clear();
+  const Answered answered = answer_of(results, {{"rank", "impulse"}, {"over", "mass"}});
+  INFO(answered.sentence);
+  CHECK(answered.sentence.find("Open: ") == 0);
+  CHECK(answered.sentence.find("2 of 3 have no value") != std::string::npos);
+  CHECK(answered.passes == Verdict::open);
+}
+
+TEST_CASE("asks: contacts that no step resolves keep no limit and break none") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.error = 1e-3;
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) record.measures.emplace_back(contact_steps_measure, 2.5);
+  for (const double below : {0.5, 1.5}) {
+    const Answered open = answer_of(results, {{"limit", "impulse"}, {"below", below}});
+    INFO(open.sentence);
+    CHECK(open.passes == Verdict::open);
+    CHECK(open.reason == "contact is not resolved by any step");
+  }
+  // One that does is enough: what the others leave is in the interval.
+  results.cases.back().measures.back().second = 50;
+  CHECK(answer_of(results, {{"limit", "impulse"}, {"below", 1.5}}).passes == Verdict::yes);
+}
+
+TEST_CASE("asks: a stop that is never touched has its line, and its reason") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.error = 1e-3;
+  made.measure = "mean_force[p1]";
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) {
+    record.measures.emplace_back("contact_time[p1]", 0.5);
+    record.measures.emplace_back("contact_time[p2]", 0.0);
+  }
+  const Answered answered = answer_of(results, {{"value", "mean_force"}});
+  const auto row =
+      std::find_if(answered.rows.begin(), answered.rows.end(), [](const VerdictRow& one) { return one.stop == "p2"; });
+  REQUIRE(row != answered.rows.end());
+  CHECK(row->reason.find("the stop is never touched") != std::string::npos);
+}
+
 TEST_CASE("asks: what is refused throughout is left out of a limit by name") {
   Made made;
   made.choices = {{"mass", {"m0", "m1"}}};
@@ -360,6 +453,26 @@ TEST_CASE("asks: seeds that know their own intervals fall with the root of their
   REQUIRE(would != answered.rows.end());
   // 0.2/√n ≤ 0.03.
   CHECK(*would->value == std::ceil(std::pow(0.2 / 0.03, 2)));
+}
+
+TEST_CASE("asks: a window that holds a whole repetition of the load is not shortened") {
+  Made made;
+  made.choices = {{seed_axis, {"1", "2", "3"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.error = 1e-5;
+  made.scatter = 1e-6;
+  StudyResults results = made.results();
+  results.study["window"] = {{"from", 0}, {"to", 20}};
+  const auto windows = [&](double period) {
+    results.study["scene"]["load"] = Json::array({{{"force", {{"psd", {{"lines", period}, {"from", 0}, {"to", 1}}}}}}});
+    std::vector<double> out;
+    for (const VerdictRow& row : answer_of(results, {{"enough", "impulse"}, {"within", 0.1}}).rows)
+      if (row.verdict == "window that would do") out.push_back(*row.value);
+    return out;
+  };
+  CHECK(windows(20).empty());
+  // Of others no shorter one is told than a tenth.
+  for (const double window : windows(200)) CHECK(window >= 2);
 }
 
 TEST_CASE("asks: a difference that is zero to the last bit is known") {

@@ -125,3 +125,28 @@ TEST_CASE("a run of less than a hundredth of the slowest period is told, beside 
   std::get<OscillatorSpec>(scene.structure).stiffness = 0;
   CHECK(short_run(*testing::problem_of(scene, 1, {"consistent"}), 1e-9).empty());
 }
+
+TEST_CASE("what passes between two steps in a table is told, of a load as of a motion") {
+  // Millions of steps apart from the entries nothing looks at a table but its own instants.
+  const auto table = [](double from, double to) {
+    auto out = std::make_shared<TimeTable>();
+    out->times = {0, from, 0.5 * (from + to), to, 2};
+    out->values = {0, 0, 1000, 0, 0};
+    return out;
+  };
+  const auto motion = [&](double from, double to) {
+    SceneSpec scene = pushed({});
+    MotionSpec one;
+    const auto accelerations = table(from, to);
+    one.history = std::make_shared<PiecewiseCubic>(PiecewiseCubic::integrate_twice(*accelerations, 0, 0));
+    one.table = accelerations;
+    scene.motions.push_back(one);
+    return scene;
+  };
+  const std::vector<Said> passes = load_changes(motion(0.5035, 0.5039), 0.01, 200);
+  REQUIRE(passes.size() == 1);
+  CHECK_THAT(passes.front().text, Contains("comes and goes within a step of 0.01 s, at t = 0.5037 s"));
+  // What steps resolve, and entries at their instants, are not.
+  CHECK(load_changes(motion(0.4, 0.6), 0.01, 200).empty());
+  CHECK(load_changes(motion(0.5035, 0.5039), 2e-5, 100000).empty());
+}
