@@ -5,6 +5,7 @@
 #include <new>
 #include <ricochet/contract/check_inertia.hpp>
 #include <ricochet/contract/contact_law.hpp>
+#include <ricochet/contract/float_control.hpp>
 #include <ricochet/contract/friction_law.hpp>
 #include <ricochet/contract/registry.hpp>
 
@@ -31,10 +32,12 @@ namespace {
   }
 }
 
-// One call into a plugin. No allocation and no indirection of its own: laws are asked in the marching loop.
+// One call into a plugin, which leaves the floating-point control word as it was. No allocation and no indirection of
+// its own: laws are asked in the marching loop.
 template <class Question>
 decltype(auto) ask(const PluginIdentity& plugin, const char* function, Question&& question) {
   const PluginCallScope scope(plugin, function);
+  const FloatControlOfCall floats(function);
   try {
     return question();
   } catch (...) {
@@ -61,6 +64,7 @@ class Guard : public Interface {
       : plugin_(std::move(plugin)), inner_(std::move(inner)) {}
   ~Guard() override {
     const PluginCallScope scope(*plugin_, "destructor");
+    const FloatControlOfCall floats("destructor");
     inner_.reset();
   }
 

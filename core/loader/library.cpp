@@ -8,8 +8,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <ricochet/contract/float_control.hpp>
 #include <ricochet/loader/child.hpp>
-#include <ricochet/loader/float_control.hpp>
 #include <ricochet/loader/library.hpp>
 #include <set>
 #include <type_traits>

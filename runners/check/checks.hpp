@@ -36,6 +36,7 @@ struct CheckResult {
   std::string check;
   Finding finding = Finding::ok;
   std::vector<std::string> sentences;  ///< of a failure one for each parameter value, else at most one
+  std::string float_changer = {};      ///< "with beta 1: prepare()": what first left the floating-point state changed
 };
 
 /// Thrown inside a check when the method refuses what the check would march; the verdict is then "not applicable".
@@ -96,6 +97,9 @@ std::vector<Subject<Interface>> subjects_of(const Entry<Interface>& entry) {
 /// A failure with the sentences of one in `before` says whose they are.
 void name_equal_failure(const std::vector<CheckResult>& before, CheckResult& result);
 
+/// What all of them saw of the floating-point state.
+CheckResult float_state(const std::vector<CheckResult>& results);
+
 /// A check of one kind of method.
 template <class Interface>
 struct Check {
@@ -103,8 +107,8 @@ struct Check {
   Verdict (*of)(const Subject<Interface>& subject);
 };
 
-/// Runs all checks of a kind, each over all parameter values. One that does not come to an end is the last. A failure
-/// with the words of an earlier one names that check alone.
+/// Runs all checks of a kind, each over all parameter values, then tells the floating-point state that they left. One
+/// that does not come to an end is the last. A failure with the words of an earlier one names that check alone.
 template <class Interface>
 std::vector<CheckResult> run_checks(const std::vector<Check<Interface>>& checks, const Entry<Interface>& entry,
                                     const Isolation& isolation) {
@@ -118,8 +122,9 @@ std::vector<CheckResult> run_checks(const std::vector<Check<Interface>>& checks,
     CheckResult result = run_check(check.name, trials, isolation, &hangs);
     name_equal_failure(results, result);
     results.push_back(std::move(result));
-    if (hangs) break;
+    if (hangs) return results;
   }
+  results.push_back(float_state(results));
   return results;
 }
 

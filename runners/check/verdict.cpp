@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <exception>
+#include <ricochet/contract/float_control.hpp>
 #include <ricochet/loader/child.hpp>
 
 #include "runners/check/checks.hpp"
@@ -11,12 +12,14 @@
 namespace ricochet::checking {
 namespace {
 
-// From child to parent: a letter for the finding, then the sentences, each with its end.
+// From child to parent: a letter for the finding, what changed the floating-point state, the sentences, each with its
+// end.
 constexpr char sentence_end = '\x1e';
 constexpr const char* letters = "ofan";
 
 std::string encoded(const CheckResult& result) {
   std::string text(1, letters[static_cast<int>(result.finding)]);
+  text += result.float_changer + sentence_end;
   for (const std::string& sentence : result.sentences) text += sentence + sentence_end;
   return text;
 }
@@ -30,10 +33,14 @@ void decode(const std::string& text, CheckResult& result) {
     return;
   }
   result.finding = static_cast<Finding>(letter);
-  std::size_t at = 1;
-  while (at < text.size()) {
+  bool first = true;
+  for (std::size_t at = 1; at < text.size(); first = false) {
     const std::size_t end = std::min(text.find(sentence_end, at), text.size());
-    result.sentences.push_back(text.substr(at, end - at));
+    std::string part = text.substr(at, end - at);
+    if (first)
+      result.float_changer = std::move(part);
+    else
+      result.sentences.push_back(std::move(part));
     at = end + 1;
   }
 }
@@ -53,6 +60,7 @@ Verdict taken(const Trial& trial) {
 // Failures of all values; else the first of what was found most: measured before declared before applicable.
 CheckResult over_all(const std::string& name, const std::vector<Trial>& trials) {
   CheckResult result{name, Finding::not_applicable, {}};
+  take_float_changer();
   const auto weight = [](Finding finding) {
     switch (finding) {
       case Finding::fails:
@@ -70,6 +78,9 @@ CheckResult over_all(const std::string& name, const std::vector<Trial>& trials) 
   bool first = true;
   for (const Trial& trial : trials) {
     const Verdict verdict = taken(trial);
+    const std::string with = trial.values.empty() ? "" : "with " + trial.values + ": ";
+    const char* const changer = take_float_changer();
+    if (changer && result.float_changer.empty()) result.float_changer = fmt::format("{}{}()", with, changer);
     if (first || weight(verdict.finding) > weight(result.finding)) {
       result.finding = verdict.finding;
       result.sentences.clear();
@@ -77,7 +88,7 @@ CheckResult over_all(const std::string& name, const std::vector<Trial>& trials) 
     }
     first = false;
     if (verdict.finding == Finding::fails && result.sentences.size() < most_sentences)
-      result.sentences.push_back((trial.values.empty() ? "" : "with " + trial.values + ": ") + verdict.sentence);
+      result.sentences.push_back(with + verdict.sentence);
   }
   return result;
 }
@@ -113,6 +124,20 @@ CheckResult run_check(const std::string& name, const std::vector<Trial>& trials,
     result.sentences = {outcome.sentence()};
   if (hangs) *hangs = outcome.end == ChildOutcome::End::timeout;
   return result;
+}
+
+CheckResult float_state(const std::vector<CheckResult>& results) {
+  CheckResult state{"floating-point state", Finding::ok, {}};
+  for (const CheckResult& one : results)
+    if (!one.float_changer.empty()) {
+      state.finding = Finding::fails;
+      state.sentences = {
+          one.float_changer +
+          " leaves the rounding, or what is trapped or flushed, other than it found it. What runs in the "
+          "same thread afterwards would compute other numbers; put it back before you return"};
+      break;
+    }
+  return state;
 }
 
 void name_equal_failure(const std::vector<CheckResult>& before, CheckResult& result) {

@@ -1,5 +1,6 @@
 // Laws with one thing wrong, each caught by the check that looks at it.
 #include <catch2/catch.hpp>
+#include <cfenv>
 #include <cmath>
 #include <ricochet/contact_solvers/box_problem.hpp>
 #include <ricochet/contact_solvers/pointwise_solver.hpp>
@@ -197,6 +198,40 @@ TEST_CASE("check: an allocation in solve() is caught, whoever makes it") {
     caught(rigid, Wrong::allocates, "no allocation", "size what it needs in prepare()");
     caught(rigid, Wrong::allocates_raw, "no allocation", "solve() allocates 1 time");
   }
+}
+
+TEST_CASE("check: a law that changes how its thread rounds, in whatever function, is caught") {
+  class Rounding final : public PointwiseContact {
+   public:
+    explicit Rounding(bool puts_back)
+        : PointwiseContact({Evaluation::implicit_end, StepForce::at_measure}), back_(puts_back) {}
+
+   private:
+    void set_lanes(std::span<const Parameters>) override {
+      const int before = std::fegetround();
+      std::fesetround(FE_UPWARD);
+      if (back_) std::fesetround(before);
+    }
+    PointForce at(const ContactState& state) const override {
+      return state.depth > 0 ? PointForce{.value = kappa * state.depth, .stiffness = kappa} : PointForce{};
+    }
+    PointForce gradient(const ContactState& state) const override { return at(state); }
+    double stored(double depth, int) const override { return 0.5 * kappa * depth * depth; }
+    bool back_;
+  };
+  for (const bool puts_back : {true, false})
+    for (const bool child : {true, false}) {
+      Registry registry;
+      registry.add_contact(full_manual("made-here"),
+                           [=](const Parameters&) { return std::make_unique<Rounding>(puts_back); });
+      const auto results = checking::check_law(*registry.contact("made-here"), {.child = child});
+      INFO(text_of(results));
+      const CheckResult& state = results.back();
+      CHECK(state.check == "floating-point state");
+      CHECK((state.finding == Finding::ok) == puts_back);
+      if (!puts_back) CHECK_THAT(state.sentences.at(0), Contains("prepare() leaves the rounding"));
+      CHECK(std::fegetround() == FE_TONEAREST);
+    }
 }
 
 TEST_CASE("check: lanes that know of each other, or of lanes that are not theirs, are caught") {

@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
+#include <cfenv>
 #include <functional>
 #include <ricochet/contract/contact_law.hpp>
+#include <ricochet/contract/float_control.hpp>
 #include <ricochet/contract/registry.hpp>
 
 #include "tests/allocations.hpp"
@@ -198,6 +200,37 @@ TEST_CASE("every function of a law is guarded and forwarded") {
     CHECK_THROWS_WITH(call(), "plugin contact 'mine', " + function + "(): an exception that says nothing");
     CHECK(current_plugin_call().plugin == nullptr);
   }
+}
+
+TEST_CASE("a call that changes the rounding changes it for itself alone, and is known by its function") {
+  const KeepFloatControl test;
+  const auto law = law_of([] { std::fesetround(FE_UPWARD); });
+  take_float_changer();
+  law->prepare(1, {});
+  CHECK(std::fegetround() == FE_TONEAREST);
+  law->conserves_energy();
+  CHECK(std::fegetround() == FE_TONEAREST);
+  const char* const changer = take_float_changer();
+  REQUIRE(changer != nullptr);
+  CHECK(std::string(changer) == "prepare");
+  CHECK(take_float_changer() == nullptr);
+  // Whatever it was before, and where the call throws.
+  std::fesetround(FE_DOWNWARD);
+  CHECK_THROWS_AS(plan_of([]() -> PlanOrRefusal {
+                    std::fesetround(FE_UPWARD);
+                    throw Silent();
+                  }),
+                  PluginFault);
+  CHECK(std::fegetround() == FE_DOWNWARD);
+  CHECK(std::string(take_float_changer()) == "plan");
+  // One that puts it back, and flags that arithmetic raises, are no change.
+  law_of([] {
+    const int before = std::fegetround();
+    std::fesetround(FE_UPWARD);
+    std::feraiseexcept(FE_INEXACT);
+    std::fesetround(before);
+  })->prepare(1, {});
+  CHECK(take_float_changer() == nullptr);
 }
 
 TEST_CASE("a measure that does not exist is not read") {

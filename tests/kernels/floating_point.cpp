@@ -1,6 +1,7 @@
 // Denormal numbers are zero inside of the scope, and the thread gets back the control word that it had, whatever it
 // was.
 #include <catch2/catch.hpp>
+#include <cfenv>
 #include <limits>
 #include <random>
 #include <ricochet/kernels/block.hpp>
@@ -92,6 +93,21 @@ TEST_CASE("the control word is afterwards what it was before, whatever was done 
     } catch (int) {
     }
     CHECK(float_control() == word);
+  }
+}
+
+TEST_CASE("inside of the scope numbers are rounded to nearest, whatever was set before") {
+  const KeepFloatControl test;
+  for (const int rounding : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+    std::fesetround(rounding);
+    {
+      const FlushDenormals flush;
+      CHECK(std::fegetround() == FE_TONEAREST);
+      CHECK(plus(1, 0x1p-60) == 1);
+      CHECK(plus(1, -0x1p-60) == 1);
+      CHECK(plus(-1, -0x1p-60) == -1);
+    }
+    CHECK(std::fegetround() == rounding);
   }
 }
 

@@ -3,9 +3,9 @@
 #include <random>
 #include <ricochet/contract/abi.hpp>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/contract/float_control.hpp>
 #include <ricochet/contract/step_plan.hpp>
 #include <ricochet/loader/catalogue.hpp>
-#include <ricochet/loader/float_control.hpp>
 
 #include "tests/places.hpp"
 #include "tests/runners/scratch_folder.hpp"

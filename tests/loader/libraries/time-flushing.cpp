@@ -1,7 +1,7 @@
 // Counts denormal numbers as zero from the moment in which it is loaded, as anything linked with -ffast-math does, and
 // once more as it registers. Its scheme applies to nothing.
+#include <ricochet/contract/float_control.hpp>
 #include <ricochet/contract/plugin.hpp>
-#include <ricochet/loader/float_control.hpp>
 
 using namespace ricochet;
 
