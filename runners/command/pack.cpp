@@ -88,12 +88,17 @@ bool same_bytes(const fs::path& a, const fs::path& b) {
          file_sha256(a) == file_sha256(b);
 }
 
-/// Whether the tables, the answer and the report are what this program makes of the store beside them. Throws
-/// InputError for the first that is not. What another program packed is not compared, which is said.
+/// Whether study, tables, answer, report and description are what this program makes of the store beside them. Throws
+/// InputError for the first that is not. Another program may write all of these otherwise: of what it packed the study
+/// alone is compared, by what it says, and a difference is told, not judged.
 void compare_with_store(const fs::path& file, const std::vector<std::string>& parts, const AnalysedResults& results,
                         const fs::path& place, std::ostream& out) {
-  if (packer_of(place).entries != program_here().entries) {
-    out << "tables, answer and report are not compared with the store: another program packed them\n";
+  const Environment here = program_here();
+  if (packer_of(place).entries != here.entries) {
+    out << "tables, answer and report are not compared with the store: another program packed them\n"
+        << (same_study(place, results) ? "the study says what the store says\n"
+                                       : "the study is not, as this program reads it, that of the store: another "
+                                         "version may write it otherwise\n");
     return;
   }
   const TemporaryFolder made("tables");
@@ -110,7 +115,9 @@ void compare_with_store(const fs::path& file, const std::vector<std::string>& pa
   for (const std::string& name : names)
     if (!same_bytes(made.path() / name, place / name))
       throw InputError("", fmt::format("{}: {} is not what its store says", file.string(), name));
-  out << "tables, answer and report are what the store says\n";
+  if (const std::string name = other_than_described(place, parts, results, here); !name.empty())
+    throw InputError("", fmt::format("{}: {} is not what its store says", file.string(), name));
+  out << "study, tables, answer, report and description are what the store says\n";
 }
 
 int compute_again(const Arguments& arguments, const std::vector<std::string>& parts, const fs::path& place,

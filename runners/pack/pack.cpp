@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <ricochet/contract/errors.hpp>
+#include <set>
 #include <sstream>
 
 #include "runners/pack/sha256.hpp"
@@ -61,12 +62,24 @@ void add_results(const fs::path& folder, std::vector<Part>& parts) {
   }
 }
 
+bool names_files(const StudyResults& results) {
+  return results.study.contains("files") && results.study["files"].is_object();
+}
+
+Json study_part(const StudyResults& results) {
+  Json study = results.study;
+  study.erase("files");
+  return study;
+}
+
+const std::string study_name = fmt::format("{}/study.json", packed::study);
+
 /// The study as it runs anywhere: the files that it names lie beside it.
 void add_study(const StudyResults& results, std::vector<Part>& parts) {
-  Json study = results.study;
-  if (study.contains("files") && study["files"].is_object()) {
-    const fs::path folder = study["files"].at("folder").get<std::string>();
-    for (const auto& [name, digest] : study["files"].at("digests").items()) {
+  if (names_files(results)) {
+    const Json& files = results.study["files"];
+    const fs::path folder = files.at("folder").get<std::string>();
+    for (const auto& [name, digest] : files.at("digests").items()) {
       const fs::path path = name;
       if (path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end())
         throw InputError("/files", fmt::format("the study reads {}, which is outside of its folder; expected files in "
@@ -77,8 +90,7 @@ void add_study(const StudyResults& results, std::vector<Part>& parts) {
       parts.push_back(part_of((packed::study / path).generic_string(), folder / path));
     }
   }
-  study.erase("files");
-  parts.push_back(part_of(fmt::format("{}/study.json", packed::study), dumped(study)));
+  parts.push_back(part_of(study_name, dumped(study_part(results))));
 }
 
 const char* format_of(const std::string& name) {
@@ -149,6 +161,45 @@ std::string crate(const StudyResults& results, const std::vector<Part>& parts, c
   return dumped({{"@context", "https://w3id.org/ro/crate/1.1/context"}, {"@graph", graph}});
 }
 
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// The one graph of a description; none where it is no such thing.
+Json graph_of(const fs::path& place) {
+  Json described = Json::parse(text_of(place / packed::crate), nullptr, false);
+  if (!described.is_object() || !described.contains("@graph") || !described["@graph"].is_array()) return {};
+  return std::move(described["@graph"]);
+}
+
+/// What any version says of its parts: each but itself and the manifest, with its sum. "": nothing is wrong.
+std::string fault_of_description(const fs::path& place, std::map<std::string, std::string> sums) {
+  sums.erase(packed::crate);
+  const Json graph = graph_of(place);
+  if (!graph.is_array()) return fmt::format("its part {} describes nothing", packed::crate);
+  const auto word = [](const Json& item, const char* key) {
+    return item.is_object() && item.contains(key) && item[key].is_string() ? item[key].get<std::string>() : "";
+  };
+  for (const Json& item : graph) {
+    if (word(item, "@type") != "File") continue;
+    const std::string name = word(item, "@id");
+    const auto part = sums.find(name);
+    if (part == sums.end() || part->second != word(item, "sha256"))
+      return fmt::format("{} says of \"{}\" what {} does not", packed::crate, plain_text(name), packed::sums);
+    sums.erase(part);
+  }
+  return sums.empty() ? "" : fmt::format("{} does not describe \"{}\"", packed::crate, sums.begin()->first);
+}
+
+/// Whether any packed result may have such a part.
+bool has_place(const std::string& name) {
+  return name == packed::crate || name == packed::answer || name == packed::sums ||
+         name.starts_with(std::string(packed::results) + "/") || name.starts_with(std::string(packed::study) + "/");
+}
+
 /// name → sum of the lines "SUM  NAME".
 std::map<std::string, std::string> read_sums(const fs::path& file, const std::string& text) {
   std::map<std::string, std::string> sums;
@@ -213,11 +264,9 @@ std::vector<std::string> unpack_results(const fs::path& file, const fs::path& pl
                       }});
   if (found.erase(packed::sums) == 0)
     refuse(fmt::format("has no part {}: a packed result of `ricochet pack` has one", packed::sums));
-  std::ifstream stream(place / packed::sums, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
   std::vector<std::string> names = {packed::sums};
-  for (const auto& [name, expected] : read_sums(file, text.str())) {
+  const std::map<std::string, std::string> sums = read_sums(file, text_of(place / packed::sums));
+  for (const auto& [name, expected] : sums) {
     const auto part = found.find(name);
     if (part == found.end()) refuse(fmt::format("its part \"{}\" is missing", plain_text(name)));
     if (part->second != expected) refuse(fmt::format("its part \"{}\" is not as it was packed: another SHA-256", name));
@@ -226,18 +275,44 @@ std::vector<std::string> unpack_results(const fs::path& file, const fs::path& pl
   }
   if (!found.empty())
     refuse(fmt::format("its part \"{}\" was not packed: {} does not name it", found.begin()->first, packed::sums));
-  for (const char* name : {packed::crate, packed::answer})
+  const std::string results = std::string(packed::results) + "/";
+  for (const std::string& name :
+       {std::string(packed::crate), std::string(packed::answer), study_name, results + "results.sqlite",
+        results + "report.html", results + "cases.csv", results + "dictionary.csv"})
     if (!fs::exists(place / name)) refuse(fmt::format("has no part {}", name));
-  if (!fs::exists(place / packed::results / "results.sqlite")) refuse("holds no results");
+  for (const std::string& name : names)
+    if (!has_place(name)) refuse(fmt::format("its part \"{}\" is none that a packed result has", plain_text(name)));
+  if (const std::string fault = fault_of_description(place, sums); !fault.empty()) refuse(fault);
   return names;
 }
 
+std::string other_than_described(const fs::path& place, const std::vector<std::string>& names,
+                                 const StudyResults& results, const Environment& packer) {
+  std::vector<Part> parts;
+  std::set<std::string> known = {study_name};
+  if (names_files(results))
+    for (const auto& [name, digest] : results.study["files"].at("digests").items()) {
+      const std::string part = (packed::study / fs::path(name)).generic_string();
+      if (!fs::is_regular_file(place / part) || file_hash(place / part) != digest.get<std::string>()) return part;
+      known.insert(part);
+    }
+  for (const std::string& name : names) {
+    if (name.starts_with(std::string(packed::study) + "/") && !known.contains(name)) return name;
+    if (name != packed::sums && name != packed::crate) parts.push_back(part_of(name, place / name));
+  }
+  if (text_of(place / study_name) != dumped(study_part(results))) return study_name;
+  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.name < b.name; });
+  return text_of(place / packed::crate) == crate(results, parts, packer) ? "" : packed::crate;
+}
+
+bool same_study(const fs::path& place, const StudyResults& results) {
+  return Json::parse(text_of(place / study_name), nullptr, false) == study_part(results);
+}
+
 Environment packer_of(const fs::path& place) {
-  std::ifstream stream(place / packed::crate, std::ios::binary);
-  const Json crate = Json::parse(stream, nullptr, false);
   Environment packer;
   try {
-    for (const Json& one : crate.at("@graph"))
+    for (const Json& one : graph_of(place))
       if (one.at("@id") == packer_id)
         for (const Json& fact : one.at("additionalProperty"))
           packer.entries.emplace_back(fact.at("name").get<std::string>(), fact.at("value").get<std::string>());

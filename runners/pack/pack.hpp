@@ -30,6 +30,14 @@ std::size_t pack_results(const std::filesystem::path& folder, const StudyResults
 /// written by then stays: `place` is the caller's to remove.
 std::vector<std::string> unpack_results(const std::filesystem::path& file, const std::filesystem::path& place);
 
+/// The first part of the result unpacked in `place`, with the parts `names`, that is not what `packer` makes of its
+/// store, `results`: the study, a file beside it, the description; "" where each is. `packer` is this program.
+std::string other_than_described(const std::filesystem::path& place, const std::vector<std::string>& names,
+                                 const StudyResults& results, const Environment& packer);
+
+/// Whether the packed study says what its store says, in whatever writing.
+bool same_study(const std::filesystem::path& place, const StudyResults& results);
+
 /// What made tables and answer of the result that is unpacked in `place`. No entries where it does not say.
 Environment packer_of(const std::filesystem::path& place);
 

@@ -67,6 +67,26 @@ void add_part(Parts& parts, const std::string& name, const std::string& text) {
   parts.emplace_back(name, text);
 }
 
+/// The manifest and, but for `as_it_is`, the description of these parts, as one who knows the format writes them.
+void describe(Parts& parts, bool as_it_is = false) {
+  using nlohmann::ordered_json;
+  std::string sums;
+  for (auto& [name, text] : parts) {
+    if (name != ricochet::packed::crate || as_it_is) continue;
+    ordered_json described = ordered_json::parse(text);
+    for (ordered_json& item : described.at("@graph"))
+      for (const auto& [part, content] : parts)
+        if (item.at("@id") == part && item.contains("sha256")) {
+          item["sha256"] = sha256(content);
+          item["contentSize"] = std::to_string(content.size());
+        }
+    text = described.dump(2) + "\n";
+  }
+  for (const auto& [name, text] : parts)
+    if (name != ricochet::packed::sums) sums += sha256(text) + "  " + name + "\n";
+  parts.front().second = sums;
+}
+
 std::vector<std::string> names_in(const fs::path& folder) {
   std::vector<std::string> names;
   for (const auto& item : fs::directory_iterator(folder)) {
@@ -306,6 +326,22 @@ TEST_CASE("pack: what is not a whole packed result is refused with its cause, an
   changed([](Parts& all) { all.emplace_back("results/more.csv", "a\n"); }, "was not packed");
   changed([](Parts& all) { all.front().second += "half a line\n"; }, "has a line that is none");
   changed([](Parts& all) { all = {{ricochet::packed::sums, ""}}; }, "has no part ro-crate-metadata.json");
+  for (const char* name : {"study/study.json", "results/report.html", "results/dictionary.csv"})
+    changed(
+        [&](Parts& all) {
+          std::erase_if(all, [&](const auto& part) { return part.first == name; });
+          describe(all);
+        },
+        std::string("has no part ") + name);
+  changed([](Parts& all) { add_part(all, "notes/of-mine.txt", "x"); }, "\"notes/of-mine.txt\" is none that a packed");
+  changed([](Parts& all) { add_part(all, "study/more.csv", "x"); }, "does not describe \"study/more.csv\"");
+  changed(
+      [](Parts& all) {
+        for (auto& [name, text] : all)
+          if (name == ricochet::packed::crate) text = "garbage";
+        describe(all, true);
+      },
+      "describes nothing");
   // Whoever writes the manifest can name what is not allowed.
   for (const char* name : {"../climbs", "results/../../climbs", "/tmp/absolute", "a//b", "./a", "a\\b", "line\nbreak"})
     changed([&](Parts& all) { add_part(all, name, "x"); }, "\"");
@@ -361,18 +397,15 @@ TEST_CASE("pack: another result than the stored one is not equal, and says so wi
   REQUIRE(here.run("pack made").code == 0);
   Parts parts = parts_of(here / "rod.ricochet.zip");
   // The force of another study, with sums that fit.
-  std::string sums;
-  for (auto& [name, text] : parts) {
+  for (auto& [name, text] : parts)
     if (name == "study/force.csv") text = "t,f\n0,0\n0.5,0.2\n1,0\n";
-    if (name != ricochet::packed::sums) sums += sha256(text) + "  " + name + "\n";
-  }
-  parts.front().second = sums;
+  describe(parts);
   write_parts(here / "other.zip", parts);
   const Outcome other = here.run("verify other.zip --cases all");
   INFO(other.out << other.err);
   // The study knows its files by their digests.
   CHECK(other.code == 2);
-  CHECK_THAT(other.err, Contains("force.csv has changed since"));
+  CHECK_THAT(other.err, Contains("other.zip: study/force.csv is not what its store says"));
 }
 
 TEST_CASE("verify: tables, answer and report that the store does not say are refused, though their sums fit") {
@@ -382,12 +415,9 @@ TEST_CASE("verify: tables, answer and report that the store does not say are ref
   const Parts whole = parts_of(here / "rod.ricochet.zip");
   const auto verified_with = [&](const std::string& changed, const std::function<void(std::string&)>& change) {
     Parts parts = whole;
-    std::string sums;
-    for (auto& [name, text] : parts) {
+    for (auto& [name, text] : parts)
       if (name == changed) change(text);
-      if (name != ricochet::packed::sums) sums += sha256(text) + "  " + name + "\n";
-    }
-    parts.front().second = sums;
+    describe(parts, changed == ricochet::packed::crate);
     fs::remove(here / "other.zip");
     write_parts(here / "other.zip", parts);
     return here.run("verify other.zip --cases 0");
@@ -395,9 +425,10 @@ TEST_CASE("verify: tables, answer and report that the store does not say are ref
   const Outcome same = verified_with("", [](std::string&) {});
   INFO(same.out << same.err);
   CHECK(same.code == 0);
-  CHECK_THAT(same.out, Contains("\ntables, answer and report are what the store says\n"));
+  CHECK_THAT(same.out, Contains("\nstudy, tables, answer, report and description are what the store says\n"));
   for (const std::string part :
-       {"results/cases.csv", "results/limits.csv", "answer.md", "results/report.html", "results/study.json"}) {
+       {"results/cases.csv", "results/limits.csv", "answer.md", "results/report.html", "results/study.json",
+        "study/study.json", "study/force.csv", "ro-crate-metadata.json"}) {
     const Outcome other = verified_with(part, [](std::string& text) { text.back() = ' '; });
     INFO(other.out << other.err);
     CHECK(other.code == 2);
@@ -408,7 +439,17 @@ TEST_CASE("verify: tables, answer and report that the store does not say are ref
   write_parts(here / "more.zip", more);
   const Outcome added = here.run("verify more.zip --cases 0");
   CHECK(added.code == 2);
-  CHECK_THAT(added.err, Contains("more.zip: results/more.csv is not what its store says"));
+  CHECK_THAT(added.err, Contains("more.zip: ro-crate-metadata.json does not describe \"results/more.csv\""));
+  // Of what it names, and of what it says beside.
+  const Outcome study =
+      verified_with("study/study.json", [](std::string& text) { text.replace(text.find("0.005"), 5, "0.004"); });
+  CHECK(study.code == 2);
+  CHECK_THAT(study.err, Contains("other.zip: study/study.json is not what its store says"));
+  const Outcome crate = verified_with(ricochet::packed::crate, [](std::string& text) {
+    text.replace(text.find("\"startTime\""), 11, "\"stopsTime\"");
+  });
+  CHECK(crate.code == 2);
+  CHECK_THAT(crate.err, Contains("other.zip: ro-crate-metadata.json is not what its store says"));
   // Another program may write other digits.
   const Outcome program = verified_with(ricochet::packed::crate, [](std::string& text) {
     const std::string packer = "\"#packer\"", name = "\"ricochet ";
@@ -419,7 +460,29 @@ TEST_CASE("verify: tables, answer and report that the store does not say are ref
   });
   INFO(program.out << program.err);
   CHECK(program.code == 0);
-  CHECK_THAT(program.out, Contains("are not compared with the store: another program packed them"));
+  CHECK_THAT(program.out, Contains("are not compared with the store: another program packed them") &&
+                              Contains("\nthe study says what the store says\n"));
+}
+
+TEST_CASE("verify: of what another program packed, a study that differs is told and not judged") {
+  const Folder here;
+  make_results(here);
+  REQUIRE(here.run("pack made").code == 0);
+  Parts parts = parts_of(here / "rod.ricochet.zip");
+  for (auto& [name, text] : parts) {
+    if (name == "study/study.json") text.replace(text.find("0.005"), 5, "0.004");
+    if (name != ricochet::packed::crate) continue;
+    const std::size_t at = text.find("\"ricochet ", text.find("\"#packer\""));
+    REQUIRE(at != std::string::npos);
+    text.replace(at, 10, "\"ricochet 9.");
+    text.replace(text.find("\"ricochet ", at + 1), 10, "\"ricochet 9.");
+  }
+  describe(parts);
+  write_parts(here / "other.zip", parts);
+  const Outcome told = here.run("verify other.zip --cases 0");
+  INFO(told.out << told.err);
+  CHECK(told.code == 0);
+  CHECK_THAT(told.out, Contains("the study is not, as this program reads it, that of the store"));
 }
 
 TEST_CASE("verify: a method that no plugin here provides is a missing plugin, however near another name is") {
