@@ -120,10 +120,20 @@ void ZipWriter::commit() {
 
 namespace {
 
+/// As it stands in a sentence of one line.
+std::string shown_name(const std::string& name) {
+  std::string shown;
+  for (const char c : plain_text(name)) shown += c == '\n' ? "<U+000A>" : c == '\t' ? "<U+0009>" : std::string(1, c);
+  return cut_short(shown);
+}
+
 /// Why a part may not have this name; "" where it may.
 std::string fault_of_name(const std::string& name) {
+  // Of a file anywhere, and of a way to it that leaves room for where it is unpacked.
+  constexpr std::size_t longest_name = 255, longest_way = 2000;
   if (name.empty()) return "a part has no name";
-  const std::string shown = plain_text(name);
+  const std::string shown = shown_name(name);
+  if (name.size() > longest_way) return fmt::format("\"{}\" is longer than {} bytes", shown, longest_way);
   if (!is_plain(name) || name.find_first_of("\\\n\t") != std::string::npos)
     return fmt::format("\"{}\" is no plain name", shown);
   if (name.front() == '/') return fmt::format("\"{}\" is an absolute path", shown);
@@ -131,6 +141,7 @@ std::string fault_of_name(const std::string& name) {
     const std::size_t slash = name.find('/', at);
     const std::string step = name.substr(at, slash == std::string::npos ? slash : slash - at);
     if (step == "..") return fmt::format("\"{}\" climbs out of its folder", shown);
+    if (step.size() > longest_name) return fmt::format("\"{}\" is longer than {} bytes", shown, longest_name);
     if (step.empty() || step == ".") return fmt::format("\"{}\" is no name of a file", shown);
     at = slash == std::string::npos ? slash : slash + 1;
   }

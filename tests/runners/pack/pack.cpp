@@ -345,6 +345,15 @@ TEST_CASE("pack: what is not a whole packed result is refused with its cause, an
   // Whoever writes the manifest can name what is not allowed.
   for (const char* name : {"../climbs", "results/../../climbs", "/tmp/absolute", "a//b", "./a", "a\\b", "line\nbreak"})
     changed([&](Parts& all) { add_part(all, name, "x"); }, "\"");
+  changed([](Parts& all) { all.emplace_back("results/" + std::string(300, 'a'), "x"); }, "longer than");
+  changed(
+      [](Parts& all) {
+        std::string deep = "results";
+        for (int i = 0; i < 100; ++i) deep += "/" + std::string(50, 'a');
+        all.emplace_back(deep, "x");
+      },
+      "longer than");
+  changed([](Parts& all) { all.emplace_back("line\nbreak", "x"); }, "\"line<U+000A>break\" is no plain name");
   changed([](Parts& all) { add_part(all, "study/study.json", "{}"); }, "stands twice");
   changed([](Parts& all) { add_part(all, "results/zeros", std::string(300000000, '\0')); }, "times as large");
   CHECK_FALSE(fs::exists(here / "climbs"));
