@@ -241,9 +241,9 @@ class FolderRun {
   int finish() {
     const auto results = write_folder(store_, folder_, runner_.render, &fresh_);
     const double seconds = seconds_since(begin_);
-    // As `plan` counts them: what is refused does not run.
+    // As `plan` counts them: what is refused does not run. Nor does what is kept, though its times are taken.
     const auto ran = std::count_if(results->cases.begin(), results->cases.end(), [this](const CaseRecord& one) {
-      return fresh_.count(one.id) != 0 && one.status != Status::refused;
+      return fresh_.count(one.id) != 0 && kept_.count(one.id) == 0 && one.status != Status::refused;
     });
     return tell_results(runner_.out, *results, folder_,
                         fmt::format("{} run now in {}, {} kept", ran, duration_text(seconds), kept_.size()), table_);

@@ -52,6 +52,20 @@ TEST_CASE("run: what was finished is not run again, whatever its status, until -
   CHECK(run.runs == 6);
 }
 
+TEST_CASE("run: a kept case whose time is taken is kept, and not run") {
+  const ScratchFolder scratch;
+  FakeRun run(scratch);
+  const RunOptions options{scratch / "out", 1, false};
+  run.runner.cases.time = [](const StudyCase&, const std::atomic<bool>&) { return std::optional<TimedMarch>(); };
+  REQUIRE(run(fake_study(4), options) == 0);
+  run.runner.cases.time = [](const StudyCase&, const std::atomic<bool>&) {
+    return std::optional(TimedMarch{1e-3, 1e-3});
+  };
+  REQUIRE(run(fake_study(6), options) == 0);
+  CHECK(run.runs == 2);
+  CHECK_THAT(run.summary, Contains("(2 run now in ") && Contains(", 4 kept)"));
+}
+
 TEST_CASE("run: a data file that changes ends the run, and the cases that met it are not results") {
   const ScratchFolder scratch;
   FakeRun run(scratch);
