@@ -119,8 +119,8 @@ void print_costs(const Costs& costs, const Forecast& forecast, const AllowedProc
   if (costs.runnable == 0) return;
   out << "predicted: about " << duration_text(forecast.seconds) << " on 1 core";
   if (cores.count > 1)
-    out << ", " << duration_text(std::min(forecast.seconds, std::max(forecast.seconds / cores.count, forecast.chain)))
-        << (cores.limit.empty() ? " on all " : " on ") << cores.count;
+    out << ", " << duration_text(forecast.on(cores.count)) << (cores.limit.empty() ? " on all " : " on ")
+        << cores.count;
   out << "\n";
   if (!cores.limit.empty()) out << "cores that this process may use: " << cores.text() << "\n";
 }
@@ -130,8 +130,7 @@ void print_workers(int workers, const Costs& costs, const Forecast& forecast, st
   if (costs.runnable == 0) return;
   // Measured: a coordinator or a case that waits for its blocks, and a worker; rows on their way to the store.
   constexpr double memory_of_worker = 30e6, memory_of_coordinator = 100e6, copies = 3;
-  const double work = forecast.seconds - forecast.beside;
-  const double wall = std::min(forecast.seconds, forecast.beside + std::max(work / workers, forecast.chain));
+  const double work = forecast.work(), wall = forecast.on(workers);
   out << fmt::format("with {} worker{}: about {}", workers, workers == 1 ? "" : "s", duration_text(wall));
   if (forecast.chain > work / workers)
     out << fmt::format("; the longest chain alone takes {}: more than {} worker{} shorten nothing",

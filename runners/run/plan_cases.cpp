@@ -154,7 +154,7 @@ Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Reg
     // Prepared by the run, which plans one of cases that are alike once more.
     const double set_up = (alike.insert(cost_key(*one.study_case)).second ? 2 : 1) * one.plan_seconds;
     const double chain = one.plan.chain_seconds > 0 ? one.plan.chain_seconds : one.plan.predicted_seconds;
-    found.chain = std::max(found.chain, chain + set_up);
+    found.chain = std::max(found.chain, chain + set_up + each_case);
     found.bytes += one.plan.bytes;
     one.plan.predicted_seconds += set_up;
     found.seconds += one.plan.predicted_seconds;
@@ -171,8 +171,13 @@ Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Reg
     if (beside.ok()) std::from_chars(beside.text.data(), beside.text.data() + beside.text.size(), found.beside);
     found.seconds += found.beside;
   }
+  found.fixed = each_run;
   found.seconds += each_run + each_case * static_cast<double>(cases.size());
   return found;
+}
+
+double Forecast::on(int processors) const {
+  return std::min(seconds, fixed + beside + std::max(work() / processors, chain));
 }
 
 namespace {

@@ -61,8 +61,14 @@ std::string contacts_text(const std::vector<PlannedCase>& cases, const CasePlann
 struct Forecast {
   double seconds = 0;  ///< of the whole study
   double chain = 0;    ///< s: the longest part that no more processors shorten
+  double fixed = 0;    ///< s of the run itself, however many share the cases
   double beside = 0;   ///< s of what is done before or after the cases (references, repeats)
   double bytes = 0;    ///< of all results in the store, roughly
+
+  /// s of the cases alone.
+  double work() const { return seconds - beside - fixed; }
+  /// s where so many share the cases.
+  double on(int processors) const;
 };
 
 /// Sums what the cost model says of each case, adds what the kind does beside (references, repeats), and setting up,

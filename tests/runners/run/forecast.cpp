@@ -56,6 +56,19 @@ TEST_CASE("forecast: every case costs something, and the chain is a part of all"
   for (const PlannedCase& one : planned.cases) CHECK(one.plan.predicted_seconds > 0);
 }
 
+TEST_CASE("forecast: several processors shorten neither one case nor what a run takes by itself") {
+  Json one = swinging_beam("trajectory");
+  one["mesh"]["elements"] = 4;
+  one["methods"]["mass"] = "consistent";
+  one["step"] = 5e-5;
+  const Forecast alone = Planned(one).forecast();
+  for (const int processors : {1, 2, 64}) CHECK(alone.on(processors) == Approx(alone.seconds));
+  const Forecast many = Planned(swinging_beam("trajectory")).forecast();
+  CHECK(many.on(1) == Approx(many.seconds));
+  CHECK(many.on(2) < many.seconds);
+  CHECK(many.on(1000) == Approx(many.fixed + many.chain));
+}
+
 TEST_CASE("forecast: a hundred times the repeats cost more than the noise of a machine") {
   Json few = swinging_beam("work-precision"), many = few;
   few["reference"] = many["reference"] = "self";
