@@ -293,7 +293,7 @@ int run_study_with(const StudyRunner& runner, const Study& study, const RunOptio
 
 namespace {
 
-constexpr std::array<int, 4> kSignals = {SIGINT, SIGTERM, SIGUSR1, SIGXFSZ};
+constexpr std::array<int, 5> kSignals = {SIGINT, SIGTERM, SIGUSR1, SIGHUP, SIGXFSZ};
 
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
@@ -302,8 +302,8 @@ std::array<struct sigaction, kSignals.size()> handlers_before;
 
 extern "C" void on_stop(int signal) {
   stop_requested = true;
-  // A scheduler's warning is no order, however often it comes.
-  if (signal != SIGUSR1 && ++signals_seen > 1) ::_exit(kInterrupted);
+  // A scheduler's warning is no order, however often it comes. A terminal that closes says so twice.
+  if (signal != SIGUSR1 && signal != SIGHUP && ++signals_seen > 1) ::_exit(kInterrupted);
 }
 
 }  // namespace
@@ -316,6 +316,9 @@ StopSignal::StopSignal() {
     action.sa_handler = kSignals[i] == SIGXFSZ ? SIG_IGN : on_stop;
     action.sa_flags = SA_RESTART;  // a write to the store goes on
     ::sigaction(kSignals[i], &action, &handlers_before[i]);
+    // nohup: the run outlives its terminal.
+    if (kSignals[i] == SIGHUP && handlers_before[i].sa_handler == SIG_IGN)
+      ::sigaction(SIGHUP, &handlers_before[i], nullptr);
   }
 }
 

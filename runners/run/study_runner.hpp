@@ -165,10 +165,10 @@ std::string interrupted_text(const std::filesystem::path& folder, const StudyRes
 /// The exit code of a run that was interrupted, of the shell's own convention: 128 + SIGINT.
 inline constexpr int kInterrupted = 130;
 
-/// While it lives, SIGINT, SIGTERM and SIGUSR1 (which schedulers send before a time limit) set `requested()` instead of
-/// ending the program. A second SIGINT or SIGTERM ends it at once with code 130. SIGXFSZ is ignored, so that a file
-/// size limit is an error of the write that meets it. The former handlers come back at the end. One at a time per
-/// process.
+/// While it lives, SIGINT, SIGTERM, SIGUSR1 (which schedulers send before a time limit) and SIGHUP (the terminal
+/// closes) set `requested()` instead of ending the program. A second SIGINT or SIGTERM ends it at once with code 130. A
+/// SIGHUP that was ignored stays so. SIGXFSZ is ignored, so that a file size limit is an error of the write that meets
+/// it. The former handlers come back at the end. One at a time per process.
 class StopSignal {
  public:
   StopSignal();

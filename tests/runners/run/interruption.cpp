@@ -198,7 +198,7 @@ TEST_CASE("interruption: kill -9 at any moment leaves a sound store") {
 }
 
 TEST_CASE("interruption: Ctrl-C keeps what is finished, says how to resume, and exits with 130") {
-  const int signal = GENERATE(SIGINT, SIGTERM, SIGUSR1);
+  const int signal = GENERATE(SIGINT, SIGTERM, SIGUSR1, SIGHUP);
   const ScratchFolder scratch;
   const auto out = scratch / "out";
   Child child("hang", out, scratch / "messages");
@@ -238,6 +238,21 @@ TEST_CASE("interruption: a scheduler's warning may come twice, and an order to s
   child.send(SIGTERM);
   CHECK(child.wait() == 130);
   resume_and_compare(scratch, out, kCases - 5);
+}
+
+TEST_CASE("interruption: a run under nohup outlives its terminal") {
+  struct sigaction ignored {
+  }, before{};
+  ignored.sa_handler = SIG_IGN;
+  ::sigaction(SIGHUP, &ignored, &before);
+  {
+    const StopSignal stop;
+    ::raise(SIGHUP);
+    CHECK_FALSE(stop.requested());
+  }
+  struct sigaction after {};
+  ::sigaction(SIGHUP, &before, &after);
+  CHECK(after.sa_handler == SIG_IGN);
 }
 
 TEST_CASE("interruption: a second run on the same folder is refused and names the first") {
