@@ -163,6 +163,11 @@ std::optional<std::string> check_plan(const StepPlan& plan) {
   }
   check.demand(plan.slots.size() <= most_slots, "the plan has {} slots, at most {} are marched", plan.slots.size(),
                most_slots);
+  for (std::size_t j = 0; j < plan.slots.size(); ++j) {
+    check.demand(!plan.slots[j].empty(), "slot {} has no name", j + 1);
+    for (std::size_t i = 0; i < j; ++i)
+      check.demand(plan.slots[i] != plan.slots[j], "two slots have the name {}", plan.slots[j]);
+  }
   check.demand(!plan.stages.empty() && plan.stages.size() <= most_stages,
                "the plan has {} stages, one to {} are marched", plan.stages.size(), most_stages);
   check.demand(plan.start.size() <= most_stages, "the start has {} stages, at most {} are marched", plan.start.size(),

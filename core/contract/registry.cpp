@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/contract/registry.hpp>
 #include <sstream>
@@ -39,6 +40,12 @@ std::optional<std::string> check_declaration(const PluginManual& manual, std::si
   for (auto word = spec.words.begin(); word != spec.words.end(); ++word)
     if (word->empty() || std::find(spec.words.begin(), word, *word) != word)
       return name + (word->empty() ? " with an empty word" : " with the word '" + *word + "' twice");
+  const Range& range = spec.range;
+  const bool number = spec.type == ParameterSpec::Type::real || spec.type == ParameterSpec::Type::integer;
+  const bool one_value = range.low == range.high && !range.low_open && !range.high_open;
+  if (number && !(range.low < range.high) && !one_value) return name + " whose range " + range.text() + " is empty";
+  const auto* real = spec.fallback ? std::get_if<double>(&*spec.fallback) : nullptr;
+  if (real && !std::isfinite(*real)) return name + " with a default that is not finite: no study can write it";
   if (spec.fallback)
     if (const auto wrong = check_parameter(spec, *spec.fallback))
       return name + " with a default that does not fit: " + *wrong;

@@ -45,7 +45,7 @@ TEST_CASE("check: slots that the equation does not use change nothing, however m
   for (const int extra : {1, 2, 5}) {
     const auto wide = newmark_entry(0.25, 0.5, [extra](StepPlan& plan, double) {
       for (int k = 0; k < extra; ++k) {
-        plan.slots.push_back("unused");
+        plan.slots.push_back("unused" + std::to_string(k));
         plan.initial.push_back({0, 0});
         for (auto* stages : {&plan.start, &plan.stages})
           for (Stage& stage : *stages) stage.update.push_back({.slots = {1}});

@@ -1,4 +1,6 @@
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/contract/registry.hpp>
 
@@ -89,6 +91,24 @@ TEST_CASE("a default that its own declaration refuses is a fault of the plugin")
       add_time(registry, manual("mine", {spec})),
       Contains("'mine' declares the parameter '" + spec.key + "' with a default that does not fit") && Contains(part));
   CHECK(registry.names(Role::time).empty());
+}
+
+TEST_CASE("a default that is not finite, and a range with nothing in it, are faults of the plugin") {
+  Registry registry;
+  constexpr double infinite = std::numeric_limits<double>::infinity(), none = std::nan("");
+  const auto [spec, part] = GENERATE_COPY(table<ParameterSpec, std::string>(
+      {{real_parameter("beta", "1", infinite, {}, "β."), "a default that is not finite"},
+       {real_parameter("beta", "1", -infinite, {}, "β."), "a default that is not finite"},
+       {real_parameter("beta", "1", none, {}, "β."), "a default that is not finite"},
+       {real_parameter("beta", "1", std::nullopt, {1, 0}, "β."), "whose range [1, 0] is empty"},
+       {real_parameter("beta", "1", std::nullopt, {.low = 1, .high = 1, .low_open = true}, "β."),
+        "whose range ]1, 1] is empty"},
+       {real_parameter("beta", "1", std::nullopt, {none, 1}, "β."), "is empty"},
+       {integer_parameter("count", std::nullopt, {4, 1}, "N."), "whose range [4, 1] is empty"}}));
+  CHECK_THROWS_WITH(add_time(registry, manual("mine", {spec})),
+                    Contains("'mine' declares the parameter '" + spec.key + "'") && Contains(part));
+  CHECK(registry.names(Role::time).empty());
+  CHECK_NOTHROW(add_time(registry, manual("mine", {real_parameter("beta", "1", 1.0, {1, 1}, "β.")})));
 }
 
 TEST_CASE("a parameter that no study could write is a fault of the plugin") {

@@ -29,6 +29,8 @@ TEST_CASE("what is wrong with the shape of a plan is told") {
          p.slots.resize(9, "x");
          p.initial.resize(9);
        }},
+      {"slot 2 has no name", [](StepPlan& p) { p.slots[1].clear(); }},
+      {"two slots have the name q", [](StepPlan& p) { p.slots[1] = "q"; }},
       {"the plan has 0 stages, one to 6 are marched", [](StepPlan& p) { p.stages.clear(); }},
       {"the plan has 7 stages, one to 6 are marched", [](StepPlan& p) { p.stages.resize(7, p.stages[0]); }},
       {"the start has 7 stages, at most 6 are marched", [](StepPlan& p) { p.start.resize(7, p.start[0]); }},
