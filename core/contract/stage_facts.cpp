@@ -119,15 +119,17 @@ Combination position_increment(const Stage& stage) {
   return increment;
 }
 
-// Rates of stages that start a motion stand where their weights say; nothing has settled there.
+// Nothing has settled where a motion starts: what slots alone say of a rate stands where the stage begins, one that the
+// stage finds where it ends.
 void fill_levels(Stage& stage, StageFacts& facts, const Uniform& motion, const Accelerated* settled,
                  std::size_t index) {
   const auto stands = [&](Levels& levels, const Combination& c) {
     if (levels.empty()) levels = levels_of(motion, stage, facts, c);
   };
   const auto moves = [&](Levels& levels, const Combination& rate) {
-    if (levels.empty() && !is_zero(motion.rate(rate)))
-      levels = {{settled ? settled->place_of(rate, index) : facts.to, simple(motion.rate(rate))}};
+    if (!levels.empty() || is_zero(motion.rate(rate))) return;
+    const double first = rate.z == 0 && rate.w == 0 ? facts.from : facts.to;
+    levels = {{settled ? settled->place_of(rate, index) : first, simple(motion.rate(rate))}};
   };
   if (stage.work) stands(stage.work->support, stage.work->displacement);
   if (stage.impact && stage.impact->restores > 0 && stage.impact->bound.empty())

@@ -1,5 +1,6 @@
 // What is derived of a plan: when its stages stand, the levels of its stops, what momentum its efforts give.
 #include <ricochet/contract/momentum_weights.hpp>
+#include <ricochet/contract/plan_algebra.hpp>
 #include <ricochet/contract/stage_facts.hpp>
 
 #include "tests/composed_plan.hpp"
@@ -53,6 +54,32 @@ TEST_CASE("levels of stops that are left out are those that every method of the 
     const StepPlan declared = plan(time);
     check_same_stops(derive(declared).plan.stages[0], derive(without_stop_levels(declared)).plan.stages[0], false);
   }
+}
+
+TEST_CASE("in a start stage a rate of slots alone stands where the stage begins, one that it finds where it ends") {
+  using namespace plan_algebra;
+  const auto [q, v] = slots<2>();
+  StepPlan plan;
+  plan.slots = {"q", "v"};
+  plan.initial = {{1, 0}, {0, 1}};
+  plan.velocity = v;
+  Stage stage;
+  stage.matrix = M / (h * h);
+  stage.history = -(K * q);
+  stage.load = at(0);
+  stage.impact = ImpactMeasure{.value = q + h * v + z};
+  stage.at(Evaluation::implicit_end) = ComplianceMeasure{.displacement = q + h * v + z, .rate = v + 1 / h * z};
+  stage.at(Evaluation::explicit_start) = ComplianceMeasure{.displacement = q, .rate = v};
+  stage.update = {q + h * v + z, v + 1 / h * z};
+  plan.start = plan.stages = {stage};
+  plan.start_advances = true;
+  const Stage start = derive(plan).plan.start[0];
+  const Levels &begins = start.at(Evaluation::explicit_start)->rate_bound,
+               &ends = start.at(Evaluation::implicit_end)->rate_bound;
+  REQUIRE(begins.size() == 1);
+  REQUIRE(ends.size() == 1);
+  CHECK(begins[0].at == 0);
+  CHECK(ends[0].at == 1);
 }
 
 TEST_CASE("a stage stands where it leads the position") {
