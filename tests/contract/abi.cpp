@@ -1,9 +1,11 @@
 #include <catch2/catch.hpp>
 #include <ricochet/contract/abi.hpp>
 #include <ricochet/loader/catalogue.hpp>
+#include <sstream>
 #include <string>
 
 #include "tests/places.hpp"
+#include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
 using Catch::Matchers::StartsWith;
@@ -43,6 +45,18 @@ TEST_CASE("the tag is a symbol name that tells the four fields in order") {
   }
   CHECK(tag.find("__align_" + std::to_string(EIGEN_MAX_ALIGN_BYTES)) != std::string::npos);
   CHECK_FALSE(abi_mismatch(tag).has_value());
+}
+
+TEST_CASE("the page about plugins built earlier begins with the present tag, and misses none after it") {
+  std::istringstream page(read_text(std::filesystem::path(tests::places().source) / "plugins/own.md"));
+  std::string line;
+  while (std::getline(page, line) && !line.starts_with("| tag |")) {
+  }
+  std::getline(page, line);
+  int rows = 0;
+  for (; std::getline(page, line) && line.starts_with("| "); ++rows)
+    CHECK_THAT(line, StartsWith("| " + std::to_string(RICOCHET_ABI_CONTRACT - rows) + " | "));
+  CHECK(rows > 1);
 }
 
 TEST_CASE("each field that differs is named with what was expected and what was found") {
