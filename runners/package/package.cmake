@@ -26,10 +26,10 @@ foreach(folder site-functions vendor-completions)
 endforeach()
 install(FILES ${manual}/fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d RENAME ricochet.fish COMPONENT ricochet)
 
-# Pages with their pictures, and studies with their files, lie as they do here: their links hold.
+# Pages with their pictures and plans, and studies with their files, lie as they do here: their links hold.
 set(root ${CMAKE_SOURCE_DIR})
 file(GLOB pages CONFIGURE_DEPENDS RELATIVE ${root} ${root}/*.md ${root}/.github/*.md ${root}/core/*.md ${root}/core/*/*.md ${root}/core/*/*.svg
-  ${root}/plugins/*.md ${root}/plugins/*.svg ${root}/runners/*.md ${root}/runners/report/*.png ${root}/tests/*.md)
+  ${root}/plugins/*.md ${root}/plugins/*.svg ${root}/plugins/plan_files/*.json ${root}/runners/*.md ${root}/runners/report/*.png ${root}/tests/*.md)
 file(GLOB_RECURSE studies CONFIGURE_DEPENDS RELATIVE ${root} ${root}/studies/*)
 foreach(page ${pages} ${studies})
   cmake_path(GET page PARENT_PATH folder)

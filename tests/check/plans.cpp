@@ -17,7 +17,7 @@ using checking::Finding;
 
 namespace {
 
-const std::filesystem::path plans = tests::places().source + "/tests/plugins/plan_files";
+const std::filesystem::path plans = tests::places().source + "/plugins/plan_files";
 
 Json plan_called(const char* name) {
   return read_plan_file(plans / (std::string(name) + ".json")).plan;

@@ -25,6 +25,18 @@ TEST_CASE("installed: the links of all pages hold") {
   CHECK(links >= 100);
 }
 
+TEST_CASE("installed: the files that the page about plans names are there") {
+  const fs::path prefix = Prefix::once().prefix(), plans = prefix / "share/ricochet/plugins/plan_files";
+  const std::string page = read_text(plans.parent_path() / "plan-files.md");
+  for (const char* name : {"newmark", "bathe", "moreau-jean", "laursen-love", "kane"}) {
+    INFO(name);
+    CHECK_THAT(page, Contains(std::string("`") + name + ".json`"));
+    CHECK(fs::exists(plans / (std::string(name) + ".json")));
+  }
+  CHECK_THAT(page, Contains("`ricochet/contract/step_plan.hpp`"));
+  CHECK(fs::exists(prefix / "include/ricochet/contract/step_plan.hpp"));
+}
+
 TEST_CASE("installed: manual pages and completions are there") {
   const fs::path share = Prefix::once().prefix() / "share";
   for (const char* page : {"man/man1/ricochet.1", "man/man5/ricochet-study.5"}) {

@@ -122,7 +122,7 @@ TEST_CASE("a study of stability says where the limit that a scheme declares is a
   const Folder here;
   // Newmark with β = 0.1 and γ = ½ is stable up to h·ω = 2.582.
   const auto ended = [&](const char* limit, double damping) {
-    std::string plan = read(places().source + "/tests/plugins/plan_files/newmark.json");
+    std::string plan = read(places().source + "/plugins/plan_files/newmark.json");
     const std::string right = "\"2*beta < gamma ? 1/sqrt(gamma/2-beta) : none\"";
     plan.replace(plan.find(right), right.size(), limit);
     here.write("plan.json", plan);

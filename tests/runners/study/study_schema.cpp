@@ -209,7 +209,7 @@ TEST_CASE("The schema and the reader take remarks and $schema, at any level") {
 TEST_CASE("The schema accepts plans, by file and as they are written") {
   for (const char* name : {"newmark.json", "bathe.json", "moreau-jean.json", "kane.json"}) {
     INFO(name);
-    std::ifstream stream(std::string(places().source + "/tests/plugins/plan_files/") + name);
+    std::ifstream stream(std::string(places().source + "/plugins/plan_files/") + name);
     Json plan = Json::parse(stream);
     std::vector<Json> studies = {
         with("/methods/time", {{"name", "plan"}, {"plan", plan}}),
