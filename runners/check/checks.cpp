@@ -218,6 +218,7 @@ const std::vector<Check<TimeScheme>>& scheme_checks() {
       {"start at a stop", start_at_a_stop},
       {"order at contact", contact_order_as_declared},
       {"impulse", impulse_is_momentum},
+      {"force at rest", force_at_rest},
       {"energy", energy_in_free_flight},
       {"work form", work_form_closes},
       {"energy at contact", contact_gains_as_declared},

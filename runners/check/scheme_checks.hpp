@@ -34,6 +34,7 @@ Verdict restitution_as_declared(const Scheme& scheme);
 Verdict start_at_a_stop(const Scheme& scheme);
 Verdict contact_order_as_declared(const Scheme& scheme);
 Verdict impulse_is_momentum(const Scheme& scheme);
+Verdict force_at_rest(const Scheme& scheme);
 Verdict energy_in_free_flight(const Scheme& scheme);
 Verdict work_form_closes(const Scheme& scheme);
 Verdict contact_gains_as_declared(const Scheme& scheme);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
 
@@ -287,6 +288,34 @@ Verdict impulse_is_momentum(const Scheme& scheme) {
             fmt::format("{}: a mass that falls with 1 m/s still falls with {:.3g} m/s at the end", name, -of.after));
     }
   return fine(fmt::format("of one bounce on {}", laws.size() == 1 ? laws.front().first : "rigid stops and springs"));
+}
+
+// A mass that a constant load presses on a rigid stop, with a spring and a damper that bring it to rest.
+Verdict force_at_rest(const Scheme& scheme) {
+  constexpr double load = 10, h = 0.05;  // N, s
+  constexpr int settling = 400, steps = 100;
+  if (!measures(plan_of(scheme, h, {1, 0, true, true}))) return no_measure();
+  SceneSpec scene = oscillator_scene({.mass = mass, .stiffness = 8, .damping = 8, .stop = true});
+  scene.load = Formula(-load);
+  Marcher marcher = marcher_of(scheme, discretised(scene), h, rigid_stops());
+  ImpactRecorder recorder(marcher);
+  marcher.start(&recorder);
+  marcher.march(settling, &recorder);
+  const StopTotals before = recorder.totals(0, 0, StopSide::lower);
+  const double from = marcher.position(0)[0];
+  marcher.march(steps, &recorder);
+  const StopTotals after = recorder.totals(0, 0, StopSide::lower);
+  if (!marcher.status(0).running) throw std::runtime_error("a pressed mass stopped: " + text(marcher.status(0).end));
+  if (!(std::abs(marcher.position(0)[0] - from) <= 1e-9)) return not_applicable("a pressed mass does not come to rest");
+  const double impulse = after.impulse - before.impulse, time = after.contact_time - before.contact_time;
+  const double force = time > 0 ? impulse / time : 0, share = time / (steps * h);
+  if (!(std::abs(force - load) <= 1e-6 * load))
+    return fails(
+        fmt::format("a mass that {:g} N press on a rigid stop has a contact force of {:.6g} N at rest, in contact for "
+                    "{:.4g} of the "
+                    "time. The weights of its efforts should add up to what 1 N of a load is",
+                    load, force, share));
+  return fine(fmt::format("{:g} N under a load of {:g} N", force, load));
 }
 
 }  // namespace ricochet::checking

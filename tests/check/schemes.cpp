@@ -156,6 +156,19 @@ TEST_CASE("check: facts about contact that are wrong are caught") {
       "compliant contact", "does not tend to its closed form");
 }
 
+TEST_CASE("check: a contact force that is not what presses is caught, though the momentum is right") {
+  for (const double weight : {0.9, 1.2})
+    caught(newmark_entry(0.25, 0.5, [=](StepPlan& plan, double) { step(plan).impact->effort = {weight}; }),
+           "force at rest", "a contact force of");
+  const CheckResult shared = of_scheme(newmark_entry(0.25, 0.5,
+                                                     [](StepPlan& plan, double) {
+                                                       step(plan).impact->effort = {0.5, 0.5};
+                                                     }),
+                                       "force at rest");
+  INFO(text_of({shared}));
+  CHECK(shared.finding == Finding::ok);
+}
+
 TEST_CASE("check: work of contact that is not what is given back is caught") {
   // The way of the stops that the engine reads is no longer the one that the work form has.
   caught(restoring_entry([](StepPlan& plan, double) {
