@@ -169,6 +169,21 @@ TEST_CASE("check: a contact force that is not what presses is caught, though the
   CHECK(shared.finding == Finding::ok);
 }
 
+TEST_CASE("check: levels of a support that agree at constant speed alone are caught") {
+  for (const Levels& wrong : {Levels{{1.5, 1}, {0.5, -1}}, Levels{{0, -1}, {2, 0.5}, {0, 0.5}}})
+    caught(newmark_entry(0.25, 0.5, [=](StepPlan& plan, double) { step(plan).work->support = wrong; }), "work form",
+           "work support misses the test displacement");
+  for (const double gamma : {0.5, 0.7}) {
+    const CheckResult right = of_scheme(newmark_entry(0.36, gamma,
+                                                      [](StepPlan& plan, double) {
+                                                        step(plan).work->support = {{1, 1}, {0, -1}};
+                                                      }),
+                                        "work form");
+    INFO(text_of({right}));
+    CHECK(right.finding == Finding::ok);
+  }
+}
+
 TEST_CASE("check: work of contact that is not what is given back is caught") {
   // The way of the stops that the engine reads is no longer the one that the work form has.
   caught(restoring_entry([](StepPlan& plan, double) {
