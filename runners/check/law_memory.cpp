@@ -41,19 +41,28 @@ bool differ(const LawBench& one, const LawBench& other, int lane) {
          a.dissipation != b.dissipation;
 }
 
-}  // namespace
+/// What a law keeps over load, unload and reload.
+struct Remembered {
+  int numbers = 0;       // per point
+  std::string wrong;     // "": nothing
+  bool written = false;  // whether any is ever other than 0
+  bool lasts = false;    // whether any answer, or what is kept after it, follows from what was kept
+};
 
-Verdict answers_follow_from_memory(const Law& law) {
-  if (law.make()->absent()) return not_applicable(no_contact_at_all);
+Remembered remembered(const Law& law) {
   LawBench single(law, 1, 1);
   const bool barrier = is_barrier(single);
-  const int numbers = single.law().memory_per_point();
+  Remembered found;
+  found.numbers = single.law().memory_per_point();
+  const auto with = [&](std::string wrong) {
+    found.wrong = std::move(wrong);
+    return found;
+  };
   const double layer = single.layer(), far = barrier ? 0.9 * layer : 0.01, reach = barrier ? 0.0 : 1.0;
   std::mt19937 random(20261128);
   DenseDelassus W = random_delassus(random, touching, flexibility_of(law));
   LawBench bench(law, touching, both);
   bench.remember(true);
-  bool lasts = false, written = false;
   double share = 0;
   int solves = 0;
   for (const double turn : turns) {
@@ -72,32 +81,55 @@ Verdict answers_follow_from_memory(const Law& law) {
       ++solves;
       for (int l = 0; l < both; ++l)
         if (!bench.effort(l).allFinite() || !bench.outcome(l).converged)
-          return fails(fmt::format("solve {} of a load, unload and reload, {}", solves,
-                                   bench.outcome(l).converged ? "an effort is not finite" : "does not converge"));
+          return with(fmt::format("solve {} of a load, unload and reload, {}", solves,
+                                  bench.outcome(l).converged ? "an effort is not finite" : "does not converge"));
       const std::vector<double> left = bench.memory();
       if (std::any_of(left.begin(), left.end(), [](double x) { return std::isnan(x); }))
-        return fails(fmt::format("keeps a number that is none after {} solves", solves));
+        return with(fmt::format("keeps a number that is none after {} solves", solves));
       if (k % 2 == 0) {
         LawBench other(law, touching, both);
         other.keep(kept);
         other.solve(W, reach, reach, problems, {0, 1});
         for (int l = 0; l < both; ++l)
           if (differ(bench, other, l) || bench.memory() != other.memory())
-            return fails(fmt::format(
+            return with(fmt::format(
                 "solve {} of a load, unload and reload: it answers {:.10g} N, and {:.10g} N as a new law with the same "
                 "numbers kept. What lasts between solves must stand in `memory`: it is part of a lane's state",
                 solves, bench.effort(l)[0], other.effort(l)[0]));
       }
       const bool some = std::any_of(kept.begin(), kept.end(), [](double x) { return x != 0; });
-      if (!some || lasts) continue;
-      written = true;
+      if (!some || found.lasts) continue;
+      found.written = true;
       LawBench blank(law, touching, both);
       blank.solve(W, reach, reach, problems, {0, 1});
-      lasts = blank.memory() != bench.memory() || differ(bench, blank, 0) || differ(bench, blank, 1);
+      found.lasts = blank.memory() != bench.memory() || differ(bench, blank, 0) || differ(bench, blank, 1);
     }
   }
+  return found;
+}
+
+// With any of its parameter values: some may switch a memory off.
+bool some_values_remember(const Law& law) {
+  for (ParameterSet& set : parameter_sets(law.entry->manual.parameters)) {
+    try {
+      if (remembered({law.entry, std::move(set)}).lasts) return true;
+    } catch (const std::exception&) {
+      // Told with these values themselves.
+    } catch (const Refused&) {
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+Verdict answers_follow_from_memory(const Law& law) {
+  if (law.make()->absent()) return not_applicable(no_contact_at_all);
+  const auto [numbers, wrong, written, lasts] = remembered(law);
+  if (!wrong.empty()) return fails(wrong);
   if (numbers == 0) return fine("none: each solve is a matter of its own, over load, unload and reload");
   if (!written) return not_declared(fmt::format("{} numbers per point, all 0 over load, unload and reload", numbers));
+  if (!lasts && some_values_remember(law)) return fine("forgotten with these values, kept with others");
   if (!lasts)
     return fails(
         "what it keeps is forgotten: over load, unload and reload each answer, and what is kept after it, are those of "

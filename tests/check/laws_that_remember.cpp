@@ -180,6 +180,25 @@ TEST_CASE("check: what a law that remembers gets wrong over load, unload and rel
   caught(of_dent(Wrong::lane_zero, "lanes independent"), "what is kept of lane 1");
 }
 
+TEST_CASE("check: parameter values that switch a memory off are no fault where others keep it") {
+  for (const bool ever : {true, false}) {
+    Entry<ContactLaw> entry{full_manual("made-here"), {}, ""};
+    ParameterSpec keeps;
+    keeps.key = "keeps";
+    keeps.type = ParameterSpec::Type::boolean;
+    keeps.unit = "1";
+    keeps.fallback = false;
+    keeps.text = "of the tests";
+    entry.manual.parameters = {keeps};
+    entry.make = [=](const Parameters& values) {
+      return std::make_unique<WrongDent>(ever && values.flag("keeps") ? Wrong::nothing : Wrong::forgets);
+    };
+    const CheckResult result = one_check(checking::law_checks(), std::move(entry), "memory");
+    INFO(text_of({result}));
+    CHECK((result.finding == Finding::fails) != ever);
+  }
+}
+
 TEST_CASE("check: lanes of unlike parameters are held against each alone") {
   for (const auto& check : checking::law_checks()) {
     const CheckResult result = of_lanes(Misread::nothing, check.name);
