@@ -76,11 +76,6 @@ std::optional<Refusal> refuse_restitution(const Program& program) {
   const std::string& name = program.problem->stops[static_cast<std::size_t>(point)];
   bool gate = false;
   for (const Stage& stage : program.plan.stages) gate = gate || (stage.impact && stage.impact->gate);
-  if (gate && program.tangents > 0)
-    return Refusal{
-        said("stop {} has a restitution of its own, and tangents know one for all stops: exponents "
-             "are those of twins",
-             name)};
   if (gate || program.plan.facts.restitution == Restitution::ignored) return std::nullopt;
   return Refusal{
       said("the time scheme has one restitution in its step: leave restitution of stop {} out, or use a "

@@ -69,7 +69,7 @@ void Marcher::tangent_targets(const StageProgram& program, StageState& state, in
       const bool lower = state.effort[0].at(i, lane) > 0;
       const bool leaves = lower ? speed > still : speed < -still;
       const bool comes = lower ? speed < 0 : speed > 0;
-      const double slope = leaves ? -1.0 : (comes ? -program.gate->restitution : 0.0);
+      const double slope = leaves ? -1.0 : (comes ? -state.rebound[static_cast<std::size_t>(i)] : 0.0);
       target = slope * state.approach.at(i, tangent);
     }
     system.right[a] = target - state.free.at(i, tangent);

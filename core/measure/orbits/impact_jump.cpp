@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <ricochet/measure/orbits/impact_jump.hpp>
-#include <ricochet/measure/stability/plan_restitution.hpp>
 
 namespace ricochet {
 namespace {
@@ -16,7 +15,7 @@ constexpr int longest_impact = 3;
 // e is read off an integration of the plan: of none, round-off over h is left.
 constexpr double rebounds_above = 1e-6;
 
-bool no_rebound(const std::optional<double>& restitution) {
+bool rebounds_not(const std::optional<double>& restitution) {
   return restitution && std::abs(*restitution) < rebounds_above;
 }
 
@@ -69,6 +68,7 @@ struct ImpactJump::Lane {
   }
   bool skipped = false;  // an impact has no jump, and its point has neither come to rest nor flown since
   int resting = 0, most_resting = 0, untold = 0;
+  bool ended = false;  // an impact without rebound had its jump
 };
 
 struct ImpactJump::Inverse {
@@ -99,7 +99,7 @@ ImpactJump::ImpactJump(Marcher& marcher, Orbit orbit) : places_(orbit == Orbit::
   if (!needed_) return;
   marcher.delay_tangents(massive_, longest_impact);
   offset_ = program.velocity_offset;
-  restitution_ = plan_restitution(program.plan, program.h);
+  restitution_ = point_restitutions(program);
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
     lanes_.push_back(std::make_unique<Lane>());
     lanes_.back()->columns.resize(static_cast<std::size_t>(program.tangents));
@@ -132,7 +132,7 @@ int ImpactJump::lost(int lane) const {
   if (!needed_) return 0;
   const Lane& one = *lanes_[static_cast<std::size_t>(lane)];
   if (one.most_resting > 0) return 2 * one.most_resting;
-  return one.applied > 0 && no_rebound(restitution_) ? 1 : 0;
+  return one.ended ? 1 : 0;
 }
 
 int ImpactJump::untold(int lane) const {
@@ -260,7 +260,10 @@ void ImpactJump::hold(Marcher& marcher, Lane& lane, int index) {
   const Eigen::Index size = model.rows();
   const bool all = lane.resting >= size;
   // Without rebound the speed is lost at once, and what damping makes of that is not in the limit of chattering.
-  if (!all && (!inverse_mass_ || no_rebound(restitution_))) {
+  bool lost = !inverse_mass_;
+  for (std::size_t i = 0; i < lane.age.size(); ++i)
+    lost = lost || (lane.age[i] > longest_impact && rebounds_not(restitution_[i]));
+  if (!all && lost) {
     ++lane.untold;
     return;
   }
@@ -295,7 +298,8 @@ Eigen::VectorXd ImpactJump::lost_speed(const Marcher& marcher, const Impact& imp
                                        const Eigen::VectorXd& after) const {
   Eigen::VectorXd lost = impact.velocity - after;
   const double taken = marcher.program().model->measured().times(impact.point, lost.data());
-  if (restitution_ && taken != 0) lost *= (1 + *restitution_) * impact.approach / taken;
+  const std::optional<double>& e = restitution_[static_cast<std::size_t>(impact.point)];
+  if (e && taken != 0) lost *= (1 + *e) * impact.approach / taken;
   return lost;
 }
 
@@ -357,6 +361,7 @@ void ImpactJump::finish(Marcher& marcher, Lane& lane, int index) {
   if (lane.resting > 0) hold(marcher, lane, index);
   lane.forget_columns();
   ++lane.applied;
+  lane.ended = lane.ended || rebounds_not(restitution_[static_cast<std::size_t>(impact.point)]);
 }
 
 }  // namespace ricochet

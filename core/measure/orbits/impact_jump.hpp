@@ -16,8 +16,8 @@ namespace ricochet {
 ///     δv⁺ = δv⁻ + (a⁻ − a⁺) δt − (1+e) r [H δv⁻ + (H a⁻ + φ'') δt],        (1+e) r = (v⁻ − v⁺)/w⁻
 ///
 /// The speed of the point is w = Hv + φ'. The orbit's v± and a± come from its displacements before and after, carried
-/// to the time of the impact. The coefficient e is what the plan restitutes to a free mass. The jump is second-order
-/// accurate in h on regular masses.
+/// to the time of the impact. The coefficient e is what the plan restitutes to a free mass, or the stop's own. The jump
+/// is second-order accurate in h on regular masses.
 ///
 /// A contact that lasts longer is a point that comes to rest: at the end of chattering, or at once. Where it is and how
 /// fast then depends on nothing that was before, so with A the points that rest now
@@ -84,8 +84,8 @@ class ImpactJump final : public StepObserver {
   void hold(Marcher& marcher, Lane& lane, int index);
 
   bool needed_ = false, places_ = false;
-  double offset_ = 0;  // of velocity slots, in steps
-  std::optional<double> restitution_;
+  double offset_ = 0;                               // of velocity slots, in steps
+  std::vector<std::optional<double>> restitution_;  // of each point
   std::vector<bool> massive_;
   std::vector<std::unique_ptr<Lane>> lanes_;
   struct Inverse;
@@ -94,6 +94,10 @@ class ImpactJump final : public StepObserver {
 
 /// For each contact point of the problem, whether it has inertia: no displacement in Ker M moves it.
 std::vector<bool> points_with_mass(const SemiDiscrete& problem);
+
+/// For each contact point, what a plan restitutes there to a free mass: by its gates with the stop's own e where it has
+/// one. None where plan_restitution() knows none.
+std::vector<std::optional<double>> point_restitutions(const Program& program);
 
 /// For each contact point, whether it has inertia and a rigid law throws it back with a share `least` of its speed.
 std::vector<bool> thrown_points(const Program& program, double least);
@@ -112,5 +116,9 @@ bool stops_met_at_steps(const Program& program);
 /// Whether neither tangents nor a twin nearby say anything of the motion once there are impacts. Then stops are met at
 /// steps, by a mass whose impacts ImpactJump does not look at.
 bool tangents_miss_impacts(const Program& program);
+
+/// Whether a twin says nothing of the motion once there are impacts: stops are met at steps by a mass. Where a program
+/// has no tangents at all, nothing is left that does.
+bool twins_miss_impacts(const Program& program);
 
 }  // namespace ricochet

@@ -30,13 +30,27 @@ std::vector<bool> points_with_mass(const SemiDiscrete& problem) {
   return massive;
 }
 
+std::vector<std::optional<double>> point_restitutions(const Program& program) {
+  const SemiDiscrete& problem = *program.problem;
+  std::vector<std::optional<double>> all(static_cast<std::size_t>(problem.points()),
+                                         plan_restitution(program.plan, program.h));
+  for (std::size_t i = 0; i < problem.own.size(); ++i) {
+    if (!problem.own[i].restitution) continue;
+    StepPlan plan = program.plan;
+    for (std::vector<Stage>* stages : {&plan.start, &plan.stages})
+      for (Stage& stage : *stages)
+        if (stage.impact && stage.impact->gate) stage.impact->gate->restitution = *problem.own[i].restitution;
+    all[i] = plan_restitution(plan, program.h);
+  }
+  return all;
+}
+
 std::vector<bool> thrown_points(const Program& program, double least) {
   const SemiDiscrete& problem = *program.problem;
   std::vector<bool> thrown(static_cast<std::size_t>(problem.points()), false);
   if (!program.contact || program.law->reads()) return thrown;
-  const double of_all = std::abs(plan_restitution(program.plan, program.h).value_or(0));
-  for (std::size_t i = 0; i < thrown.size(); ++i)
-    thrown[i] = (i < problem.own.size() ? problem.own[i].restitution.value_or(of_all) : of_all) >= least;
+  const std::vector<std::optional<double>> restitutions = point_restitutions(program);
+  for (std::size_t i = 0; i < thrown.size(); ++i) thrown[i] = std::abs(restitutions[i].value_or(0)) >= least;
   if (std::find(thrown.begin(), thrown.end(), true) == thrown.end()) return thrown;
   const std::vector<bool> massive = points_with_mass(problem);
   for (std::size_t i = 0; i < thrown.size(); ++i) thrown[i] = thrown[i] && massive[i];
@@ -72,6 +86,12 @@ bool stops_met_at_steps(const Program& program) {
   return program.contact && !program.law->reads() && std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
            return stage.impact && stage.impact->gate;
          });
+}
+
+bool twins_miss_impacts(const Program& program) {
+  if (!stops_met_at_steps(program)) return false;
+  const std::vector<bool> massive = points_with_mass(*program.problem);
+  return std::find(massive.begin(), massive.end(), true) != massive.end();
 }
 
 bool tangents_miss_impacts(const Program& program) {

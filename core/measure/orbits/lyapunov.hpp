@@ -86,7 +86,7 @@ struct OrbitExponents {
   std::optional<Interval> twin;  ///< of the largest, by a twin trajectory
   /// "tangent", "tangent+jump", "twin(1e-07)"; "superstable" where all are −∞; "" where none could be measured.
   std::string method;
-  bool blind = false;        ///< none would see its impacts move: tangents_miss_impacts()
+  bool blind = false;        ///< none would see its impacts move: tangents_miss_impacts(), twins_miss_impacts()
   bool saturated = false;    ///< there are no tangents, and the twin is soon as far away as orbits are
   bool superstable = false;  ///< all points come to rest on their stops: LyapunovRates::told is none
   bool outlived = false;     ///< the orbit stays where its exponents would have it leave: outlives()

@@ -179,7 +179,7 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
       orbit * (chains > 0 ? count * alone : block) + orbit * rounds * (chains + singles > 0 ? block : 0);
   out.bytes = (count + more.orbits) * (chains + singles) * (bytes_of_orbit + bytes_of_period * kept);
   // The orbit again, one column more than exponents, and the twin.
-  const bool blind = exponents > 0 && tangents_miss_impacts(scenes.program(0, {scenes[representative].lane}));
+  const bool blind = exponents > 0 && nothing_tells(scenes, 0, scenes[representative].lane);
   if (blind) out.notes.push_back(fmt::format("no exponents of orbits with impacts: {}", why_blind));
   if (exponents > 0 && !blind)
     out.predicted_seconds += kept * period * count * (chains + singles) * (exponents + 3) * lane(8);

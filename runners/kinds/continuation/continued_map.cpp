@@ -8,7 +8,6 @@
 #include <ricochet/contract/said_format.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 #include <ricochet/measure/orbits/multipliers.hpp>
-#include <ricochet/measure/stability/plan_restitution.hpp>
 
 #include "runners/kinds/sweep/with_parameter.hpp"
 
@@ -121,17 +120,19 @@ Program ContinuedMap::program(int scene) const {
 // Whether the frozen derivative is that of the motion.
 void ContinuedMap::check_class(int scene) {
   const Program program = this->program(scene);
-  const double e = std::abs(plan_restitution(program.plan, program.h).value_or(0));
-  const bool rigid = program.contact && !program.law->reads();
   constexpr double rebounds_above = 1e-6;
+  double e = 0;
+  bool unresolved = tangents_miss_impacts(program);
   // Only a point with mass is thrown back.
-  bool unresolved = tangents_miss_impacts(program), thrown = false;
-  if (rigid && e > rebounds_above) {
-    const std::vector<bool> massive = points_with_mass(*program.problem),
-                            resolved = resolved_points(*program.problem, program.h);
-    for (std::size_t i = 0; i < massive.size(); ++i) {
-      thrown = thrown || massive[i];
-      unresolved = unresolved || (massive[i] && !resolved[i]);
+  const std::vector<bool> thrown_back = thrown_points(program, rebounds_above);
+  const bool thrown = std::find(thrown_back.begin(), thrown_back.end(), true) != thrown_back.end();
+  if (thrown) {
+    const std::vector<bool> resolved = resolved_points(*program.problem, program.h);
+    const std::vector<std::optional<double>> restitutions = point_restitutions(program);
+    for (std::size_t i = 0; i < resolved.size(); ++i) {
+      if (!thrown_back[i]) continue;
+      e = std::max(e, std::abs(restitutions[i].value_or(0)));
+      unresolved = unresolved || !resolved[i];
     }
   }
   if (unresolved) {

@@ -23,6 +23,18 @@ struct Batch {
 
 }  // namespace
 
+bool nothing_tells(const ForcedScenes& scenes, int group, const LaneSpec& lane) {
+  const Program program = scenes.program(group, {lane});
+  if (tangents_miss_impacts(program)) return true;
+  if (!twins_miss_impacts(program)) return false;
+  try {
+    scenes.program(group, {lane}, 1);
+    return false;
+  } catch (const Refusal&) {
+    return true;
+  }
+}
+
 MarginalRoots marginal_roots(const ForcedScenes& scenes, int group) {
   const StabilityPredictor predictor(scenes.shared_problem(group),
                                      LinearLaw{.absent = true, .evaluation = {}, .stiffness = {}});
@@ -42,7 +54,7 @@ std::vector<Batch> batches_of(const ForcedScenes& scenes, const ExponentTask& ta
   for (std::size_t i = 0; i < task.orbits.size(); ++i) {
     const int group = task.groups[i];
     const auto [at, fresh] = misses.try_emplace(group, false);
-    if (fresh) at->second = tangents_miss_impacts(scenes.program(group, {task.orbits[i]->lane}));
+    if (fresh) at->second = nothing_tells(scenes, group, task.orbits[i]->lane);
     found[i].blind = at->second && impacts_per_period(*task.orbits[i]) > 0;
     if (!found[i].blind) by_group[group].push_back(i);
   }

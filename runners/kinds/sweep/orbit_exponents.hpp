@@ -10,7 +10,10 @@
 
 namespace ricochet {
 
-/// Why saturated ones have none, and orbits with impacts where tangents_miss_impacts().
+/// Whether orbits with impacts have no exponents. Their tangents miss impacts, or there are none and twins miss them.
+bool nothing_tells(const ForcedScenes& scenes, int group, const LaneSpec& lane);
+
+/// Why saturated ones have none, and orbits with impacts where nothing_tells().
 constexpr const char* why_saturated =
     "these methods have no derivative, and a twin is as far away as orbits are within one period";
 constexpr const char* why_blind =

@@ -233,6 +233,34 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a restitution that a stop has of its own has the exponents of the same one in the scheme") {
+  Oscillator one;
+  one.omega = 1.9;
+  one.upper = 0.3;
+  constexpr int steps = 2000;
+  const double h = one.period() / steps;
+  SceneSpec own = one.scene();
+  NamedStop wall{.name = "wall", .at = {}, .to = {}, .lower = {}, .upper = *one.upper};
+  wall.at.x = 0;
+  own.stops.named = {wall};
+  for (const std::string time : {"moreau-jean", "nonsmooth-generalised-alpha"})
+    for (const double e : {0.5, 0.0}) {
+      INFO(time << ", e = " << e);
+      own.stops.named[0].own.restitution = e;
+      const auto rates = [&](const Methods& methods) {
+        const LaneState entry = state_after(own, methods, h, steps, 40);
+        const Program program = program_of(own, methods, h, 2);
+        CHECK(thrown_points(program, 0.1)[0] == (e > 0.1));
+        return lyapunov_rates(program_of(own, methods, h, 2), {entry}, plan_of(one, steps, 12, 1)).front();
+      };
+      const LyapunovRates alone = rates(with(time, 0.9 - e)), all = rates(with(time, e));
+      CHECK(all.jumps > 0);
+      CHECK(alone.jumps == all.jumps);
+      CHECK(alone.told == all.told);
+      CHECK(alone.rates == all.rates);
+    }
+}
+
 TEST_CASE("an oscillator that chatters to rest keeps nothing of its past: superstable") {
   // Driven slowly, it is pressed on its stop for a third of a period: rest is reached at any step.
   Oscillator one;

@@ -76,6 +76,8 @@ TEST_CASE(
   const Methods position_level{{"consistent"}, {"signorini"}, {"newmark-dumont-paoli", {{"beta", 0.5}}}};
   CHECK(tangents_miss_impacts(shaken(0, velocity_level, 1e-4).program()));
   CHECK_FALSE(tangents_miss_impacts(shaken(0, position_level, 1e-4).program()));
+  CHECK(twins_miss_impacts(shaken(0, velocity_level, 1e-4).program()));
+  CHECK_FALSE(twins_miss_impacts(shaken(0, {{"singular"}, {"signorini"}, {"moreau-jean"}}, 1e-4).program()));
   // A law that reads where the point is: no gate decides.
   CHECK_FALSE(stops_met_at_steps(
       shaken(0, {{"consistent"}, {"penalty", {{"stiffness", 1e5}}}, {"moreau-jean"}}, 1e-4).program()));

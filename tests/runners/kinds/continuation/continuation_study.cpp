@@ -135,6 +135,21 @@ TEST_CASE("a step without tangents refuses the case, and a motion that does not 
   check_says(record.reason(), {"no orbit at λ = 1: the scheme's own march leaves what was solved by "});
 }
 
+TEST_CASE("a restitution that stops have of their own counts where the scheme has none") {
+  Json study = Json::parse(R"({
+    "name": "rebound", "kind": "continuation",
+    "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.04,
+                            "force": {"amplitude": 1, "pulsation": 1.3}},
+              "stops": [{"name": "wall", "at": {"x": 0}, "upper": 0.5, "restitution": 0.6}]},
+    "methods": {"mass": "consistent", "contact": "signorini", "time": "moreau-jean"},
+    "steps_per_period": 400, "follow": "pieces",
+    "parameter": {"pointer": "/scene/structure/force/amplitude", "from": 0.9, "to": 1.1},
+    "orbits": [{"at": 1, "periods": 40}]})");
+  check_says(refusal_of(study), {"the stops give back 0.6 of the speed"});
+  study["follow"] = "steps";
+  CHECK(refusal_of(study).empty());
+}
+
 TEST_CASE("pieces are refused of a parameter that is not affine, and of a law that is not linear") {
   Json study = with("/parameter", Json::parse(R"({"pointer": "/scene/support/pulsation", "from": 9, "to": 11})"));
   study["orbits"][0]["at"] = 10;
