@@ -102,9 +102,14 @@ struct StageProgram {
   PhaseWeights load_phase, measure_phase, rate_phase, before_phase, predictor_phase, approach_phase, motion_phase;
   StageFacts facts;
   double momentum = 0;  ///< s: what an effort of 1 N of this stage finally gives to a free mass
-  /// Contact stages that ask at the same instant (a velocity, then a projection) are one contact instant. Whether this
-  /// stage is its first, and its last.
+  /// Contact stages that ask at the same instant (a velocity, then a projection) are one contact instant. So are all of
+  /// a step in which a later stage asks at an earlier time. Whether this stage is its first, and its last.
   bool opens_instant = false, closes_instant = false;
+  double lasts = 0;        ///< s: Ω of its instant
+  double force_share = 1;  ///< of the force of its instant: 0 where it gives no momentum, and only puts places right
+  /// Whether the law's memory goes on with this stage. Else it reads that of before the step, as a stage of the same
+  /// step asks at a later time.
+  bool keeps_memory = true;
 };
 
 /// A compiled scene × methods, ready to march a block of lanes.

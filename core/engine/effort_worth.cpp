@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <ricochet/contract/momentum_weights.hpp>
 #include <ricochet/engine/effort_worth.hpp>
@@ -60,28 +61,67 @@ void add_friction_facts(Program& program) {
   add(program.start, program.plan.start, start, momenta.start, false);
 }
 
+namespace {
+
+// The latest level at which a stage reads a compliant law; where its instant is, for a rigid one.
+double latest_read(const StageProgram& stage) {
+  if (!stage.compliance || stage.measure_levels.empty()) return stage.facts.instant;
+  double latest = stage.measure_levels.front().at;
+  for (const Level& level : stage.measure_levels) latest = std::max(latest, level.at);
+  return latest;
+}
+
+// Which stages are one contact instant, how long it lasts, and which of a step that goes back in time keeps a memory.
+void add_instants(std::vector<StageProgram>& stages) {
+  constexpr double same = 1e-9;  // of a step
+  std::vector<StageProgram*> asks;
+  for (StageProgram& stage : stages)
+    if (stage.reads_contact) asks.push_back(&stage);
+  if (asks.empty()) return;
+  bool goes_back = false;
+  double sum = 0, latest = latest_read(*asks.front());
+  for (std::size_t k = 0; k < asks.size(); ++k) {
+    goes_back = goes_back || (k > 0 && latest_read(*asks[k]) < latest_read(*asks[k - 1]) - same);
+    latest = std::max(latest, latest_read(*asks[k]));
+    sum += asks[k]->momentum;
+  }
+  for (std::size_t first = 0, next = 0; first < asks.size(); first = next) {
+    double lasts = goes_back ? sum : 0;
+    for (next = first; next < asks.size(); ++next) {
+      if (!goes_back && std::abs(asks[next]->facts.instant - asks[first]->facts.instant) > same) break;
+      lasts = std::max(lasts, asks[next]->momentum);
+    }
+    asks[first]->opens_instant = asks[next - 1]->closes_instant = true;
+    for (std::size_t k = first; k < next; ++k) {
+      StageProgram& stage = *asks[k];
+      stage.lasts = lasts;
+      stage.force_share = goes_back && sum > 0 ? stage.momentum / sum : stage.momentum != 0 ? 1 : 0;
+      stage.keeps_memory = !goes_back || latest_read(stage) > latest - same;
+    }
+  }
+}
+
+}  // namespace
+
 std::optional<Refusal> add_contact_facts(Program& program) {
   const StageEfforts efforts = efforts_read(program.stages), start = efforts_read(program.start);
   const EffortMomenta momenta = effort_momenta(program.plan, start, efforts);
   if (program.contact && !momenta.why_none.empty())
     return Refusal{"contact gives no definite impulse under this time scheme, as " + momenta.why_none +
                    ": use another time scheme, or the contact law none"};
-  StageProgram* last = nullptr;
   for (std::size_t k = 0; k < program.stages.size(); ++k) {
     StageProgram& stage = program.stages[k];
     if (!stage.reads_contact) continue;
     stage.momentum = momenta.stages[k];
     if (const auto& work = program.plan.stages[k].work) stage.work_effort = work_efforts(*work, k, efforts, true);
-    stage.opens_instant = !last || std::abs(stage.facts.instant - last->facts.instant) > 1e-9;
-    if (last && stage.opens_instant) last->closes_instant = true;
-    last = &stage;
   }
-  if (last) last->closes_instant = true;
+  add_instants(program.stages);
   for (std::size_t k = 0; k < program.start.size(); ++k) {
     StageProgram& stage = program.start[k];
     if (!stage.reads_contact) continue;
     stage.opens_instant = stage.closes_instant = true;
-    stage.momentum = momenta.start[k];
+    stage.momentum = stage.lasts = momenta.start[k];
+    stage.force_share = stage.momentum != 0 ? 1 : 0;
     if (const auto& work = program.plan.start[k].work)
       stage.work_effort = work_efforts(*work, k, start, false);
     else

@@ -71,6 +71,9 @@ void Marcher::prepare_law() {
     program_.friction->prepare(static_cast<int>(program_.problem->rubbing.size()), program_.problem->rubbed.count());
   const int kept = program_.law->memory_per_point();
   if (kept > 0 && memory_.rows() == 0) memory_ = Block(points * kept, program_.width);
+  const bool all_keep = std::all_of(program_.stages.begin(), program_.stages.end(),
+                                    [](const StageProgram& stage) { return stage.keeps_memory; });
+  if (kept > 0 && !all_keep && memory_before_.rows() == 0) memory_before_ = memory_apart_ = memory_;
   circles_.prepare(points, program_.width, program_.problem->circles(), kept);
   if (circles_.any() && law_lower_.rows() == 0) {
     law_lower_ = lower_;

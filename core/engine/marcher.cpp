@@ -221,6 +221,7 @@ long long Marcher::march(long long steps, const Observers& observers) {
     const bool unchecked = (step_ + 1) % check_interval != 0, unseen = unchecked && step_ + 1 < next_shown;
     const bool goes_on = (!observed || unseen) && !program_.flight && !runs_ && n + 1 < steps && unchecked;
     bool shown = observed;
+    if (memory_before_.rows() > 0) std::copy_n(memory_.data(), memory_.size(), memory_before_.data());
     for (std::size_t k = 0; k < program_.stages.size(); ++k)
       shown = run_stage(program_.stages[k], program_.plan.stages[k], *stage_states_[k], static_cast<int>(k), unseen,
                         goes_on);

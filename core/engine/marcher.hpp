@@ -304,6 +304,7 @@ class Marcher {
   CircleSolver circles_;
   Block law_lower_, law_upper_;                  // bounds that the law sees; none where they are the same
   Block memory_;                                 // of the law, points × T for each number that it keeps
+  Block memory_before_, memory_apart_;           // the same before the step, and of a stage that does not keep it
   std::vector<int> touched_, pushed_, pushing_;  // lanes looked at; points with an effort, as shown and as corrected
   std::vector<unsigned char> pushes_;            // of each point, whether some lane has one
   std::unique_ptr<StageFriction> rubbing_;       // null: nothing rubs

@@ -227,9 +227,15 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
 
 // Those of the law, and of friction.
 void Marcher::find_efforts(const StageProgram& program, StageState& state, const double* z) {
+  const bool apart = !program.keeps_memory && memory_before_.rows() > 0;
+  if (apart) {
+    std::copy_n(memory_before_.data(), memory_.size(), memory_apart_.data());
+    std::swap(memory_, memory_apart_);
+  }
   if (rubbing_ && memory_.rows() > 0) rubbing_->memory.assign(memory_.data(), memory_.data() + memory_.size());
   solve_law(program, state, touched_);
   if (rubbing_) rub(program, state, z);
+  if (apart) std::swap(memory_, memory_apart_);
 }
 
 DelassusColumns& Marcher::columns_of(StageState& state) {

@@ -41,7 +41,7 @@ void ImpactRecorder::stage_solved(const Marcher& marcher, const StageView& view)
   const StageProgram& program = *view.program;
   if (program.opens_instant) open_instant(marcher, view);
   let_go(marcher, view);
-  lasts_ = std::max(lasts_, program.momentum);
+  lasts_ = program.lasts;
   for (std::uint32_t mask = view.contact_lanes; mask != 0; mask &= mask - 1) {
     const int lane = std::countr_zero(mask);
     if (!marcher.status(lane).running) continue;
@@ -113,7 +113,7 @@ void ImpactRecorder::press_left_out(const Marcher& marcher, const StepInterval& 
           move_to_place(lane, steps.closed[i].point, places[i], time);
       left_at_ = time;
     }
-    if (!efforts.empty()) lasts = std::max(lasts, stage.momentum);
+    if (!efforts.empty()) lasts = std::max(lasts, stage.lasts);
     for (std::size_t i = 0; i < efforts.size(); ++i)
       lane.points[static_cast<std::size_t>(steps.closed[i].point)].given += stage.momentum * std::abs(efforts[i]);
     if (stage.closes_instant) {

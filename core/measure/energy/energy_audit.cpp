@@ -185,8 +185,7 @@ void EnergyAudit::count_contact(const Marcher& marcher, const StageView& view, i
       // The sides of a clearance are one stop.
       const SemiDiscrete& problem = model_.problem();
       state.closed.press(problem.stop_row(j), problem.round(j) ? -std::abs(p) : p);
-      // An effort that gives no momentum only puts a position right: it is no force.
-      if (momentum != 0) state.force += problem.circle_axis(j) < 0 ? p : view.effort[0][j * T_ + lane];
+      state.force += view.program->force_share * (problem.circle_axis(j) < 0 ? p : view.effort[0][j * T_ + lane]);
       contact.impulse += momentum * std::abs(p);
     });
     contact.residual = std::max(contact.residual, outcome.residual);

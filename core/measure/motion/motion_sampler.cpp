@@ -193,8 +193,7 @@ void ContactLog::read(const Marcher& marcher, const StageView& view) {
     hit_[side] = true;
   });
   momentum_.stage(view.starting, static_cast<std::size_t>(view.stage), force);
-  // What only puts a position right is no force.
-  if (view.program->momentum != 0) force_ += force;
+  force_ += view.program->force_share * force;
 }
 
 void ContactLog::step_done(Marcher& marcher) {
@@ -218,7 +217,7 @@ void ContactLog::interval(Marcher& marcher, const StepInterval& steps) {
     momentum_.stage(false, at, force);
     if (at + 1 == stages.size()) momentum_.step_done();
     if (stages[at].opens_instant) force_ = 0;
-    if (stages[at].momentum != 0) force_ += force;
+    force_ += stages[at].force_share * force;
   });
   ask(marcher);
 }

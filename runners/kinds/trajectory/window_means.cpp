@@ -154,7 +154,7 @@ void ForceWindow::stage_solved(const Marcher& marcher, const StageView& view) {
   if (!view.effort) return;
   const StageProgram& program = *view.program;
   if (program.opens_instant) given_ = lasts_ = 0;
-  lasts_ = std::max(lasts_, program.momentum);
+  lasts_ = program.lasts;
   if (view.contact_lanes & 1u)
     for (int j = 0; j < marcher.program().model->problem().points(); ++j)
       given_ += program.momentum * shares_[static_cast<std::size_t>(j)] * view.effort[0][j * marcher.width()];
