@@ -170,19 +170,48 @@ void add_group(const Corners& corners, const Circle& circle, const std::vector<C
   points.push_back(std::move(point));
 }
 
+// What of a group whose crossings cancel is a point each: those before and after the longest stretch of arc on which
+// the count differs, where it is more than a few corners long. Else all of it.
+std::vector<std::vector<Crossing>> parted(const Corners& corners, std::vector<Crossing> group) {
+  const bool smooth = std::any_of(group.begin(), group.end(), [](const Crossing& one) { return !one.raw; });
+  std::size_t begins = 0, ends = 0;
+  double longest = 0;
+  int count = 0;
+  const Crossing* last = nullptr;
+  for (const Crossing& one : group) {
+    if (one.raw == smooth) continue;
+    if (last && count != 0 && one.corner - last->corner > few_corners && one.arc - last->arc > longest) {
+      longest = one.arc - last->arc;
+      begins = last->corner;
+      ends = one.corner;
+    }
+    count += one.sign;
+    last = &one;
+  }
+  if (count != 0 || longest == 0) return {std::move(group)};
+  const double middle = 0.5 * (corners[begins].arc + corners[ends].arc);
+  std::vector<std::vector<Crossing>> parts(2);
+  for (Crossing& one : group) parts[one.arc < middle ? 0 : 1].push_back(std::move(one));
+  return parts;
+}
+
 void add_crossings(const Corners& corners, const Circle& circle, const PointSearch& search,
                    std::vector<SpecialPoint>& points) {
   std::vector<Crossing> group;
   const auto flush = [&] {
-    if (!group.empty()) add_group(corners, circle, group, points);
+    if (group.empty()) return;
+    for (const std::vector<Crossing>& part : parted(corners, std::move(group)))
+      add_group(corners, circle, part, points);
     group.clear();
   };
   for (const Crossing& one : crossings_of(corners, circle, search.by_steps)) {
     if (!group.empty()) {
       const std::size_t last = group.back().corner;
+      const double apart = corners[one.corner].arc - corners[last].arc;
       const bool near = search.by_steps ? one.corner == last
-                                        : static_cast<long long>(one.corner - last) < group_pieces ||
-                                              corners[one.corner].arc - corners[last].arc < group_arc * search.gap;
+                                        : apart < group_arc * search.gap ||
+                                              (static_cast<long long>(one.corner - last) < group_pieces &&
+                                               apart < group_pieces_arc * search.gap);
       if (!near) flush();
     }
     group.push_back(one);

@@ -38,9 +38,12 @@ struct PointSearch {
   const BranchTrace* before = nullptr;  ///< from the first orbit the other way, where it was followed
 };
 
-/// Raw crossings this near along a branch are one group, by pieces or by arc (of the gap).
-inline constexpr long long group_pieces = 40;
+/// Raw crossings this near along a branch are one group, by arc (of the gap), or by pieces up to a larger arc.
 inline constexpr double group_arc = 0.03;
+inline constexpr long long group_pieces = 40;
+inline constexpr double group_pieces_arc = 0.1;
+/// Between two crossings that cancel the count differs over at most so many corners, else both are points.
+inline constexpr std::size_t few_corners = 4;
 /// Steps of the shortest run of contact below which no multiplier is told.
 inline constexpr int shortest_told = 4;
 

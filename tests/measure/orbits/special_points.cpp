@@ -166,6 +166,26 @@ TEST_CASE("a multiplier that jumps over −1 with a contact and back beside it i
   CHECK_FALSE(flips[0].multiplier);
 }
 
+TEST_CASE("two crossings far apart along the branch are two points, however few pieces lie between them") {
+  std::vector<double> path;
+  for (int i = 0; i < 30; ++i) path.push_back(i);
+  for (const double arc : {1e-2, 1e-3, 3e-4}) {  // of a piece; the gap is 0.1
+    INFO(arc);
+    BranchTrace trace = branch_through(path);
+    for (BranchCorner& corner : trace.corners) {
+      corner.arc *= arc;
+      const bool outside = corner.parameter > 8.5 && corner.parameter < 24.5;
+      corner.raw = corner.smooth = roots({outside ? -1.2 : -0.8, 0.5});
+    }
+    const auto flips = points_of(special_points(trace, {}), "flip");
+    REQUIRE(flips.size() == 2);
+    CHECK(flips[0].parameter == Approx(8.5));
+    CHECK(flips[0].high < 12);
+    CHECK(flips[1].parameter == Approx(24.5));
+    CHECK(flips[1].low > 20);
+  }
+}
+
 TEST_CASE("contacts are known to round-off, those that change at once are one, and a permanent one opens") {
   BranchTrace trace = branch_through({0.1, 0.225, 0.225, 0.3, 0.4});
   const int runs[] = {0, 1, 2, 2, 2};
