@@ -40,6 +40,18 @@ TEST_CASE("friction: a block on a spring stops turn by turn where Coulomb's law 
   }
 }
 
+TEST_CASE("friction: a reversal of sliding that one step solves as rest is no stick", "[friction]") {
+  // The block above turns three times and then stays.
+  for (const Choice& time : {moreau, alpha, Choice{"sdirk", {{"order", 3LL}}}})
+    for (const double h : {1e-4, 3.1e-5, 1e-5, 3.1e-6}) {
+      INFO(time.name << ", h = " << h);
+      SceneSpec scene = damped_block(2, 800, 15, {0.2, 0.2});
+      scene.initial.displacement = Formula(0.0331);
+      Marcher made = marcher(scene, 1, {{"consistent"}, {"signorini"}, time}, h);
+      CHECK(watched(made, 1)->watch.totals(0).changes == 1);
+    }
+}
+
 TEST_CASE("friction: one impact is Newton with Coulomb, whatever the step", "[friction]") {
   // A disc with the dofs height and rolling speed at the contact: masses m and (1/m + r²/J)⁻¹.
   constexpr double m = 2, J = 0.3, r = 0.4;

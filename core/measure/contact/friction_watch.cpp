@@ -86,7 +86,12 @@ void FrictionWatch::stage_solved(const Marcher& marcher, const StageView& view) 
     const std::array<double, 2> normal_along{found.along.at(2 * number, 0), found.along.at(2 * number + 1, 0)};
     const double slid = found.slid.at(number, 0),
                  before = point.pressed ? point.slid : speed_before(marcher, view, one, normal_along);
-    const bool changed = point.pressed && point.held != held;
+    const bool turned = point.pressed && point.held != held;
+    if (held && !(point.pressed && point.held)) point.held_since = marcher.step();
+    // A reversal of sliding may be solved as rest in one step: that is no stick.
+    const bool sticks = held && (!point.pressed || point.sticks || marcher.step() > point.held_since);
+    const bool changed = point.pressed && point.sticks != sticks;
+    point.sticks = sticks;
     point.pressed = true;
     point.held = held;
     point.slid = slid;
@@ -109,7 +114,7 @@ void FrictionWatch::stage_solved(const Marcher& marcher, const StageView& view) 
     totals.heat -= work;
     totals.slipped += momentum * slides;
     totals.wear += momentum * normal * slides;
-    totals.drifted += held && !changed && !view.starting ? way : 0.0;
+    totals.drifted += held && !turned && !view.starting ? way : 0.0;
   }
 }
 

@@ -10,7 +10,7 @@ namespace ricochet {
 struct FrictionTotals {
   double time = 0;     ///< Σ ω while something presses, s
   double held = 0;     ///< the same while it sticks, s
-  double changes = 0;  ///< how often it begins or ends to stick while something presses
+  double changes = 0;  ///< how often it begins or ends to stick while something presses; a stick has two steps at least
   double impulse = 0;  ///< Σ ω |p_t|, N s
   double squares = 0;  ///< Σ ω p_t², N² s
   double peak = 0;     ///< largest |p_t|, N
@@ -47,6 +47,8 @@ class FrictionWatch final : public StepObserver {
     int stop = 0;
     double slid = 0;  // V⁻
     bool pressed = false, held = false;
+    bool sticks = false;       // what changes are counted of: held in two steps
+    long long held_since = 0;  // step
   };
   int number_of(int stop) const;
 

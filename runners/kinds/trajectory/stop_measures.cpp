@@ -135,7 +135,9 @@ const StopMeasure stop_measures[] = {
      Needs::friction, true},
     {"slip_distance", "m", "How far the surface of the stop {} slides while it is pressed, in the window.",
      "slip at {}", rubbed<[](Rubbed f, double) { return f.slipped; }>, Needs::friction, true},
-    {"stick_slip_changes", "1", "How often the surface of the stop {} begins or ends to stick while it is pressed.",
+    {"stick_slip_changes", "1",
+     "How often the surface of the stop {} begins or ends to stick while it is pressed. A stick has two steps at "
+     "least.",
      "changes between stick and slip at {}", rubbed<[](Rubbed f, double) { return f.changes; }>, Needs::friction, true},
     {"friction_impulse", "N s", "Momentum that friction at the stop {} gives, by magnitude, in the window.",
      "friction impulse at {}", rubbed<[](Rubbed f, double) { return f.impulse; }>, Needs::friction, true},
