@@ -56,7 +56,8 @@ struct CompileOptions {
   int tangents = 0;                   ///< tangent columns per lane
   bool moving_support = false;        ///< lanes may get an amplitude later, even if none has one now
   MarchWay march = MarchWay::every_step;
-  bool bounded = true;                ///< a lane beyond its energy bound is stopped
+  bool bounded = true;   ///< a lane beyond its energy bound is stopped
+  bool audited = false;  ///< the energies of each step count (EnergyAudit): steps may not be left out unseen
   std::optional<double> memory = {};  ///< bytes that may be taken for leaving out steps; none: what there is
   /// The friction law, where points rub; null: such a problem is refused.
   std::function<std::unique_ptr<FrictionLaw>()> make_friction = {};

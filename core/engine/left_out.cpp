@@ -29,6 +29,8 @@ Refusal refuse_flight(const std::string& cause) {
 std::string why_grounded(const Program& program, const CompileOptions& options) {
   if (program.lanes.size() > 1) return "several lanes march as one block";
   if (program.friction) return "a stop that rubs is marched";
+  if (options.audited && program.plan.energy.empty())
+    return "the time scheme has no energy of its own, so that the energy of each step is read";
   if (program.load && !program.load_constant) {
     if (program.load_pulsation == 0) return "the load depends on time otherwise than by one sine";
     if (program.support) return "the load depends on time and the support moves";
@@ -57,6 +59,8 @@ std::string let_fly(Program& program, const CompileOptions& options) {
   }
   auto flight = std::make_shared<Flight>(program, program.farthest_layer(), options.expected_steps);
   if (!flight->cause().empty()) return flight->cause();
+  if (options.audited && !flight->free_never_gains())
+    return "a step without contact may gain energy of the time scheme, so that the energy of each step is read";
   program.flight = std::move(flight);
   const std::string &closed = program.flight->closed_cause(), &steps = program.flight->steps_cause();
   program.left_out.push_back(

@@ -160,7 +160,7 @@ std::optional<double> largest_restitution(const StudyCase& study_case, const Sem
   return largest;
 }
 
-Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
+Prepared prepare_case(const StudyCase& study_case, const Registry& registry, bool audited) {
   Prepared prepared;
   prepared.steps = whole_steps(study_case, prepared.notes);
   note_repeats(study_case, prepared.notes);
@@ -201,6 +201,7 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
   options.make_friction = friction_maker(study_case, registry);
   options.expected_steps = prepared.steps;
   options.march = march_way(study_case);
+  options.audited = audited;
   try {
     auto compiled = compile(prepared.problem, steps, study_case.step, std::move(law),
                             {scene_lane(*prepared.problem, study_case.contact.parameters)}, options);

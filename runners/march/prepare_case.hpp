@@ -64,7 +64,8 @@ struct Prepared {
 };
 
 /// Discretises, plans and compiles a case. `step` and `elements` may differ from the case's own (references).
-Prepared prepare_case(const StudyCase& study_case, const Registry& registry);
+/// `audited`: an EnergyAudit reads the march.
+Prepared prepare_case(const StudyCase& study_case, const Registry& registry, bool audited = false);
 
 /// The record of a case as far as its preparation tells: id, axes, notes, operator, what is left out. Where there is no
 /// program it is `refused`, with the sentence.

@@ -338,7 +338,7 @@ double seconds_beside(const StudyCase& study_case, const Program& program) {
 
 CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   CasePlan plan;
-  const Prepared prepared = prepare_case(study_case, registry);
+  const Prepared prepared = prepare_case(study_case, registry, true);
   plan.refusal = prepared.refusal.text;
   plan.steps = prepared.steps;
   plan.notes = prepared.notes;
@@ -397,7 +397,7 @@ void march_sampled(Marcher& marcher, Watched& watched, long long steps, long lon
 
 CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) {
   const double set_up = thread_seconds();
-  Prepared prepared = prepare_case(study_case, registry);
+  Prepared prepared = prepare_case(study_case, registry, true);
   CaseRecord record = begin_record(study_case, prepared);
   if (!prepared.program) return record;
   std::vector<Said> doubts = run_doubts(study_case, prepared);

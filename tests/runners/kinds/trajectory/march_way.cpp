@@ -109,3 +109,21 @@ TEST_CASE("means over the parts of a window are those of every step, rigid stops
       CHECK(measure(records[1], prefix + name).value() == Approx(every).epsilon(1e-6).margin(1e-12));
     }
 }
+
+TEST_CASE("steps whose energy has to be read are not left out of a trajectory, and the reason is told") {
+  Json text = shaken_study();
+  text["methods"] = Json::parse(R"({"mass": "lumped", "contact": "signorini", "time": "bathe"})");
+  text["march"] = "flights";
+  CaseRuns shaken;
+  const CaseRecord refused = shaken.of(text).front();
+  CHECK(refused.status == Status::refused);
+  CHECK(refused.reason().find("the time scheme has no energy of its own") != std::string::npos);
+  text["march"] = "auto";
+  text["step"] = 1e-6;
+  const CaseRecord marched = shaken.of(text).front();
+  REQUIRE(marched.status == Status::done);
+  CHECK(measure(marched, "steps_visited").value() == Approx(500000).margin(1));
+  CHECK(std::any_of(marched.notes.begin(), marched.notes.end(), [](const std::string& note) {
+    return note.starts_with("every step is marched: the time scheme has no energy of its own");
+  }));
+}
