@@ -290,10 +290,8 @@ StepFollower::Verdict StepFollower::judge(Step& step) {
     failure_ = "the branch turns by more than 45 degrees within a step";
     return Verdict::failed;
   }
-  // A first contact is placed too, where orbits are known on both sides of it.
-  const bool touches = told == 0 && last.rebounds == 0 && (step.image.runs == 0) != (last.runs == 0);
-  const bool crosses = outside(step.multipliers).total != last.raw.outside.total || touches ||
-                       (limits_.smooth && step.image.runs != last.runs);
+  const bool crosses =
+      outside(step.multipliers).total != last.raw.outside.total || (limits_.smooth && step.image.runs != last.runs);
   return crosses && step_ > std::max(limits_.located * range(), told) ? Verdict::crosses : Verdict::taken;
 }
 
