@@ -10,7 +10,6 @@
 
 using namespace ricochet;
 using namespace ricochet::browser;
-using Choices;
 using Catch::Matchers::Contains;
 
 namespace {

@@ -14,7 +14,6 @@
 
 using namespace ricochet;
 using namespace ricochet::browser;
-using Choices;
 
 namespace {
 

@@ -13,7 +13,6 @@
 
 using namespace ricochet;
 using namespace ricochet::browser;
-using Choices;
 using Catch::Matchers::Contains;
 
 namespace {
