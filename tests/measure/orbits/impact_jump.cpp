@@ -77,7 +77,8 @@ TEST_CASE(
   CHECK(tangents_miss_impacts(shaken(0, velocity_level, 1e-4).program()));
   CHECK_FALSE(tangents_miss_impacts(shaken(0, position_level, 1e-4).program()));
   CHECK(twins_miss_impacts(shaken(0, velocity_level, 1e-4).program()));
-  CHECK_FALSE(twins_miss_impacts(shaken(0, {{"singular"}, {"signorini"}, {"moreau-jean"}}, 1e-4).program()));
+  CHECK_FALSE(
+      twins_miss_impacts(shaken(0, {{"singular"}, {"signorini"}, {"moreau-jean", {{"theta", 0.6}}}}, 1e-4).program()));
   // A law that reads where the point is: no gate decides.
   CHECK_FALSE(stops_met_at_steps(
       shaken(0, {{"consistent"}, {"penalty", {{"stiffness", 1e5}}}, {"moreau-jean"}}, 1e-4).program()));
