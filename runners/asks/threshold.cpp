@@ -33,6 +33,15 @@ struct Condition {
   }
 };
 
+/// Whether all its values are the one that is asked for.
+bool equals(const Line& line, const Condition& condition) {
+  if (!condition.is || !line.known()) return false;
+  for (const auto& [size, by_seed] : line.point.values)
+    for (const auto& [seed, value] : by_seed)
+      if (value != *condition.is) return false;
+  return true;
+}
+
 /// Yes or no where every case on every step and mesh says so; of what is no count as limits tell it.
 Verdict state(const Line& line, const Condition& condition, bool counts) {
   if (!line.known()) return Verdict::open;
@@ -45,18 +54,11 @@ Verdict state(const Line& line, const Condition& condition, bool counts) {
   const Estimate& one = line.estimate();
   if (!one.unknown().empty() || one.grows) return Verdict::open;
   if (one.beyond && condition.is && !condition.passes) return one.value > *condition.is ? Verdict::no : Verdict::open;
+  // What equals a value does not pass it, however wide its interval is.
+  if (condition.passes && equals(line, condition)) return Verdict::no;
   if (counts || (condition.is && !condition.passes))
     return holds == all ? Verdict::yes : holds == 0 ? Verdict::no : Verdict::open;
   return kept(line, condition.bounds()).verdict;
-}
-
-/// Whether all its values are the one that is asked for.
-bool equals(const Line& line, const Condition& condition) {
-  if (!condition.is || !line.known()) return false;
-  for (const auto& [size, by_seed] : line.point.values)
-    for (const auto& [seed, value] : by_seed)
-      if (value != *condition.is) return false;
-  return true;
 }
 
 /// One series along the axis: all else the same.

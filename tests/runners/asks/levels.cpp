@@ -278,11 +278,11 @@ TEST_CASE("asks: of a value that levels keep on a side, or equal, no series is s
   };
   // One above, one below, everywhere.
   const Answered sides = answered([](const auto& at) { return at[0] == 0 ? 3.5 : 1.5; }, 2);
-  says(sides, "is always above 2 with ");
+  says(sides, "is always above 2 N s with ");
   says(sides, "always below it with ");
   // One falls to the value and keeps it; the other stays above it.
   const Answered kept = answered([](const auto& at) { return at[0] == 0 && at[1] > 0 ? 2.0 : 3.5; }, 2);
-  says(kept, "is 2 from there, and larger before");
+  says(kept, "is 2 N s from there, and larger before");
   says(kept, "; always above with ");
   CHECK(kept.sentence.find("smaller") == std::string::npos);
 }

@@ -16,7 +16,7 @@ using namespace ricochet::tests;
 
 namespace {
 
-const std::filesystem::path plans = std::filesystem::path(places().source) / "tests/plugins/plan_files";
+const std::filesystem::path plans = std::filesystem::path(places().source) / "plugins/plan_files";
 
 Parameters complete(const PluginManual& manual, const std::map<std::string, double>& values) {
   Parameters result;
