@@ -122,7 +122,7 @@ void ContinuedMap::check_class(int scene) {
   const Program program = this->program(scene);
   constexpr double rebounds_above = 1e-6;
   double e = 0;
-  bool unresolved = tangents_miss_impacts(program);
+  bool too_fast = tangents_miss_impacts(program);
   // Only a point with mass is thrown back.
   const std::vector<bool> thrown_back = thrown_points(program, rebounds_above);
   const bool thrown = std::find(thrown_back.begin(), thrown_back.end(), true) != thrown_back.end();
@@ -132,10 +132,10 @@ void ContinuedMap::check_class(int scene) {
     for (std::size_t i = 0; i < resolved.size(); ++i) {
       if (!thrown_back[i]) continue;
       e = std::max(e, std::abs(restitutions[i].value_or(0)));
-      unresolved = unresolved || !resolved[i];
+      too_fast = too_fast || !resolved[i];
     }
   }
-  if (unresolved) {
+  if (too_fast) {
     refusal_ = fmt::format(
         "stops are met at whole steps by a mass that a step of {:.4g} s does not resolve: the map has jumps. It jumps "
         "where the step of an impact changes, and its derivative is not the motion's. Use a position-level scheme, a "
