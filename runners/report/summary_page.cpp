@@ -11,6 +11,7 @@
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/study_tables.hpp"
+#include "runners/study/axis_meaning.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/table/in_order_met.hpp"
 
