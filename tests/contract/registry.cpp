@@ -95,7 +95,7 @@ TEST_CASE("a default that its own declaration refuses is a fault of the plugin")
 
 TEST_CASE("a default that is not finite, and a range with nothing in it, are faults of the plugin") {
   Registry registry;
-  constexpr double infinite = std::numeric_limits<double>::infinity(), none = std::nan("");
+  constexpr double infinite = std::numeric_limits<double>::infinity(), none = std::numeric_limits<double>::quiet_NaN();
   const auto [spec, part] = GENERATE_COPY(table<ParameterSpec, std::string>(
       {{real_parameter("beta", "1", infinite, {}, "β."), "a default that is not finite"},
        {real_parameter("beta", "1", -infinite, {}, "β."), "a default that is not finite"},
