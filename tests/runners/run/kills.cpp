@@ -93,7 +93,8 @@ TEST_CASE("a run that is killed at any moment goes on to the tables of one that 
     }
     if (!ended) {
       ::kill(process, SIGKILL);
-      CHECK(end_of(process) == -SIGKILL);
+      const int end = end_of(process);
+      CHECK((end == -SIGKILL || end == 0));  // 0: it ended between the look and the signal
     }
     const int again = end_of(start(here, out));
     INFO(read_text(here / "told"));
