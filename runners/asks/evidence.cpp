@@ -84,13 +84,14 @@ std::vector<std::string> Evidence::measures(const Ask& ask, const std::string& n
       if (asked && (stops.empty() || contains(stops, stop)) && !contains(out, one)) out.push_back(one);
     };
     for (const CaseRecord& record : results().cases) {
-      for (const auto& [one, value] : record.measures) add(one);
-      // What has no limit under a law has a line all the same, and so has a stop that is never touched.
+      for (const auto& [one, value] : record.measures) {
+        add(one);
+        // A stop that is never touched has a line of what is told in contact alone.
+        if (whole || value != 0 || record.status != Status::done || !one.starts_with("contact_time[")) continue;
+        if (const std::string stop = split_measure(one).second; !contains(untouched, stop)) untouched.push_back(stop);
+      }
+      // What has no limit under a law has a line all the same.
       for (const auto& [item, why] : record.left_out) add(item);
-      if (whole || record.status != Status::done) continue;
-      for (const auto& [one, value] : record.measures)
-        if (const auto [base, stop] = split_measure(one); base == "contact_time" && value == 0 && !stop.empty())
-          untouched.push_back(stop);
     }
   };
   // Each stop for itself: what several stops have together is a sum that no stop has.

@@ -326,7 +326,11 @@ void tell_changes(const Drive& drive, double step, long long steps, std::vector<
 
 std::vector<Said> load_changes(const SceneSpec& shared, double step, long long steps) {
   std::vector<Said> changes;
-  if (steps < 1) return changes;
+  const std::vector<GivenMotion> motions = given_motions(shared);
+  const bool varies = shared.load.uses_t() || std::any_of(motions.begin(), motions.end(), [](const GivenMotion& one) {
+                        return one.motion->table != nullptr;
+                      });
+  if (!varies || steps < 1) return changes;
   const SceneSpec scene = shared;  // formulas keep their variables inside: evaluate our own copies
   for (const Drive& drive : drives_of(scene))
     if (!drive.signals.empty()) tell_changes(drive, step, steps, changes);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
+#include <vector>
 
 #include "runners/report/curve_data.hpp"
 #include "runners/report/quantity.hpp"
@@ -54,21 +56,14 @@ PageJson table_json(const Table& table) {
 PageJson axes_json(const Choices& choices) {
   PageJson out = PageJson::array();
   for (const std::string& column : choices.results().columns) {
-    PageJson texts = PageJson::array(), numbers = PageJson::array(), at = PageJson::array();
-    std::map<std::string, int> places;
-    for (const CaseRecord* record : all_cases(choices.results())) {
-      std::string text = axis_words(*record, column);
-      if (text.empty()) {
-        at.push_back(-1);
-        continue;
-      }
-      const auto [place, fresh] = places.emplace(text, static_cast<int>(texts.size()));
-      if (fresh) {
-        const auto number = axis(*record, column).number();
-        texts.push_back(std::move(text));
-        numbers.push_back(number ? PageJson(*number) : PageJson());
-      }
-      at.push_back(place->second);
+    const std::vector<std::string>& texts = choices.values(column);
+    PageJson numbers(texts.size(), nullptr), at = PageJson::array();
+    std::vector<char> met(texts.size(), 0);
+    for (const CaseRecord& record : choices.results().cases) {
+      const auto place = choices.place(record, column);
+      at.push_back(place ? PageJson(*place) : PageJson(-1));
+      if (!place || std::exchange(met[*place], 1) != 0) continue;
+      if (const auto number = axis(record, column).number()) numbers[*place] = *number;
     }
     out.push_back({{"name", column},
                    {"said", axis_text(choices.results(), column)},
@@ -76,7 +71,7 @@ PageJson axes_json(const Choices& choices) {
                    {"word", label_word(column)},
                    {"unit", choices.unit_of(column)},
                    {"varies", choices.varies(column)},
-                   {"texts", std::move(texts)},
+                   {"texts", texts},
                    {"numbers", std::move(numbers)},
                    {"at", std::move(at)}});
   }

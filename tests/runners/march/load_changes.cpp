@@ -127,7 +127,7 @@ TEST_CASE("a run of less than a hundredth of the slowest period is told, beside 
 }
 
 TEST_CASE("what passes between two steps in a table is told, of a load as of a motion") {
-  // Millions of steps apart from the entries nothing looks at a table but its own instants.
+  // Between the instants of the steps: only the entries of the table tell where.
   const auto table = [](double from, double to) {
     auto out = std::make_shared<TimeTable>();
     out->times = {0, from, 0.5 * (from + to), to, 2};
