@@ -32,6 +32,10 @@ template <>
 struct CellValue<std::string> {
   static std::optional<std::string> of(const Cell& cell) { return cell.text(); }
 };
+template <Worded Enum>
+struct CellValue<Enum> {
+  static std::optional<Enum> of(const Cell& cell) { return of_word<Enum>(cell.text()); }
+};
 template <>
 struct CellValue<Cell> {
   static std::optional<Cell> of(const Cell& cell) { return cell; }
@@ -81,7 +85,8 @@ class RowFields {
 };
 
 /// The columns of a table, each with the member of `Record` that it shows. The one declaration writes rows and reads
-/// them back. Members are double, whole numbers, bool, std::string, an optional of one, or Cell.
+/// them back. Members are double, whole numbers, bool, std::string, enumerations with words,
+/// an optional of one, or Cell.
 template <class Record>
 class RowType : public RowFields {
  public:

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <ricochet/contract/worded.hpp>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -70,6 +71,7 @@ class Cell {
   Cell(std::string text) : content_(SharedWords(std::move(text))) {}
   Cell(const char* text) : Cell(std::string(text)) {}
   Cell(std::string_view text) : Cell(std::string(text)) {}
+  Cell(Worded auto value) : Cell(word(value)) {}
   /// What is absent is nothing.
   template <class Value>
   Cell(const std::optional<Value>& value) {

@@ -35,7 +35,7 @@ struct Pair {
 using PlacedPoints = std::vector<const PlacedPoint*>;
 
 auto value_order(const CasePoint& one) {
-  return std::tie(one.kind, one.parameter, one.displacement, one.arc, one.half);
+  return std::tie(one.family, one.parameter, one.displacement, one.arc, one.half);
 }
 
 class Matching {
@@ -84,7 +84,7 @@ class Matching {
 
   /// Whether two points may be one. How prominent a fold of the motion is depends on how far its branch goes.
   bool alike(const CasePoint& a, const CasePoint& b) const {
-    if (a.kind != b.kind) return false;
+    if (a.family != b.family) return false;
     const double least = std::min(a.prominence, b.prominence), most = std::max(a.prominence, b.prominence);
     return least <= 0 || least >= of_the_motion * scales_.parameter || most <= prominence_factor * least;
   }
@@ -92,7 +92,7 @@ class Matching {
   /// Whether two branches of a case show one point.
   bool shared(const CasePoint& a, const CasePoint& b) const {
     constexpr double round_off = 1e-6;
-    return a.kind == b.kind && a.branch != b.branch &&
+    return a.family == b.family && a.branch != b.branch &&
            std::abs(a.parameter - b.parameter) <= a.half + b.half + round_off * scales_.parameter &&
            std::abs(a.displacement - b.displacement) <= round_off * scales_.displacement;
   }
@@ -118,7 +118,7 @@ class Matching {
     }
   }
 
-  /// The farthest that points of a kind may be apart; those that are not named: farthest_pair.
+  /// The farthest that points of a family may be apart; those that are not named: farthest_pair.
   using Bounds = std::map<std::string, double>;
 
   /// One to one, nearest first, within the bounds.
@@ -127,7 +127,7 @@ class Matching {
     for (std::size_t l = 0; l < left.size(); ++l)
       for (std::size_t r = 0; r < right.size(); ++r) {
         if (!alike(left[l]->point, right[r]->point)) continue;
-        const auto bound = bounds.find(left[l]->point.kind);
+        const auto bound = bounds.find(left[l]->point.family);
         const double apart = distance(left[l]->point, right[r]->point);
         if (apart <= (bound == bounds.end() ? farthest_pair : bound->second)) candidates.push_back({l, r, apart});
       }
@@ -171,11 +171,11 @@ class Matching {
       const PlacedPoints left = own_places(places_[c]), right = own_places(places_[coarser]);
       for (const Pair& one : pairs(left, right, {}))
         if (clear(one, left, right)) {
-          double& bound = largest[left[one.left]->point.kind];
+          double& bound = largest[left[one.left]->point.family];
           bound = std::max(bound, one.distance);
         }
     }
-    for (auto& [kind, bound] : largest) bound = std::clamp(slack * bound, always_near, farthest_pair);
+    for (auto& [family, bound] : largest) bound = std::clamp(slack * bound, always_near, farthest_pair);
     return largest;
   }
 
@@ -242,20 +242,6 @@ class Matching {
 MatchedPoints match_points(const std::vector<CasePoint>& points, const std::vector<CaseLink>& links,
                            const PointScales& scales) {
   return Matching(points, links, scales).result(points.size());
-}
-
-const char* word(PointPresence presence) {
-  switch (presence) {
-    case PointPresence::found:
-      return "found";
-    case PointPresence::many:
-      return "many";
-    case PointPresence::absent:
-      return "absent";
-    case PointPresence::not_reached:
-      return "not reached";
-  }
-  return "";
 }
 
 PointPresence presence_of(double parameter, double margin, int sharing, const std::vector<BranchReach>& reaches,

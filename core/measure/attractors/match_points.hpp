@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <optional>
+#include <ricochet/contract/worded.hpp>
 #include <ricochet/measure/statistics/refinement.hpp>
 #include <string>
 #include <vector>
@@ -11,11 +13,11 @@ namespace ricochet {
 
 /// A special point of one case.
 struct CasePoint {
-  std::size_t owner = 0;  ///< the case
-  int branch = 0;         ///< of the case
-  std::string kind;      ///< points of different kinds are never one; the period and symmetry of the orbit belong to it
-  double parameter = 0;  ///< in the unit of the parameter
-  double half = 0;       ///< half the width of its interval
+  std::size_t owner = 0;    ///< the case
+  int branch = 0;           ///< of the case
+  std::string family;       ///< points of two are never one: the kind, and the period and symmetry of the orbit
+  double parameter = 0;     ///< in the unit of the parameter
+  double half = 0;          ///< half the width of its interval
   double displacement = 0;  ///< of the tip at the strobe, m
   double arc = 0;           ///< along the branch from its start, m
   double prominence = 0;    ///< of a fold: how far the parameter goes back; 0: not known
@@ -36,21 +38,21 @@ struct CaseLink {
 
 /// What became of the points.
 struct MatchedPoints {
-  /// Of each point given: the place of its name, from 0 by kind, parameter and displacement; −1 of a point that no
+  /// Of each point given: the place of its name, from 0 by family, parameter and displacement; −1 of a point that no
   /// finer case confirms.
   std::vector<int> name;
   int names = 0;
-  /// Of each point given that has a name: how many points of its kind in its case share its place, itself counted.
+  /// Of each point given that has a name: how many points of its family in its case share its place, itself counted.
   std::vector<int> sharing;
 };
 
 /// Names special points over cases, by the links of all cases (one for each owner).
 ///
-/// The distance of two points of a kind is |Δλ|/Λ + |Δu|/U + |Δs|/(10 S), |Δλ| less what both intervals explain. Arcs
+/// The distance of two points of a family is |Δλ|/Λ + |Δu|/U + |Δs|/(10 S), |Δλ| less what both intervals explain. Arcs
 /// count a tenth, because folds that a step invents lengthen them. Folds whose prominences differ by more than a factor
 /// of 3 are no pair. Points of linked cases are paired one to one, nearest first, up to 0.05. The bound may be narrower
 /// along a refinement. The next coarser pairs that are told from others give it: no other point is less than three
-/// times as far. It is four times the largest distance of such pairs of the kind, 0.001 at least. A point that its
+/// times as far. It is four times the largest distance of such pairs of the family, 0.001 at least. A point that its
 /// finer case lacks is sought in the next case towards the reference. What two branches of a case share counts once.
 ///
 /// Points that are joined over cases have a name under two conditions. The two finest cases of a refinement both have
@@ -68,12 +70,13 @@ struct BranchReach {
 /// Whether a case has a point.
 enum class PointPresence {
   found,
-  many,        ///< other points of the kind share its place
+  many,        ///< other points of the family share its place
   absent,      ///< a branch passed its place without it
   not_reached  ///< no branch of the case came to its place
 };
-/// "found", "many", "absent", "not reached".
-const char* word(PointPresence presence);
+constexpr std::array<const char*, 4> words_of(PointPresence) {
+  return {"found", "many", "absent", "not reached"};
+}
 
 /// Presence of a point at `parameter` in a case that has `sharing` points at its place (0: none), with branches that
 /// cover `reaches`. A branch passed it where its range goes beyond the point by more than `margin` on both sides.

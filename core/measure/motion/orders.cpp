@@ -299,10 +299,6 @@ std::optional<double> index_of(const std::vector<OrderPoint>& points, const Logs
 
 }  // namespace
 
-const char* verdict_word(OrderVerdict verdict) {
-  return verdict == OrderVerdict::confirmed ? "confirmed" : verdict == OrderVerdict::refuted ? "refuted" : "undecided";
-}
-
 std::optional<GridConvergence> grid_convergence(double f3, double f2, double f1, double ratio) {
   const double coarse = f3 - f2, fine = f2 - f1;
   if (!(ratio > 1) || !std::isfinite(coarse) || !std::isfinite(fine) || fine == 0 || !(coarse / fine > 1))

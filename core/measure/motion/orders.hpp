@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <optional>
+#include <ricochet/contract/worded.hpp>
 #include <string>
 #include <vector>
 
@@ -48,8 +50,9 @@ struct OrderQuestion {
 };
 
 enum class OrderVerdict { confirmed, refuted, undecided };
-/// "confirmed", "refuted", "undecided".
-const char* verdict_word(OrderVerdict verdict);
+constexpr std::array<const char*, 3> words_of(OrderVerdict) {
+  return {"confirmed", "refuted", "undecided"};
+}
 
 struct OrderFit {
   std::optional<double> order, low, high;  ///< p and its 95 % interval; absent with fewer than three usable points

@@ -9,11 +9,6 @@
 
 namespace ricochet {
 
-const char* text(TraceEnd end) {
-  static constexpr const char* words[] = {"", "range", "closed", "joined", "asked", "limit", "left"};
-  return words[static_cast<std::size_t>(end)];
-}
-
 CornerRoots roots_at(const std::vector<std::complex<double>>& multipliers) {
   constexpr double least_angle = 0.01;
   CornerRoots roots;

@@ -1,9 +1,11 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <complex>
 #include <limits>
 #include <map>
 #include <optional>
+#include <ricochet/contract/worded.hpp>
 #include <ricochet/measure/orbits/multipliers.hpp>
 #include <ricochet/measure/orbits/periodic_map.hpp>
 #include <string>
@@ -172,10 +174,12 @@ struct MarkedOrbit {
 };
 
 /// How a branch ended: at an end of the range, at its first orbit, where it becomes part of another branch, at a point
-/// at which the study stops, at a limit of the study, or where it could not be followed.
-enum class TraceEnd { none, range, closed, joined, asked, limit, left };
-/// Its word; "" of none.
-const char* text(TraceEnd end);
+/// at which the study stops, at a limit of the study, or where it could not be followed; `missing`: it has no first
+/// orbit.
+enum class TraceEnd { none, range, closed, joined, asked, limit, left, missing };
+constexpr std::array<const char*, 8> words_of(TraceEnd) {
+  return {"", "range", "closed", "joined", "asked", "limit", "left", "missing"};
+}
 
 /// A branch as far as it was followed.
 struct BranchTrace {

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <ricochet/measure/orbits/regime.hpp>
@@ -10,16 +9,7 @@ namespace ricochet {
 
 namespace {
 
-// In the order of Regime.
-constexpr std::array<const char*, 8> regime_words = {"no contact",     "at rest", "periodic",  "chattering",
-                                                     "quasi-periodic", "chaotic", "undecided", "failed"};
 constexpr double longest_told = 1e9;  // forcing periods; beyond, a cell holds no period
-
-std::optional<Regime> regime_of(std::string_view word) {
-  for (std::size_t k = 0; k < regime_words.size(); ++k)
-    if (word == regime_words[k]) return static_cast<Regime>(k);
-  return std::nullopt;
-}
 
 bool says_period(std::optional<Regime> regime) {
   return regime && MotionClass{*regime}.repeats();
@@ -27,13 +17,9 @@ bool says_period(std::optional<Regime> regime) {
 
 }  // namespace
 
-const char* text(Regime regime) {
-  return regime_words[static_cast<std::size_t>(regime)];
-}
-
 std::string text(const MotionClass& motion) {
-  const std::string word = text(motion.regime);
-  return motion.repeats() ? word + " " + std::to_string(motion.period) : word;
+  const std::string said = word(motion.regime);
+  return motion.repeats() ? said + " " + std::to_string(motion.period) : said;
 }
 
 std::optional<MotionClass> motion_class(std::string_view words) {
@@ -43,14 +29,14 @@ std::optional<MotionClass> motion_class(std::string_view words) {
     const char *begin = words.data() + space + 1, *end = words.data() + words.size();
     int period = 0;
     if (const auto read = std::from_chars(begin, end, period); read.ec == std::errc() && read.ptr == end)
-      return says_period(regime_of(words.substr(0, space))) ? motion_class(words.substr(0, space), period)
-                                                            : std::nullopt;
+      return says_period(of_word<Regime>(words.substr(0, space))) ? motion_class(words.substr(0, space), period)
+                                                                  : std::nullopt;
   }
   return motion_class(words, std::nullopt);
 }
 
 std::optional<MotionClass> motion_class(std::string_view regime, std::optional<double> period) {
-  const auto known = regime_of(regime);
+  const auto known = of_word<Regime>(regime);
   if (!known) return std::nullopt;
   if (!says_period(known)) return MotionClass{*known, 0};
   if (!period || !(*period >= 1) || !(*period < longest_told)) return std::nullopt;

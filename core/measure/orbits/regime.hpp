@@ -1,5 +1,7 @@
 #pragma once
+#include <array>
 #include <optional>
+#include <ricochet/contract/worded.hpp>
 #include <ricochet/measure/orbits/recurrence.hpp>
 #include <ricochet/measure/statistics/block_bootstrap.hpp>
 #include <string>
@@ -27,10 +29,11 @@ struct MotionClass {
   bool operator==(const MotionClass&) const = default;
 };
 
-/// The word of a regime, as in the column `class` of the tables: "no contact", "at rest", "periodic", "chattering",
-/// "quasi-periodic", "chaotic", "undecided", "failed".
-const char* text(Regime regime);
-/// The same with the period of what has one: "periodic 3".
+/// As in the column `class` of the tables.
+constexpr std::array<const char*, 8> words_of(Regime) {
+  return {"no contact", "at rest", "periodic", "chattering", "quasi-periodic", "chaotic", "undecided", "failed"};
+}
+/// The word of the regime, with the period of what has one: "periodic 3".
 std::string text(const MotionClass& motion);
 
 /// The class that text() spells in these words; nothing for others. "periodic" alone is none.

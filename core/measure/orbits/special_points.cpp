@@ -12,10 +12,9 @@ namespace {
 
 using Corners = std::vector<BranchCorner>;
 
-SpecialPoint at_corner(const Corners& corners, std::size_t i, const char* kind, const char* label) {
+SpecialPoint at_corner(const Corners& corners, std::size_t i, PointKind kind) {
   SpecialPoint point;
   point.kind = kind;
-  point.label = label;
   point.corner = static_cast<long long>(i);
   point.parameter = corners[i].parameter;
   point.arc = corners[i].arc;
@@ -57,7 +56,7 @@ struct Crossing {
 
 // What of the multipliers is counted, and the function whose zero is the crossing.
 struct Circle {
-  const char *kind, *label;
+  PointKind kind;
   int Outside::*count;
   bool pair;
 };
@@ -142,7 +141,7 @@ void add_group(const Corners& corners, const Circle& circle, const std::vector<C
   const bool frozen = root == nullptr;
   if (frozen) root = stands_for(raw, raw_net);
   if (!root) return;
-  SpecialPoint point = at_corner(corners, root->corner, circle.kind, circle.label);
+  SpecialPoint point = at_corner(corners, root->corner, circle.kind);
   point.parameter = root->value;
   point.arc = root->arc;
   point.tip = root->tip;
@@ -237,7 +236,7 @@ void place(const Corners& corners, double metres, SpecialPoint& point) {
   if (i >= corners.size()) return;
   const double far = corners[i].arc - corners[i - 1].arc;
   double by = larger_at(corners, i, &BranchCorner::placed) / metres;
-  if (point.kind != "fold") {
+  if (point.kind != PointKind::fold) {
     if (!(far > 0)) return;
     by = larger_at(corners, i, &BranchCorner::rebounds) * std::abs(corners[i].parameter - corners[i - 1].parameter) /
          far;
@@ -264,7 +263,7 @@ void add_folds(const BranchTrace& trace, const PointSearch& search, std::vector<
     // Along a curve the multipliers tell a fold from a kink, however soon the branch ends behind it.
     const bool told = search.by_steps && passes_one(corners, i);
     if (turn.shortest < cut_share * least && !told) continue;
-    SpecialPoint point = at_corner(corners, i, "fold", "LP");
+    SpecialPoint point = at_corner(corners, i, PointKind::fold);
     // A motion without contact is one piece, however long: where it touches its stop the other piece tells.
     const double before = std::abs(corners[i].parameter - corners[i - 1].parameter),
                  after = std::abs(corners[i + 1].parameter - corners[i].parameter);
@@ -297,7 +296,7 @@ void add_contacts_between(const Corners& corners, const PointSearch& search, std
   for (std::size_t i = 1; i < corners.size(); ++i) {
     const BranchCorner &was = corners[i - 1], &now = corners[i];
     if (!contact_changes(was, now)) continue;
-    SpecialPoint point = at_corner(corners, i, "contact", "GR");
+    SpecialPoint point = at_corner(corners, i, PointKind::contact);
     point.low = point.high = was.parameter;
     widen(point, now.parameter);
     if (search.contacts > 0) {
@@ -332,7 +331,7 @@ void add_contacts(const Corners& corners, const PointSearch& search, std::vector
       ++found.back().second;
       continue;
     }
-    SpecialPoint point = at_corner(corners, i, "contact", "GR");
+    SpecialPoint point = at_corner(corners, i, PointKind::contact);
     const double known = at_once + round_offs * now.residual / search.metres;
     point.low = point.parameter - known;
     point.high = point.parameter + known;
@@ -353,7 +352,7 @@ void tell_once(std::vector<SpecialPoint>& points, double same_tip) {
   std::vector<SpecialPoint> once;
   for (SpecialPoint& point : points) {
     const auto known = [&](const SpecialPoint& one) {
-      return one.kind != "mark" && one.kind == point.kind && one.side == point.side && one.low <= point.high &&
+      return one.kind != PointKind::mark && one.kind == point.kind && one.side == point.side && one.low <= point.high &&
              point.low <= one.high && std::abs(one.tip - point.tip) <= same_tip;
     };
     if (std::none_of(once.begin(), once.end(), known)) once.push_back(std::move(point));
@@ -368,10 +367,8 @@ std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSe
   const Corners& corners = trace.corners;
   if (corners.empty()) return points;
   add_folds(trace, search, points);
-  const Circle minus =
-      search.half ? Circle{"symmetry", "BP", &Outside::below, false} : Circle{"flip", "PD", &Outside::below, false};
-  add_crossings(corners, minus, search, points);
-  add_crossings(corners, {"torus", "TR", &Outside::pairs, true}, search, points);
+  add_crossings(corners, {search.half ? PointKind::symmetry : PointKind::flip, &Outside::below, false}, search, points);
+  add_crossings(corners, {PointKind::torus, &Outside::pairs, true}, search, points);
   if (search.by_steps)
     add_contacts_between(corners, search, points);
   else
@@ -379,7 +376,7 @@ std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSe
   if (trace.rebounds > 0)
     for (SpecialPoint& point : points) place(corners, search.metres, point);
   for (const MarkedOrbit& mark : trace.marks) {
-    SpecialPoint point = at_corner(corners, static_cast<std::size_t>(mark.corner), "mark", "UZ");
+    SpecialPoint point = at_corner(corners, static_cast<std::size_t>(mark.corner), PointKind::mark);
     point.parameter = point.low = point.high = mark.parameter;
     point.arc = mark.arc;
     point.tip = mark.tip;
@@ -389,7 +386,7 @@ std::vector<SpecialPoint> special_points(const BranchTrace& trace, const PointSe
                    [](const SpecialPoint& a, const SpecialPoint& b) { return a.arc < b.arc; });
   tell_once(points, std::max(1e-6 * search.gap, trace.rebounds));
   if (trace.ended()) {
-    SpecialPoint end = at_corner(corners, corners.size() - 1, "end", "EP");
+    SpecialPoint end = at_corner(corners, corners.size() - 1, PointKind::end);
     end.low = end.high = end.parameter;
     end.ends = trace.ends;
     end.note = trace.end;

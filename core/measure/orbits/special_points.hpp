@@ -4,6 +4,7 @@
 #include <optional>
 #include <ricochet/measure/orbits/branch.hpp>
 #include <ricochet/measure/orbits/periodic_map.hpp>
+#include <ricochet/measure/orbits/point_kind.hpp>
 #include <ricochet/measure/orbits/stepped_map.hpp>
 #include <string>
 #include <vector>
@@ -12,8 +13,7 @@ namespace ricochet {
 
 /// A special point of a branch.
 struct SpecialPoint {
-  std::string kind;   ///< fold, symmetry, flip, torus, contact, mark, end
-  std::string label;  ///< LP, BP, PD, TR, GR, UZ, EP
+  PointKind kind = PointKind::end;  ///< of a change of contact: contact
   long long corner = 0;
   double parameter = 0, low = 0, high = 0, arc = 0, tip = 0;
   std::optional<std::complex<double>> multiplier;

@@ -237,22 +237,6 @@ std::shared_ptr<const SemiDiscrete> without_loads(const SemiDiscrete& problem) {
 
 }  // namespace
 
-const char* behaviour_word(Behaviour behaviour) {
-  switch (behaviour) {
-    case Behaviour::stable:
-      return "stable";
-    case Behaviour::linear_growth:
-      return "marginal";
-    case Behaviour::growing:
-      return "unstable";
-    case Behaviour::diverged:
-      return "diverged";
-    case Behaviour::failed:
-      break;
-  }
-  return "failed";
-}
-
 double fast_power_share(std::vector<double> signal) {
   const std::size_t n = signal.size();
   double mean = 0;

@@ -1,8 +1,10 @@
 #pragma once
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <ricochet/contract/contact_law.hpp>
+#include <ricochet/contract/worded.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <string>
@@ -22,7 +24,14 @@ enum class Behaviour {
   diverged,       ///< the lane was stopped
   failed          ///< the contact law did not converge
 };
-const char* behaviour_word(Behaviour behaviour);
+constexpr std::array<const char*, 5> words_of(Behaviour) {
+  return {"stable", "marginal", "unstable", "diverged", "failed"};
+}
+
+/// Whether a march of any length stays within bounds that grow no faster than the number of its steps.
+constexpr bool stays_bounded(Behaviour behaviour) {
+  return behaviour == Behaviour::stable || behaviour == Behaviour::linear_growth;
+}
 
 struct ObservedCell {
   Behaviour behaviour = Behaviour::stable;
@@ -38,7 +47,7 @@ struct ObservedCell {
   /// windows of 1024 steps that begin at an impact. A force that lasts one step has ½, one that alternates 1.
   double fast_share = 0;
   std::string cause;  ///< one sentence, "" when stable
-  bool stable() const { return behaviour == Behaviour::stable || behaviour == Behaviour::linear_growth; }
+  bool stable() const { return stays_bounded(behaviour); }
   /// The active set flickers: over 0.75 of the power is fast, or over 20 changes for each time that contact began.
   bool chatters() const { return fast_share > 0.75 || changes_per_impact > 20; }
 };

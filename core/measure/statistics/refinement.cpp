@@ -298,24 +298,6 @@ LimitInterval interval(const Limit& limit) {
   return {std::min(limit.low, limit.value), std::max(limit.high, limit.value)};
 }
 
-const char* word(OrderRun::Verdict verdict) {
-  switch (verdict) {
-    case OrderRun::Verdict::order:
-      return "order";
-    case OrderRun::Verdict::stops:
-      return "stops";
-    case OrderRun::Verdict::does_not_fall:
-      return "does not fall";
-    case OrderRun::Verdict::no_steady_order:
-      return "no steady order";
-    case OrderRun::Verdict::below_floor:
-      return "at the floor";
-    case OrderRun::Verdict::too_few:
-      return "too few";
-  }
-  return "";
-}
-
 bool OrderRun::clean() const {
   constexpr double narrow = 0.15, wide = 0.3;  // shares of the order
   if (verdict != Verdict::order || in_passing || beyond.size() > 1) return false;

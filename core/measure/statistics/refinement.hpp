@@ -1,5 +1,7 @@
 #pragma once
+#include <array>
 #include <optional>
+#include <ricochet/contract/worded.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -110,8 +112,9 @@ struct OrderRun {
   /// it, and no other falls.
   bool clean() const;
 };
-/// "order", "stops", "does not fall", "no steady order", "at the floor", "too few".
-const char* word(OrderRun::Verdict verdict);
+constexpr std::array<const char*, 6> words_of(OrderRun::Verdict) {
+  return {"order", "stops", "does not fall", "no steady order", "at the floor", "too few"};
+}
 
 /// `errors` ≥ 0 by size, in any order; nothing of none. `floor`: what the reference itself may be wrong by.
 std::optional<OrderRun> order_run(std::vector<SizedValue> errors, double floor);

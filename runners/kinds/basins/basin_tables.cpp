@@ -197,7 +197,7 @@ class BasinCases {
       label_of[rank] = static_cast<std::uint8_t>(std::min(out.labels.size(), most_labels - 1));
       if (out.labels.size() == most_labels) continue;
       if (rank < attractors_.size()) {
-        const std::string text = regime_text(ricochet::text(attractors_[rank].regime), period_of(attractors_[rank]));
+        const std::string text = regime_text(word(attractors_[rank].regime), period_of(attractors_[rank]));
         const char* colour = attractor_colours[out.labels.size() % attractor_colours.size()];
         out.labels.push_back({fmt::format("attractor {}{}", rank + 1, text.empty() ? "" : " (" + text + ")"), colour});
       } else if (const std::size_t group = rank - attractors_.size(); group == no_start_group) {
@@ -272,7 +272,7 @@ class BasinCases {
                       static_cast<int>(cases),
                       {},
                       {},
-                      text(attractors_[a].regime),
+                      word(attractors_[a].regime),
                       period_of(attractors_[a]),
                       {},
                       fraction.value,
@@ -296,7 +296,7 @@ class BasinCases {
         const Proportion share =
             wilson_interval(static_cast<double>(count) / static_cast<double>(decided), static_cast<double>(decided));
         const MotionClass& motion = attractors_[a];
-        rows.push_back({images_[c].record->id, static_cast<int>(a) + 1, text(motion.regime), period_of(motion),
+        rows.push_back({images_[c].record->id, static_cast<int>(a) + 1, word(motion.regime), period_of(motion),
                         static_cast<int>(count), share.value, share.low, share.high});
       }
     }

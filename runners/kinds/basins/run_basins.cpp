@@ -218,12 +218,12 @@ class BasinsRun {
       if (sources[cell] == sources.size()) {
         if (complete)
           cells.rows.push_back(type.rows.row(
-              {"", x, y, text(Regime::failed), {}, {}, false, {}, word(Status::failed), unmarched().reason}));
+              {"", x, y, word(Regime::failed), {}, {}, false, {}, word(Status::failed), unmarched().reason}));
         continue;
       }
       const CellEnd& end = ends_[sources[cell]];
       const int told = end_of_[sources[cell]];
-      CellRow row{"", x, y, end.no_start ? no_start : text(end.motion.regime)};
+      CellRow row{"", x, y, end.no_start ? no_start : word(end.motion.regime)};
       if (end.period > 0) row.period = end.period;
       if (told >= 0) row.attractor = told + 1;
       row.marched = sources[cell] == cell;

@@ -189,7 +189,7 @@ std::optional<OrderRow> order_row(const StudyResults& results, const Cases& grou
   } else {
     told.saturates_at = saturates_at(question, measure(*finest, "reference_of_law") != 0.0);
   }
-  told.verdict = verdict_word(fit.verdict);
+  told.verdict = fit.verdict;
   told.reason =
       fit.reason + (fit.gci ? fmt::format("; grid convergence index of the finest point used: {:.2g}", *fit.gci) : "");
   return told;
@@ -408,9 +408,9 @@ Table order_verdicts_table(const Table& orders) {
   for (const OrderRow& row : orders_type().rows.read(orders)) {
     ++counts.orders;
     if (!row.declared) continue;
-    counts.confirmed += row.verdict == "confirmed";
-    counts.refuted += row.verdict == "refuted";
-    counts.undecided += row.verdict == "undecided";
+    counts.confirmed += row.verdict == OrderVerdict::confirmed;
+    counts.refuted += row.verdict == OrderVerdict::refuted;
+    counts.undecided += row.verdict == OrderVerdict::undecided;
   }
   counts.declared = counts.confirmed + counts.refuted + counts.undecided;
   return order_verdicts_type().with({counts});

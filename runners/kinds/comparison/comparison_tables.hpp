@@ -1,4 +1,6 @@
 #pragma once
+#include <ricochet/measure/motion/orders.hpp>
+
 #include "runners/store/record.hpp"
 #include "runners/table/row_type.hpp"
 
@@ -29,7 +31,8 @@ Table errors_table(const StudyResults& results);
 struct OrderRow {
   std::string id, refined, error;
   std::optional<double> order = {}, low = {}, high = {}, declared = {};
-  std::string verdict = {}, reason = {};
+  OrderVerdict verdict = OrderVerdict::undecided;
+  std::string reason = {};
   std::optional<std::string> saturates_at = {};
 };
 TableType<OrderRow> orders_type();

@@ -12,11 +12,13 @@
 
 namespace ricochet {
 
-std::string point_kind(std::string asked) {
+std::optional<PointKind> point_kind(std::string asked) {
   std::replace(asked.begin(), asked.end(), '_', ' ');
   std::replace(asked.begin(), asked.end(), '-', ' ');
-  if (asked == "lift off") return "lift-off";
-  return asked == "grazing" ? "first contact" : asked;
+  if (asked == "lift off") return PointKind::lift_off;
+  if (asked == "grazing") return PointKind::first_contact;
+  const auto kind = of_word<PointKind>(asked);
+  return kind && changes_orbit(*kind) ? kind : std::nullopt;
 }
 
 std::string point_value(double value, std::optional<double> half) {
@@ -45,7 +47,7 @@ void check_points_ask(const Study&, const Json& keys, const std::string& pointer
   const Json& asked = keys.at("points");
   for (std::size_t k = 0; k < asked.size(); ++k) {
     const std::string kind = asked[k].get<std::string>();
-    if (kind != "all" && !is_point_kind(point_kind(kind)))
+    if (kind != "all" && !point_kind(kind))
       throw InputError(pointer_to(pointer, k), "no kind of point is called " + quote(kind) + "; expected one of " +
                                                    quoted_list(askable_kinds()) + did_you_mean(kind, askable_kinds()));
   }

@@ -68,7 +68,7 @@ std::set<std::size_t> drawn_rows(const FollowedBranch& branch, const std::vector
     all.push_back(k);
     if (!rows[k].point) continue;
     const SpecialPoint& point = branch.points.at(static_cast<std::size_t>(*rows[k].point) - 1);
-    const bool change = point.kind == "contact" && point.runs_before > 0 && point.runs_after > 0;
+    const bool change = point.kind == PointKind::contact && point.runs_before > 0 && point.runs_after > 0;
     (change ? contacts : special).push_back(k);
   }
   std::set<std::size_t> chosen;

@@ -14,21 +14,21 @@
 
 namespace ricochet {
 
-std::optional<SpecialPoint> first_of(std::vector<SpecialPoint> points, const std::vector<std::string>& kinds) {
+std::optional<SpecialPoint> first_of(std::vector<SpecialPoint> points, const std::vector<PointKind>& kinds) {
   const auto found = std::find_if(points.begin(), points.end(), [&](const SpecialPoint& point) {
-    return point.kind != "end" && std::find(kinds.begin(), kinds.end(), point.kind) != kinds.end();
+    return point.kind != PointKind::end && std::find(kinds.begin(), kinds.end(), point.kind) != kinds.end();
   });
   return found == points.end() ? std::nullopt : std::optional(std::move(*found));
 }
 
 void cut_at(BranchTrace& trace, const SpecialPoint& point) {
   // A mark lies behind its corner.
-  const long long last = point.corner + (point.kind == "mark");
+  const long long last = point.corner + (point.kind == PointKind::mark);
   const auto left = static_cast<std::size_t>(std::max(last, 1LL)) + 1;
   if (left < trace.corners.size()) trace.corners.resize(left);
   std::erase_if(trace.states, [&](const auto& one) { return one.first >= static_cast<long long>(left); });
   std::erase_if(trace.marks, [&](const MarkedOrbit& one) { return one.corner >= static_cast<long long>(left); });
-  trace.end_by(TraceEnd::asked, fmt::format("stopped at the first {}, at {:.10g}", point.kind, point.parameter));
+  trace.end_by(TraceEnd::asked, fmt::format("stopped at the first {}, at {:.10g}", word(point.kind), point.parameter));
 }
 
 namespace {
@@ -94,7 +94,7 @@ void put_multipliers(const std::vector<std::complex<double>>& multipliers, const
 std::vector<BranchRow> corner_rows_of(const FollowedBranch& branch, int multipliers) {
   std::map<long long, int> numbers;  // of special points, by corner
   for (std::size_t i = 0; i < branch.points.size(); ++i)
-    if (branch.points[i].kind != "mark") numbers.emplace(branch.points[i].corner, static_cast<int>(i) + 1);
+    if (branch.points[i].kind != PointKind::mark) numbers.emplace(branch.points[i].corner, static_cast<int>(i) + 1);
   std::vector<BranchRow> rows;
   long long last = 0;
   for (const auto& [number, x] : branch.trace.states) {
@@ -141,7 +141,8 @@ void add_mark(Map& map, const FollowedBranch& branch, const MarkedOrbit& mark, i
   row.pieces = 0;
   row.direction = corner.way;
   for (std::size_t i = 0; i < branch.points.size(); ++i)
-    if (branch.points[i].kind == "mark" && branch.points[i].arc == mark.arc) row.point = static_cast<int>(i) + 1;
+    if (branch.points[i].kind == PointKind::mark && branch.points[i].arc == mark.arc)
+      row.point = static_cast<int>(i) + 1;
   const auto place = std::upper_bound(rows.begin(), rows.end(), mark.arc,
                                       [](double arc, const BranchRow& one) { return arc < *one.arc; });
   rows.insert(place, std::move(row));
@@ -195,7 +196,6 @@ std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std:
     row.branch = branch.name;
     row.point = static_cast<int>(rows.size()) + 1;
     row.kind = point.kind;
-    row.label = point.label;
     row.parameter = point.parameter;
     row.low = point.low;
     row.high = point.high;
@@ -204,9 +204,10 @@ std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std:
     if (point.multiplier) {
       row.multiplier_re = point.multiplier->real();
       row.multiplier_im = point.multiplier->imag();
-      if (point.kind == "torus") row.angle = std::abs(std::arg(*point.multiplier));
+      if (point.kind == PointKind::torus) row.angle = std::abs(std::arg(*point.multiplier));
     }
-    if (point.kind == "symmetry" || point.kind == "flip" || point.kind == "torus") row.crossings = point.crossings;
+    const bool switches = point.kind == PointKind::symmetry || point.kind == PointKind::flip;
+    if (switches || point.kind == PointKind::torus) row.crossings = point.crossings;
     row.prominence = point.prominence;
     row.side = point.side;
     if (point.change) {
@@ -216,16 +217,15 @@ std::vector<SpecialRow> special_rows_of(const FollowedBranch& branch, const std:
       if (place < x_of_rows.size()) row.contact_x = x_of_rows[place];
     }
     const int times = branch.clock.half ? 2 : 1;
-    if (point.kind != "end" && point.kind != "mark") {
+    if (point.kind != PointKind::end && point.kind != PointKind::mark) {
       row.runs_before = times * point.runs_before;
       row.runs_after = times * point.runs_after;
       row.held_before = times * point.held_before;
       row.held_after = times * point.held_after;
     }
     for (const auto& [corner, name] : branch.leaves)
-      if (corner == point.corner && (point.kind == "symmetry" || point.kind == "flip"))
-        row.to_branch += (row.to_branch.empty() ? "" : " ") + name;
-    row.ended = text(point.ends);
+      if (corner == point.corner && switches) row.to_branch += (row.to_branch.empty() ? "" : " ") + name;
+    row.ended = point.ends;
     row.note = point.note;
     rows.push_back(std::move(row));
   }
@@ -253,7 +253,7 @@ void BranchResults::add(const FollowedBranch& branch, std::vector<BranchRow> row
                         double scale) {
   std::move(rows.begin(), rows.end(), std::back_inserter(rows_));
   for (SpecialRow& row : special_rows_of(branch, x_of_rows)) {
-    found_ += row.kind != "end";
+    found_ += row.kind != PointKind::end;
     special_.push_back(std::move(row));
   }
   for (TurnRow& row : turn_rows_of(branch, scale)) turns_.push_back(std::move(row));
@@ -264,10 +264,9 @@ void BranchResults::add_missing(const std::string& name, double at, std::string 
   SpecialRow& row = special_.emplace_back();
   row.branch = name;
   row.point = 1;
-  row.kind = "end";
-  row.label = "EP";
+  row.kind = PointKind::end;
   row.parameter = at;
-  row.ended = "missing";
+  row.ended = TraceEnd::missing;
   row.note = why;
   if (missing_.empty()) missing_ = std::move(why);
 }

@@ -31,7 +31,7 @@ BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::Vector
 BranchRow orbit_row(SteppedMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter);
 
 /// The first point of one of these kinds along a branch; no end of it.
-std::optional<SpecialPoint> first_of(std::vector<SpecialPoint> points, const std::vector<std::string>& kinds);
+std::optional<SpecialPoint> first_of(std::vector<SpecialPoint> points, const std::vector<PointKind>& kinds);
 
 /// Folds below this share of the parameter's scale are not listed where the study names no prominence.
 inline constexpr double least_fold = 1e-4;

@@ -52,9 +52,16 @@ Field flag(const char* key, bool fallback, const char* text) {
   return field;
 }
 
-Field kinds_of_points(const char* key, std::vector<std::string> words, std::optional<Json> fallback, const char* text) {
+std::vector<std::string> words_of_kinds(const std::vector<PointKind>& kinds) {
+  std::vector<std::string> words;
+  for (const PointKind kind : kinds) words.emplace_back(word(kind));
+  return words;
+}
+
+Field kinds_of_points(const char* key, const std::vector<PointKind>& kinds, std::optional<Json> fallback,
+                      const char* text) {
   Field field = keys::of_form(Field::Form::words, key, std::nullopt, text);
-  field.spec = word_parameter(key, std::move(words), std::nullopt, text);
+  field.spec = word_parameter(key, words_of_kinds(kinds), std::nullopt, text);
   field = keys::optional(std::move(field));
   if (fallback) field.fallback = std::move(*fallback);
   return field;
@@ -65,7 +72,9 @@ Field kinds_of_points(const char* key, std::vector<std::string> words, std::opti
 std::vector<Field> continuation_keys() {
   using namespace keys;
   // In the order of the tables.
-  const std::vector<std::string> special_kinds = {"fold", "symmetry", "flip", "torus", "contact", "mark", "end"};
+  const std::vector<PointKind> switches = {PointKind::symmetry, PointKind::flip},
+                               all_kinds = {PointKind::fold,    PointKind::symmetry, PointKind::flip, PointKind::torus,
+                                            PointKind::contact, PointKind::mark,     PointKind::end};
   ObjectForm parameter;
   parameter.fields = {swept_pointer(), single(real("from", "as the parameter", any, std::nullopt, "Least value.")),
                       single(real("to", "as the parameter", any, std::nullopt, "Largest value."))};
@@ -120,14 +129,14 @@ std::vector<Field> continuation_keys() {
       word("follow", words_of(follows), "auto",
            "By pieces of a piecewise affine map, by steps of arclength, or not at all."),
       flag("both_ways", true, "Whether branches are followed both ways from their first orbit."),
-      kinds_of_points("switch", {"symmetry", "flip"}, Json::array({"symmetry", "flip"}),
+      kinds_of_points("switch", switches, words_of_kinds(switches),
                       "Kinds of points at which other branches begin that are followed too; null: none."),
       integer("switch_depth", {0, 8, false, false}, 1, "Branches on branches, at most so deep."),
       optional(real("prominence", "as the parameter", positive, std::nullopt,
                     "Least way that the parameter goes back by at a fold; null: 1e-4 of the gap, or of the value. For "
                     "folds that no other case has, it is 25 times what the two finest steps disagree about.")),
       integer("multipliers", {1, 64, false, false}, 4, "Number of multipliers told, largest first."),
-      kinds_of_points("stop_at", special_kinds, std::nullopt, "Kinds of points at which a branch ends; null: none."),
+      kinds_of_points("stop_at", all_kinds, std::nullopt, "Kinds of points at which a branch ends; null: none."),
       std::move(marks),
       std::move(reference),
       std::move(beneath),
@@ -241,6 +250,17 @@ void check_continued_cases(const Study& study) {
   throw InputError("/exclude", "every case is excluded; nothing would run");
 }
 
+namespace {
+
+// Words that were checked when the study was read.
+std::vector<PointKind> kinds_in(const Json& words) {
+  std::vector<PointKind> kinds;
+  for (const Json& one : words) kinds.push_back(of_word<PointKind>(one.get_ref<const std::string&>()).value());
+  return kinds;
+}
+
+}  // namespace
+
 ContinuationPlan continuation_plan(const Json& settings) {
   ContinuationPlan plan;
   const Json& parameter = settings.at("parameter");
@@ -268,10 +288,8 @@ ContinuationPlan continuation_plan(const Json& settings) {
     }
   plan.follow = value_of(follows, settings.at("follow"));
   plan.both_ways = settings.at("both_ways").get<bool>();
-  if (const auto given = settings.find("switch"); given != settings.end())
-    plan.branch_at = given->get<std::vector<std::string>>();
-  if (const auto given = settings.find("stop_at"); given != settings.end())
-    plan.stop_at = given->get<std::vector<std::string>>();
+  if (const auto given = settings.find("switch"); given != settings.end()) plan.branch_at = kinds_in(*given);
+  if (const auto given = settings.find("stop_at"); given != settings.end()) plan.stop_at = kinds_in(*given);
   plan.depth = settings.at("switch_depth").get<int>();
   if (const auto given = settings.find("prominence"); given != settings.end()) plan.prominence = given->get<double>();
   plan.multipliers = settings.at("multipliers").get<int>();

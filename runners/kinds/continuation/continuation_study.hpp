@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ricochet/contract/registry.hpp>
+#include <ricochet/measure/orbits/point_kind.hpp>
 #include <string>
 #include <vector>
 
@@ -40,9 +41,9 @@ struct ContinuationPlan {
   std::vector<WantedOrbit> orbits;
   Follow follow = Follow::automatic;
   bool both_ways = true;
-  std::vector<std::string> branch_at, stop_at;  ///< kinds of special points
-  int depth = 1;                                ///< of branches that begin on branches
-  std::optional<double> prominence;             ///< in units of the parameter
+  std::vector<PointKind> branch_at, stop_at;  ///< kinds of special points
+  int depth = 1;                              ///< of branches that begin on branches
+  std::optional<double> prominence;           ///< in units of the parameter
   int multipliers = 4;
   std::vector<double> marks;
   long long most_pieces = 200000;

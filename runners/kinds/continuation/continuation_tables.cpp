@@ -120,7 +120,9 @@ TableType<SpecialRow> special_points_type(const SweptColumns& swept) {
       .add(branch_column, &SpecialRow::branch)
       .add({"point", "1", "Number of the point on its branch, from 1."}, &SpecialRow::point)
       .add({"kind", "", "fold, symmetry, flip, torus, contact, mark or end."}, &SpecialRow::kind)
-      .add({"label", "", "What programs of continuation call it: LP, BP, PD, TR, GR, UZ, EP."}, &SpecialRow::label)
+      .add(
+          {"label", "", "What programs of continuation call it: LP, BP, PD, TR, GR, UZ, EP."},
+          [](const SpecialRow& row) { return Cell(label(row.kind)); }, [](SpecialRow&, const Cell&) {})
       .add({"name", "", "What it is called over all cases; empty where it has no counterpart."}, &SpecialRow::name)
       .add(swept.parameter, &SpecialRow::parameter)
       .add({"low", swept.parameter.unit, "Lower end of where the point may be."}, &SpecialRow::low)

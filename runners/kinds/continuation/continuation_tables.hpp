@@ -1,6 +1,8 @@
 #pragma once
 #include <complex>
 #include <optional>
+#include <ricochet/measure/orbits/branch.hpp>
+#include <ricochet/measure/orbits/point_kind.hpp>
 #include <string>
 #include <vector>
 
@@ -42,7 +44,8 @@ TableType<BranchRow> branches_type(int multipliers, const SweptColumns& swept = 
 struct SpecialRow {
   std::string id, branch;
   int point = 0;
-  std::string kind, label, name;
+  PointKind kind = PointKind::end;  ///< contact of any change of contact
+  std::string name;
   std::optional<double> parameter, low, high, arc, tip_displacement;
   std::optional<double> multiplier_re, multiplier_im, angle;
   std::optional<int> crossings;
@@ -50,7 +53,8 @@ struct SpecialRow {
   std::string side;
   std::optional<double> contact_phase, contact_x;
   std::optional<int> runs_before, runs_after, held_before, held_after;
-  std::string to_branch, ended, note;
+  std::string to_branch, note;
+  TraceEnd ended = TraceEnd::none;
 };
 TableType<SpecialRow> special_points_type(const SweptColumns& swept = {});
 

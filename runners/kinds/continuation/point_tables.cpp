@@ -106,7 +106,7 @@ std::vector<SpecialRow> special_rows(const StudyResults& results, const StudyPoi
   const auto add = [&](SpecialRow row, const CaseRecord& record, int name) {
     row.id = record.id;
     if (name >= 0) row.name = study.names()[static_cast<std::size_t>(name)].text;
-    if (row.kind != "fold" || !row.name.empty() || row.prominence.value_or(least) >= least)
+    if (row.kind != PointKind::fold || !row.name.empty() || row.prominence.value_or(least) >= least)
       rows.push_back(std::move(row));
   };
   auto point = study.points().begin();

@@ -10,12 +10,11 @@ namespace ricochet {
 
 /// What an orbit does at a point of a kind, and the point as a thing.
 struct PointWords {
-  const char *kind, *does, *thing;
+  const char *does, *thing;
 };
-const PointWords& point_words(const std::string& kind);
-bool is_point_kind(const std::string& kind);
-/// The kind of a name that an ask may use: "first contact" of "grazing".
-std::string point_kind(std::string asked);
+const PointWords& point_words(PointKind kind);
+/// The kind that an ask names: a first contact of "grazing". Nothing where it names none at which an orbit changes.
+std::optional<PointKind> point_kind(std::string asked);
 /// Whether two points are of one kind and their intervals overlap.
 bool at_one_place(const StudyPoint& a, const StudyPoint& b);
 

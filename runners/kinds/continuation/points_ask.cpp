@@ -22,13 +22,19 @@ namespace ricochet {
 namespace {
 
 /// What becomes of a branch, in words; "" of one that ends for a reason of its own.
-std::string end_words(const std::string& ended) {
-  static const std::map<std::string, std::string> words = {{"range", "reaches an end of the range"},
-                                                           {"closed", "closes"},
-                                                           {"joined", "joins another branch"},
-                                                           {"asked", "stops at a point of stop_at"}};
-  const auto found = words.find(ended);
-  return found == words.end() ? "" : found->second;
+std::string end_words(TraceEnd ended) {
+  switch (ended) {
+    case TraceEnd::range:
+      return "reaches an end of the range";
+    case TraceEnd::closed:
+      return "closes";
+    case TraceEnd::joined:
+      return "joins another branch";
+    case TraceEnd::asked:
+      return "stops at a point of stop_at";
+    default:
+      return "";
+  }
 }
 
 /// One branch of a case.
@@ -66,10 +72,13 @@ class PointsAsk {
         columns_(evidence.varying(cases_)),
         parameter_(report::swept_parameter(evidence.results())) {
     parameter_.unit = report::shown_unit(parameter_.unit);
-    for (const Json& one : ask.keys.at("points")) kinds_.insert(point_kind(one.get<std::string>()));
+    for (const Json& one : ask.keys.at("points"))
+      if (const auto kind = point_kind(one.get<std::string>()))
+        kinds_.insert(*kind);
+      else
+        all_ = true;
     // A contact of stop_at and of special_points is any of these.
-    if (kinds_.contains("contact")) kinds_.insert({"first contact", "lift-off"});
-    all_ = kinds_.contains("all");
+    if (kinds_.contains(PointKind::contact)) kinds_.insert({PointKind::first_contact, PointKind::lift_off});
     const Cases& owners = of.points.cases();
     std::map<std::string, std::size_t> best;
     std::vector<std::string> order;
@@ -148,16 +157,17 @@ class PointsAsk {
     const double least = of_.points.least_fold().value_or(0);
     for (const StudyPoint& point : of_.points.points()) {
       if (point.owner != owner) continue;
-      if (point.row.kind == "end") {
+      if (point.row.kind == PointKind::end) {
         for (Followed& branch : out.branches)
-          if (branch.name == point.row.branch && !point.row.ended.empty() && point.row.ended != "missing")
+          if (branch.name == point.row.branch && point.row.ended != TraceEnd::none &&
+              point.row.ended != TraceEnd::missing)
             branch.end = &point.row;
         continue;
       }
-      if (!is_point_kind(point.kind) || std::isnan(point.parameter) || !(all_ || kinds_.contains(point.kind))) continue;
+      if (!changes_orbit(point.kind) || std::isnan(point.parameter) || !(all_ || kinds_.contains(point.kind))) continue;
       // A turn by less than its place is uncertain by may be one of the step.
       const bool small = (point.name < 0 && point.prominence < least) || point.prominence <= 2 * point.half;
-      if (point.kind == "fold" && (small || is_doubling(point))) continue;
+      if (point.kind == PointKind::fold && (small || is_doubling(point))) continue;
       Told told{&point, point.parameter, point.half, point.half};
       if (const auto& low = point.row.low, &high = point.row.high; low && high) {
         told.less = std::max(0.0, told.value - *low);
@@ -179,7 +189,7 @@ class PointsAsk {
   bool is_doubling(const StudyPoint& turn) const {
     const std::vector<StudyPoint>& points = of_.points.points();
     return std::any_of(points.begin(), points.end(), [&](const StudyPoint& other) {
-      return other.owner == turn.owner && other.kind == "flip" && turn.period == 2 * other.period &&
+      return other.owner == turn.owner && other.kind == PointKind::flip && turn.period == 2 * other.period &&
              std::abs(other.parameter - turn.parameter) <= other.half + turn.half;
     });
   }
@@ -204,7 +214,7 @@ class PointsAsk {
     double away = std::max(share * of_.points.range(), 2 * known);
     for (const StudyPoint& other : of_.points.points()) {
       const double gap = side * (other.parameter - told.value);
-      if (other.owner == owner && is_point_kind(other.kind) && gap > known + other.half)
+      if (other.owner == owner && changes_orbit(other.kind) && gap > known + other.half)
         away = std::min(away, 0.5 * gap);
     }
     return std::max(away, known);
@@ -233,7 +243,7 @@ class PointsAsk {
     double turn = 0.5 * (*a.parameter + *b.parameter);
     const auto [low, high] = std::minmax(*a.parameter, *b.parameter);
     for (const StudyPoint& point : of_.points.points())
-      if (point.owner == one.owner && point.row.branch == branch.name && is_point_kind(point.kind) &&
+      if (point.owner == one.owner && point.row.branch == branch.name && changes_orbit(point.kind) &&
           low <= point.parameter && point.parameter <= high)
         turn = point.parameter;
     const BranchRow& own = (value < turn) == (*a.parameter < *b.parameter) ? a : b;
@@ -304,7 +314,8 @@ class PointsAsk {
     std::size_t lacking = 0;
     for (const int name : names) {
       const NamedPoint& named = of_.points.names()[static_cast<std::size_t>(name)];
-      const std::string &text = named.text, &kind = named.point->kind;
+      const PointKind kind = named.point->kind;
+      const std::string &text = named.text, said = word(kind);
       std::size_t reached = 0, absent = 0;
       std::optional<double> least;
       for (const PointPresenceRow& row : of_.presence) {
@@ -317,7 +328,7 @@ class PointsAsk {
         if (row.passed_to) least = std::min(*row.passed_to, least.value_or(*row.passed_to));
       }
       if (absent == 0 || ++lacking > most) continue;
-      const std::string at = text.starts_with(kind) ? text.substr(kind.size()) : " " + text;
+      const std::string at = text.starts_with(said) ? text.substr(said.size()) : " " + text;
       out.aside.push_back(fmt::format(
           "{} of {} cases have no {}{}{}{}.", absent, reached, point_words(kind).thing, at, unit(),
           least ? fmt::format(", though their branches go on to {} at least", short_number(*least, 4)) : ""));
@@ -397,7 +408,7 @@ class PointsAsk {
       for (const Followed& branch : one.branches) {
         if (ends.branches++ == 0) ends.first = &branch;
         ends.known += branch.end != nullptr;
-        ends.asked += branch.end && branch.end->ended == "asked";
+        ends.asked += branch.end && branch.end->ended == TraceEnd::asked;
         if (!branch.end || !end_words(branch.end->ended).empty()) continue;
         ++ends.inside;
         if (!ends.stopped) ends.stopped = &branch;
@@ -486,9 +497,10 @@ class PointsAsk {
   }
 
   std::string kinds_text() const {
-    std::vector<std::string> names(kinds_.begin(), kinds_.end());
-    if (kinds_.contains("contact"))
-      std::erase_if(names, [](const std::string& one) { return one == "first contact" || one == "lift-off"; });
+    const bool contacts = kinds_.contains(PointKind::contact);
+    std::set<std::string> names;
+    for (const PointKind kind : kinds_)
+      if (!contacts || (kind != PointKind::first_contact && kind != PointKind::lift_off)) names.insert(word(kind));
     return fmt::format("{}", fmt::join(names, " or "));
   }
 
@@ -506,7 +518,7 @@ class PointsAsk {
   std::set<const CaseRecord*> followed_;
   std::vector<std::string> columns_;
   report::Quantity parameter_;
-  std::set<std::string> kinds_;
+  std::set<PointKind> kinds_;
   bool all_ = false;
   std::vector<Followers> methods_;
 };

@@ -8,7 +8,7 @@ namespace ricochet {
 
 std::optional<double> StudyPoints::end_of(std::size_t owner, const std::string& branch) const {
   for (const StudyPoint& one : points_)
-    if (one.owner == owner && one.kind == "end" && one.row.branch == branch) return one.row.parameter;
+    if (one.owner == owner && one.kind == PointKind::end && one.row.branch == branch) return one.row.parameter;
   return std::nullopt;
 }
 
@@ -22,7 +22,7 @@ StudyPoints::FoldCounts StudyPoints::folds(std::size_t owner, std::size_t other)
     int& nameless = out.nameless[row.prominence];
     nameless += row.folds;
     for (const StudyPoint& one : points_)
-      nameless -= one.owner == owner && one.name >= 0 && one.kind == "fold" && one.row.branch == row.branch &&
+      nameless -= one.owner == owner && one.name >= 0 && one.kind == PointKind::fold && one.row.branch == row.branch &&
                   one.row.prominence.value_or(0) >= row.prominence;
   }
   return out;

@@ -18,15 +18,10 @@ constexpr const char* stiffness_column = "contact.stiffness";
 /// A branch that goes on by this share of the range beyond a place has passed it.
 constexpr double passed_share = 1e-3;
 
-bool is_named_kind(const std::string& kind) {
-  return kind != "end" && kind != "mark";
-}
-
-/// "first contact" of a contact with no run on one side, "lift-off" where one opens that never did.
-std::string kind_of(const SpecialRow& row) {
-  if (row.kind != "contact") return row.kind;
-  if (row.runs_before == 0 || row.runs_after == 0) return "first contact";
-  return row.held_before != row.held_after ? "lift-off" : row.kind;
+PointKind kind_of(const SpecialRow& row) {
+  if (row.kind != PointKind::contact) return row.kind;
+  if (row.runs_before == 0 || row.runs_after == 0) return PointKind::first_contact;
+  return row.held_before != row.held_after ? PointKind::lift_off : row.kind;
 }
 
 /// Branches that go down from an orbit have arcs below zero.
@@ -66,13 +61,14 @@ StudyPoints::StudyPoints(const Choices& study) : study_(study) {
   std::vector<std::size_t> place;
   for (std::size_t k = 0; k < points_.size(); ++k) {
     const StudyPoint& one = points_[k];
-    if (!is_named_kind(one.kind) || !one.row.parameter) continue;
+    if (!changes_orbit(one.kind) || !one.row.parameter) continue;
     points.push_back(one);
+    points.back().family = word(one.kind);
     if (one.branch >= 0)
-      points.back().kind += fmt::format(" of period {} {}", one.period,
-                                        !one.symmetric   ? ""
-                                        : *one.symmetric ? "symmetric"
-                                                         : "not symmetric");
+      points.back().family += fmt::format(" of period {} {}", one.period,
+                                          !one.symmetric   ? ""
+                                          : *one.symmetric ? "symmetric"
+                                                           : "not symmetric");
     place.push_back(k);
   }
   const PointScales scales{range_, tips_ > 0 ? tips_ : 1, arcs_ > 0 ? arcs_ : 1};
@@ -112,8 +108,9 @@ void StudyPoints::read(const CaseRecord& record) {
   method_.push_back(study_.key(record, method_columns_));
   for (SpecialRow& row : special_points_type().read(record.tables)) {
     const double at = row.parameter.value_or(NAN);
-    StudyPoint one{{owner, -1, kind_of(row), at, 0, row.tip_displacement.value_or(0), signed_arc(row),
-                    row.prominence.value_or(0)}};
+    StudyPoint one{
+        {owner, -1, "", at, 0, row.tip_displacement.value_or(0), signed_arc(row), row.prominence.value_or(0)},
+        kind_of(row)};
     for (const auto& end : {row.low, row.high})
       if (end) one.half = std::max(one.half, std::abs(*end - at));
     const auto branch = std::find_if(own.begin(), own.end(), [&](const Branch& of) { return of.name == row.branch; });
@@ -326,7 +323,7 @@ void StudyPoints::give_names() {
   const auto text = [&](std::size_t k, int digits) {
     const StudyPoint& point = *names_[k].point;
     const std::string period = point.period > 1 ? fmt::format("period {} ", point.period) : "";
-    return fmt::format("{}{} at {}", period, point.kind, short_number(limits[k], digits));
+    return fmt::format("{}{} at {}", period, word(point.kind), short_number(limits[k], digits));
   };
   constexpr int fewest = 4, most = 9;
   for (std::size_t k = 0; k < names_.size(); ++k) {

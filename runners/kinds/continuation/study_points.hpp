@@ -14,9 +14,9 @@
 /// The special points of a study over its cases: which are the same, and how they move as a case is refined.
 namespace ricochet {
 
-/// A special point of a case, and its name. Its owner is one of StudyPoints::cases(). Its kind is that of the row;
-/// "first contact" where no contact was before or is after, "lift-off".
+/// A special point of a case, and its name. Its owner is one of StudyPoints::cases().
 struct StudyPoint : CasePoint {
+  PointKind kind = PointKind::end;  ///< that of the row; a change of contact may be a first contact or a lift-off
   SpecialRow row = {};
   int period = 1;  ///< of its orbit
   std::optional<bool> symmetric = {};

@@ -35,24 +35,18 @@ bool ends_stability(const std::map<std::string, std::vector<BranchRow>>& rows, c
   return before && after && std::abs(*before - *after) > least_difference;
 }
 
-/// In the order in which kinds are told.
-constexpr PointWords point_kinds[] = {{"fold", "folds", "fold"},
-                                      {"torus", "becomes a torus", "torus"},
-                                      {"symmetry", "loses its symmetry", "loss of symmetry"},
-                                      {"flip", "doubles its period", "flip"},
-                                      {"first contact", "first touches a stop", "first contact"},
-                                      {"lift-off", "leaves a stop that held it", "lift-off"},
-                                      {"contact", "gains or loses a contact", "change of contact"}};
+/// In the order of the kinds, which is that in which they are told.
+constexpr PointWords words_of_points[] = {{"folds", "fold"},
+                                          {"becomes a torus", "torus"},
+                                          {"loses its symmetry", "loss of symmetry"},
+                                          {"doubles its period", "flip"},
+                                          {"first touches a stop", "first contact"},
+                                          {"leaves a stop that held it", "lift-off"},
+                                          {"gains or loses a contact", "change of contact"}};
 
 /// Contacts beyond which another motion begins, stable or not.
-bool changes_motion(const std::string& kind) {
-  return kind == "first contact" || kind == "lift-off";
-}
-
-std::size_t kind_rank(const std::string& kind) {
-  const auto* found = std::find_if(std::begin(point_kinds), std::end(point_kinds),
-                                   [&](const PointWords& one) { return one.kind == kind; });
-  return static_cast<std::size_t>(found - std::begin(point_kinds));
+bool changes_motion(PointKind kind) {
+  return kind == PointKind::first_contact || kind == PointKind::lift_off;
 }
 
 }  // namespace
@@ -62,13 +56,9 @@ bool at_one_place(const StudyPoint& a, const StudyPoint& b) {
   return a.kind == b.kind && std::abs(a.parameter - b.parameter) <= a.half + b.half + round_off * std::abs(b.parameter);
 }
 
-const PointWords& point_words(const std::string& kind) {
-  static constexpr PointWords other = {"", "changes", "point"};
-  return is_point_kind(kind) ? point_kinds[kind_rank(kind)] : other;
-}
-
-bool is_point_kind(const std::string& kind) {
-  return kind_rank(kind) < std::size(point_kinds);
+const PointWords& point_words(PointKind kind) {
+  static constexpr PointWords other = {"changes", "point"};
+  return changes_orbit(kind) ? words_of_points[static_cast<std::size_t>(kind)] : other;
 }
 
 std::vector<ToldPoint> told_points(const PointAnalysis& of) {
@@ -76,14 +66,14 @@ std::vector<ToldPoint> told_points(const PointAnalysis& of) {
   const std::string& reference = study.reference()->id;
   // Changes of contact last; else where stability ends, orders, whether a reference has it, the kind, and how well it
   // is located.
-  using Rank = std::tuple<bool, bool, bool, bool, bool, std::size_t, double, double>;
+  using Rank = std::tuple<bool, bool, bool, bool, bool, PointKind, double, double>;
   std::vector<std::pair<Rank, ToldPoint>> ranked;
   std::map<std::string, std::vector<BranchRow>> rows;
   for (BranchRow& row : branch_rows_in(*find_table(study.reference()->tables, branches_name)))
     if (row.arc && row.stable) rows[row.branch].push_back(std::move(row));
   std::vector<double> contacts;
   for (const StudyPoint& one : study.points())
-    if (one.owner == study.root() && one.kind == "first contact") contacts.push_back(one.parameter);
+    if (one.owner == study.root() && one.kind == PointKind::first_contact) contacts.push_back(one.parameter);
   for (std::size_t k = 0; k < study.names().size(); ++k) {
     const NamedPoint& name = study.names()[k];
     const auto limit = std::find_if(of.limits.begin(), of.limits.end(), [&](const PointLimitRow& row) {
@@ -91,7 +81,7 @@ std::vector<ToldPoint> told_points(const PointAnalysis& of) {
     });
     const StudyPoint& point = *name.point;
     if (limit == of.limits.end() || point.owner != study.root()) continue;
-    if (point.kind == "fold" && std::any_of(contacts.begin(), contacts.end(), [&](double contact) {
+    if (point.kind == PointKind::fold && std::any_of(contacts.begin(), contacts.end(), [&](double contact) {
           return std::abs(contact - point.parameter) <= point.half;
         }))
       continue;
@@ -103,8 +93,8 @@ std::vector<ToldPoint> told_points(const PointAnalysis& of) {
     const double width = limit->low && limit->high ? *limit->high - *limit->low : 0;
     const bool wide = width > wide_share * study.range();
     const ToldPoint told{&name, &*limit, ends_stability(rows, point.row)};
-    ranked.push_back({{point.kind == "contact", !told.ends_stability, !ordered, !limit->reference, wide,
-                       kind_rank(point.kind), width, -point.row.prominence.value_or(0)},
+    ranked.push_back({{point.kind == PointKind::contact, !told.ends_stability, !ordered, !limit->reference, wide,
+                       point.kind, width, -point.row.prominence.value_or(0)},
                       told});
   }
   const auto by_rank = [](const auto& a, const auto& b) { return a.first < b.first; };
@@ -112,8 +102,8 @@ std::vector<ToldPoint> told_points(const PointAnalysis& of) {
   // Where stability ends nowhere, every point is told.
   if (std::any_of(ranked.begin(), ranked.end(), [](const auto& one) { return one.second.ends_stability; }))
     std::erase_if(ranked, [](const auto& one) {
-      const std::string& kind = one.second.point().kind;
-      return kind == "contact" || (!one.second.ends_stability && !changes_motion(kind));
+      const PointKind kind = one.second.point().kind;
+      return kind == PointKind::contact || (!one.second.ends_stability && !changes_motion(kind));
     });
   // Points of several branches at one place are one.
   std::vector<const StudyPoint*> kept;
@@ -124,7 +114,7 @@ std::vector<ToldPoint> told_points(const PointAnalysis& of) {
     kept.push_back(&own);
     return false;
   });
-  std::map<std::string, int> met;
+  std::map<PointKind, int> met;
   std::vector<std::pair<int, ToldPoint>> turns;
   for (const auto& [rank, told] : ranked) turns.emplace_back(met[told.point().kind]++, told);
   std::stable_sort(turns.begin(), turns.end(), by_rank);

@@ -103,7 +103,7 @@ class StabilityRun {
     record_.status = Status::refused;
     record_.reasons = {sentence};
     std::vector<StabilityRow> rows;
-    for (const double h : steps_) rows.push_back({h, false, {}, "", {}, {}, "refused", sentence.text});
+    for (const double h : steps_) rows.push_back({h, false, {}, "", {}, {}, StepStatus::refused, sentence.text});
     record_.tables.push_back(stability_type().with(rows));
     return std::move(record_);
   }
@@ -201,42 +201,45 @@ class StabilityRun {
 
   // Status and reason of one row: the prediction, what was seen, and whether they agree. A scene is open now and then:
   // what grows there grows in it.
-  static std::pair<std::string, std::string> verdict(const StabilitySide& open, const StabilitySide& side,
-                                                     std::size_t i, bool observed) {
-    std::string status, reason;
+  static std::pair<StepStatus, std::string> verdict(const StabilitySide& open, const StabilitySide& side, std::size_t i,
+                                                    bool observed) {
+    std::optional<StepStatus> status;
+    std::string reason;
     bool grows = false;
     if (const StepSpectrum* known = side.spectrum(i)) {
       const StepSpectrum* apart = side.closed ? open.spectrum(i) : nullptr;
       const bool grows_open = apart && !apart->stable();
       grows = !known->stable() || grows_open;
-      status = grows ? "unstable" : known->marginal.empty() ? "stable" : "marginal";
+      status = grows ? StepStatus::unstable : known->marginal.empty() ? StepStatus::stable : StepStatus::marginal;
       if (!known->stable())
         append(reason, growth_text(*known, side.closed));
       else if (side.closed && !known->marginal.empty())
         append(reason, known->contact + " closed");
       if (grows_open) append(reason, "open, it " + growth_text(*apart, false));
     } else if (side.spectra[i]) {
-      status = "refused";
+      status = StepStatus::refused;
       append(reason, "not predicted: " + std::get<Refusal>(*side.spectra[i]).sentence.text);
     } else {
       append(reason, "not predicted: the budget was spent");
     }
     const auto& cell = observed ? side.cells[i] : std::optional<ObservedCell>();
     if (!cell) {
-      if (observed && status != "refused")
+      if (observed && status != StepStatus::refused)
         append(reason, side.untouched ? untouched_text : "not observed: the budget was spent");
-      return {status.empty() ? "failed" : status, reason};
+      return {status.value_or(StepStatus::failed), reason};
     }
-    const std::string seen = cell->behaviour == Behaviour::failed ? "failed" : cell->stable() ? "stable" : "unstable";
-    if (seen != "stable") append(reason, "observed: " + cell->cause);
-    if (side.spectrum(i) && grows != (seen != "stable"))
+    const StepStatus seen = cell->behaviour == Behaviour::failed ? StepStatus::failed
+                            : cell->stable()                     ? StepStatus::stable
+                                                                 : StepStatus::unstable;
+    if (seen != StepStatus::stable) append(reason, "observed: " + cell->cause);
+    if (side.spectrum(i) && grows != (seen != StepStatus::stable))
       append(reason, grows ? fmt::format("not observed in {} steps", cell->steps) : "the spectrum does not see it");
     if (cell->chatters())
       append(reason, fmt::format("chatter: {:.0f} % of the force's power is fast, {:.3g} changes of the active set per "
                                  "impact",
                                  100 * cell->fast_share, cell->changes_per_impact));
-    if (seen != "stable" || status == "refused" || status.empty()) status = seen;
-    return {status, reason};
+    if (seen != StepStatus::stable || status.value_or(StepStatus::refused) == StepStatus::refused) status = seen;
+    return {*status, reason};
   }
 
   void tabulate(const std::vector<StabilitySide>& sides, bool observed) {
@@ -254,7 +257,7 @@ class StabilityRun {
         const ObservedCell& cell = *side.cells[i];
         const bool touched = cell.impacts > 0;
         ObservedRow& row = seen.emplace_back();
-        row = {.step = steps_[i], .closed = side.closed, .behaviour = behaviour_word(cell.behaviour)};
+        row = {.step = steps_[i], .closed = side.closed, .behaviour = cell.behaviour};
         row.growth = cell.growth;
         if (side.closed) row.gain = cell.gain;
         if (side.closed) row.impacts = cell.impacts;

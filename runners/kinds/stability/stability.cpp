@@ -58,9 +58,8 @@ void check_stability(const Json& study) {
 // Marched at some steps, and stable at none of them.
 bool never_stable(const CaseRecord& record) {
   const std::vector<ObservedRow> rows = stability_observed_type().read(record.tables);
-  return !rows.empty() && std::none_of(rows.begin(), rows.end(), [](const ObservedRow& row) {
-    return row.behaviour == "stable" || row.behaviour == "marginal";
-  });
+  return !rows.empty() &&
+         std::none_of(rows.begin(), rows.end(), [](const ObservedRow& row) { return stays_bounded(row.behaviour); });
 }
 
 std::string limits_text(const CaseRecord& record) {

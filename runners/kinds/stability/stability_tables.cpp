@@ -141,8 +141,8 @@ Table stability_cells_table(const StudyResults& results) {
     for (const StepCell& cell : range.cells) {
       const auto growth = cell.radius ? std::optional(*cell.radius - 1) : std::nullopt;
       out.rows.push_back({record.id, closed, cell.step, Cell(cell.radius), Cell(growth), Cell(cell.worst),
-                          prediction_at(cell), cell.behaviour, cell.observed_unstable(), cell.disagrees(),
-                          cell.marginal, cell.status, cell.reason});
+                          prediction_at(cell), cell.behaviour ? word(*cell.behaviour) : "", cell.observed_unstable(),
+                          cell.disagrees(), cell.marginal, cell.status, cell.reason});
     }
   });
   return out;
@@ -157,19 +157,19 @@ Table stability_disagreements_table(const StudyResults& results) {
        {"steps", "1", "Steps in the range."},
        {"predicted", "", "stable or unstable."},
        {"observed", "", "stable or unstable."}});
-  const auto word = [](bool unstable) { return unstable ? "unstable" : "stable"; };
+  const auto did = [](bool unstable) { return unstable ? "unstable" : "stable"; };
   each_range(results, [&](const CaseRecord& record, bool closed, const StepRange& range) {
     for (const Disagreement& one : disagreements(range))
-      out.rows.push_back({record.id, closed, one.from, one.to, one.steps, word(one.predicted_unstable),
-                          word(!one.predicted_unstable)});
+      out.rows.push_back(
+          {record.id, closed, one.from, one.to, one.steps, did(one.predicted_unstable), did(!one.predicted_unstable)});
   });
   return out;
 }
 
 namespace {
 
-std::map<double, std::string> behaviours_of(const CaseRecord& record, bool closed) {
-  std::map<double, std::string> out;
+std::map<double, Behaviour> behaviours_of(const CaseRecord& record, bool closed) {
+  std::map<double, Behaviour> out;
   for (const ObservedRow& row : stability_observed_type().read(record.tables))
     if (row.step && row.closed == closed) out[*row.step] = row.behaviour;
   return out;
@@ -177,13 +177,13 @@ std::map<double, std::string> behaviours_of(const CaseRecord& record, bool close
 
 // The range as the case left it; nothing where it has none.
 std::optional<StepRange> own_range(const CaseRecord& record, bool closed) {
-  const std::map<double, std::string> behaviours = behaviours_of(record, closed);
+  const std::map<double, Behaviour> behaviours = behaviours_of(record, closed);
   StepRange out;
   for (const StabilityRow& row : stability_type().read(record.tables)) {
     if (row.closed != closed || !row.step) continue;
     const auto seen = behaviours.find(*row.step);
     out.cells.push_back({*row.step, row.radius, row.radius, row.marginal, row.status, row.reason,
-                         seen == behaviours.end() ? std::string() : seen->second});
+                         seen == behaviours.end() ? std::nullopt : std::optional(seen->second)});
     out.predicted = row.limit_predicted;
     out.observed = row.limit_observed;
   }
@@ -235,21 +235,21 @@ namespace {
 
 // Whether the range has a limit, and which way it has none.
 template <class Known, class Unstable>
-std::string where(const StepRange& range, const std::optional<double>& limit, Known known, Unstable unstable) {
-  if (limit) return "limit";
-  if (std::none_of(range.cells.begin(), range.cells.end(), known)) return "";
-  return std::any_of(range.cells.begin(), range.cells.end(), unstable) ? "below the range" : "none";
+RangeLimit where(const StepRange& range, const std::optional<double>& limit, Known known, Unstable unstable) {
+  if (limit) return RangeLimit::limit;
+  if (std::none_of(range.cells.begin(), range.cells.end(), known)) return RangeLimit::not_made;
+  return std::any_of(range.cells.begin(), range.cells.end(), unstable) ? RangeLimit::below : RangeLimit::none;
 }
 
-std::string prediction(const StepRange& range) {
+RangeLimit prediction(const StepRange& range) {
   // Of its own spectrum: what grows apart from the stops has a limit of its own.
   const auto known = [](const StepCell& cell) { return cell.radius.has_value(); };
   const auto unstable = [](const StepCell& cell) { return cell.radius && *cell.radius > 1 + growth_tolerance; };
   return where(range, range.predicted, known, unstable);
 }
 
-std::string observation(const StepRange& range) {
-  const auto known = [](const StepCell& cell) { return !cell.behaviour.empty(); };
+RangeLimit observation(const StepRange& range) {
+  const auto known = [](const StepCell& cell) { return cell.behaviour.has_value(); };
   return where(range, range.observed, known, std::mem_fn(&StepCell::observed_unstable));
 }
 
@@ -270,7 +270,7 @@ std::string marginal(const StepRange& range) {
 // seen.
 const StepCell* first_unstable(const StepRange& range) {
   const auto found = std::find_if(range.cells.begin(), range.cells.end(), [](const StepCell& cell) {
-    return cell.status == "unstable" || cell.status == "failed" || cell.status == "refused";
+    return cell.status != StepStatus::stable && cell.status != StepStatus::marginal;
   });
   return found == range.cells.end() ? nullptr : &*found;
 }
@@ -353,7 +353,7 @@ std::vector<LimitRow> step_limit_rows(const StudyResults& results) {
       if (const StepCell* grows = first_unstable(*range)) {
         row.first_unstable = grows->step;
         row.grows = grows->reason.substr(0, grows->reason.find("; "));
-        row.refused = grows->status == "refused";
+        row.refused = grows->status == StepStatus::refused;
       }
       rows.push_back(std::move(row));
     }

@@ -1,5 +1,7 @@
 #pragma once
+#include <array>
 #include <optional>
+#include <ricochet/measure/stability/observed_stability.hpp>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,12 @@ struct StepSpectrum;
 /// By how much a step grows, and what does.
 std::string growth_text(const StepSpectrum& known, bool closed);
 
+/// What became of a step: as the plan predicts it, or as it was seen where that is worse.
+enum class StepStatus { stable, marginal, unstable, failed, refused };
+constexpr std::array<const char*, 5> words_of(StepStatus) {
+  return {"stable", "marginal", "unstable", "failed", "refused"};
+}
+
 /// One row of `stability`: a step and contact state, what the plan predicts there and what became of it.
 struct StabilityRow {
   std::optional<double> step;
@@ -22,7 +30,8 @@ struct StabilityRow {
   std::optional<double> radius;
   std::string marginal;
   std::optional<double> limit_predicted, limit_observed;
-  std::string status, reason;
+  StepStatus status = StepStatus::failed;
+  std::string reason;
 };
 TableType<StabilityRow> stability_type();
 
@@ -30,7 +39,7 @@ TableType<StabilityRow> stability_type();
 struct ObservedRow {
   std::optional<double> step;
   bool closed = false;
-  std::string behaviour;
+  Behaviour behaviour = Behaviour::stable;
   std::optional<double> growth = {}, gain = {};
   std::optional<long long> impacts = {};
   std::optional<double> changes_per_impact = {}, fast_share = {};
@@ -59,12 +68,14 @@ struct StepCell {
   double step = 0;               ///< s
   std::optional<double> radius;  ///< of the contact state itself
   std::optional<double> worst;   ///< the larger of the radii that the marched cell meets: a scene is open as well
-  std::string marginal, status, reason;
-  std::string behaviour;  ///< "" where not observed; stable, marginal, unstable, diverged, failed
+  std::string marginal;
+  StepStatus status = StepStatus::failed;
+  std::string reason;
+  std::optional<Behaviour> behaviour = {};  ///< nothing where not observed
   /// By the tolerance of the spectrum itself (growth_tolerance).
   bool predicted_unstable() const;
-  bool observed_unstable() const { return behaviour == "unstable" || behaviour == "diverged" || behaviour == "failed"; }
-  bool disagrees() const { return worst && !behaviour.empty() && predicted_unstable() != observed_unstable(); }
+  bool observed_unstable() const { return behaviour && !stays_bounded(*behaviour); }
+  bool disagrees() const { return worst && behaviour && predicted_unstable() != observed_unstable(); }
 };
 
 /// One contact state of one case, along the step.
@@ -104,13 +115,19 @@ struct OpenLimit {
 void compare_with_declared(const StepPlan& plan, const SemiDiscrete& problem, const OpenLimit& open,
                            CaseRecord& record);
 
+/// Whether the steps of a range have a limit: all of them are stable where there is none.
+enum class RangeLimit { not_made, limit, none, below };
+constexpr std::array<const char*, 4> words_of(RangeLimit) {
+  return {"", "limit", "none", "below the range"};
+}
+
 /// One row of `step_limits`: a case and a contact state.
 struct LimitRow {
   std::string id;
   bool closed = false, counted = false;
-  std::string prediction;
+  RangeLimit prediction = RangeLimit::not_made;
   std::optional<double> predicted;
-  std::string observation;
+  RangeLimit observation = RangeLimit::not_made;
   std::optional<double> observed, expected, ratio;
   std::optional<bool> agrees;
   int disagreeing = 0;

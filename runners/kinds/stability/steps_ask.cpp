@@ -16,9 +16,6 @@
 namespace ricochet {
 namespace {
 
-/// What a range without a bound says in its place.
-constexpr const char* no_bound = "none";
-
 /// What bounds the step of a case.
 enum class Bound { stop, mesh, marched, none, everywhere, unknown };
 
@@ -36,6 +33,10 @@ struct StepLimit {
   std::optional<double> step = {}, low = {}, high = {};
   std::string reason = {};
 };
+
+bool made(RangeLimit one) {
+  return one != RangeLimit::not_made;
+}
 
 /// A stop adds its stiffness over its mass to ω² of the mesh: h_c⁻² ≤ h_o⁻² + h_s⁻². It bounds the step where its part
 /// is the larger one, h_c < h_o/√2.
@@ -134,19 +135,19 @@ class StepsAsk {
 
   /// Whether the open structure was marched, and no scene showed anything of contact.
   static bool predicted_alone(const StepLimit& one) {
-    return !one.closed.prediction.empty() && one.closed.observation.empty() && !one.open.observation.empty();
+    return made(one.closed.prediction) && !made(one.closed.observation) && made(one.open.observation);
   }
 
   void judge(StepLimit& out) const {
     const LimitRow &open = out.open, &closed = out.closed;
     std::vector<std::string> parts;
-    const bool has_closed = !closed.id.empty() && !closed.prediction.empty();
-    if (open.prediction == "below the range" || (has_closed && closed.prediction == "below the range")) {
+    const bool has_closed = !closed.id.empty() && made(closed.prediction);
+    if (open.prediction == RangeLimit::below || (has_closed && closed.prediction == RangeLimit::below)) {
       out.bound = Bound::everywhere;
-      parts.emplace_back(open.prediction == "below the range"
+      parts.emplace_back(open.prediction == RangeLimit::below
                              ? "unstable at every step of the range"
                              : "unstable with the stop closed at every step of the range");
-    } else if (open.prediction.empty()) {
+    } else if (!made(open.prediction)) {
       parts.emplace_back("no prediction was made");
     } else {
       std::optional<double> step = open.predicted;
@@ -171,7 +172,7 @@ class StepsAsk {
         if (predicted_alone(out)) parts.emplace_back("contact not marched");
         if (has_closed && open.predicted)
           parts.push_back(fmt::format("without contact {} s", step_words(*open.predicted)));
-        if (!closed.id.empty() && closed.prediction.empty()) parts.emplace_back("the closed stop was not predicted");
+        if (!closed.id.empty() && !made(closed.prediction)) parts.emplace_back("the closed stop was not predicted");
       } else {
         parts.push_back("every step of the range is stable");
       }
@@ -193,8 +194,8 @@ class StepsAsk {
 
   void say_gains(asks::Answered& out) const {
     const Members gain = members([](const StepLimit& one) {
-      return one.closed.prediction == no_bound && one.closed.disagreeing > 0 && !one.closed.observation.empty() &&
-             one.closed.observation != no_bound;
+      return one.closed.prediction == RangeLimit::none && one.closed.disagreeing > 0 && made(one.closed.observation) &&
+             one.closed.observation != RangeLimit::none;
     });
     if (!gain.empty())
       out.aside.push_back(fmt::format("Impacts make energy though every spectrum is stable in {} of {}: {}.",

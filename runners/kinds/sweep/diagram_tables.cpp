@@ -74,7 +74,7 @@ constexpr double kReach = 0.1;
 
 /// Whether a class is none: what comes before or after it is no change of the motion.
 bool open(const std::string& regime) {
-  return regime == text(Regime::undecided) || regime == text(Regime::failed);
+  return regime == word(Regime::undecided) || regime == word(Regime::failed);
 }
 
 // Those between classes that are known.
@@ -213,7 +213,7 @@ Table attractors_table(const StudyDiagram& study) {
         extent.first == extent.last
             ? "at " + six_digits(from)
             : fmt::format("{} to {}, {}", six_digits(from), six_digits(to), count_of(extent.values.size(), "value"));
-    rows.push_back({attractor, label.label, static_cast<int>(extent.cases.size()), from, to, text(extent.motion.regime),
+    rows.push_back({attractor, label.label, static_cast<int>(extent.cases.size()), from, to, word(extent.motion.regime),
                     period_of(extent.motion), symmetric(extent), fraction.value, fraction.low, fraction.high,
                     label.presence,
                     fmt::format("Attractor {} ({}, {}) {}", attractor, text(extent.motion), range, label.sentence)});

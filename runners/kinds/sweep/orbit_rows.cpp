@@ -30,7 +30,7 @@ OrbitRow orbit_row(const OrbitView& view, const std::string& start, const Sectio
   OrbitRow row;
   row.parameter = view.value;
   row.start = start;
-  row.regime = text(view.complete() ? view.judged.verdict.motion.regime : Regime::failed);
+  row.regime = word(view.complete() ? view.judged.verdict.motion.regime : Regime::failed);
   for (const Interval& one : view.exponents.values) row.exponents.push_back({one.value, one.low, one.high});
   row.exponent_method = view.exponents.method;
   if (view.exponents.twin) row.exponent_twin = view.exponents.twin->value;
@@ -217,7 +217,7 @@ void add_shares(CaseRecord& record, const std::vector<OrbitView>& views) {
 }
 
 void add_grazing_row(CaseRecord& record, const Grazing& grazing) {
-  const char *below = contact_word, *above = text(Regime::no_contact);
+  const char *below = contact_word, *above = word(Regime::no_contact);
   if (grazing.opens_below) std::swap(below, above);
   if (Table* changes = find_table(record.tables, "bifurcations"))
     changes->rows.push_back(change_row_type().row(

@@ -20,8 +20,8 @@ std::vector<CaseLink> chain(std::size_t count, const std::string& along = "steps
   return out;
 }
 
-CasePoint point(std::size_t owner, double parameter, double displacement = 0, const std::string& kind = "fold") {
-  return {owner, 1, kind, parameter, 1e-7, displacement, 0.1, 0};
+CasePoint point(std::size_t owner, double parameter, double displacement = 0, const std::string& family = "fold") {
+  return {owner, 1, family, parameter, 1e-7, displacement, 0.1, 0};
 }
 
 /// A fold, a first contact and a torus that move as h², on cases of 8000, 4000, 2000, 1000 steps per period.
@@ -92,7 +92,7 @@ TEST_CASE("turns around the place of a point share it") {
   REQUIRE(fold != found.sharing.end());
   const auto at = static_cast<std::size_t>(fold - found.sharing.begin());
   CHECK(points[at].owner == 2);
-  CHECK(points[at].kind == "fold");
+  CHECK(points[at].family == "fold");
 }
 
 TEST_CASE("a finer pair is not farther apart than four times what coarser pairs show") {

@@ -31,7 +31,7 @@ BranchRun run(Started& from, int way, double least, double largest) {
   return branch;
 }
 
-const SpecialPoint& first_of(const std::vector<SpecialPoint>& points, const std::string& kind) {
+const SpecialPoint& first_of(const std::vector<SpecialPoint>& points, PointKind kind) {
   const auto found =
       std::find_if(points.begin(), points.end(), [&](const SpecialPoint& one) { return one.kind == kind; });
   REQUIRE(found != points.end());
@@ -66,7 +66,7 @@ TEST_CASE("the branch of the shaken tube folds and touches where another program
   SECTION("upwards") {
     const BranchRun branch = run(from, 1, 0.06, 0.1005);
     const auto points = special_points(branch.trace(), {true, 5e-4});
-    const SpecialPoint& fold = first_of(points, "fold");
+    const SpecialPoint& fold = first_of(points, PointKind::fold);
     CHECK(fold.parameter == Approx(0.1004955).margin(1e-7));
     CHECK(fold.low < fold.parameter);
     CHECK(fold.high > fold.parameter);
@@ -80,7 +80,7 @@ TEST_CASE("the branch of the shaken tube folds and touches where another program
     CHECK(contact->parameter == Approx(0.0791792331).margin(1e-10));
     CHECK(contact->low < contact->parameter);
     // The turn before it, the only one so prominent but the contact itself.
-    CHECK(first_of(points, "fold").parameter == Approx(0.0674790).margin(1e-7));
+    CHECK(first_of(points, PointKind::fold).parameter == Approx(0.0674790).margin(1e-7));
   }
 }
 
@@ -231,7 +231,7 @@ TEST_CASE("each special point has a state of its branch at its corner") {
   Started from(8000, true, 0.08);
   const BranchRun branch = run(from, 1, 0.07, 0.0926);
   for (const SpecialPoint& point : special_points(branch.trace(), {true, 1e-5})) {
-    INFO(point.kind << " at " << point.parameter);
+    INFO(word(point.kind) << " at " << point.parameter);
     CHECK(branch.trace().states.contains(point.corner));
   }
 }

@@ -30,7 +30,7 @@ TEST_CASE("motion class: every class is read from its own words, and from the tw
     INFO(said);
     CHECK(words.insert(said).second);
     CHECK(motion_class(said) == one);
-    CHECK(motion_class(text(one.regime), one.period > 0 ? std::optional<double>(one.period) : std::nullopt) == one);
+    CHECK(motion_class(word(one.regime), one.period > 0 ? std::optional<double>(one.period) : std::nullopt) == one);
   }
   CHECK(words.count("no contact") == 1);
   CHECK(words.count("at rest") == 1);

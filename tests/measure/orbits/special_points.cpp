@@ -22,7 +22,7 @@ BranchTrace branch_through(const std::vector<double>& path) {
   return trace;
 }
 
-std::vector<SpecialPoint> points_of(const std::vector<SpecialPoint>& points, const std::string& kind) {
+std::vector<SpecialPoint> points_of(const std::vector<SpecialPoint>& points, PointKind kind) {
   std::vector<SpecialPoint> own;
   for (const SpecialPoint& point : points)
     if (point.kind == kind) own.push_back(point);
@@ -87,18 +87,21 @@ TEST_CASE("turns between two others are as prominent as the smaller way, in any 
 
 TEST_CASE("a fold next to a graze, where its branch ends, is listed, and what turns by less is not") {
   // COCO's impact oscillator: from 1 N down to the fold at 0.0999708 N and back to the graze at 0.1 N.
-  const auto found = points_of(special_points(branch_through({1, 0.5, 0.0999708, 0.1}), folds_from(1e-4)), "fold");
+  const auto found =
+      points_of(special_points(branch_through({1, 0.5, 0.0999708, 0.1}), folds_from(1e-4)), PointKind::fold);
   REQUIRE(found.size() == 1);
   CHECK(found[0].parameter == 0.0999708);
-  CHECK(points_of(special_points(branch_through({1, 0.5, 0.0999708, 0.099972}), folds_from(1e-4)), "fold").empty());
-  CHECK(points_of(special_points(branch_through({1, 0.5, 0.49999, 0.50001, 0.2}), folds_from(1e-4)), "fold").empty());
+  CHECK(points_of(special_points(branch_through({1, 0.5, 0.0999708, 0.099972}), folds_from(1e-4)), PointKind::fold)
+            .empty());
+  CHECK(points_of(special_points(branch_through({1, 0.5, 0.49999, 0.50001, 0.2}), folds_from(1e-4)), PointKind::fold)
+            .empty());
 }
 
 TEST_CASE("where stops give back speed a turn within the uncertainty of orbits is none, and intervals hold it") {
   BranchTrace trace = branch_through({1, 0.4, 0.402, 0.3, 0.9});
   for (BranchCorner& corner : trace.corners) corner.rebounds = corner.placed = 0.005;
   trace.rebounds = 0.005;
-  const auto found = points_of(special_points(trace, folds_from(1e-4)), "fold");
+  const auto found = points_of(special_points(trace, folds_from(1e-4)), PointKind::fold);
   REQUIRE(found.size() == 1);
   CHECK(found[0].parameter == 0.3);
   CHECK(found[0].low <= 0.295);
@@ -107,7 +110,7 @@ TEST_CASE("where stops give back speed a turn within the uncertainty of orbits i
 
 TEST_CASE("a branch that comes by its folds again has each once") {
   BranchTrace trace = branch_through({0.5, 0.9, 0.2, 0.9, 0.2, 0.9, 0.2, 0.5});
-  CHECK(points_of(special_points(trace, folds_from(1e-4)), "fold").size() == 2);
+  CHECK(points_of(special_points(trace, folds_from(1e-4)), PointKind::fold).size() == 2);
 }
 
 TEST_CASE("a multiplier that was one of a pair a corner before passes −1 where the product of 1 + μ does") {
@@ -120,7 +123,7 @@ TEST_CASE("a multiplier that was one of a pair a corner before passes −1 where
       std::vector<std::complex<double>> both = {sum / 2 + root, sum / 2 - root};
       corner.raw = corner.smooth = roots(both);
     }
-    const auto flips = points_of(special_points(trace, {}), "flip");
+    const auto flips = points_of(special_points(trace, {}), PointKind::flip);
     REQUIRE(flips.size() == 1);
     CHECK(flips[0].parameter == Approx(1.3));
     CHECK(flips[0].low < 1.3);
@@ -142,7 +145,7 @@ TEST_CASE("of crossings that flicker the one stands for them after which the cou
   }
   PointSearch search;
   search.half = true;
-  const auto found = points_of(special_points(trace, search), "symmetry");
+  const auto found = points_of(special_points(trace, search), PointKind::symmetry);
   REQUIRE(found.size() == 1);
   CHECK(found[0].parameter == Approx(10.5));
   CHECK(found[0].low <= 11);
@@ -157,10 +160,10 @@ TEST_CASE("a multiplier that jumps over −1 with a contact and back beside it i
     corner.runs = more ? 2 : 1;
     corner.raw = corner.smooth = roots({more ? -5 : -0.5, 0.1});
   }
-  CHECK(points_of(special_points(trace, {}), "flip").empty());
+  CHECK(points_of(special_points(trace, {}), PointKind::flip).empty());
   for (BranchCorner& corner : trace.corners)
     if (corner.parameter > 3) corner.raw = corner.smooth = roots({-4, 0.1}), corner.runs = 2;
-  const auto flips = points_of(special_points(trace, {}), "flip");
+  const auto flips = points_of(special_points(trace, {}), PointKind::flip);
   REQUIRE(flips.size() == 1);
   CHECK(flips[0].parameter == 2);
   CHECK_FALSE(flips[0].multiplier);
@@ -177,7 +180,7 @@ TEST_CASE("two crossings far apart along the branch are two points, however few 
       const bool outside = corner.parameter > 8.5 && corner.parameter < 24.5;
       corner.raw = corner.smooth = roots({outside ? -1.2 : -0.8, 0.5});
     }
-    const auto flips = points_of(special_points(trace, {}), "flip");
+    const auto flips = points_of(special_points(trace, {}), PointKind::flip);
     REQUIRE(flips.size() == 2);
     CHECK(flips[0].parameter == Approx(8.5));
     CHECK(flips[0].high < 12);
@@ -194,7 +197,7 @@ TEST_CASE("contacts are known to round-off, those that change at once are one, a
     if (i > 0) trace.corners[i].change = {static_cast<long long>(i), 0, true, true};
     trace.corners[i].residual = 1e-15;
   }
-  auto contacts = points_of(special_points(trace, {}), "contact");
+  auto contacts = points_of(special_points(trace, {}), PointKind::contact);
   REQUIRE(contacts.size() == 1);
   CHECK(contacts[0].parameter == 0.225);
   CHECK(contacts[0].high - contacts[0].low < 1e-11);
@@ -207,7 +210,7 @@ TEST_CASE("contacts are known to round-off, those that change at once are one, a
     trace.corners[i].held = i < 3 ? 1 : 0;
     trace.corners[i].change.closes = false;
   }
-  contacts = points_of(special_points(trace, {}), "contact");
+  contacts = points_of(special_points(trace, {}), PointKind::contact);
   REQUIRE(contacts.size() == 1);
   CHECK(contacts[0].parameter == 0.3);
   CHECK(contacts[0].note == "a permanent contact opens");

@@ -113,7 +113,7 @@ std::vector<SpecialPoint> orbit_points(int modes, double at, int periods, int wa
   return special_points(follower.trace(), search);
 }
 
-std::vector<SpecialPoint> of_kind(const std::vector<SpecialPoint>& points, const std::string& kind) {
+std::vector<SpecialPoint> of_kind(const std::vector<SpecialPoint>& points, PointKind kind) {
   std::vector<SpecialPoint> own;
   for (const SpecialPoint& point : points)
     if (point.kind == kind) own.push_back(point);
@@ -147,21 +147,21 @@ TEST_CASE("an orbit of the continuous beam without contact is solved at once") {
 TEST_CASE("first contact of the continuous beam is its gap over its response, and its branch goes on from there") {
   // Downwards from 0.08 m, over the folds near 0.0674, up to the graze and back to the end of the range.
   const auto points = orbit_points(20, 0.08, 300, -1, least);
-  const auto grazes = of_kind(points, "contact");
+  const auto grazes = of_kind(points, PointKind::contact);
   REQUIRE_FALSE(grazes.empty());
   CHECK(grazes.back().note == "first contact");
   // Modes beyond 20 have 3e-9 of the response.
   CHECK(grazes.back().parameter == Approx(beam_gap / response()).epsilon(0).margin(1e-9));
   CHECK(points.back().note == "the range ends at 0.066");
   bool lower_fold = false;
-  for (const SpecialPoint& fold : of_kind(points, "fold"))
+  for (const SpecialPoint& fold : of_kind(points, PointKind::fold))
     lower_fold = lower_fold || std::abs(fold.parameter - 0.06745046843) < 1e-8;
   CHECK(lower_fold);
 }
 
 TEST_CASE("the upper fold of the continuous beam lies at 0.1005653 m") {
   double fold = 0;
-  for (const SpecialPoint& point : of_kind(orbit_points(16, 0.08, 300, 1, largest), "fold"))
+  for (const SpecialPoint& point : of_kind(orbit_points(16, 0.08, 300, 1, largest), PointKind::fold))
     if (point.parameter > 0.1) fold = point.parameter;
   // With 12, 20 and 40 modes 0.10056532194, …286 and …292.
   CHECK(fold == Approx(0.10056532292).epsilon(0).margin(1e-9));
@@ -170,7 +170,7 @@ TEST_CASE("the upper fold of the continuous beam lies at 0.1005653 m") {
 TEST_CASE("the torus of the continuous beam is the same with twice the modes and steps four times finer") {
   // 0.0849574 m; intervals are what a step of 1e-4 of the range leaves.
   const auto torus = [](int modes, double finer) {
-    const auto found = of_kind(orbit_points(modes, 0.084, 300, 1, 0.0853, finer), "torus");
+    const auto found = of_kind(orbit_points(modes, 0.084, 300, 1, 0.0853, finer), PointKind::torus);
     REQUIRE(found.size() == 1);
     CHECK(found.front().low < found.front().parameter);
     CHECK(found.front().parameter < found.front().high);

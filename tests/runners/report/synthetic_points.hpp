@@ -87,7 +87,7 @@ inline CaseRecord points_case(const std::string& mass, double stiffness, int ele
     row.direction = 1;
     rows.push_back(row);
   };
-  const auto add_point = [&](const std::string& branch, const char* kind, double arc, double parameter, double tip,
+  const auto add_point = [&](const std::string& branch, PointKind kind, double arc, double parameter, double tip,
                              double half) {
     SpecialRow row;
     row.branch = branch;
@@ -113,27 +113,28 @@ inline CaseRecord points_case(const std::string& mass, double stiffness, int ele
     if (!round && parameter >= torus) {
       round = true;
       add_row_at("orbit-1+", s, torus, 0.004 - 0.12 * s, 0);
-      add_point("orbit-1+", "torus", s, torus, -0.001, 3e-5);
+      add_point("orbit-1+", PointKind::torus, s, torus, -0.001, 3e-5);
       points.back().angle = std::atan2(0.8, -0.6);
       points.back().crossings = 9;
     }
     if (folds && !turned && back > 0) {
       turned = true;
       add_row_at("orbit-1+", length, top, 0.004 - 0.12 * length, 2);
-      add_point("orbit-1+", "fold", length, top, 0.004 - 0.12 * length, law.noise);
+      add_point("orbit-1+", PointKind::fold, length, top, 0.004 - 0.12 * length, law.noise);
       points.back().prominence = 0.018;
       points.back().side = "below";
     }
     // Stable up to the torus, and again from 0.0958 to the fold.
     add_row_at("orbit-1+", s, parameter, tip, back > 0 ? 1 : parameter > torus && parameter < 0.0958 ? 2 : 0);
   }
-  add_point("orbit-1+", "end", *rows.back().arc, *rows.back().parameter, *rows.back().tip_displacement, 0);
+  add_point("orbit-1+", PointKind::end, *rows.back().arc, *rows.back().parameter, *rows.back().tip_displacement, 0);
   points.back().note = "range";
   for (int k = 0; k <= count; ++k) {
     const double s = 0.02 * k / count, parameter = start - s;
     if (k > 0 && parameter < contact && parameter + 0.02 / count >= contact) {
       add_row_at("orbit-1−", start - contact, contact, 0.004 + 0.1 * (start - contact), 0);
-      add_point("orbit-1−", "contact", start - contact, contact, 0.004 + 0.1 * (start - contact), law.noise / 100);
+      add_point("orbit-1−", PointKind::contact, start - contact, contact, 0.004 + 0.1 * (start - contact),
+                law.noise / 100);
       points.back().runs_before = 2;
       points.back().runs_after = 0;
       points.back().contact_phase = 1.2;
@@ -141,7 +142,7 @@ inline CaseRecord points_case(const std::string& mass, double stiffness, int ele
     }
     add_row_at("orbit-1−", s, parameter, 0.004 + 0.1 * s, 0);
   }
-  add_point("orbit-1−", "end", 0.02, 0.06, 0.006, 0);
+  add_point("orbit-1−", PointKind::end, 0.02, 0.06, 0.006, 0);
   points.back().note = "range";
   std::vector<TurnRow> turns;
   for (int k = 0; k <= 12; ++k) {

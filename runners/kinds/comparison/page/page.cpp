@@ -136,23 +136,27 @@ std::string interval_text(const OrderRow& row) {
 }
 
 /// The looks of a verdict: those of a status.
-std::string verdict_class(const std::string& verdict) {
-  return verdict == "refuted" ? "status failed" : verdict == "undecided" ? "status refused" : "status";
+const char* verdict_class(OrderVerdict verdict) {
+  return verdict == OrderVerdict::refuted     ? "status failed"
+         : verdict == OrderVerdict::undecided ? "status refused"
+                                              : "status";
 }
 
 /// One order as "0.99 ✓": ✓ confirmed, ✕ refuted, ? undecided, none where nothing is declared.
 void order_cell(HtmlTable& table, const OrderRow& row) {
-  const std::string& verdict = row.verdict;
+  const char *verdict = word(row.verdict), *looks = row.declared ? verdict_class(row.verdict) : "status";
   const std::string floor = row.saturates_at.value_or("");
   if (!floor.empty()) {
-    table.number(floor == "not told" ? "does not fall" : "floor: " + floor, verdict + ": " + row.reason,
-                 verdict_class(row.declared ? verdict : ""));
+    table.number(floor == "not told" ? "does not fall" : "floor: " + floor, fmt::format("{}: {}", verdict, row.reason),
+                 looks);
     return;
   }
-  const char* mark = !row.declared ? "" : verdict == "confirmed" ? " ✓" : verdict == "refuted" ? " ✕" : " ?";
+  const char* mark = !row.declared                            ? ""
+                     : row.verdict == OrderVerdict::confirmed ? " ✓"
+                     : row.verdict == OrderVerdict::refuted   ? " ✕"
+                                                              : " ?";
   table.number((row.order ? order_number(*row.order) : "–") + mark,
-               fmt::format("{}{}{}: {}", interval_text(row), row.order ? " " : "", verdict, row.reason),
-               verdict_class(row.declared ? verdict : ""));
+               fmt::format("{}{}{}: {}", interval_text(row), row.order ? " " : "", verdict, row.reason), looks);
 }
 
 /// What a row is about, without the kind of error.
@@ -223,7 +227,7 @@ std::string matrix(const std::vector<std::string>& errors, const std::vector<Met
 std::string details(const std::vector<Method>& all) {
   HtmlTable table("",
                   {{"method"}, {"refined"}, {"error"}, {"order", true}, {"declared", true}, {"verdict"}, {"reason"}});
-  for (const char* wanted : {"refuted", "undecided", "confirmed"})
+  for (const OrderVerdict wanted : {OrderVerdict::refuted, OrderVerdict::undecided, OrderVerdict::confirmed})
     for (const Method& method : all)
       for (const OrderRow* row : method.rows) {
         if (row->verdict != wanted) continue;
@@ -232,7 +236,7 @@ std::string details(const std::vector<Method>& all) {
         table.number(floor.empty() ? (row->order ? order_number(*row->order) : "–") + " " + interval_text(*row)
                                    : "floor: " + floor);
         table.number(row->declared ? number_text(*row->declared, 3) : "–");
-        table.text(row->verdict, verdict_class(row->verdict)).text(row->reason, "reason");
+        table.text(word(row->verdict), verdict_class(row->verdict)).text(row->reason, "reason");
       }
   return "<details><summary>Every order with its interval, verdict and reason</summary>\n" + table.html() +
          "</details>\n";
@@ -244,9 +248,10 @@ std::string counts(const StudyResults& results) {
   if (rows.empty()) return "";
   const OrderVerdicts& all = rows.front();
   std::string out;
-  for (const auto& [count, verdict] :
-       {std::pair(all.confirmed, "confirmed"), {all.refuted, "refuted"}, {all.undecided, "undecided"}})
-    if (count > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count, verdict);
+  for (const auto& [count, verdict] : {std::pair(all.confirmed, OrderVerdict::confirmed),
+                                       {all.refuted, OrderVerdict::refuted},
+                                       {all.undecided, OrderVerdict::undecided}})
+    if (count > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count, word(verdict));
   if (all.declared == 0)
     return fmt::format("<p class=\"lead\">{}, none with a declared order to compare with.</p>\n",
                        count_text(all.orders, "order", "orders"));

@@ -39,8 +39,8 @@ std::string restitution_html(const Choices& choices) {
 
 namespace {
 
-std::string limit_text(const std::optional<double>& limit, const std::string& where) {
-  return limit ? number_text(*limit, 5) : where.empty() ? "–" : where;
+std::string limit_text(const std::optional<double>& limit, RangeLimit where) {
+  return limit ? number_text(*limit, 5) : where == RangeLimit::not_made ? "–" : word(where);
 }
 
 /// Marginal roots, then what grows at the smallest step that is not stable, or why there is no prediction. The map

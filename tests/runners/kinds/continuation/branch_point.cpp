@@ -206,7 +206,7 @@ TEST_CASE("a case draws at most sixty orbits of a branch, special points among t
   CHECK(total == static_cast<double>(samples->rows()));
   for (const double bound : *of.upper) CHECK(bound == 0.1);
   for (const SpecialRow& point : points_of(record)) {
-    if (point.kind != "end" && point.kind != "fold") continue;
+    if (point.kind != PointKind::end && point.kind != PointKind::fold) continue;
     INFO(point.branch << " " << point.point);
     const auto rows = rows_of(record);
     bool drawn = false;

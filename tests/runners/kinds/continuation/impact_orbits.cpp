@@ -217,7 +217,7 @@ TEST_CASE("impact orbits fold where their closed forms meet, within the interval
     REQUIRE(record.status == Status::done);
     std::vector<SpecialRow> folds;
     for (const SpecialRow& point : points)
-      if (point.kind == "fold") folds.push_back(point);
+      if (point.kind == PointKind::fold) folds.push_back(point);
     REQUIRE(folds.size() == 1);
     CHECK(*folds[0].parameter == Approx(fold).epsilon(1e-4));
     CHECK(*folds[0].low <= fold);
@@ -266,7 +266,7 @@ TEST_CASE("impact orbits double their period where a multiplier of the closed fo
     REQUIRE(record.status == Status::done);
     std::vector<SpecialRow> flips;
     for (const SpecialRow& point : points_of(record))
-      if (point.kind == "flip") flips.push_back(point);
+      if (point.kind == PointKind::flip) flips.push_back(point);
     REQUIRE(flips.size() == 1);
     CHECK(*flips[0].parameter == Approx(low).margin(3e-4));
     CHECK(*flips[0].low <= low);

@@ -39,7 +39,7 @@ Json study_of(const Oscillator& one, double from, double to, double at, int step
   return study;
 }
 
-SpecialRow only_one(const std::vector<SpecialRow>& points, const std::string& kind, double near, double within) {
+SpecialRow only_one(const std::vector<SpecialRow>& points, PointKind kind, double near, double within) {
   std::vector<SpecialRow> found;
   for (const SpecialRow& one : points)
     if (one.kind == kind && std::abs(*one.parameter - near) < within) found.push_back(one);
@@ -67,7 +67,7 @@ TEST_CASE("a first contact is where the linear response meets the stop, to round
       study["orbits"][0]["from"] = "free";
       study["stop_at"] = "contact";
       study["both_ways"] = false;
-      const SpecialRow contact = only_one(points_of(continued(study)), "contact", exact, 0.1 * exact);
+      const SpecialRow contact = only_one(points_of(continued(study)), PointKind::contact, exact, 0.1 * exact);
       CHECK(contact.note == "first contact");
       CHECK(*contact.high - *contact.low < 1e-10 * exact);
       errors.push_back(std::abs(*contact.parameter - exact) / exact);
@@ -91,7 +91,7 @@ TEST_CASE("a contact that held the mass opens where the least force of the close
     Json study = study_of(one, 0.2 * exact, 1.1 * exact, 0.6 * exact, 500);
     study["stop_at"] = "contact";
     study["both_ways"] = false;
-    const SpecialRow opens = only_one(points_of(continued(study)), "contact", exact, 0.1 * exact);
+    const SpecialRow opens = only_one(points_of(continued(study)), PointKind::contact, exact, 0.1 * exact);
     CHECK(opens.note == "a permanent contact opens");
     CHECK(opens.held_before == 1);
     CHECK(opens.held_after == 0);
@@ -119,7 +119,7 @@ TEST_CASE("the flip of a bilinear oscillator converges to that of event-driven s
     Json study = study_of(one, 5.755, 5.77, 5.757, steps);
     study["orbits"][0]["from"] = "free";
     study["both_ways"] = false;
-    const SpecialRow flip = only_one(points_of(continued(study)), "flip", exact, 1e-3);
+    const SpecialRow flip = only_one(points_of(continued(study)), PointKind::flip, exact, 1e-3);
     CHECK(flip.note.find("frozen") == std::string::npos);
     CHECK(*flip.low <= exact);
     CHECK(*flip.high >= exact);
@@ -134,7 +134,8 @@ TEST_CASE("the flip of a bilinear oscillator converges to that of event-driven s
 TEST_CASE("both folds of a response that is bent are told, each once, wherever the branch began") {
   for (const double began : {0.12, 0.5}) {
     Oscillator one;
-    const SpecialRow lower = only_one(points_of(continued(study_of(one, 0.02, 1.5, began, 250))), "fold", 0.1, 0.05);
+    const SpecialRow lower =
+        only_one(points_of(continued(study_of(one, 0.02, 1.5, began, 250))), PointKind::fold, 0.1, 0.05);
     CHECK(*lower.prominence > 0.5);
     CHECK(lower.side == "above");
   }
@@ -143,7 +144,7 @@ TEST_CASE("both folds of a response that is bent are told, each once, wherever t
     Json study = study_of(one, 0.3, 1, 0.5, steps);
     study["orbits"][0]["from"] = "free";
     // Event-driven shooting: 0.6921345 N.
-    const SpecialRow upper = only_one(points_of(continued(study)), "fold", 0.6921345, 0.01);
+    const SpecialRow upper = only_one(points_of(continued(study)), PointKind::fold, 0.6921345, 0.01);
     CHECK(*upper.parameter == Approx(0.6921345).margin(steps == 250 ? 2e-4 : 6e-5));
   }
 }

@@ -126,10 +126,10 @@ TEST_CASE("names stand in special_points, of ends nowhere") {
   const StudyResults all = with_tables(synthetic::points());
   int named = 0;
   for (const SpecialRow& row : special_points_type().read(all.derived)) {
-    if (row.kind == "end") CHECK(row.name.empty());
+    if (row.kind == PointKind::end) CHECK(row.name.empty());
     named += !row.name.empty();
     // The fold of the softest stop has no counterpart in the finest two cases of the reference.
-    if (row.kind == "fold" && row.id.find("10000-") == std::string::npos) CHECK(row.name == "fold at 0.1006");
+    if (row.kind == PointKind::fold && row.id.find("10000-") == std::string::npos) CHECK(row.name == "fold at 0.1006");
   }
   CHECK(named > 0);
 }
@@ -174,7 +174,7 @@ TEST_CASE("a study without orbits says why") {
   SpecialRow row;
   row.branch = "orbit-1";
   row.point = 1;
-  row.kind = "end";
+  row.kind = PointKind::end;
   row.parameter = 0.08;
   row.note = "no orbit of period 1 within 30 iterations";
   none.cases[0].tables = {branches_type(4).with({}), special_points_type().with({row}), turns_type().with({})};
@@ -201,7 +201,7 @@ TEST_CASE("folds of one case alone are listed from 25 times what the two finest 
       if (record.id != "smooth0-20-8000") continue;
       std::vector<SpecialRow> points = special_points_type().read(record.tables);
       SpecialRow fold = points.front();
-      fold.kind = "fold";
+      fold.kind = PointKind::fold;
       // 4000 and 8000 steps differ in turns of 2.2e-5 m: 5.4e-4 m.
       for (const double prominence : {1e-4, 1e-3}) {
         fold.point = static_cast<int>(points.size()) + 1;
@@ -214,7 +214,8 @@ TEST_CASE("folds of one case alone are listed from 25 times what the two finest 
     all = with_tables(std::move(all));
     std::vector<double> alone;
     for (const SpecialRow& row : special_points_type().read(all.derived))
-      if (row.id == "smooth0-20-8000" && row.kind == "fold" && row.name.empty()) alone.push_back(*row.prominence);
+      if (row.id == "smooth0-20-8000" && row.kind == PointKind::fold && row.name.empty())
+        alone.push_back(*row.prominence);
     CHECK(alone == (given ? std::vector<double>{1e-4, 1e-3} : std::vector<double>{1e-3}));
   }
 }

@@ -87,7 +87,7 @@ TEST_CASE("the reference of the tube becomes a torus at 0.0849574 m") {
   CHECK(record.status == Status::done);
   std::optional<double> torus;
   for (const SpecialRow& row : points_of(record))
-    if (row.kind == "torus") torus = row.parameter;
+    if (row.kind == PointKind::torus) torus = row.parameter;
   REQUIRE(torus);
   // 20 modes and more: 0.08495738; what 12 leave out is below 1e-7 m.
   CHECK(*torus == Approx(0.08495738).epsilon(0).margin(1e-7));
@@ -111,7 +111,7 @@ TEST_CASE("a branch of a reference stops at the points at which branches stop") 
   const CaseRecord record = run_continuation(*case_of(opened.study, "reference"), *opened.registry, {}, stop);
   const auto points = points_of(record);
   REQUIRE_FALSE(points.empty());
-  CHECK(points.back().kind == "end");
+  CHECK(points.back().kind == PointKind::end);
   CHECK(points.back().note.starts_with("stopped at the first torus, at 0.08495"));
   for (const BranchRow& row : rows_of(record)) CHECK(*row.parameter < 0.0851);
 }

@@ -53,7 +53,8 @@ TEST_CASE("every row of a branch is an orbit, and rows go on from each other") {
   }
   CHECK(arcs.size() == 2);
   const auto points = points_of(record);
-  CHECK(std::count_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "end"; }) == 2);
+  CHECK(std::count_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == PointKind::end; }) ==
+        2);
 }
 
 TEST_CASE("orbits that touch nothing have the multipliers of their free motion, whatever efforts a scheme keeps") {
@@ -87,9 +88,9 @@ TEST_CASE("marks are solved where they are asked for, and a branch stops where t
   const CaseRecord record = continued(study);
   const auto points = points_of(record);
   REQUIRE_FALSE(points.empty());
-  CHECK(points.back().kind == "end");
+  CHECK(points.back().kind == PointKind::end);
   const auto mark =
-      std::find_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "mark"; });
+      std::find_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == PointKind::mark; });
   REQUIRE(mark != points.end());
   CHECK(*mark->parameter == 0.0852);
   const auto rows = rows_of(record);
@@ -100,7 +101,7 @@ TEST_CASE("marks are solved where they are asked for, and a branch stops where t
   CHECK(*row->point == mark->point);
   CHECK(*row->tip_displacement == Approx(*mark->tip_displacement).margin(1e-14));
   const auto contacts =
-      std::count_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "contact"; });
+      std::count_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == PointKind::contact; });
   CHECK(contacts <= 1);
 }
 
@@ -174,7 +175,7 @@ TEST_CASE("the bilinear oscillator folds where event-driven shooting says") {
   // Without contact x = F / √((1 − ω²)² + (cω)²), 1 m at the graze.
   CHECK(points[0].note == "first contact");
   CHECK(*points[0].parameter == Approx(std::hypot(1 - 1.69, 0.04 * 1.3)).margin(1e-5));
-  CHECK(points[1].kind == "fold");
+  CHECK(points[1].kind == PointKind::fold);
   // Second order in h: 5e-5 N at 500 steps, 2.7e-6 N here.
   CHECK(std::abs(*points[1].parameter - 0.6921345) < 4e-6);
 }
@@ -189,14 +190,14 @@ TEST_CASE("steps and pieces follow one branch: the same marks, folds and first c
     const CaseRecord record = continued(study);
     REQUIRE(record.status == Status::done);
     for (const SpecialRow& point : points_of(record))
-      if (point.kind != "end") found[follow].push_back(point);
+      if (point.kind != PointKind::end) found[follow].push_back(point);
   }
   REQUIRE(found["pieces"].size() == found["steps"].size());
   for (std::size_t i = 0; i < found["pieces"].size(); ++i) {
     const SpecialRow &piece = found["pieces"][i], &step = found["steps"][i];
-    INFO(piece.kind << " at " << *piece.parameter);
+    INFO(word(piece.kind) << " at " << *piece.parameter);
     CHECK(step.kind == piece.kind);
-    if (piece.kind == "mark") {
+    if (piece.kind == PointKind::mark) {
       CHECK(*step.parameter == *piece.parameter);
       CHECK(*step.tip_displacement == Approx(*piece.tip_displacement).margin(1e-9));
     } else {  // between two orbits of the curve
@@ -212,7 +213,7 @@ TEST_CASE("steps turn the corners of a piecewise affine map, and stay on its bra
   study["at_most"] = {{"pieces", 1000}};
   const CaseRecord record = continued(study);
   for (const SpecialRow& point : points_of(record))
-    if (point.kind == "end") CHECK(point.note.starts_with("the range ends at "));
+    if (point.kind == PointKind::end) CHECK(point.note.starts_with("the range ends at "));
   for (const BranchRow& row : rows_of(record)) {
     double nearest = 1;
     for (std::size_t i = 1; i < pieces.size(); ++i) {
@@ -245,7 +246,7 @@ TEST_CASE("an oscillator that rebounds flips near to where Shaw and Holmes found
   REQUIRE(record.status == Status::done);
   const auto points = points_of(record);
   const auto flip =
-      std::find_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "flip"; });
+      std::find_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == PointKind::flip; });
   REQUIRE(flip != points.end());
   CHECK(*flip->parameter == Approx(2.653347728).margin(3e-4));
   CHECK(*flip->low <= 2.653347728);
@@ -266,7 +267,7 @@ TEST_CASE("where symmetry is lost a branch of other orbits begins, and it ends w
   REQUIRE(record.status == Status::done);
   std::string others;
   for (const SpecialRow& point : points_of(record))
-    if (point.kind == "symmetry") others += " " + point.to_branch;
+    if (point.kind == PointKind::symmetry) others += " " + point.to_branch;
   REQUIRE(others.size() > 1);
   int asymmetric = 0;
   for (const BranchRow& row : rows_of(record)) {
@@ -327,7 +328,7 @@ TEST_CASE("a branch of doubled orbits ends where they repeat sooner") {
   REQUIRE(end != points.end());
   // That is the flip at which it began.
   const auto flip =
-      std::find_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "flip"; });
+      std::find_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == PointKind::flip; });
   REQUIRE(flip != points.end());
   CHECK(*end->parameter >= *flip->low);
   CHECK(*end->parameter <= *flip->high);
@@ -363,8 +364,9 @@ TEST_CASE("roots of the step alone make no flip, and no branch leaves the range"
     CHECK(*row.parameter <= 0.09);
   }
   const auto points = points_of(record);
-  CHECK(std::none_of(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "flip"; }));
-  CHECK(std::count_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == "end"; }) == 2);
+  CHECK(std::none_of(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == PointKind::flip; }));
+  CHECK(std::count_if(points.begin(), points.end(), [](const SpecialRow& one) { return one.kind == PointKind::end; }) ==
+        2);
 }
 
 TEST_CASE("a step of several stages that read contact is followed by steps, and its rows are orbits") {

@@ -17,7 +17,7 @@ std::vector<std::string> told_of(const StudyResults& all) {
   const Choices choices(all);
   const PointAnalysis points(choices);
   std::vector<std::string> out;
-  for (const ToldPoint& one : points.told) out.push_back(one.point().kind);
+  for (const ToldPoint& one : points.told) out.emplace_back(word(one.point().kind));
   return out;
 }
 
@@ -46,7 +46,7 @@ void add_symmetry(std::vector<BranchRow>& rows, std::vector<SpecialRow>& points,
   SpecialRow point;
   point.branch = at.branch;
   point.point = 99;
-  point.kind = "symmetry";
+  point.kind = PointKind::symmetry;
   point.parameter = at.parameter;
   point.low = *at.parameter - 1e-6;
   point.high = *at.parameter + 1e-6;
@@ -92,9 +92,9 @@ TEST_CASE("where no orbit is stable every point is told") {
 TEST_CASE("a fold at a first contact is told as the contact") {
   const StudyResults all = changed([](auto&, auto& points) {
     for (std::size_t k = 0; k < points.size(); ++k)
-      if (points[k].kind == "contact") {
+      if (points[k].kind == PointKind::contact) {
         SpecialRow fold = points[k];
-        fold.kind = "fold";
+        fold.kind = PointKind::fold;
         fold.point = 98;
         fold.prominence = 0.01;
         points.push_back(fold);

@@ -33,7 +33,7 @@ asks::Answered ask(const std::vector<Spring>& springs, const std::function<void(
     LimitRow open, closed;
     open.id = closed.id = record.id;
     closed.closed = true;
-    open.prediction = closed.prediction = open.observation = closed.observation = "limit";
+    open.prediction = closed.prediction = open.observation = closed.observation = RangeLimit::limit;
     open.predicted = open.observed = one.open;
     closed.predicted = closed.observed = 1 / std::sqrt(1 / (one.open * one.open) + 1 / (one.stop * one.stop));
     closed.agrees = true;
@@ -84,18 +84,18 @@ TEST_CASE("a limit below the range of steps is none that a study may take", "[as
 
 TEST_CASE("what has no limit, no stable step or another limit in marches is told so", "[asks]") {
   asks::Answered out = ask({{4, 1e-4, 1e-3}}, [](LimitRow& open, LimitRow& closed) {
-    open.prediction = closed.prediction = open.observation = closed.observation = "none";
+    open.prediction = closed.prediction = open.observation = closed.observation = RangeLimit::none;
     open.predicted = closed.predicted = open.observed = closed.observed = {};
   });
   CHECK(out.rows.front().verdict == "no limit");
   CHECK_FALSE(out.rows.front().value);
   CHECK(out.sentence == "No limit from 1e-7 to 0.001 s.");
-  out = ask({{4, 1e-4, 1e-3}}, [](LimitRow& open, LimitRow&) { open.prediction = "below the range"; });
+  out = ask({{4, 1e-4, 1e-3}}, [](LimitRow& open, LimitRow&) { open.prediction = RangeLimit::below; });
   CHECK(out.passes == asks::Verdict::no);
   CHECK_FALSE(out.rows.front().value);
   // A closed stop may have a limit where the structure has none.
   out = ask({{4, 1e-4, 1e-3}}, [](LimitRow& open, LimitRow&) {
-    open.prediction = "none";
+    open.prediction = RangeLimit::none;
     open.predicted.reset();
   });
   CHECK(out.rows.front().verdict == "the stop");
@@ -116,7 +116,7 @@ TEST_CASE("of groups as large as each other one alone goes without its name", "[
   int number = 0;
   const asks::Answered out = ask(springs, [&](LimitRow& open, LimitRow& closed) {
     if (number++ % 3 != 2) return;
-    open.prediction = closed.prediction = open.observation = closed.observation = "none";
+    open.prediction = closed.prediction = open.observation = closed.observation = RangeLimit::none;
     open.predicted = closed.predicted = open.observed = closed.observed = {};
   });
   INFO(out.sentence);
@@ -128,7 +128,7 @@ TEST_CASE("of groups as large as each other one alone goes without its name", "[
 TEST_CASE("a step beyond which marches grow is not allowed, whatever the spectrum says", "[asks]") {
   // No spectrum grows; marches do from 3e-4 s on.
   asks::Answered out = ask({{4, 1e-4, 1e-3}}, [](LimitRow& open, LimitRow& closed) {
-    open.prediction = closed.prediction = open.observation = "none";
+    open.prediction = closed.prediction = open.observation = RangeLimit::none;
     open.predicted = closed.predicted = open.observed = {};
     closed.observed = 3e-4;
     closed.agrees.reset();
