@@ -79,13 +79,12 @@ std::optional<Limit> vanishing(const Tail& t, Limit out, double floor) {
   return out;
 }
 
-/// By an order that three sizes show; two orders that agree are needed for less than the last difference. One that
-/// turned, or fell more steeply than schemes do, is small by chance.
+/// By an order that three sizes show. A last difference may be small by chance: where impacts fall within steps, the
+/// error has no steady factor. Two orders that agree are needed for less than the range of the three.
 Limit settling(const Tail& t, const std::vector<SizedValue>& values, const std::vector<double>& d, double order,
                Limit out, double floor) {
-  const double last = std::abs(t.last), rest = t.rest(order, safety);
-  double u = std::max(safety * last, rest);
-  if (t.before * t.last < 0 || order > steepest_order) u = std::max(u, t.first_order_rest(safety));
+  const double last = std::abs(t.last);
+  double u = std::max({out.range, safety * last, t.rest(order, safety), t.first_order_rest(safety)});
   if (const std::size_t n = values.size(); n >= 4 && t.before * t.last > 0 && d[n - 4] * t.before > 0) {
     const auto earlier = order_of(values[n - 4].size, t.v1.size, t.v2.size, d[n - 4], t.before);
     if (earlier && std::abs(order - *earlier) <= orders_agree && order <= steepest_order) {

@@ -58,12 +58,12 @@ inline constexpr double lowest_order = 0.5;
 /// the exact value where one is known. Nothing of no values.
 ///
 /// With the differences d of values from coarse to fine and the ratio r of the last sizes, the rest is
-/// 1.25 |d_last|/(rᵖ − 1) (Roache, 1994, for three sizes). The uncertainty u is the larger of 1.25 |d_last| and the
-/// rest. Where two orders p in a row agree within 0.6, u is the rest alone, at least a tenth of |d_last|; p is then
-/// less by as much as the two differ. Without them u is at least by how much a later value missed the interval that
-/// three coarser sizes, or more, had told. Where d_last has another sign than the difference before it, or p > 4.5, it is
-/// small by chance: u is at least what first order leaves of that, 1.25 |d_before| h₃/(h₁ − h₂). Of two sizes u is
-/// |d_last|, of what moves 2 |d_last|, of what wanders the range of the last three values.
+/// 1.25 |d_last|/(rᵖ − 1) (Roache, 1994, for three sizes). Where two orders p in a row agree within 0.6, the
+/// uncertainty u is the rest, at least a tenth of |d_last|; p is then less by as much as the two differ. Without them
+/// d_last may be small by chance, and u is the largest of four: the range of the last three values, 1.25 |d_last|, the
+/// rest, and what first order leaves of the difference before, 1.25 |d_before| h₃/(h₁ − h₂). It is then at least by how
+/// much a later value missed the interval that three coarser sizes, or more, had told. Of two sizes u is |d_last|, of
+/// what moves 2 |d_last|, of what wanders the range of the last three values.
 std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std::optional<double> truth = {});
 
 /// The limit over two refinements, at the finest of both: uncertainties are added, so are the ways to low and to high.

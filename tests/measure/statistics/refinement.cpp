@@ -47,18 +47,18 @@ TEST_CASE("a sequence with an order settles on its limit within its uncertainty"
 }
 
 TEST_CASE("an interval holds the limit of what impacts leave within a step, and of two powers together") {
-  // v = 1 + c h, c anew at each size: impacts are placed somewhere within a step. And v = 1 + c h + d h², whose order
-  // changes on the way.
+  // v = 1 + c h, c anew at each size: impacts are placed somewhere within a step, or always late. And v = 1 + c h +
+  // d h², whose order changes on the way.
   std::mt19937 random(3);
-  std::uniform_real_distribution<double> anywhere(-1, 1);
-  const auto held = [&](int sizes, bool by_chance) {
+  std::uniform_real_distribution<double> anywhere(-1, 1), late(0, 1);
+  const auto held = [&](int sizes, bool by_chance, bool one_sided = false) {
     int settled = 0, inside = 0;
     for (int k = 0; k < 4000; ++k) {
       std::vector<SizedValue> values;
       const double c = anywhere(random), d = anywhere(random);
       for (int size = 0; size < sizes; ++size) {
         const double h = std::pow(2.0, -size);
-        values.push_back({h, 1 + h * (by_chance ? anywhere(random) : c + d * h)});
+        values.push_back({h, 1 + h * (one_sided ? late(random) : by_chance ? anywhere(random) : c + d * h)});
       }
       const auto limit = limit_of(values, 1e-15);
       REQUIRE(limit);
@@ -69,9 +69,10 @@ TEST_CASE("an interval holds the limit of what impacts leave within a step, and 
     REQUIRE(settled > 1000);
     return static_cast<double>(inside) / settled;
   };
-  // The last difference alone holds 2 of 3 by chance.
-  CHECK(held(3, true) > 0.86);
-  CHECK(held(4, true) > 0.86);
+  // What the order of three sizes leaves holds 88 of 100 that fall on both sides, 70 that fall on one.
+  CHECK(held(3, true) > 0.97);
+  CHECK(held(4, true) > 0.93);
+  CHECK(held(3, true, true) > 0.91);
   CHECK(held(3, false) > 0.9);
   CHECK(held(5, false) > 0.88);
 }
@@ -84,7 +85,7 @@ TEST_CASE("an interval without a confirmed order is as wide as a coarser one mis
   const auto early = limit_of({sequence.begin(), sequence.begin() + 3}, 1e-12), late = limit_of(sequence, 1e-12);
   REQUIRE((early && late));
   CHECK(early->status == LimitStatus::settles);
-  CHECK(*early->uncertainty < 0.02);
+  CHECK(*early->uncertainty < 4.71 - 4.594);
   CHECK(*late->uncertainty >= 4.71 - 4.594);
   // Whatever the sequence: an interval that a later value missed is no measure of the last.
   std::mt19937_64 random(11);
