@@ -127,9 +127,10 @@ class GainWatch final : public StepObserver {
     if (!marcher.status(0).running) return;
     const EnergyTotals& totals = audit_.totals(0);
     given_ = std::max(given_, totals.scheme_start + std::max(0.0, totals.work_of_loads));
-    const double energy = totals.last.scheme + totals.last.contact;
-    const double unearned = energy - totals.scheme_start - totals.work_of_loads + totals.work_of_damping;
-    if (given_ > 0 && std::isfinite(unearned)) gain_ = std::max(gain_, unearned / given_);
+    // A spring's potential and the scheme's energy may be of other instants: forms of one scheme differ there. What is
+    // gained shows once the spring is slack.
+    const double unearned = totals.last.scheme - totals.scheme_start - totals.work_of_loads + totals.work_of_damping;
+    if (given_ > 0 && totals.last.contact == 0 && std::isfinite(unearned)) gain_ = std::max(gain_, unearned / given_);
     if (gain_ > 1 && first_bad_ < 0) first_bad_ = marcher.step();
     // A scheme's own energy has no sign beyond its limit.
     const double common = totals.last.common();
