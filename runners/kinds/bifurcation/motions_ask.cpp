@@ -23,35 +23,70 @@ namespace {
 
 constexpr double much_open = 0.25;  // share of the range that is told first
 
+/// Motions and how many attractors each has.
+using MotionCounts = std::map<std::string, std::size_t>;
+
+/// "two of period 1 and no contact"; "" of none.
+std::string counts_text(const MotionCounts& counts) {
+  std::vector<std::string> words;
+  for (const auto& [motion, count] : counts) {
+    static const char* const spoken[] = {"", "", "two of ", "three of ", "four of "};
+    words.push_back((count < std::size(spoken) ? spoken[count] : std::to_string(count) + " of ") + motion);
+  }
+  return answers::and_list(words);
+}
+
+/// Whether all of these motions are among those.
+bool holds(const MotionCounts& those, const MotionCounts& these) {
+  return std::all_of(these.begin(), these.end(), [&](const auto& one) {
+    const auto found = those.find(one.first);
+    return found != those.end() && found->second >= one.second;
+  });
+}
+
 /// What one case shows at one value: the motions of its starts.
 struct ValueMotions {
   std::set<std::pair<std::string, int>> motions = {};  ///< each attractor once
   std::size_t decided = 0, open = 0;                   ///< starts
   std::string word = {};                               ///< one of the motions as orbits.csv has it
-  /// The group of motions by which it is drawn.
-  report::RegimeGroup group() const {
-    if (motions.empty()) return report::regime_groups[report::undecided_group];
-    if (motions.size() > 1) return {"several motions", "#7FBF3F"};
-    return report::regime_groups[report::regime_group(word, std::nullopt)];
-  }
-  /// "two of period 1 and no contact"; "" where nothing is decided.
-  std::string text() const {
-    std::map<std::string, std::size_t> counts;
-    for (const auto& [motion, attractor] : motions) ++counts[motion];
-    std::vector<std::string> words;
-    for (const auto& [motion, count] : counts) {
-      static const char* const spoken[] = {"", "", "two of ", "three of ", "four of "};
-      words.push_back((count < std::size(spoken) ? spoken[count] : std::to_string(count) + " of ") + motion);
-    }
-    return answers::and_list(words);
+
+  double open_share() const { return static_cast<double>(open) / static_cast<double>(open + decided); }
+  MotionCounts counts() const {
+    MotionCounts out;
+    for (const auto& [motion, attractor] : motions) ++out[motion];
+    return out;
   }
 };
 
-/// Neighbouring values with one set of motions; "" of undecided ones.
+/// Neighbouring values whose motions may be one set: where starts are undecided, what they hide is not known. Values at
+/// which none is decided stand apart.
 struct MotionStretch {
   double from = 0, to = 0;
-  std::string motion;
-  report::RegimeGroup group;
+  MotionCounts counts = {};           ///< of all of its values
+  std::size_t decided = 0, open = 0;  ///< orbits
+  bool whole = false;                 ///< every start of one of its values is decided
+  std::string word = {};              ///< one of the motions as orbits.csv has it
+
+  std::string motion() const { return counts_text(counts); }
+  bool takes(const ValueMotions& next) const {
+    const MotionCounts shown = next.counts();
+    return shown.empty() == counts.empty() && (!whole || holds(counts, shown)) &&
+           (next.open > 0 || holds(shown, counts));
+  }
+  void add(double value, const ValueMotions& next) {
+    to = value;
+    for (const auto& [one, count] : next.counts()) counts[one] = std::max(counts[one], count);
+    decided += next.decided;
+    open += next.open;
+    if (!next.word.empty()) word = next.word;
+    whole = whole || next.open == 0;
+  }
+  /// The group of motions by which it is drawn.
+  report::RegimeGroup group() const {
+    if (counts.empty()) return report::regime_groups[report::undecided_group];
+    if (counts.size() > 1 || counts.begin()->second > 1) return {"several motions", "#7FBF3F"};
+    return report::regime_groups[report::regime_group(word, std::nullopt)];
+  }
 };
 
 /// Between the last value of one set of motions and the first of the next.
@@ -108,12 +143,17 @@ class MotionsAlong {
     for (const CaseMotions& one : told_) {
       add_row(out, one.level, "undecided", "of the range", asks::per_cent * one.undecided, {}, {}, "%");
       for (const MotionStretch& part : one.stretches) {
-        const std::string motion = part.motion.empty() ? "undecided" : part.motion;
-        add_row(out, one.level, motion, "", {}, part.from, part.to, parameter_.unit);
+        const std::string motion = part.motion().empty() ? "undecided" : part.motion();
+        const std::size_t open = part.open;
+        add_row(out, one.level, motion,
+                open > 0 && !part.motion().empty()
+                    ? fmt::format("{} of {} orbits are undecided", open, open + part.decided)
+                    : "",
+                {}, part.from, part.to, parameter_.unit);
         drawn.push_back({{"name", one.level},
                          {"motion", motion},
-                         {"group", part.group.name},
-                         {"colour", part.group.colour},
+                         {"group", part.group().name},
+                         {"colour", part.group().colour},
                          {"from", part.from},
                          {"to", part.to}});
       }
@@ -160,28 +200,26 @@ class MotionsAlong {
     for (const auto& [value, at] : out.at) values.insert(value);
     for (const auto& [value, width] : widths_of(values)) {
       const ValueMotions& at = out.at[value];
-      out.undecided += width * static_cast<double>(at.open) / static_cast<double>(at.open + at.decided);
-      if (!out.stretches.empty() && out.stretches.back().motion == at.text())
-        out.stretches.back().to = value;
-      else
-        out.stretches.push_back({value, value, at.text(), at.group()});
+      out.undecided += width * at.open_share();
+      if (out.stretches.empty() || !out.stretches.back().takes(at)) out.stretches.push_back({value, value});
+      out.stretches.back().add(value, at);
     }
     const MotionStretch* known = nullptr;
     bool open = false;
     for (const MotionStretch& part : out.stretches) {
-      if (part.motion.empty()) {
+      if (part.motion().empty()) {
         open = true;
         continue;
       }
-      if (known && known->motion != part.motion)
-        out.changes.push_back({known->to, part.from, known->motion, part.motion, open});
+      if (known && known->motion() != part.motion())
+        out.changes.push_back({known->to, part.from, known->motion(), part.motion(), open});
       known = &part;
       open = false;
     }
   }
 
-  /// The share of the range of which the finest cases together leave open what it does: none decides, or those that do
-  /// agree and others are open.
+  /// The share of the range of which the finest cases leave open what it does, that of the case with most undecided
+  /// starts. Where cases that decide all of theirs differ, nothing is open.
   void judge() {
     std::map<double, std::size_t> speak;
     for (const CaseMotions* one : heads_)
@@ -194,13 +232,13 @@ class MotionsAlong {
       if (2 * count >= most) values.insert(value);
     for (const auto& [value, width] : widths_of(values)) {
       std::set<std::string> met;
-      bool open = false;
+      double open = 0;
       for (const CaseMotions* one : heads_)
         if (const auto at = one->at.find(value); at != one->at.end()) {
-          if (at->second.decided > 0) met.insert(at->second.text());
-          open = open || at->second.decided == 0 || 2 * at->second.open > at->second.decided + at->second.open;
+          if (at->second.open == 0) met.insert(counts_text(at->second.counts()));
+          open = std::max(open, at->second.open_share());
         }
-      if (met.size() < 2 && open) undecided_ += width;
+      if (met.size() < 2) undecided_ += width * open;
     }
   }
 
@@ -256,7 +294,7 @@ class MotionsAlong {
   bool any_decided() const {
     return std::any_of(told_.begin(), told_.end(), [](const CaseMotions& one) {
       return std::any_of(one.stretches.begin(), one.stretches.end(),
-                         [](const auto& part) { return !part.motion.empty(); });
+                         [](const auto& part) { return !part.motion().empty(); });
     });
   }
 
@@ -306,10 +344,11 @@ class MotionsAlong {
       std::set<std::string> motions;
       for (const CaseMotions* one : heads_)
         for (const MotionStretch& part : one->stretches)
-          if (!part.motion.empty()) motions.insert(part.motion);
-      texts.push_back(fmt::format("{}{} {} no change{}{}.", before, fmt::join(motions, ", "),
-                                  motions.size() == 1 ? "throughout:" : "and", several ? " that methods share" : "",
-                                  after));
+          if (!part.motion().empty()) motions.insert(part.motion());
+      texts.push_back(motions.size() == 1
+                          ? fmt::format("{}{} throughout: no change{}.", before, *motions.begin(), after)
+                          : fmt::format("{}methods share no change between {}{}.", before,
+                                        answers::and_list({motions.begin(), motions.end()}), after));
     }
     for (std::size_t count = said.size(); count-- > 0;) {
       std::vector<std::string> parts;

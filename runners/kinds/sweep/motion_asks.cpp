@@ -291,8 +291,13 @@ class MotionEffect {
            fmt::format("{}: {} changes the motion of {}, in all {} pairs.", first, choice, range(yes), all)});
     } else if (no.size() == all) {
       const std::string first = word(asks::Verdict::no);
+      const bool none =
+          std::all_of(no.begin(), no.end(), [](const MotionPair* one) { return one->counts.changed == 0; });
+      const std::string pairs = all == 1 ? "" : fmt::format(" in {} pairs", all);
       out.sentence = asks::fitting(
-          {fmt::format("{}: {} changes the motion of {}{}.", first, choice, each(no), under),
+          {none ? fmt::format("{}: {} changes the motion of none of the {} {}{}.", first, choice,
+                              no.front()->counts.both, places_, pairs)
+                : fmt::format("{}: {} changes the motion of {}{}.", first, choice, each(no), under),
            fmt::format(
                "{}: {} changes the motion of {} at most, in {} pairs{}.", first, choice,
                range({*std::max_element(no.begin(), no.end(),
@@ -317,6 +322,8 @@ class MotionEffect {
       out.sentence = asks::fitting(
           {fmt::format("Open: whether {} changes the motion of {} of the {} is not told: {}{}.", choice, least, places_,
                        out.reason, one_step ? "" : " (" + pair_words(*open.front()) + ")"),
+           fmt::format("Open: whether {} changes the motion of {} of the {} is not told: {}.", choice, least, places_,
+                       out.reason),
            fmt::format("Open: whether {} changes the motion of {} of the {} is not told in {} of {} pairs.", choice,
                        least, places_, open.size(), all)});
     }

@@ -15,7 +15,7 @@ using Catch::Matchers::Contains;
 namespace {
 
 const MotionClass one{Regime::periodic, 1}, two{Regime::periodic, 2}, three{Regime::periodic, 3},
-    open{Regime::undecided, 0};
+    none{Regime::no_contact, 0}, open{Regime::undecided, 0};
 
 struct Made {
   StudyResults results;
@@ -102,6 +102,34 @@ TEST_CASE("what is undecided stands first above a quarter, and behind it below",
   CHECK(*out.rows.front().value == Approx(37.5));
   out = ask(study_of({{open, open, open}}), motions);
   CHECK_THAT(out.sentence, Catch::Matchers::StartsWith("Open: no orbit is decided"));
+}
+
+TEST_CASE("an undecided start hides a motion and makes no change", "[asks]") {
+  // From below no contact, from above period 1 wherever it is decided: both all along, but for the last value.
+  Made made = study_of({{none, none, none, none, one}});
+  made.swept.diagram.starts = {{"up", false}, {"down", false}};
+  std::vector<DiagramRun>& runs = made.swept.diagram.cases.front().runs;
+  const std::vector<MotionClass> down = {open, one, open, one, one};
+  for (std::size_t k = 0; k < down.size(); ++k) {
+    DiagramRun run = runs[k];
+    run.start = 1;
+    run.motion = down[k];
+    run.attractor = run.motion.decided() ? run.motion.period : 0;
+    runs.push_back(run);
+  }
+  runs[4].attractor = runs[9].attractor;
+  const asks::Answered out = ask(made, motions);
+  INFO(out.sentence);
+  CHECK_THAT(out.sentence, Contains("from no contact and period 1 to period 1 (4–5") && !Contains("more"));
+  // Half of the starts, over an eighth and a quarter of the range.
+  CHECK(*out.rows[0].value == Approx(50 * (0.125 + 0.25)));
+  CHECK(*out.rows[1].value == *out.rows[0].value);
+  const auto stretch = std::find_if(out.rows.begin(), out.rows.end(),
+                                    [](const auto& row) { return row.verdict == "no contact and period 1"; });
+  REQUIRE(stretch != out.rows.end());
+  CHECK(stretch->low == 1);
+  CHECK(stretch->high == 4);
+  CHECK(stretch->reason == "2 of 8 orbits are undecided");
 }
 
 TEST_CASE("kept periods that tell nothing of what does not repeat are said above the motions", "[asks]") {
