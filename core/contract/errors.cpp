@@ -30,8 +30,9 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 2) + 1;
   for (const std::string& candidate : candidates) {
     std::size_t distance = edit_distance(word, candidate);
-    // A prefix is what a person types when in a hurry ("newmark-dumont" for "newmark-dumont-paoli").
-    if (word.size() >= 3 && candidate.starts_with(word)) distance = std::min<std::size_t>(distance, 1);
+    // An end is what a person types when in a hurry ("newmark-dumont" for "newmark-dumont-paoli").
+    if (word.size() >= 3 && (candidate.starts_with(word) || candidate.ends_with(word)))
+      distance = std::min<std::size_t>(distance, 1);
     // A letter is near every other one: only its other case is meant.
     const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
     if (word.size() == 1 && (candidate.size() != 1 || lower(candidate[0]) != lower(word[0]))) continue;

@@ -66,8 +66,9 @@ MeasureWords measure_words(const std::string& measure) {
 
 namespace {
 
+/// `few`: of a per cent no more digits than are read, whatever u allows.
 std::string value_to(const MeasureWords& measure, double value, std::optional<double> uncertainty, bool with_unit,
-                     bool fine) {
+                     bool fine, bool few = true) {
   const std::string unit = with_unit ? unit_after(measure) : "";
   const double v = value * measure.factor;
   double u = std::isfinite(uncertainty.value_or(0)) ? measure.factor * uncertainty.value_or(0) : 0;
@@ -88,7 +89,7 @@ std::string value_to(const MeasureWords& measure, double value, std::optional<do
   if (u <= 0) return short_number(v) + unit;
   u = std::min(u, std::abs(v) > 0 ? std::abs(v) : u);
   int places = decimals(u, fine);
-  if (measure.factor == 100 && std::abs(v) < 100) {
+  if (few && measure.factor == 100 && std::abs(v) < 100) {
     // Enough digits that what is lacking of 100 % keeps two.
     const double lacking = 100 - std::abs(v);
     const int wanted = lacking > 0 && lacking < 1 ? 1 - static_cast<int>(std::floor(std::log10(lacking))) : 2;
@@ -133,7 +134,7 @@ std::string with_uncertainty(const MeasureWords& measure, double value, std::opt
   constexpr double round_off = 1e-9;
   if (!uncertainty || !(*uncertainty > round_off * std::abs(value)) || !std::isfinite(*uncertainty))
     return value_text(measure, value, uncertainty);
-  return value_text(measure, value, uncertainty, false) + " ± " + uncertainty_text(measure, *uncertainty);
+  return value_to(measure, value, uncertainty, false, true, false) + " ± " + uncertainty_text(measure, *uncertainty);
 }
 
 std::string percent(double share) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "runners/answers/limits.hpp"
+#include "runners/study/axis_meaning.hpp"
 
 namespace ricochet::answers {
 namespace {
@@ -105,7 +106,8 @@ std::string interval_text(const Choices& study, const MeasureLimits& limits, con
   MeasureWords bare = words;
   bare.unit.clear();
   if (spread.methods > 1 && spread.size() > floor)
-    out += "; methods differ by " + uncertainty_text(bare, spread.size());
+    out += fmt::format("; {} differ by {}", scene_varies(study) ? "cases" : "methods",
+                       uncertainty_text(bare, spread.size()));
   std::string left;
   const auto add = [&](const char* what, const std::optional<double>& by) {
     if (!by || !(*by > floor)) return;
@@ -153,6 +155,13 @@ const TableType<StopRange>& uncertainty_type() {
                                 rows};
   }();
   return all;
+}
+
+bool scene_varies(const Choices& study) {
+  return std::any_of(study.varying().begin(), study.varying().end(), [](const std::string& column) {
+    const std::string role = axis_role(column);
+    return !is_method_role(role) && !is_refinement(column) && role != "march" && role != "seed";
+  });
 }
 
 Table uncertainty_table(const Choices& study) {

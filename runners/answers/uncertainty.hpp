@@ -24,7 +24,11 @@ const TableType<StopRange>& uncertainty_type();
 ///
 /// over the methods, each at its finest step and mesh. Gaps are the largest u that a method's refinement leaves,
 /// sampling half the 95 % interval of a mean over the parts of a window. The interval is blank of a single step.
+/// Where the scene itself varies its levels are among the cases.
 Table uncertainty_table(const Choices& study);
+
+/// Whether cases differ in more than methods, their refinements and draws: then a range over all is of no one scene.
+bool scene_varies(const Choices& study);
 
 /// Words whose numbers are thousandths or millionths where the unit is W or m: mW below 0.1 W, µW below 1e-4 W. `scale`
 /// is the largest value, in the unit.

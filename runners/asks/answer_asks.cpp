@@ -42,10 +42,14 @@ const TableType<VerdictRow>& verdicts_type() {
   return all;
 }
 
+std::ptrdiff_t words_in(const std::string& sentence) {
+  std::istringstream words(sentence);
+  return std::distance(std::istream_iterator<std::string>(words), {});
+}
+
 bool fits(const std::string& sentence) {
   constexpr std::ptrdiff_t most = 30;
-  std::istringstream words(sentence);
-  return std::distance(std::istream_iterator<std::string>(words), {}) <= most;
+  return words_in(sentence) <= most;
 }
 
 std::string in_thirty_words(std::string must, const std::vector<std::vector<std::string>>& rest) {

@@ -112,7 +112,7 @@ class EffectSpeaker {
   Answered answer() {
     Answered out = begin_answer(lines_);
     out.figure = figure();
-    if (auto open = open_without_values(lines_, out)) return *open;
+    if (auto open = without_values(lines_, out)) return *open;
     if (told_.empty()) return never_alone(std::move(out), lines_, evidence_.study().spoken(ask_.subject()));
     std::vector<const Told*> yes, no, open;
     std::vector<char> shown(told_.size(), 0);

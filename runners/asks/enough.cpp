@@ -64,7 +64,7 @@ class Enough {
 
   Answered answer() const {
     Answered out = begin_answer(lines_);
-    if (auto open = open_without_values(lines_, out)) return *open;
+    if (auto open = without_values(lines_, out)) return *open;
     std::vector<std::pair<const Line*, Need>> needs;
     std::vector<Verdict> verdicts;
     for (const Line& line : lines_.all) {
@@ -194,14 +194,14 @@ class Enough {
     }
     // The law of 1/√T is that of many correlation times: no window of a tenth tells what a shorter one has.
     constexpr double shortest = 0.1;
-    if (evidence_.window() > 0) out.duration = std::max(longer, shortest) * evidence_.window();
+    // Of a load that repeats after R its square falls as 1/T − 1/R: windows of half a repetition and more scatter less
+    // than they tell.
+    const double window = evidence_.window(), repeats = evidence_.repeats_after();
+    if (window > 0) out.duration = 1 / ((1 / window - 1 / repeats) / std::max(longer, shortest) + 1 / repeats);
     // An orbit repeats in one period at least.
     if (const double kept = evidence_.kept_periods(); kept > 0)
       out.periods = std::max(1.0, two_digits_above(longer * kept));
-    // A longer window of a load that repeats holds nothing new.
-    // The mean over a whole repetition has no scatter of its own, a part of it has.
-    if (out.duration &&
-        (*out.duration > evidence_.repeats_after() || evidence_.window() >= evidence_.repeats_after())) {
+    if (out.duration && std::max(*out.duration, window) > 0.5 * repeats) {
       out.duration.reset();
       if (one.seeds == 1) out.seeds = std::ceil(longer);
     }

@@ -236,6 +236,7 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
   const bool share = shares || words.scale == "1";
   for (auto& [key, point] : std::move(groups).list()) {
     double largest = 0;
+    bool counts = true;  // whole numbers have no round-off
     for (const CaseRecord* record : point.cases) {
       const auto value = record->status != Status::done ? std::nullopt
                          : shares                       ? answers::scaled_value(words, *record)
@@ -249,6 +250,7 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
       point.values[size][seed] = *value;
       if (const auto half = measure(*record, "confidence." + measure_of_all)) point.halves[size][seed] = *half;
       largest = std::max(largest, std::abs(*value));
+      counts = counts && std::floor(*value) == *value;
       // Round-off is that of the scene, not of a value that it is all of.
       if (!share && !words.scale.empty())
         if (const auto scale = measure(*record, words.scale)) largest = std::max(largest, std::abs(*scale));
@@ -260,7 +262,7 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
           point.behind.push_back(record);
           point.values[{1, mesh_chosen ? 1 : study_.elements(*record).value_or(1)}][""] = *least;
         }
-    point.floor *= share ? 1 : largest;
+    point.floor *= counts ? 0 : share ? 1 : largest;
     largest_of_all = std::max(largest_of_all, largest);
     for (const auto& [size, value] : point.values)
       if (!point.finest || finer(size, *point.finest)) point.finest = size;

@@ -109,7 +109,7 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
   else if (*out.passes == Verdict::no)
     out.sentence =
         broken_sentence(lines, no, judged, nearest(no, bounds), range, beyond_text(kept(nearest(no, bounds), bounds)));
-  else if (auto without = open_without_values(lines, out))
+  else if (auto without = without_values(lines, out))
     return *without;
   else
     say_open(out, lines, open, judged, bounds, range);

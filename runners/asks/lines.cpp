@@ -222,17 +222,14 @@ Answered begin_answer(const Lines& lines) {
   return out;
 }
 
-std::string nothing_known(const Lines& lines) {
-  if (!lines.known().empty()) return "";
-  return lines.without.empty() ? "no case has come to its end" : some_of(lines.without);
-}
-
-std::optional<Answered> open_without_values(const Lines& lines, Answered begun) {
-  begun.reason = nothing_known(lines);
-  if (begun.reason.empty()) return std::nullopt;
-  begun.verdict = word(Verdict::open);
+std::optional<Answered> without_values(const Lines& lines, Answered begun, bool yes_or_no) {
+  if (!lines.known().empty()) return std::nullopt;
+  begun.reason = lines.without.empty() ? "no case has come to its end" : some_of(lines.without);
+  begun.verdict = yes_or_no ? word(Verdict::open) : "no value";
   begun.passes = Verdict::open;
-  begun.sentence = fmt::format("Open: no case has a value of {}: {}.", lines.words.words, begun.reason);
+  begun.sentence =
+      in_thirty_words(fmt::format("{} case has a value of {}", yes_or_no ? "Open: no" : "No", lines.words.words),
+                      {{": " + begun.reason}});
   return begun;
 }
 

@@ -56,14 +56,11 @@ std::string set_name(const Lines& lines, const std::vector<const Line*>& set);
 /// What becomes an answer of such lines: counts and what is left out.
 Answered begin_answer(const Lines& lines);
 
-/// The answer of lines without any value to a question that has a yes or a no: open. Nothing where some has one.
-std::optional<Answered> open_without_values(const Lines& lines, Answered begun);
+/// The answer of lines without any value: open, where the question has a yes or a no. Nothing where some has one.
+std::optional<Answered> without_values(const Lines& lines, Answered begun, bool yes_or_no = true);
 
 /// The answer where no two lines differ in a choice alone: open.
 Answered never_alone(Answered begun, const Lines& lines, const std::string& choice);
-
-/// Why nothing is known, of lines without a value; "" where some has one.
-std::string nothing_known(const Lines& lines);
 
 /// Whether the words of a measure are of several: "impacts at end".
 bool is_plural(const std::string& words);

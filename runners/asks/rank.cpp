@@ -87,12 +87,7 @@ class Ranking {
   Answered answer() const {
     Answered out = begin_answer(lines_);
     out.figure = figure();
-    if (orders_.empty()) {
-      out.verdict = "no value";
-      out.reason = nothing_known(lines_);
-      out.sentence = fmt::format("No case has a value of {}: {}.", lines_.words.words, out.reason);
-      return out;
-    }
+    if (auto open = without_values(lines_, out, false)) return *open;
     const bool alone = std::none_of(orders_.begin(), orders_.end(),
                                     [](const auto& one) { return one.second.lines.size() + one.second.without > 1; });
     if (alone && lines_.all.size() > 1)

@@ -156,7 +156,7 @@ class Threshold {
   Answered answer() const {
     Answered out = begin_answer(lines_);
     out.figure = figure();
-    if (auto open = open_without_values(lines_, out)) return *open;
+    if (auto open = without_values(lines_, out)) return *open;
     for (const Series& series : series_) add_rows(out, series);
     // Of a series without any value what is left out says all.
     std::vector<const Series*> with, not_monotone, without;

@@ -41,24 +41,17 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
     out.rows.push_back(std::move(row));
   }
   out.figure = bars(lines);
-  if (known.empty()) {
-    out.verdict = "no value";
-    out.reason = nothing_known(lines);
-    out.sentence = fmt::format("No case has a value of {}: {}.", lines.words.words, out.reason);
-    return out;
-  }
+  if (auto open = without_values(lines, out, false)) return *open;
   const bool all_known =
       std::all_of(lines.all.begin(), lines.all.end(), [](const Line& line) { return line.known() || !line.applies(); });
   out.passes = unsettled + without == 0 && all_known ? Verdict::yes : Verdict::open;
   out.verdict = unsettled > 0 ? "not settled" : without > 0 ? "open" : "known";
-  constexpr std::size_t few = 3;
-  std::string said;
+  constexpr std::size_t few = 3, most_words_of_values = 20;
+  std::vector<std::string> parts;
+  for (const Line* line : known) parts.push_back(told(lines, line->estimate()) + line->place());
+  std::string said = fmt::format("{}: {}", name, fmt::join(parts, ", "));
   std::vector<std::string> places;
-  if (known.size() <= few) {
-    std::vector<std::string> parts;
-    for (const Line* line : known) parts.push_back(told(lines, line->estimate()) + line->place());
-    said = fmt::format("{}: {}", name, fmt::join(parts, ", "));
-  } else {
+  if (known.size() > few || (known.size() > 1 && words_in(said) > most_words_of_values)) {
     const auto by_value = [](const Line* a, const Line* b) { return a->estimate().value < b->estimate().value; };
     const Line &least = **std::min_element(known.begin(), known.end(), by_value),
                &most = **std::max_element(known.begin(), known.end(), by_value);
@@ -73,8 +66,12 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
     const Line* first =
         *std::find_if(known.begin(), known.end(), [](const Line* l) { return !l->estimate().motion.empty(); });
     out.reason = first->estimate().motion;
-    said += unsettled == known.size() ? "; not settled: it " + out.reason
-                                      : fmt::format("; {} of {} not settled", unsettled, known.size());
+    const bool alike = std::all_of(known.begin(), known.end(), [&](const Line* l) {
+      return l->estimate().motion.empty() || l->estimate().motion == out.reason;
+    });
+    said += unsettled < known.size() ? fmt::format("; {} of {} not settled", unsettled, known.size())
+            : alike                  ? "; not settled: it " + out.reason
+                                     : "; none is settled";
   } else if (without > 0) {
     const Line& first =
         **std::find_if(known.begin(), known.end(), [](const Line* l) { return !why_unsure(*l).empty(); });

@@ -41,6 +41,7 @@ struct Answered {
 
 inline constexpr double per_cent = 100;  ///< rows and figures have shares in per cent
 
+std::ptrdiff_t words_in(const std::string& sentence);
 /// Whether a sentence has at most thirty words.
 bool fits(const std::string& sentence);
 

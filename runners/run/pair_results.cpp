@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "runners/answers/uncertainty.hpp"
 #include "runners/asks/evidence.hpp"
 #include "runners/report/choices.hpp"
 #include "runners/store/record_values.hpp"
@@ -115,7 +116,8 @@ std::vector<KeyedValue> values_of(const AnalysedResults& results, const std::vec
   add_rows_of(results, "limits", "method", chosen, limits);
   for (KeyedValue& one : limits)
     if (!told.contains({one.row.measure, one.row.stop})) out.push_back(std::move(one));
-  add_rows_of(results, "uncertainty", "", {}, out);
+  // A range over several scenes is none of either.
+  if (!answers::scene_varies(results.choices)) add_rows_of(results, "uncertainty", "", {}, out);
   // Rows that nothing tells apart go together in their order.
   std::map<std::string, std::size_t> met;
   for (KeyedValue& one : out) {

@@ -29,7 +29,8 @@ std::string sentence(const std::string& text) {
   return text.empty() || text.ends_with('.') ? text : text + '.';
 }
 
-// What the plugins of a role say of one of their parameters, each by its name where they say different things.
+// What the plugins of a role say of one of their parameters, each by its name where they say different things. Numbers
+// of different units have none in common.
 Column parameter_meaning(const std::string& column, const std::string& role, const std::string& key, const Study& study,
                          const Registry& registry) {
   std::vector<std::pair<std::string, const ParameterSpec*>> said;
@@ -51,6 +52,8 @@ Column parameter_meaning(const std::string& column, const std::string& role, con
     return sentence(one.second->text) == out.text && unit_of(*one.second) == out.unit;
   });
   if (same) return out;
+  if (std::any_of(said.begin(), said.end(), [&](const auto& one) { return unit_of(*one.second) != out.unit; }))
+    out.unit.clear();
   out.text.clear();
   for (const auto& [name, spec] : said)
     out.text += (out.text.empty() ? "" : " ") + name + (unit_of(*spec) == out.unit ? "" : " (" + unit_of(*spec) + ")") +

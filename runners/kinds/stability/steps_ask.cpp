@@ -301,6 +301,10 @@ class StepsAsk {
       }
       texts.push_back(answers::capitalised(fmt::format("{}.", fmt::join(parts, "; "))));
     }
+    std::vector<std::string> counts;
+    for (const auto& [bound, of] : bounds)
+      counts.push_back(fmt::format("{} {}", bound_word(bound, meshed_), of.size()));
+    texts.push_back(fmt::format("What bounds the step of {} cases: {}.", limits_.size(), fmt::join(counts, ", ")));
     out.sentence = asks::fitting(texts);
   }
 

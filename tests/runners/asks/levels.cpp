@@ -471,6 +471,9 @@ TEST_CASE("asks: a window that holds a whole repetition of the load is not short
     return out;
   };
   CHECK(windows(20).empty());
+  // Nor one of which little is missing: what it holds scatters less than its length tells.
+  CHECK(windows(20.5).empty());
+  CHECK(windows(39).empty());
   // Of others no shorter one is told than a tenth.
   for (const double window : windows(200)) CHECK(window >= 2);
 }
