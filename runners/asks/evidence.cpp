@@ -230,13 +230,16 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
              mesh_chosen = contains(columns, "elements") || contains(columns, "modes");
   std::vector<Point> out;
   std::vector<std::optional<Limits>> limits;
-  std::vector<double> round_off;
+  std::vector<double> round_off, solves;
   double largest_of_all = 0;
+  const auto [base, stop] = split_measure(measure_of_all);
+  const std::string at_stops = stop.empty() ? "" : base + "[";
+  constexpr double of_solves = 1e-12;  // a solve multiplies round-off by the condition of its matrix
   const auto words = answers::measure_words(measure_of_all);
   const bool share = shares || words.scale == "1";
   for (auto& [key, point] : std::move(groups).list()) {
-    double largest = 0;
-    bool counts = true;  // whole numbers have no round-off
+    double scale = 0, values = 0;  // of round-off, of solves
+    bool counts = true;            // whole numbers have neither
     for (const CaseRecord* record : point.cases) {
       const auto value = record->status != Status::done ? std::nullopt
                          : shares                       ? answers::scaled_value(words, *record)
@@ -249,11 +252,16 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
       const std::string& seed = study_.text(*record, seed_axis);
       point.values[size][seed] = *value;
       if (const auto half = measure(*record, "confidence." + measure_of_all)) point.halves[size][seed] = *half;
-      largest = std::max(largest, std::abs(*value));
       counts = counts && std::floor(*value) == *value;
+      values = std::max(values, std::abs(*value));
       // Round-off is that of the scene, not of a value that it is all of.
       if (!share && !words.scale.empty())
-        if (const auto scale = measure(*record, words.scale)) largest = std::max(largest, std::abs(*scale));
+        if (const auto of_case = measure(*record, words.scale)) scale = std::max(scale, std::abs(*of_case));
+      // Forces of one stop are what those of all others and of the loads leave.
+      if (!share && !at_stops.empty())
+        for (const auto& [other, of_other] : record->measures)
+          if (other.starts_with(at_stops)) values = std::max(values, std::abs(of_other));
+      scale = std::max(scale, values);
       point.floor = std::max(point.floor, 0x1p-52 * static_cast<double>(record->steps));
     }
     if (point.behind.empty())
@@ -262,16 +270,19 @@ std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cas
           point.behind.push_back(record);
           point.values[{1, mesh_chosen ? 1 : study_.elements(*record).value_or(1)}][""] = *least;
         }
-    point.floor *= counts ? 0 : share ? 1 : largest;
-    largest_of_all = std::max(largest_of_all, largest);
+    point.floor *= counts ? 0 : share ? 1 : scale;
+    largest_of_all = std::max(largest_of_all, scale);
+    solves.push_back(counts ? 0 : of_solves * values);
     for (const auto& [size, value] : point.values)
       if (!point.finest || finer(size, *point.finest)) point.finest = size;
     if (!point.finest) point.none = left_out(measure_of_all, point.cases).reasons.front().said();
     out.push_back(std::move(point));
   }
-  for (Point& point : out) {
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    Point& point = out[k];
     if (!share) drop_round_off(point, largest_of_all);
     round_off.push_back(point.floor);
+    if (point.floor > 0) point.floor = std::max(point.floor, solves[k]);
     point.floor = std::max(point.floor, resolution(measure_of_all, point, !steps_chosen));
     limits.push_back(point.finest ? std::optional(limits_at(point.values, *point.finest, point.floor)) : std::nullopt);
   }

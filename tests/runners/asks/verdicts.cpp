@@ -619,6 +619,30 @@ TEST_CASE("asks: a value within the round-off of its scene is zero") {
   CHECK(*answer_of(results, {{"value", "tip_displacement_end"}}).rows.front().value != 0);
 }
 
+TEST_CASE("asks: round-off of a force at one stop is that of all forces, and a solve leaves more than its steps") {
+  // At rest: 75 N at one stop and 0.04 N at the other, which differ by round-off of the 75 N from step to step.
+  const auto of_rest = [](double first) {
+    return synthetic::full_factorial(
+        {{"mass", {"m0"}}}, {4e-3, 2e-3, 1e-3, 5e-4},
+        [=](const std::vector<std::size_t>&, double h) { return first * (1 + 1e-14 * std::log2(4e-3 / h)); },
+        "mean_force[near]");
+  };
+  const auto verdict = [](StudyResults results) {
+    for (CaseRecord& record : results.cases) record.steps = 20;
+    return answer_of(results, {{"value", "mean_force"}}).rows.front().verdict;
+  };
+  CHECK(verdict(of_rest(75)) == "known");
+  StudyResults small = of_rest(0.04);
+  for (CaseRecord& record : small.cases) {
+    record.measures.front().second = 0.04 + 1e-11 * std::log2(4e-3 / record.axes.back().second.get<double>());
+    record.measures.emplace_back("mean_force[far]", 75);
+  }
+  CHECK(verdict(small) == "known");
+  // Alone at its stop that is a motion.
+  for (CaseRecord& record : small.cases) record.measures.pop_back();
+  CHECK(verdict(small) == "not settled");
+}
+
 TEST_CASE("asks: one step tells neither yes nor no, whatever its value") {
   std::mt19937 random(8);
   Made made = random_methods(random, 2);
