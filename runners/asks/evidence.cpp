@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/limits.hpp"
@@ -191,6 +192,15 @@ double Evidence::resolution(const std::string& name, const Point& point, bool by
     return least;
   };
   const std::string floor = info->floor, count = info->whole_steps;
+  if (floor == contact_steps_measure) {
+    // Half a period of n steps, sampled half a step beside its top: 1 − cos(π/2n) < π²/8n².
+    const double n = most(floor, 0);
+    if (!by_steps || n <= 0) return 0;
+    double peak = 0;
+    for (const auto& [seed, value] : point.values.at(*point.finest)) peak = std::max(peak, std::abs(value));
+    const double turned = std::numbers::pi / n;
+    return peak * std::min(1.0, turned * turned / 8);
+  }
   if (!floor.empty()) return most(floor, 0);
   if (count.empty() || !by_steps || !contains(results().columns, "step")) return 0;
   const std::string stop = split_measure(name).second;

@@ -138,8 +138,9 @@ class Evidence {
   double repeats_after() const;
 
  private:
-  /// What a value is off by beside round-off, in the unit of its measure: what its floor says, and of a time that is
-  /// counted in whole steps (`by_steps`: of which the points know the size) these steps. 0 of others.
+  /// What a value is off by beside round-off, in the unit of its measure: what its floor says. Of a time that is
+  /// counted in whole steps (`by_steps`: of which the points know the size) these steps, of a peak of contact what two
+  /// steps may miss between them. 0 of others.
   double resolution(const std::string& measure, const Point& point, bool by_steps) const;
 
   const Choices& study_;

@@ -32,6 +32,7 @@ struct StopMeasure {
   /// force is the impulse over the step, and has no limit.
   bool size_of_force = false;
   const char* whole_steps = "";  ///< as of MeasureInfo
+  const char* floor = "";        ///< likewise
 };
 
 template <double (*of)(const RunningMoments&)>
@@ -74,7 +75,8 @@ const StopMeasure stop_measures[] = {
      [](const StopReading& of) -> Known { return static_cast<double>(of.run.impacts); }},
     {"peak_force", "N",
      "Largest force at the stop {}; blank where a rigid law has thrown back a point with mass (no limit).",
-     "peak force at {}", [](const StopReading& of) -> Known { return of.run.peak_force; }, Needs::nothing, false, true},
+     "peak force at {}", [](const StopReading& of) -> Known { return of.run.peak_force; }, Needs::nothing, false, true,
+     "", contact_steps_measure},
     {"rms_force", "N", "Root mean square of the force at the stop {} over the time in contact; blank as peak_force.",
      "rms force at {}", [](const StopReading& of) -> Known { return of.run.rms_force(); }, Needs::nothing, false, true},
     {"contact_time", "s", "Time in contact with the stop {}.", "time in contact at {}",
@@ -123,7 +125,7 @@ const StopMeasure stop_measures[] = {
     {"shock_force_deviation", "N", "Standard deviation of the peak forces of the shocks at the stop {}.",
      "deviation of the peaks at {}", shocked<[](Shocks s) { return s.peaks.deviation(); }>, Needs::shocks, true, true},
     {"shock_force_max", "N", "Largest peak force of the shocks at the stop {}.", "largest peak at {}",
-     shocked<[](Shocks s) { return s.peaks.largest; }>, Needs::shocks, true, true},
+     shocked<[](Shocks s) { return s.peaks.largest; }>, Needs::shocks, true, true, "", contact_steps_measure},
     {"wear_power", "W",
      "Wear power of the stop {}, (1/T) Σ I ½(|V⁻| + |V⁺|): I impulse of an instant, V speeds along the surface.",
      "wear power at {}", [](const StopReading& of) { return of.wear_power; }, Needs::tangent, true},
@@ -307,6 +309,7 @@ const MeasureInfo* stop_measure_info(const std::string& name) {
   made->info.reading.words = made->words.c_str();
   made->info.aside = one->column;
   made->info.whole_steps = one->whole_steps;
+  made->info.floor = one->floor;
   if (half) made->info.of = MeasureInfo::Of::computation;
   return &(known[name] = std::move(made))->info;
 }

@@ -195,8 +195,13 @@ std::vector<MeasureInfo> with_readings(std::vector<MeasureInfo> measures) {
       {"active_set_changes", {"switches of contact", neither}},
       {"balance_residual", {"residual of the energy balance", less, std::nullopt, true}},
   };
-  for (MeasureInfo& measure : measures)
+  for (MeasureInfo& measure : measures) {
     if (const auto found = readings.find(measure.name); found != readings.end()) measure.reading = found->second;
+    // What steps sample of half a period.
+    if (measure.name == std::string_view("peak_contact_force") ||
+        measure.name == std::string_view("deepest_penetration"))
+      measure.floor = contact_steps_measure;
+  }
   return measures;
 }
 

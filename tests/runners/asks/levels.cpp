@@ -543,3 +543,23 @@ TEST_CASE("asks: an order that is not told turns nothing round") {
   CHECK(answered.verdict != "turned round");
   CHECK(answered.passes != Verdict::no);
 }
+
+TEST_CASE("asks: the interval of a peak holds what two steps miss between them") {
+  // A half sine of 100 N whose top lies a quarter of the finest step beside an instant that all steps share.
+  const double top = 100;
+  const std::vector<double> counts = {10, 20, 40, 80};  // steps in half a period
+  const std::vector<double> steps = {8e-3, 4e-3, 2e-3, 1e-3};
+  StudyResults results = synthetic::full_factorial(
+      {{"mass", {"m0"}}}, steps,
+      [&](const std::vector<std::size_t>&, double) { return top * std::cos(3.14159 / counts.back() / 4); },
+      "peak_force[wall]");
+  for (std::size_t k = 0; k < results.cases.size(); ++k)
+    results.cases[k].measures.emplace_back("contact_steps", counts[k]);
+  const VerdictRow row = answer_of(results, {{"value", "peak_force"}}).rows.front();
+  REQUIRE(row.high);
+  CHECK(*row.high > top);
+  CHECK(*row.high < 1.0002 * top);
+  // A mean is no peak.
+  for (CaseRecord& record : results.cases) record.measures.front().first = "mean_force[wall]";
+  CHECK(*answer_of(results, {{"value", "mean_force"}}).rows.front().high < top);
+}
