@@ -56,7 +56,7 @@ std::string why_open(const Line& line, const Bounds& bounds) {
   if (!one.unknown().empty()) return one.unknown();
   const bool all = one.has_interval() && bounds.holds(one.least()) && bounds.holds(one.most());
   const bool within = !bounds.holds(one.low()) || !bounds.holds(one.high());
-  if (!all && !within) return "it " + one.unsettled();
+  if (!all && (!within || one.disproved)) return "it " + one.unsettled();
   return all ? "one seed is too near to it" : "the limit lies within its interval";
 }
 

@@ -80,6 +80,8 @@ void judge(Told& told, double from) {
     told.verdict = Verdict::no;
   else if (size - u > from || size + u < from)
     told.reason = "it " + pair.motion;
+  else if (pair.one_limit && size >= from)
+    told.reason = "both schemes have one limit as the step shrinks", told.between = true;
   else
     told.reason = "that lies within what is open of it", told.between = true;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <numbers>
 
 #include "runners/answers/answer.hpp"
@@ -230,8 +231,86 @@ void drop_round_off(Point& point, double largest_of_all) {
 
 }  // namespace
 
-std::vector<Point> Evidence::points(const std::string& measure_of_all, const Cases& cases,
+std::vector<Point> Evidence::points(const std::string& name, const Cases& cases,
                                     const std::vector<std::string>& columns, bool shares) const {
+  std::vector<Point> out = alone(name, cases, columns, shares);
+  test_by_schemes(out, name, columns, shares);
+  return out;
+}
+
+namespace {
+
+/// A choice of how the same problem is marched: it moves no limit of a compliant law.
+bool is_of_scheme(const std::string& column) {
+  return axis_role(column) == "time" || column == "contact.evaluation";
+}
+
+/// Whether a compliant law without friction worked in each case: its forces follow from the motion, whatever the step.
+bool is_compliant(const Point& point) {
+  return std::all_of(point.behind.begin(), point.behind.end(), [](const CaseRecord* one) {
+    return measure(*one, contact_steps_measure) && !measure(*one, "friction_residual");
+  });
+}
+
+/// Widens `own` where its interval and that of another exclude each other, though both have one limit: one of them is
+/// wrong, and it is not known which. What moves both alike, mesh and seeds, is no part of that.
+void widen_by(Estimate& own, const Estimate& other) {
+  if (!own.step || !other.step || own.grows || other.grows) return;
+  const auto left = [](const Estimate& one) {
+    return (one.motion.empty() ? 1 : one.doubt) * *one.step + one.sampling.value_or(0);
+  };
+  const double apart = std::abs(own.value - other.value);
+  if (apart <= left(own) + left(other)) return;
+  const double before = own.doubt * *own.step;
+  own.step = apart + *other.step;
+  own.doubt = std::max(1.0, before / *own.step);
+  own.few = "disagrees with another scheme, though both have one limit";
+  own.disproved = true;
+}
+
+}  // namespace
+
+void Evidence::test_by_schemes(std::vector<Point>& points, const std::string& name,
+                               const std::vector<std::string>& columns, bool shares) const {
+  const MeasureInfo* info = measure_info(name);
+  if (contains(columns, "step") || contains(columns, "steps_per_period") || !info || info->of_each_size ||
+      info->of == MeasureInfo::Of::computation)
+    return;
+  Cases all;
+  for (const CaseRecord& record : results().cases)
+    if (!is_reference(record)) all.push_back(&record);
+  std::vector<std::string> told = choices(all, name, columns), others;
+  told.insert(told.end(), columns.begin(), columns.end());
+  std::copy_if(told.begin(), told.end(), std::back_inserter(others),
+               [](const auto& one) { return !is_of_scheme(one); });
+  if (others.size() == told.size()) return;
+  // Those that have a limit, by its name.
+  std::map<std::string, std::vector<Point>> peers;
+  for (Point& point : points)
+    if (point.estimate && is_compliant(point)) peers[point.limit = key(point.first(), others) + '\n'];
+  std::erase_if(all, [&](const CaseRecord* one) { return !peers.contains(key(*one, others) + '\n'); });
+  for (Point& peer : alone(name, all, told, shares))
+    if (peer.estimate && is_compliant(peer)) peers[key(peer.first(), others) + '\n'].push_back(std::move(peer));
+  const auto same_draws = [](const Point& a, const Point& b) {
+    const auto &own = a.values.at(*a.finest), &other = b.values.at(*b.finest);
+    return a.finest->second == b.finest->second &&
+           std::equal(own.begin(), own.end(), other.begin(), other.end(),
+                      [](const auto& one, const auto& two) { return one.first == two.first; });
+  };
+  for (Point& point : points) {
+    if (point.limit.empty()) continue;
+    const Estimate own = *point.estimate;
+    for (const Point& peer : peers[point.limit]) {
+      if (!same_draws(point, peer)) continue;
+      Estimate widened = own;
+      widen_by(widened, *peer.estimate);
+      if (widened.step > point.estimate->step) point.estimate = widened;
+    }
+  }
+}
+
+std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Cases& cases,
+                                   const std::vector<std::string>& columns, bool shares) const {
   InOrderMet<std::string, Point> groups;
   for (const CaseRecord* record : cases) groups[study_.key(*record, columns)].cases.push_back(record);
   const bool has_step = contains(results().columns, "step") || contains(results().columns, "steps_per_period");

@@ -27,6 +27,7 @@ struct Estimate {
   std::string motion;                ///< "still falls with the step" of what is not settled
   std::string few;                   ///< "is known by two steps alone", where they leave more than u; or by three
   bool two = false;                  ///< whether two sizes alone tell it, and leave more than u
+  bool disproved = false;            ///< whether a scheme with the same limit excludes what the step alone tells
   double doubt = 1;                  ///< of what is not settled: so many times u may be between it and its limit
   std::optional<double> order;       ///< in the step
   std::size_t steps = 1, meshes = 1, seeds = 1;
@@ -64,6 +65,9 @@ struct Point {
   double floor = 0;  ///< what round-off makes of a value
   std::optional<Estimate> estimate;
   std::string none;  ///< why it has no value
+  /// Equal for points of a compliant law that differ in the time scheme alone: as the step shrinks their values have
+  /// one limit. "" where no limit is known to be shared.
+  std::string limit;
 
   const CaseRecord& first() const { return *cases.front(); }
 };
@@ -142,6 +146,12 @@ class Evidence {
   /// counted in whole steps (`by_steps`: of which the points know the size) these steps, of a peak of contact what two
   /// steps may miss between them. 0 of others.
   double resolution(const std::string& measure, const Point& point, bool by_steps) const;
+  /// points(), each by its own refinement alone.
+  std::vector<Point> alone(const std::string& measure, const Cases& cases, const std::vector<std::string>& columns,
+                           bool shares) const;
+  /// Widens these by what other schemes with the same limit show, whether they are asked or not.
+  void test_by_schemes(std::vector<Point>& points, const std::string& measure, const std::vector<std::string>& columns,
+                       bool shares) const;
 
   const Choices& study_;
 };

@@ -7,10 +7,12 @@ namespace ricochet::asks {
 namespace {
 
 /// u of a difference, at least `floor`. `both`: what is open of the two together; no difference is less sure than that,
-/// even one that still grows. Nothing where it is not known.
+/// even one that still grows. Nothing where it is not known. `disproved`: whether another scheme disproves what
+/// refinement tells of one of the two; it then tells nothing of their difference.
 std::optional<double> left_open(const Estimate& estimate, const std::optional<double>& both, double floor,
-                                double doubt = 1) {
+                                bool disproved, double doubt = 1) {
   if (!estimate.unknown().empty()) return std::nullopt;
+  if (disproved && both) return std::max(*both, floor);
   // Of a single size on both sides, and nothing drawn, nothing is known.
   std::optional<double> u = estimate.grows ? std::nullopt : std::optional(doubt * estimate.u().value_or(0));
   if (both) u = std::min(u.value_or(*both), *both);
@@ -89,7 +91,15 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
   };
   const Estimate estimate = estimate_of(differences, halves, *finest, limits_at(differences, *finest, floor), has_step);
   out.difference = estimate.value;
-  out.u = left_open(estimate, both(1, 1), floor);
+  out.one_limit = !first.limit.empty() && first.limit == second.limit;
+  const bool disproved =
+      (first.estimate && first.estimate->disproved) || (second.estimate && second.estimate->disproved);
+  const auto open_of = [&](const Estimate& one, const std::optional<double>& of_both, double least, double doubt) {
+    std::optional<double> u = left_open(one, of_both, least, disproved, doubt);
+    if (u && out.one_limit) u = std::max(*u, std::abs(one.value));
+    return u;
+  };
+  out.u = open_of(estimate, both(1, 1), floor, 1);
   if (!out.u) out.unknown = why_not(estimate);
   // What is not told from zero is no base of shares.
   if (std::abs(out.base) <= std::max(floor, first_u.value_or(0))) return out;
@@ -107,8 +117,8 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
   const double round_off = floor / std::abs(out.base);
   const Estimate share = estimate_of(shares, share_halves, *finest, limits_at(shares, *finest, round_off), has_step);
   out.share = share.value;
-  out.share_u = left_open(share, both(1 + std::abs(share.value), std::abs(out.base)), round_off);
-  out.share_most = left_open(share, both(1 + std::abs(share.value), std::abs(out.base), true), round_off, share.doubt);
+  out.share_u = open_of(share, both(1 + std::abs(share.value), std::abs(out.base)), round_off, 1);
+  out.share_most = open_of(share, both(1 + std::abs(share.value), std::abs(out.base), true), round_off, share.doubt);
   out.motion = share.unsettled();
   for (const Point* point : {&first, &second})
     if (out.motion.empty() && point->estimate) out.motion = point->estimate->unsettled();

@@ -22,6 +22,7 @@ struct Pair {
   std::optional<double> share_most = {};  ///< what is open of it where a yes or a no is told (Estimate::doubt)
   std::string motion = {};                ///< of what is not settled: "still rises with the step"
   bool identical = false;                 ///< the same to the last bit at each of several sizes, and not nothing
+  bool one_limit = false;                 ///< of two schemes that lead to one limit, where the difference is zero
   bool least = false;                     ///< one of the two lies beyond its range: the difference is larger than this
 };
 

@@ -19,7 +19,7 @@ std::string told(const Lines& lines, const Estimate& one) {
 std::string why_unsure(const Line& line) {
   const Estimate& one = line.estimate();
   if (!one.unknown().empty()) return one.unknown();
-  return doubtful(line.point) ? "is of doubtful runs" : one.two ? one.few : "";
+  return doubtful(line.point) ? "is of doubtful runs" : one.two || one.disproved ? one.few : "";
 }
 
 Answered answer_value(const Ask& ask, const Evidence& evidence) {

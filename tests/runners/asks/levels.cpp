@@ -544,6 +544,44 @@ TEST_CASE("asks: an order that is not told turns nothing round") {
   CHECK(answered.passes != Verdict::no);
 }
 
+TEST_CASE("asks: schemes of a compliant law have one limit, and intervals that exclude each other are widened") {
+  // Each scheme settles by itself; they are 10 % apart. The third agrees with the first.
+  const std::vector<double> ends = {1.0, 1.1, 1.0001};
+  StudyResults results = synthetic::full_factorial(
+      {{"mass", {"m0"}}, {"time", {"t0", "t1", "t2"}}}, {8e-3, 4e-3, 2e-3, 1e-3},
+      [&](const std::vector<std::size_t>& at, double h) { return ends[at[1]] + h * h; }, "impulse");
+  const auto value = [&](Json where = Json::object()) {
+    return answer_of(results, {{"value", "impulse"}, {"where", std::move(where)}});
+  };
+  const Json effect = {{"effect", "time"}, {"on", "impulse"}, {"from", 0.05}};
+  // Of rigid laws the scheme has a part in the limit.
+  CHECK(value().passes == Verdict::yes);
+  CHECK(answer_of(results, effect).passes == Verdict::yes);
+  for (CaseRecord& record : results.cases) record.measures.emplace_back("contact_steps", 40.0);
+  const Answered all = value();
+  INFO(all.sentence);
+  CHECK(all.passes == Verdict::open);
+  REQUIRE(all.rows.size() == 3);
+  for (const VerdictRow& row : all.rows) {
+    CHECK(row.verdict == "open");
+    CHECK(row.reason == "disagrees with another scheme, though both have one limit");
+    CHECK((*row.low < 1.0 + 1e-4 && *row.high > 1.1));
+  }
+  const Answered changed = answer_of(results, effect);
+  INFO(changed.sentence);
+  CHECK(changed.passes == Verdict::open);
+  CHECK(changed.reason == "both schemes have one limit as the step shrinks");
+  CHECK(answer_of(results, {{"rank", "impulse"}, {"over", "time"}}).rows.front().verdict == "1 to 3");
+  // What is asked of one scheme alone is tested by the others all the same.
+  const Json limit = {{"limit", "impulse"}, {"below", 1.05}, {"where", {{"time", "t0"}}}};
+  CHECK(answer_of(results, limit).passes == Verdict::open);
+  CHECK(answer_of(results, limit).reason == "it " + all.rows.front().reason);
+  // Those that agree are known, and a small difference of theirs is no effect of a scheme.
+  std::erase_if(results.cases, [](const CaseRecord& one) { return one.axes[1].second == "t1"; });
+  CHECK(answer_of(results, limit).passes == Verdict::yes);
+  CHECK(answer_of(results, effect).passes == Verdict::no);
+}
+
 TEST_CASE("asks: the interval of a peak holds what two steps miss between them") {
   // A half sine of 100 N whose top lies a quarter of the finest step beside an instant that all steps share.
   const double top = 100;
