@@ -166,12 +166,13 @@ class EffectSpeaker {
   }
 
   /// Numbers ascending, however the study lists them: a share is of the lower level. Words stay in the study's order.
-  void order_levels(std::vector<const Line*>& lines) const {
+  void order_levels(std::vector<const Line*>& lines) {
     if (own_.size() != 1) return;
     const auto number = [&](const Line* line) {
       return number_in(evidence_.study().text(line->point.first(), own_.front()));
     };
-    if (std::all_of(lines.begin(), lines.end(), [&](const Line* line) { return number(line).has_value(); }))
+    ascending_ = std::all_of(lines.begin(), lines.end(), [&](const Line* line) { return number(line).has_value(); });
+    if (ascending_)
       std::stable_sort(lines.begin(), lines.end(),
                        [&](const Line* a, const Line* b) { return *number(a) < *number(b); });
   }
@@ -307,7 +308,9 @@ class EffectSpeaker {
       const std::string low = share_text(*least->pair), high = share_text(*most->pair);
       return low == high ? "by " + low + which : fmt::format("by {} to {}{}", low, high, which);
     }
-    if (both_ways(*least, *most)) return fmt::format("by {} to {}", share_text(*least->pair), share_text(*most->pair));
+    if (both_ways(*least, *most))
+      return fmt::format("by {} to {} of the {}", share_text(*least->pair), share_text(*most->pair),
+                         ascending_ ? "lower level" : "level listed first");
     const Told& largest = larger(*least, *most);
     return fmt::format("by up to {} ({} against {}{})", share_text(*largest.pair), largest.second, largest.first,
                        place(largest).empty() ? "" : "," + place(largest));
@@ -407,7 +410,8 @@ class EffectSpeaker {
   std::vector<std::string> own_, others_;
   Cases cases_;
   double from_ = 0;
-  bool agrees_ = false;  // asked whether levels agree, not whether they differ
+  bool agrees_ = false;     // asked whether levels agree, not whether they differ
+  bool ascending_ = false;  // levels are numbers
   Lines lines_;
   std::vector<Combination> combinations_;
   std::vector<Told> told_;
@@ -432,10 +436,12 @@ const Verb& effect_verb() {
       {keys::of_form(Field::Form::text, "effect", std::nullopt,
                      "The choice: a role, a parameter, an axis that varies."),
        keys::of_form(Field::Form::text, "on", std::nullopt, "The measure."),
-       keys::quiet(keys::of_form(Field::Form::share, "from", Json(nullptr),
-                                 "Whether levels differ by this share; 1 % where absent.")),
        keys::quiet(
-           keys::of_form(Field::Form::share, "within", Json(nullptr), "Whether levels agree within this share."))},
+           keys::of_form(Field::Form::share, "from", Json(nullptr),
+                         "Whether levels differ by this share of the one listed first, of numbers of the lower; 1 % "
+                         "where absent.")),
+       keys::quiet(
+           keys::of_form(Field::Form::share, "within", Json(nullptr), "Whether levels agree within such a share."))},
       "",
       check_effect,
       doubt_of_one_step,

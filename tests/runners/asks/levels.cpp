@@ -304,6 +304,22 @@ TEST_CASE("asks: an effect of numbers is a share of the lower level, in whatever
   CHECK(sentences.size() == 1);
 }
 
+TEST_CASE("asks: shares of both signs are said with what they are shares of") {
+  // The pair that decides is another with each mass: the first and the second, the first and the third.
+  Made made;
+  made.choices = {{"time", {"t0", "t1", "t2"}}, {"mass", {"m0", "m1"}}};
+  const double values[3][2] = {{1, 1}, {1.5, 1}, {1.2, 0.5}};
+  made.truth = [&](const std::vector<std::size_t>& at) { return values[at[0]][at[1]]; };
+  const auto sentence = [&] {
+    return answer_of(made.results(), {{"effect", "time"}, {"on", "impulse"}, {"from", 0.05}}).sentence;
+  };
+  CHECK_THAT(sentence(), Catch::Contains("% of the level listed first"));
+  made.choices[0] = {"time.beta", {"0.25", "0.5", "0.75"}};
+  made.choices.push_back({"time", {"t0"}});
+  CHECK_THAT(answer_of(made.results(), {{"effect", "time.beta"}, {"on", "impulse"}, {"from", 0.05}}).sentence,
+             Catch::Contains("% of the lower level"));
+}
+
 TEST_CASE("asks: where one that is ranked has no value, none is called the largest") {
   Made made;
   made.choices = {{"mass", {"m0", "m1", "m2"}}};
