@@ -5,6 +5,7 @@
 #include "runners/asks/evidence.hpp"
 #include "runners/asks/verbs.hpp"
 #include "runners/json/json_text.hpp"
+#include "runners/json/share.hpp"
 #include "runners/study/axis_meaning.hpp"
 
 namespace ricochet::asks {
@@ -17,6 +18,11 @@ std::string Ask::text(const char* key) const {
 std::optional<double> Ask::real(const char* key) const {
   const auto found = keys.find(key);
   return found != keys.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
+}
+
+std::optional<double> Ask::share(const char* key) const {
+  const auto found = keys.find(key);
+  return found != keys.end() ? share_of(*found) : std::nullopt;
 }
 
 std::string Ask::subject() const {

@@ -25,12 +25,14 @@ struct Ask {
   /// The text after a key; "" where it is not there.
   std::string text(const char* key) const;
   std::optional<double> real(const char* key) const;
+  /// The share after a key, given as a number or in per cent.
+  std::optional<double> share(const char* key) const;
   /// What stands after its verb, where that is a text: the measure, the choice.
   std::string subject() const;
   /// "/ask/0/rank" of its verb, "/ask/0/over" of another key.
   std::string pointer(const std::string& key = "") const;
   /// The share from which levels differ, or within which they agree; 1 % where neither is given.
-  double share_asked() const { return real("from").value_or(real("within").value_or(0.01)); }
+  double share_asked() const { return share("from").value_or(share("within").value_or(0.01)); }
   /// Whether the exit code depends on it.
   bool required() const { return keys.value("require", false); }
 };

@@ -58,7 +58,7 @@ bool drawn_by_chance(const Point& point) {
 
 class Enough {
  public:
-  Enough(const Ask& ask, const Evidence& evidence) : evidence_(evidence), within_(*ask.real("within")) {
+  Enough(const Ask& ask, const Evidence& evidence) : evidence_(evidence), within_(*ask.share("within")) {
     lines_ = lines_of(ask, evidence, ask.subject());
   }
 

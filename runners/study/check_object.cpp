@@ -6,6 +6,7 @@
 #include <ricochet/scene/formula.hpp>
 
 #include "runners/json/json_text.hpp"
+#include "runners/json/share.hpp"
 #include "runners/study/body_keys.hpp"
 #include "runners/study/scene_keys.hpp"
 #include "runners/table/text.hpp"
@@ -170,22 +171,18 @@ Json check_starts(const Field& field, const Json& value, const std::string& poin
 
 // A share as a number: of 0.05 or "5 %".
 Json check_share(const Json& value, const std::string& pointer) {
-  std::optional<double> share;
-  if (value.is_number()) share = value.get<double>();
-  if (value.is_string()) {
-    std::string text = value.get<std::string>();
-    if (text.ends_with("%")) {
-      text.pop_back();
-      while (text.ends_with(" ")) text.pop_back();
-      constexpr double hundred = 100;
-      if (const auto number = number_in(text)) share = *number / hundred;
-    }
-  }
+  const std::optional<double> share = share_of(value);
   if (!share) throw InputError(pointer, "expected a share, as 0.05 or \"5 %\"; found " + quote(value));
-  constexpr double most = 1000;
+  constexpr double most = 1000, hundred = 100;
+  constexpr int digits = 12;
   if (!(*share > 0 && *share <= most))
-    throw InputError(pointer, "expected a share above 0 and at most 1000 (100000 %); found " + quote(value));
-  return *share;
+    throw InputError(pointer, "expected a share above 0 and at most \"100000 %\"; found " + quote(value));
+  if (*share <= 1) return *share;
+  // A number above 1 is per cent that were meant. More than the whole is kept as it is written.
+  if (value.is_number())
+    throw InputError(pointer, value.dump() + " is above 1, the whole; expected \"" + value.dump() + " %\", or \"" +
+                                  short_number(hundred * *share, digits) + " %\" where that is meant");
+  return value;
 }
 
 Json check_levels(const Json& value, const std::string& pointer) {

@@ -45,7 +45,7 @@ struct Field {
     words,     ///< a word or a list of words out of `spec.words` (empty: any names), one value together
     starts,    ///< a word out of `spec.words`, a nested object (at most one), or a list of these, one value together
     excludes,  ///< partial matches with a reason
-    share,     ///< a share above 0, as a number or in per cent: 0.05, "5 %"
+    share,     ///< a share above 0, as a number up to 1 or in per cent: 0.05, "5 %"
     levels,    ///< an object of any names, each with a number, a word or a truth value
   };
   Form form = Form::scalar;

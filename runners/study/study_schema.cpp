@@ -178,7 +178,7 @@ class SchemaWriter {
       case Field::Form::starts:
         return one_or_list(either("object", object(field.nested.front()), scalar(field.spec)));
       case Field::Form::share:
-        return {{"anyOf", Json::array({{{"type", "number"}, {"exclusiveMinimum", 0}},
+        return {{"anyOf", Json::array({{{"type", "number"}, {"exclusiveMinimum", 0}, {"maximum", 1}},
                                        {{"type", "string"}, {"pattern", "^[0-9.eE+-]+ *%$"}}})}};
       case Field::Form::levels:
         return {{"type", "object"},

@@ -44,7 +44,7 @@ class CheapestAsk {
       : evidence_(evidence),
         study_(evidence.study()),
         error_(error_name(ask.subject())),
-        within_(*ask.real("within")),
+        within_(*ask.share("within")),
         cases_(evidence.cases(ask)) {
     InOrderMet<std::string, Reach> methods;
     for (const CaseRecord* one : cases_) methods[study_.key(*one)].cases.push_back(one);

@@ -76,6 +76,22 @@ TEST_CASE("errors that a study does not compute are refused with the nearest nam
   CHECK_THAT(refused(oscillator("trajectory"), {{"order", "impulse"}}), Contains("kind convergence"));
 }
 
+TEST_CASE("a number above 1 is no share, and more than the whole is written in per cent", "[asks]") {
+  const Json study = oscillator("trajectory");
+  const auto effect = [&](const char* key, const Json& share) {
+    return refused(study, {{"effect", "time"}, {"on", "impulse"}, {key, share}});
+  };
+  for (const char* key : {"from", "within"}) {
+    for (const Json& share : {Json(0.05), Json(1), Json("5 %"), Json("500 %")}) CHECK(effect(key, share) == "");
+    CHECK_THAT(effect(key, 5),
+               Contains(std::string("/ask/0/") + key) &&
+                   Contains("5 is above 1, the whole; expected \"5 %\", or \"500 %\" where that is meant"));
+    CHECK_THAT(effect(key, "200000 %"), Contains("at most \"100000 %\""));
+  }
+  CHECK_THAT(refused(study, {{"enough", "impulse"}, {"within", 2}}),
+             Contains("/ask/0/within: ") && Contains("\"2 %\""));
+}
+
 TEST_CASE("a measure of stops with names is refused where the stops have none, with the list to write", "[asks]") {
   Json study = oscillator("trajectory");
   CHECK(refused(study, {{"value", "impulse"}}) == "");
