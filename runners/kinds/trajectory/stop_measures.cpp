@@ -377,9 +377,26 @@ std::string missing_for(const StopMeasure& one, const nlohmann::ordered_json& st
   return "";
 }
 
+/// Throws InputError at `pointer` where a measure of the whole structure is one over a window, or over its parts, that
+/// the study has not.
+void check_window_measure(const nlohmann::ordered_json& study, const std::string& measure, const std::string& pointer) {
+  const std::string name = measure.starts_with(confidence) ? measure.substr(confidence.size()) : measure;
+  const auto is_one_of = [&](std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  const Json window = study.value("window", Json());
+  if (is_one_of({"window_power", "window_force", "window_impact_rate", "window_tip_rms"}) &&
+      !(window.is_object() && window.value("parts", Json()).is_number()))
+    throw InputError(pointer,
+                     measure + " is a mean over parts of a window; give window with \"from\", \"to\" and \"parts\"");
+  if (is_one_of({"contact_force_mean", "contact_force_deviation"}) && !window.is_object())
+    throw InputError(pointer, measure + " is measured over a window; give window with \"from\" and \"to\"");
+}
+
 }  // namespace
 
 void check_stop_measure(const nlohmann::ordered_json& study, const std::string& measure, const std::string& pointer) {
+  check_window_measure(study, measure, pointer);
   const auto parts = parts_of(measure);
   if (!parts || check_observed_octave(study, parts->first, parts->second, pointer)) return;
   std::vector<std::string> stops;

@@ -92,6 +92,23 @@ TEST_CASE("a number above 1 is no share, and more than the whole is written in p
              Contains("/ask/0/within: ") && Contains("\"2 %\""));
 }
 
+TEST_CASE("a mean over parts of a window is refused where the window has none, with the key to give", "[asks]") {
+  Json study = oscillator("trajectory");
+  for (const char* name : {"window_tip_rms", "window_power", "window_force", "window_impact_rate"}) {
+    INFO(name);
+    study["window"] = {{"from", 0.2}, {"to", 1}};
+    CHECK_THAT(refused(study, {{"value", name}}), Contains("/ask/0/value: ") && Contains("\"parts\""));
+    study["observe"] = name;
+    CHECK_THAT(refused(study, {{"runs", true}}), Contains("/observe") && Contains("\"parts\""));
+    study["window"]["parts"] = 16;
+    CHECK(refused(study, {{"value", name}}) == "");
+    study.erase("observe");
+  }
+  CHECK(refused(study, {{"value", "contact_force_mean"}}) == "");
+  study.erase("window");
+  CHECK_THAT(refused(study, {{"value", "contact_force_mean"}}), Contains("give window with \"from\" and \"to\""));
+}
+
 TEST_CASE("a measure of stops with names is refused where the stops have none, with the list to write", "[asks]") {
   Json study = oscillator("trajectory");
   CHECK(refused(study, {{"value", "impulse"}}) == "");
