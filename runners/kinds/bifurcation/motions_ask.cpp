@@ -427,8 +427,11 @@ Json default_sweep_asks(const Json& resolved) {
 void check_sweep_ask(const Study& study, const Json& keys, const std::string& pointer) {
   const asks::Ask ask = asks::ask_at(keys, pointer);
   asks::refuse_stops(ask);
-  if (ask.has("effect")) return check_effect_on_motions(study, keys, pointer);
   const std::vector<std::string> names = names_of(study.resolved.at("parameter").at("pointer").get<std::string>());
+  if (ask.has("effect") && ask.subject() == "start")
+    throw InputError(pointer, "starts are no choice: every case marches all of them; ask {\"motions\": " +
+                                  quote(names.front()) + "}, which tells where they end in several motions");
+  if (ask.has("effect")) return check_effect_on_motions(study, keys, pointer);
   if (std::find(names.begin(), names.end(), ask.subject()) == names.end())
     throw InputError(pointer, "this study goes through " + quote(names.front()) + " and not through " +
                                   quote(ask.subject()) + did_you_mean(ask.subject(), names));

@@ -139,6 +139,13 @@ TEST_CASE("a sweep is asked for its own parameter, basins for shares", "[asks]")
   CHECK_THAT(refused(oscillator("trajectory"), {{"motions", "share"}}), Contains("kinds bifurcation and basins"));
 }
 
+TEST_CASE("starts of a sweep are no choice, and the motions tell what they end in", "[asks]") {
+  Json sweep = oscillator("bifurcation");
+  sweep["start"] = {"rest", "up", "down"};
+  CHECK_THAT(refused(sweep, {{"effect", "start"}, {"on", "motions"}}),
+             Contains("/ask/0/effect: ") && Contains("{\"motions\": \"scene.structure.force.pulsation\"}"));
+}
+
 TEST_CASE("cases without a motion of their own have no measures of motions", "[asks]") {
   for (const char* kind : {"bifurcation", "basins", "stability"}) {
     INFO(kind);
