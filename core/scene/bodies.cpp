@@ -224,7 +224,7 @@ void check_initial_alone(const SceneSpec& alone, const JoinedBody& body) {
     return check_given_initial(*given->structure, initial,
                                "body " + body.name + " has no x; expected 0, or the file of an initial state");
   if (!initial.dofs.empty())
-    throw InputError("/scene/initial/file", fmt::format("a {} begins as formulas in x say; expected displacement and "
+    throw InputError("/scene/initial/file", fmt::format("the {} begins as formulas in x say; expected displacement and "
                                                         "velocity",
                                                         body.space.structure));
   const auto* beam = std::get_if<BeamSpec>(&alone.structure);

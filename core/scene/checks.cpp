@@ -121,7 +121,7 @@ void check_load(const SceneSpec& scene, const FiniteElementSpace& space) {
     require(!term.place || term.force, load_pointer(k, "body"),
             "the scene has one structure; expected no body of the load");
     require(!term.place, load_pointer(k, "at"),
-            fmt::format("a {} has no nodes that are called; expected x in m", space.structure));
+            fmt::format("the {} has no nodes that are called; expected x in m", space.structure));
     require(oscillator || !term.force || term.at, load_pointer(k, "at"),
             "missing; expected where the force acts, x in m");
     if (term.at) {
@@ -343,7 +343,7 @@ void check_scene(const SceneSpec& shared, int elements, const ForceBeyond& beyon
   check_surfaces(scene, space);
   if (std::holds_alternative<AssembledSpec>(scene.structure)) return check_assembled(scene, space, beyond);
   require(scene.initial.dofs.empty(), "/scene/initial/file",
-          fmt::format("a {} begins as formulas in x say; expected displacement and velocity", space.structure));
+          fmt::format("the {} begins as formulas in x say; expected displacement and velocity", space.structure));
   check_positions(scene);
   if (const auto* bar = std::get_if<BarSpec>(&scene.structure))
     require(bar->fixed != BarSpec::Fixed::none || scene.support.amplitude == 0, "/scene/support/amplitude",

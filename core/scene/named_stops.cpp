@@ -139,8 +139,8 @@ PlaceRow place_row(const SceneSpec& scene, const FiniteElementSpace& space, cons
                      fmt::format("\"{}\" in a scene of one structure; expected no body", shortened(place.body)));
   if (assembled) return assembled->row(place, pointer);
   if (!place.x)
-    throw InputError(
-        pointer, fmt::format("a {} has no nodes that are called; expected {{\"x\": position in m}}", space.structure));
+    throw InputError(pointer, fmt::format("the {} has no nodes that are called; expected {{\"x\": position in m}}",
+                                          space.structure));
   const double length = structure_length(scene), x = *place.x;
   if (!(x >= 0 && x <= length))
     throw InputError(pointer + "/x",

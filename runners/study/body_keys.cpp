@@ -164,9 +164,11 @@ StructureSpec read_bodies(const Json& scene, const std::function<StructureSpec(c
 Json without_body(Json scene) {
   if (!scene.contains("bodies") || scene.at("bodies").size() != 1) return scene;
   const std::string name = scene.at("bodies").begin().key();
+  const bool one_point = scene.at("bodies").begin()->value("type", "") == "oscillator";
   const auto clear = [&](Json& owner, const char* key) {
     if (!owner.is_object() || !owner.contains(key) || !owner[key].is_object()) return;
     if (owner[key].value("body", "") == name) owner[key].erase("body");
+    if (one_point && owner[key].empty()) owner[key] = {{"x", 0}};
   };
   for (const char* list : {"stops", "load", "points"})
     if (scene.contains(list) && scene[list].is_array())

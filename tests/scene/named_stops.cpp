@@ -76,7 +76,7 @@ TEST_CASE("lists of stops that cannot be are refused by name and pointer") {
   CHECK(fault(with_stops(beam, {{"a", at_x(1.2), {}, {}, 0.1}})) ==
         "/scene/stops/0/at/x: 1.2 m is beyond the beam; expected 0 to 1 m");
   CHECK(fault(with_stops(beam, {{"a", at_node("N1"), {}, {}, 0.1}})) ==
-        "/scene/stops/0/at: a beam has no nodes that are called; expected {\"x\": position in m}");
+        "/scene/stops/0/at: the beam has no nodes that are called; expected {\"x\": position in m}");
   CHECK(fault(with_stops(beam, {{"a", at_x(1), {}, 0.1, 0.2}})) ==
         "/scene/initial/displacement: the initial displacement is 0 m at stop a, beyond the lower stop at 0.1 m; "
         "expected a state between the stops, or a compliant law that lets points pass them");

@@ -88,6 +88,19 @@ TEST_CASE("one body is a structure like any other") {
   body["scene"]["bodies"]["tube"]["length"] = 1.5;
   body["scene"]["stops"] = Json::parse(R"([{"name": "a", "at": {"body": "tube", "x": 1}, "upper": 0.1}])");
   CHECK(parse(body).cases.front().scene.stops.named.at(0).at.body.empty());
+  // An oscillator has one point, alone as beside others.
+  body["scene"]["bodies"] = {{"ball", {{"type", "oscillator"}, {"mass", 1}, {"stiffness", 0}}}};
+  body["scene"].erase("initial");
+  const Json at = {{"body", "ball"}};
+  body["scene"]["stops"] = Json::array({{{"name", "a"}, {"at", at}, {"upper", 0.1}}});
+  body["scene"]["load"] = Json::array({{{"at", at}, {"force", "sin(t)"}}});
+  body["scene"]["points"] = Json::array({{{"name", "p"}, {"at", at}}});
+  body["mesh"] = {{"elements", 1}};
+  const StudyCase one = parse(body).cases.front();
+  CHECK(one.scene.stops.named.at(0).at.x == 0);
+  CHECK(one.scene.points.at(0).at.x == 0);
+  body["scene"]["stops"][0]["at"] = {{"body", "ball"}, {"node", "N1"}, {"component", "uy"}};
+  CHECK_THAT(refusal(body), Contains("/scene/stops/0/at: the oscillator has no nodes"));
 }
 
 TEST_CASE("a load is spread along one of the bodies") {

@@ -113,7 +113,7 @@ TEST_CASE("points of modes and nodes of matrices move within clearances as the b
   CaseRuns runs;
   Json study = whirling(R"("signorini")");
   study["scene"]["stops"][0]["at"] = {{"point", "plate"}};
-  CHECK_THROWS_WITH(runs.study(study), Catch::Contains("a beam has no nodes that are called"));
+  CHECK_THROWS_WITH(runs.study(study), Catch::Contains("the beam has no nodes that are called"));
 }
 
 TEST_CASE("the radius of a clearance may vary, with every law") {
