@@ -164,12 +164,21 @@ int report_pair(const Arguments& arguments, std::ostream& out) {
 
 }  // namespace
 
+namespace {
+
+/// Whether a report was written, whatever it says of its cases and asks.
+bool has_report(int code) {
+  return code == exit_done || code == exit_some_failed || code == exit_not_met;
+}
+
+}  // namespace
+
 int command_report(const Arguments& arguments, std::ostream& out) {
   if (arguments.compare) return report_pair(arguments, out);
   if (arguments.operands.size() == 1) {
     if (arguments.out) throw UsageError("--out is for the page that lists several folders; only one was given");
     const int code = rebuild_report(arguments.operands.front(), arguments.json);
-    if (!arguments.figures || (code != exit_done && code != exit_some_failed && code != exit_not_met)) return code;
+    if (!arguments.figures || !has_report(code)) return code;
     const std::size_t count =
         write_figures(std::filesystem::path(arguments.operands.front()) / "report.html", *arguments.figures);
     if (!arguments.json) out << "figures: " << count << " in " << arguments.figures->string() << "\n";
@@ -178,8 +187,11 @@ int command_report(const Arguments& arguments, std::ostream& out) {
   if (arguments.figures) throw UsageError("--figures is for one folder; several were given");
   if (arguments.json) throw UsageError("--json is for one folder; several were given");
   std::vector<std::filesystem::path> folders;
+  int ended = exit_done;
   for (const std::string& operand : arguments.operands) {
-    if (const int code = rebuild_report(operand); code != exit_done) return code;
+    const int code = rebuild_report(operand);
+    if (!has_report(code)) return code;
+    if (ended == exit_done || code == exit_some_failed) ended = code;
     folders.push_back(std::filesystem::canonical(operand));
   }
   const std::filesystem::path page = std::filesystem::weakly_canonical(
@@ -190,7 +202,7 @@ int command_report(const Arguments& arguments, std::ostream& out) {
         {with_tables(read_store(folder)), as_link((folder / "report.html").lexically_relative(page.parent_path()))});
   write_file(page, page.extension() == ".md" ? report::index_markdown(studies) : report::index_page(studies));
   out << "index: " << page.string() << "\n";
-  return exit_done;
+  return ended;
 }
 
 int command_merge(const Arguments& arguments, std::ostream&) {

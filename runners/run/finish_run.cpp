@@ -111,12 +111,26 @@ std::unique_ptr<const AnalysedResults> write_folder(Store& store, const std::fil
   return results;
 }
 
+namespace {
+
+bool nothing_ran(const StudyResults& results) {
+  return !results.cases.empty() && std::all_of(results.cases.begin(), results.cases.end(),
+                                               [](const CaseRecord& one) { return one.status == Status::refused; });
+}
+
+/// With what `run` and `report` end: what went wrong, then an ask that has no yes.
+int asked_exit_code(const AnalysedResults& results) {
+  const int code = results_exit_code(results);
+  return code == exit_done && !results.asked.unmet().empty() ? exit_not_met : code;
+}
+
+}  // namespace
+
 int tell_results(std::FILE* out, const AnalysedResults& results, const std::filesystem::path& folder,
                  const std::string& how, bool table) {
-  const bool nothing = std::all_of(results.cases.begin(), results.cases.end(),
-                                   [](const CaseRecord& one) { return one.status == Status::refused; });
+  const bool nothing = nothing_ran(results);
   const std::string answer = asked_text(results);
-  const int code = nothing ? exit_some_failed : results_exit_code(results);
+  const int code = results_exit_code(results);
   say(out, fmt::format("{}{}\n{} ({})\nreport: {}\n", table ? case_table(results) + "\n" : "", answer,
                        totals_text(results), how, (folder / "report.html").string()));
   for (const asks::Ask* ask : results.asked.unmet())
@@ -133,7 +147,7 @@ int tell_results(std::FILE* out, const AnalysedResults& results, const std::file
                                    : "no case came to its end, some diverged or failed",
                                (folder / "failures").string())
                  : fmt::format("exit code {}: the methods of some cases are in error\n", code));
-  return code == 0 && !results.asked.unmet().empty() ? exit_not_met : code;
+  return asked_exit_code(results);
 }
 
 // What is made of a folder's store alone: its report and tables anew, or the tables elsewhere.
@@ -168,7 +182,7 @@ int rebuild_report_with(const RenderReport& render, const std::filesystem::path&
     say(stdout, json ? asked_json(results).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"
                      : fmt::format("{}\nreport: {}\n", totals_text(results), (folder / "report.html").string()));
     tell_damage(folder, results);
-    return results.asked.unmet().empty() ? 0 : exit_not_met;
+    return asked_exit_code(results);
   });
 }
 
@@ -297,8 +311,8 @@ std::string totals_text(const StudyResults& results) {
 }
 
 int results_exit_code(const StudyResults& results) {
-  const bool wrong =
-      !contradictions(results).empty() || count(results, Status::diverged) + count(results, Status::failed) > 0;
+  const bool wrong = nothing_ran(results) || !contradictions(results).empty() ||
+                     count(results, Status::diverged) + count(results, Status::failed) > 0;
   return wrong ? exit_some_failed : exit_done;
 }
 

@@ -59,8 +59,8 @@ std::string case_table(const StudyResults& results);
 /// "48 cases: 40 done, 4 refused, 2 diverged, 2 failed".
 std::string totals_text(const StudyResults& results);
 
-/// 0, or 3 when a case diverged or failed, or its integration without contact is not what its spectrum says. Refused
-/// and excluded cases did what the study asks.
+/// 0, or 3 when a case diverged or failed, its integration without contact is not what its spectrum says, or every case
+/// is refused. Beside others, refused and excluded cases did what the study asks.
 int results_exit_code(const StudyResults& results);
 
 }  // namespace ricochet

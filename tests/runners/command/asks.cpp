@@ -77,4 +77,8 @@ TEST_CASE("run says each sentence above its rows, twelve at most, and a required
   CHECK(json.at("verdicts").at(1).at("value").is_number());
   CHECK_THAT(ran.out, Contains(json.at("verdicts").at(0).at("sentence").get<std::string>()));
   CHECK(say(here, "report out out --json").code == 2);
+  // A page of several folders is written whatever their asks say.
+  std::filesystem::copy(here / "out", here / "other", std::filesystem::copy_options::recursive);
+  CHECK(say(here, "report out other").code == 6);
+  CHECK(std::filesystem::exists(here / "index.html"));
 }

@@ -83,7 +83,8 @@ TEST_CASE("summary: outcomes in words") {
   CHECK(outcome_text(driven, "trajectory") ==
         "done: energy 0 J → 2 J, 5 J brought in by loads, 3 impacts, 0.421 µs/step");
   CHECK(outcome_text(ended(Status::done, ""), "trajectory") == "done");
-  CHECK(outcome_text(ended(Status::refused, "β = 0 leaves S singular"), "trajectory") == "refused: β = 0 leaves S singular");
+  CHECK(outcome_text(ended(Status::refused, "β = 0 leaves S singular"), "trajectory") ==
+        "refused: β = 0 leaves S singular");
   CHECK(outcome_text(ended(Status::diverged, "at t = 0.1 s"), "trajectory") == "diverged: at t = 0.1 s");
 }
 
@@ -143,4 +144,6 @@ TEST_CASE("summary: totals and exit code") {
   CHECK(results_exit_code(results) == 3);
   results.cases.pop_back();
   CHECK(totals_text(results) == "2 cases: 1 done, 1 failed; 1 not run yet");
+  results.cases = {ended(Status::refused, "x")};
+  CHECK(results_exit_code(results) == 3);
 }

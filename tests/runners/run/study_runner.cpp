@@ -48,6 +48,8 @@ TEST_CASE("run: what was finished is not run again, whatever its status, until -
   CHECK(run(fake_study(6), options) == 3);
   CHECK(run.runs == 0);
   CHECK(read_text(options.out / "cases.csv") == cases);
+  // A report of it ends as its run does.
+  CHECK(rebuild_report_with(run.runner.render, options.out) == 3);
   CHECK(run(fake_study(6), {options.out, 2, true}) == 3);
   CHECK(run.runs == 6);
 }
