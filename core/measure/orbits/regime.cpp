@@ -97,10 +97,16 @@ bool still_arriving(const Recurrence& r) {
   return r.window > 0 && r.contraction < 1 && std::pow(r.contraction, r.window) < approached;
 }
 
+// Whether the 0–1 test tells an orbit that is regular, and not on its way to one that repeats.
+bool stays_regular(const RegimeInput& input) {
+  return input.zero_one && *input.zero_one < regular_below && !still_arriving(input.recurrence);
+}
+
 // What is missing, or what contradicts, where nothing is decided.
 std::string undecided_text(const RegimeInput& input) {
   std::string text = distance_text(input);
   const Recurrence& r = input.recurrence;
+  const std::string settling = fmt::format(", distances shrink by {:.4g} per period: still settling", r.contraction);
   if (input.exponent) {
     const Interval& e = *input.exponent;
     text += ", " + exponent_text(e);
@@ -110,13 +116,13 @@ std::string undecided_text(const RegimeInput& input) {
                                    : ": neighbours approach each other, a longer transient may settle");
     }
     if (!input.zero_one) return text + ": " + zero_one_text(input) + " tells regular from chaotic";
+    if (*input.zero_one < regular_below) return text + " and " + zero_one_text(input) + settling;
     return text + fmt::format(" and {}: neither regular (below {}) nor an exponent above zero; keep more periods",
                               zero_one_text(input), regular_below);
   }
   text += fmt::format(", no exponent, {}", zero_one_text(input));
   if (!input.zero_one) return text + ": keep more periods or ask for an exponent";
-  if (*input.zero_one < regular_below && still_arriving(r))
-    return text + fmt::format(", distances shrink by {:.4g} per period: still settling", r.contraction);
+  if (*input.zero_one < regular_below && still_arriving(r)) return text + settling;
   return text + ": ask for an exponent or keep more periods";
 }
 
@@ -146,13 +152,11 @@ RegimeVerdict classify(const RegimeInput& input) {
   if (input.exponent) {
     const std::string text = exponent_text(*input.exponent) + ", " + zero_one_text(input) + ", " + distance_text(input);
     if (input.exponent->low > 0) return {{Regime::chaotic}, 0, text + impacts};
-    if (input.exponent->high >= 0 && input.zero_one && *input.zero_one < regular_below)
-      return {{Regime::quasi_periodic}, 0, text + impacts};
+    if (input.exponent->high >= 0 && stays_regular(input)) return {{Regime::quasi_periodic}, 0, text + impacts};
   } else if (input.zero_one) {
     const std::string text = zero_one_text(input) + " without an exponent, " + distance_text(input);
     if (*input.zero_one > chaotic_above) return {{Regime::chaotic}, 0, text + impacts};
-    if (*input.zero_one < regular_below && r.window > 0 && !still_arriving(r))
-      return {{Regime::quasi_periodic}, 0, text + impacts};
+    if (r.window > 0 && stays_regular(input)) return {{Regime::quasi_periodic}, 0, text + impacts};
   }
   return {{Regime::undecided}, 0, undecided_text(input) + cut};
 }

@@ -80,8 +80,8 @@ struct RegimeVerdict {
 ///    lies above zero contradicts that: undecided. Not so where T is known and the growth it means over the window,
 ///    e^{low T window}, is less than 2.
 /// 4. Chaotic: the exponent's interval lies above zero; without an exponent, K > 0.8.
-/// 5. Quasi-periodic: the exponent's interval holds zero and K < 0.2. Without an exponent, K < 0.2 and the section does
-///    not approach an orbit. It does where distances halved over the window.
+/// 5. Quasi-periodic: K < 0.2, the exponent's interval, if any, holds zero, and the section does not approach an orbit.
+///    It does where distances halved over the window.
 /// 6. Undecided otherwise; the sentence says what is missing or what contradicts.
 /// `failed` is for those who march: nothing is classified as failed here.
 RegimeVerdict classify(const RegimeInput& input);

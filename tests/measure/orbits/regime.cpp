@@ -173,6 +173,12 @@ TEST_CASE("regime: exponents decide what does not repeat, the 0–1 test where t
   CHECK(classify(input).motion.regime == Regime::chaotic);
   input.exponent = Interval{0.0, -0.01, 0.01};
   CHECK(classify(input).motion.regime == Regime::quasi_periodic);
+  // Zero lies in the interval of what still approaches an orbit that repeats, too.
+  const Recurrence apart = input.recurrence;
+  input.recurrence = {0, 1e-3, 0.99, 300};
+  CHECK(classify(input).motion.regime == Regime::undecided);
+  CHECK(says(classify(input), "still settling"));
+  input.recurrence = apart;
   input.zero_one = 0.5;
   CHECK(classify(input).motion.regime == Regime::undecided);
   CHECK(says(classify(input), "K = 0.50"));
