@@ -221,10 +221,6 @@ double AskFigure::labels_at(const FigureAxis& axis, double top) {
   return end;
 }
 
-void AskFigure::lines_at(const FigureAxis& axis, double top, double bottom) {
-  for (const double value : at_) draw_.line(axis.at(value), top, axis.at(value), bottom, "at");
-}
-
 void AskFigure::ticks(const FigureAxis& axis, double top, double y, bool above) {
   double end = -1;
   for (const auto& [value, words] : axis.ticks()) {

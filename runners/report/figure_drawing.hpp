@@ -84,7 +84,6 @@ class AskFigure {
   std::string label_at(double value) const;
   /// The labels of upright lines at values, below `top`; where they end.
   double labels_at(const FigureAxis& axis, double top);
-  void lines_at(const FigureAxis& axis, double top, double bottom);
   /// The ticks of a horizontal axis, with lines up to `top`; words below y, or above it.
   void ticks(const FigureAxis& axis, double top, double y, bool above = false);
   /// A title below an axis; where it ends.

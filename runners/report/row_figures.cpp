@@ -55,22 +55,26 @@ class RowFigure : public AskFigure {
     const double bottom = y;
     if (height > tall) ticks(*axis_, top, top, true);
     ticks(*axis_, top, bottom);
-    // Beneath labels, but over bars.
-    if (!boxes) lines_at(*axis_, top - 4, bottom);
+    // Beside labels, and over bars.
+    std::vector<Label> labels;
     for (const auto& [from, row] : places) {
       double base = from + line_height - 3;
-      const std::vector<std::string> lines = wrapped(row->label, label_width(*row, beside, longest));
-      for (const std::string& one : lines) {
+      for (const std::string& one : wrapped(row->label, label_width(*row, beside, longest))) {
+        labels.push_back({side / 2 + width_of(one), base - line_height + 3, base + 3});
         draw_.text(side / 2, base, one, row->heading ? "heading" : "");
         base += line_height;
       }
+    }
+    if (!boxes) lines_beside(labels, top - 4, bottom);
+    for (const auto& [from, row] : places) {
+      const std::vector<std::string> lines = wrapped(row->label, label_width(*row, beside, longest));
       if (row->heading || !row->draw) continue;
       const auto count = static_cast<double>(lines.size());
       const double first =
           beside ? from + std::max(0.0, line_height * count - lane * row->lanes) / 2 : from + line_height * count;
       row->draw(first + lane / 2);
     }
-    if (boxes) lines_at(*axis_, top - 4, bottom);
+    if (boxes) lines_beside(labels, top - 4, bottom);
     const double end = title(value_title(), bottom + line_height, logarithms);
     return draw_.svg(end, value_title());
   }
@@ -87,6 +91,23 @@ class RowFigure : public AskFigure {
   std::optional<FigureAxis> axis_;
 
  private:
+  /// What a line of a label covers, from the left edge on.
+  struct Label {
+    double right, top, bottom;
+  };
+  /// Lines at values, interrupted where a label stands; `labels` from the top downwards.
+  void lines_beside(const std::vector<Label>& labels, double top, double bottom) {
+    for (const double value : at_) {
+      const double x = axis_->at(value);
+      double from = top;
+      for (const Label& one : labels) {
+        if (one.right + dot < x || one.bottom < from) continue;
+        if (one.top > from) draw_.line(x, from, x, one.top, "at");
+        from = one.bottom;
+      }
+      if (from < bottom) draw_.line(x, from, x, bottom, "at");
+    }
+  }
   /// Lengths from zero are compared.
   static void with_zero(std::vector<double>& values) {
     if (values.empty()) return;

@@ -231,6 +231,12 @@ void check_lines(const Drawn& drawn, std::vector<double> at, bool upright) {
   std::vector<double> places;
   for (const Line& line : drawn.lines)
     if (line.classes == "at") places.push_back(upright ? line.y1 : line.x1);
+  // A line is in pieces where a label stands.
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  for (const Line& line : drawn.lines)
+    for (const Words& one : drawn.words)
+      if (!upright && line.classes == "at" && (one.classes.empty() || one.classes == "heading"))
+        CHECK_FALSE((one.left < line.x1 && line.x1 < one.right && line.y1 < one.base - 3 && line.y2 > one.base - 8));
   std::sort(at.begin(), at.end());
   REQUIRE(places.size() == at.size());
   for (std::size_t k = 0; scale && k < at.size(); ++k) CHECK(places[k] == Approx(scale->at(at[k])).margin(0.1));
