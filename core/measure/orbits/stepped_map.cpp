@@ -16,15 +16,12 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int most_tangents = 31;  // beside one lane
-
 // Runs of contact of one lane, and the speeds that they change.
 class ContactWatch final : public StepObserver {
  public:
   explicit ContactWatch(const Marcher& marcher)
-      : points_(marcher.program().contact ? marcher.program().problem->points() : 0),
-        closed_(static_cast<std::size_t>(points_)),
-        now_(static_cast<std::size_t>(points_)) {}
+      : points_(marcher.program().contact ? static_cast<std::size_t>(marcher.program().problem->points()) : 0),
+        now_(points_) {}
   void stage_solved(const Marcher& marcher, const StageView& view) override {
     if (view.contact_lanes == 0) return;
     for (const int point : view.pushed)
@@ -33,34 +30,39 @@ class ContactWatch final : public StepObserver {
   }
   void step_done(Marcher& marcher) override {
     if (points_ == 0) return;
-    VectorXd y = marcher.program().problem->contact * marcher.position(0);
-    for (int i = 0; i < points_; ++i) y[i] += marcher.lift(0, i, marcher.time());
-    places_.push_back(y);
-    sides_.push_back(now_);
+    const RowMatrix& rows = marcher.program().model->contact();
+    const double* const q = marcher.slot(0);
+    for (int i = 0; i < rows.rows(); ++i) {
+      double y = marcher.lift(0, i, marcher.time());
+      const auto row = static_cast<std::size_t>(i);
+      for (auto e = static_cast<std::size_t>(rows.start[row]); e < static_cast<std::size_t>(rows.start[row + 1]); ++e)
+        y += rows.value[e] * q[static_cast<std::ptrdiff_t>(rows.index[e]) * marcher.width()];
+      places_.push_back(y);
+    }
+    const bool closed = std::any_of(now_.begin(), now_.end(), [](int side) { return side != 0; });
+    sides_.insert(sides_.end(), now_.begin(), now_.end());
     std::fill(now_.begin(), now_.end(), 0);
-    if (std::any_of(sides_.back().begin(), sides_.back().end(), [](int side) { return side != 0; }))
-      deepest = std::max(deepest, marcher.penetration(0));
+    if (closed) deepest = std::max(deepest, marcher.penetration(0));
   }
   /// Of the whole march.
   void sum(double h, bool half, SteppedMap::Image& out) const {
-    const auto n = static_cast<long long>(sides_.size());
+    const auto n = static_cast<long long>(steps());
     ContactRuns runs;
-    for (std::size_t point = 0; point < closed_.size(); ++point) {
+    for (std::size_t point = 0; point < points_; ++point) {
+      const auto at = [&](long long step) { return static_cast<std::size_t>(step) * points_ + point; };
       const auto run = [&](long long begin, long long length) {
         runs.add(length, half ? 2 * n : n);
         const long long end = begin + length;
         if (begin < 2 || end + 1 >= n || length > briefest_contact) return;
-        const auto place = [&](long long at) {
-          return places_[static_cast<std::size_t>(at)][static_cast<Index>(point)];
-        };
-        const double before = place(begin - 1) - place(begin - 2), after = place(end + 1) - place(end);
+        const double before = places_[at(begin - 1)] - places_[at(begin - 2)],
+                     after = places_[at(end + 1)] - places_[at(end)];
         if (!(before * after < 0)) return;
         out.rebounds += std::abs(after - before);  // h |v⁺ − v⁻|
         const double speed = std::abs(before) / h;
         out.slowest = out.slowest == 0 ? speed : std::min(out.slowest, speed);
       };
       each_run(
-          n, half, [&](long long k) { return sides_[static_cast<std::size_t>(k)][point]; }, run);
+          n, half, [&](long long k) { return sides_[at(k)]; }, run);
     }
     out.pace = pace(h);
     out.placed = out.rebounds * std::min(1.0, h * out.pace);
@@ -72,22 +74,26 @@ class ContactWatch final : public StepObserver {
   double deepest = 0;
 
  private:
+  std::size_t steps() const { return points_ > 0 ? places_.size() / points_ : 0; }
   double pace(double h) const {
-    if (places_.size() < 2) return 0;
-    VectorXd mean = VectorXd::Zero(points_);
-    for (const VectorXd& y : places_) mean += y / static_cast<double>(places_.size());
+    if (steps() < 2) return 0;
     double way = 0, far = 0;
-    for (std::size_t k = 1; k < places_.size(); ++k) {
-      way += (places_[k] - places_[k - 1]).squaredNorm();
-      far += (places_[k] - mean).squaredNorm();
+    for (std::size_t point = 0; point < points_; ++point) {
+      double mean = 0;
+      for (std::size_t at = point; at < places_.size(); at += points_) mean += places_[at];
+      mean /= static_cast<double>(steps());
+      for (std::size_t at = point + points_; at < places_.size(); at += points_) {
+        way += std::pow(places_[at] - places_[at - points_], 2);
+        far += std::pow(places_[at] - mean, 2);
+      }
     }
     return far > 0 ? std::sqrt(way / far) / h : 0;
   }
 
-  int points_;
-  std::vector<int> closed_, now_;
-  std::vector<VectorXd> places_;
-  std::vector<std::vector<int>> sides_;
+  std::size_t points_;
+  std::vector<int> now_;
+  std::vector<double> places_;  // points of each step, one step after the other
+  std::vector<int> sides_;      // likewise
 };
 
 }  // namespace

@@ -46,6 +46,8 @@ class SteppedMap final : public FollowedMap {
     int group = 0;
   };
   using Make = std::function<Scene(double parameter, int tangents)>;
+  /// Columns of a derivative that one march carries.
+  static constexpr int most_tangents = 31;
   using Carry = std::function<LaneState(const LaneState& state, int from, int to)>;
 
   /// `at`: the value whose coordinates x has. `rebounds`: whether stops give back speed to masses, or are met at whole

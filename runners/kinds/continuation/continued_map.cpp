@@ -278,6 +278,11 @@ std::unique_ptr<PeriodicMap> ContinuedMap::map() {
 
 SteppedMap ContinuedMap::stepped_map(double at) {
   const auto make = [this](double value, int tangents) {
+    // Lanes that are affine in the parameter need no scene of their own.
+    if (lanes_ && !moves_loads_ && value >= from_ && value <= to_) {
+      const int group = scenes_[origin_].group;
+      return SteppedMap::Scene{scenes_.program(group, {lanes_->lane(value)}, tangents), group};
+    }
     const auto [place, added] = marched_.try_emplace(value, -1);
     if (added) {
       std::string reason;
