@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <ricochet/engine/stage_operator.hpp>
 
 namespace ricochet {
@@ -34,11 +35,19 @@ double predict_flights(const SemiDiscrete& problem, const StepWork& work, long l
 /// counts on a beam with six impacts a period.
 double predict_visits(const SemiDiscrete& problem, const StepWork& work, double steps);
 
+/// What contact asks of the steps of an integration, as counted on a part of it.
+struct ContactWork {
+  double touched = 0;     ///< share of the steps in which a stop is touched
+  double points = 1;      ///< that push, of each solve of the law while it is
+  double iterations = 1;  ///< of each such solve
+};
+
 /// What observers of an integration ask of its steps, beside the audit of energies and the recorder of impacts.
 struct WatchWork {
-  int observers = 0;     ///< that are shown every step
-  double numbers = 0;    ///< that these read after each step: entries of rows
-  bool samples = false;  ///< whether the audit reads energies after every step
+  int observers = 0;                        ///< that are shown every step
+  double numbers = 0;                       ///< that these read after each step: entries of rows
+  bool samples = false;                     ///< whether the audit reads energies after every step
+  std::optional<ContactWork> contact = {};  ///< unknown: an assumed share of steps, one point, one iteration
 };
 
 /// Seconds of a marched step that loads take, of the whole block.
@@ -46,6 +55,8 @@ double predict_loads(const Program& program);
 /// Seconds of a marched step beside what its program predicts: works and energies added up, stops that are
 /// touched, friction, observers.
 double predict_watch(const Program& program, const WatchWork& watch);
+/// Of it, what contact adds to a step in which a stop is touched.
+double predict_touched_step(const Program& program, const ContactWork& contact);
 
 /// A dense eigenproblem of more is not solved to march by modes.
 inline constexpr int most_marched_by_modes = 1000;

@@ -74,7 +74,7 @@ Commands study_commands() {
        command_run},
       {"plan",
        "STUDY.json [--cases] [--part K/N] [--workers N]",
-       "Show what would run, what is refused and why, the predicted cost, the physics. Nothing runs.",
+       "Show what would run, what is refused and why, the predicted cost, the physics. No results are made.",
        1,
        1,
        {workers, cases, part_shown, plugin},

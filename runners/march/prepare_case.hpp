@@ -23,7 +23,9 @@ struct CasePlan {
   std::string operator_name;  ///< diagonal, modal, band, sparse
   long long steps = 0;
   double predicted_seconds = 0;
-  /// Of these, what no more processors shorten: orbits that begin where others end, the last block of a grid. 0: all.
+  double trial_seconds = 0;  ///< processor time of planning that the case itself does not take
+  /// Of predicted_seconds, what no more processors shorten: orbits that begin where others end, the last block of a
+  /// grid. 0: all.
   double chain_seconds = 0;
   double bytes = 0;                           ///< of its results in the store, roughly
   double coarsest_step = 0, finest_step = 0;  ///< s, of those that the case takes; 0 where it is refused

@@ -43,6 +43,7 @@ std::string to_text(const CasePlan& plan) {
               {"coarsest", plan.coarsest_step},
               {"finest", plan.finest_step},
               {"chain", plan.chain_seconds},
+              {"trial", plan.trial_seconds},
               {"bytes", plan.bytes}}
       .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -59,6 +60,7 @@ CasePlan from_text(const Json& json) {
   json.at("coarsest").get_to(plan.coarsest_step);
   json.at("finest").get_to(plan.finest_step);
   if (json.at("chain").is_number()) json.at("chain").get_to(plan.chain_seconds);
+  json.at("trial").get_to(plan.trial_seconds);
   if (json.at("bytes").is_number()) json.at("bytes").get_to(plan.bytes);
   return plan;
 }
@@ -152,7 +154,8 @@ Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Reg
   for (PlannedCase& one : cases) {
     steps[one.study_case] = modelled_step(one.plan);
     // Prepared by the run, which plans one of cases that are alike once more.
-    const double set_up = (alike.insert(cost_key(*one.study_case)).second ? 2 : 1) * one.plan_seconds;
+    const double again = alike.insert(cost_key(*one.study_case)).second ? one.plan_seconds : 0,
+                 set_up = again + std::max(0.0, one.plan_seconds - one.plan.trial_seconds);
     const double chain = one.plan.chain_seconds > 0 ? one.plan.chain_seconds : one.plan.predicted_seconds;
     found.chain = std::max(found.chain, chain + set_up + each_case);
     found.bytes += one.plan.bytes;

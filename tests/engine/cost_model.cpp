@@ -52,6 +52,28 @@ TEST_CASE("a step costs more the more look at it, the more they read") {
   CHECK(seen < predict_watch(twice, {.observers = 1}));
 }
 
+TEST_CASE("a step in contact costs more the more points push and the more iterations the law makes") {
+  const auto problem = problem_of(working_set(), 8, {"consistent"});
+  const Program program =
+      std::get<Program>(compiled(problem, {{"consistent"}, {"signorini"}, {"newmark-dumont-paoli"}}, 1e-4));
+  const auto touched = [&](double points, double iterations) {
+    return predict_touched_step(program, {1, points, iterations});
+  };
+  CHECK(touched(1, 1) > 0);
+  for (const double points : {2.0, 20.0, 120.0, 1000.0}) {
+    CAPTURE(points);
+    CHECK(touched(points, 1) > touched(points - 1, 1));
+    CHECK(touched(points, 2) > touched(points, 1));
+    CHECK(touched(points, 3) - touched(points, 2) == Approx(touched(points, 2) - touched(points, 1)));
+  }
+  // Among all steps as the share of those in contact.
+  const auto all = [&](double share) {
+    return predict_watch(program, {.observers = 1, .contact = ContactWork{share, 3, 2}});
+  };
+  CHECK(all(0.5) - all(0) == Approx(0.5 * touched(3, 2)));
+  CHECK(all(1) - all(0) == Approx(touched(3, 2)));
+}
+
 TEST_CASE("the operator follows the number of contact points") {
   // Modal rows of H have no zeros: one point is cheap, all of them are not.
   SceneSpec scene = working_set();

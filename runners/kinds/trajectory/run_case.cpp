@@ -23,17 +23,17 @@
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/march/struck_together.hpp"
+#include "runners/march/trial_march.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
 namespace {
 
-// A step that is left out in contact: 0.1 to 0.4 µs measured. A shaken or loaded scene is taken to be in contact for
-// half of its time.
-constexpr double held_seconds_per_step = 0.5 * 1.6e-7;
-// Shares of time in contact where flights march its steps: 0.05 to 0.4 measured of shaken scenes, 0.01 to 0.2 of
-// others.
-constexpr double marched_in_contact_driven = 0.15, marched_in_contact_free = 0.05;
+// A step that is left out in contact, s: one of a compliant law is made without a reading, others are composed.
+constexpr double made_step = 2.5e-7, composed_step = 0.5e-7;
+// Where none was counted, shares of time in contact. Of shaken or loaded scenes whose contact is left out, and of
+// flights that march it: 0.05 to 0.4 measured of shaken scenes, 0.01 to 0.2 of others.
+constexpr double held_driven = 0.5, marched_in_contact_driven = 0.15, marched_in_contact_free = 0.05;
 
 // The sampled series of one lane, in the columns of a trajectory's curve, with the extremes of every step between two
 // samples. Audit and recorder look at a step before it.
@@ -320,18 +320,25 @@ WatchWork watch_work(const StudyCase& study_case, const Program& program) {
   return watch;
 }
 
-// Seconds of a step beside what compiling predicts: who watches it, or what contact costs where flights leave steps
-// out.
-double seconds_beside(const StudyCase& study_case, const Program& program) {
-  const double watched = predict_watch(program, watch_work(study_case, program));
-  if (!program.flight) return watched;
+// Seconds of a step beside what compiling predicts: who watches it, and what contact costs. `counts`: of a trial, where
+// there is one.
+double seconds_beside(const StudyCase& study_case, const Program& program, const std::optional<StepCounts>& counts) {
+  WatchWork watch = watch_work(study_case, program);
+  const bool counted = counts && counts->in_contact() > 0;
+  if (counted) watch.contact = counts->contact();
+  if (!program.flight) return predict_watch(program, watch);
   if (program.problem->points() == 0) return 0;
-  const bool driven = is_driven(study_case.scene);
-  const std::string &closed = program.flight->closed_cause(), &steps = program.flight->steps_cause();
-  if (closed.empty() || steps.empty()) return driven ? held_seconds_per_step : 0;
+  // Flights make steps of contact alone, or leave these out as well.
+  if (counted) watch.contact->touched = 1;
   const StepWork work{static_cast<int>(program.plan.slots.size()), static_cast<int>(program.plan.stages.size()), false};
-  return (driven ? marched_in_contact_driven : marched_in_contact_free) *
-         (watched + predict_cost(OperatorKind::modal, *program.problem, work, 1).step_seconds);
+  const double made =
+      predict_watch(program, watch) + predict_cost(OperatorKind::modal, *program.problem, work, 1).step_seconds;
+  const bool driven = is_driven(study_case.scene), composed = program.flight->closed_cause().empty();
+  const double held = composed ? composed_step : made_step;
+  const bool leaves_out = composed || program.flight->steps_cause().empty();
+  if (counted) return counts->in_contact() * (leaves_out ? held : made);
+  if (leaves_out) return driven ? held_driven * held : 0;
+  return (driven ? marched_in_contact_driven : marched_in_contact_free) * made;
 }
 
 }  // namespace
@@ -350,9 +357,15 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   plan.coarsest_step = plan.finest_step = study_case.step;
   plan.operator_name = operator_name(prepared.program->kind);
   plan.left_out = left_out_pairs(prepared.program->left_out);
-  const double beside = seconds_beside(study_case, *prepared.program);
-  plan.predicted_seconds = prepared.program->predicted_setup_seconds +
-                           static_cast<double>(prepared.steps) * (prepared.program->predicted_step_seconds + beside);
+  const Program& program = *prepared.program;
+  const auto seconds = [&](const std::optional<StepCounts>& counts) {
+    return program.predicted_setup_seconds +
+           static_cast<double>(prepared.steps) *
+               (program.predicted_step_seconds + seconds_beside(study_case, program, counts));
+  };
+  const double begun = thread_seconds();
+  plan.predicted_seconds = seconds(trial_march(study_case, prepared, registry, seconds(std::nullopt)));
+  plan.trial_seconds = thread_seconds() - begun;
   plan.bytes = bytes_of_row + bytes_of_sample * study_case.samples;
   return plan;
 }
