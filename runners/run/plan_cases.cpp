@@ -137,8 +137,13 @@ PlanOutcome CasePlanner::plan_in_child(const StudyCase& study_case) {
 namespace {
 
 // Processor time of a run that is no case's: the program and its plugins opened, the report written. And of each case:
-// its fingerprint, its row in the store, its curve, its share of tables and page.
-constexpr double each_run = 0.15, each_case = 1.6e-3;
+// its fingerprint, its row in the store, its share of tables and page; and of each byte of its results, which are
+// stored, read and written.
+constexpr double each_run = 0.15, each_case = 1.6e-3, each_byte = 2.5e-8;
+
+double seconds_around(const CasePlan& plan) {
+  return each_case + each_byte * plan.bytes;
+}
 
 double modelled_step(const CasePlan& plan) {
   return plan.steps > 0 ? plan.predicted_seconds / static_cast<double>(plan.steps) : 0;
@@ -157,8 +162,9 @@ Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Reg
     const double again = alike.insert(cost_key(*one.study_case)).second ? one.plan_seconds : 0,
                  set_up = again + std::max(0.0, one.plan_seconds - one.plan.trial_seconds);
     const double chain = one.plan.chain_seconds > 0 ? one.plan.chain_seconds : one.plan.predicted_seconds;
-    found.chain = std::max(found.chain, chain + set_up + each_case);
+    found.chain = std::max(found.chain, chain + set_up + seconds_around(one.plan));
     found.bytes += one.plan.bytes;
+    found.seconds += seconds_around(one.plan);
     one.plan.predicted_seconds += set_up;
     found.seconds += one.plan.predicted_seconds;
   }
@@ -175,7 +181,7 @@ Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Reg
     found.seconds += found.beside;
   }
   found.fixed = each_run;
-  found.seconds += each_run + each_case * static_cast<double>(cases.size());
+  found.seconds += each_run;
   return found;
 }
 

@@ -69,6 +69,13 @@ TEST_CASE("forecast: several processors shorten neither one case nor what a run 
   CHECK(many.on(1000) == Approx(many.fixed + many.chain));
 }
 
+TEST_CASE("forecast: what is stored costs as well") {
+  Json few = swinging_beam("trajectory"), many = few;
+  few["samples"] = 10;
+  many["samples"] = 100000;
+  CHECK(Planned(many).forecast().seconds > 2 * Planned(few).forecast().seconds);
+}
+
 TEST_CASE("forecast: a hundred times the repeats cost more than the noise of a machine") {
   Json few = swinging_beam("work-precision"), many = few;
   few["reference"] = many["reference"] = "self";
