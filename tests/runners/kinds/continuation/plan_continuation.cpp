@@ -1,4 +1,4 @@
-// What the map of a branch that is followed by steps makes for a value.
+// Laws of the forecast of a branch that is followed by steps, and what its map makes for a value.
 #include "runners/kinds/continuation/continuation_study.hpp"
 #include "runners/kinds/continuation/continued_map.hpp"
 #include "tests/runners/kinds/continuation/tube_study.hpp"
@@ -15,7 +15,25 @@ Json hertz_tube() {
   return study;
 }
 
+double planned_seconds(const Json& study) {
+  const OpenedContinuation opened = opened_continuation(study);
+  const CasePlan plan = plan_continuation(opened.study.cases.front(), *opened.registry);
+  REQUIRE(plan.refusal.empty());
+  return plan.predicted_seconds;
+}
+
 }  // namespace
+
+TEST_CASE("a branch that is followed by steps costs the more the more steps a period has and the more dofs move") {
+  Json study = hertz_tube();
+  const double coarse = planned_seconds(study);
+  study["steps_per_period"] = 2000;
+  const double fine = planned_seconds(study);
+  CHECK(fine > 3 * coarse);
+  CHECK(fine < 10 * coarse);
+  study["mesh"]["elements"] = 10;
+  CHECK(planned_seconds(study) > 2 * fine);  // more orbits, and more columns in each march
+}
 
 TEST_CASE("steps at a value that enters linearly make no scene, and are those of its own scene") {
   const OpenedContinuation opened = opened_continuation(hertz_tube());
