@@ -104,6 +104,8 @@ std::optional<StepCounts> trial_march(const StudyCase& study_case, const Prepare
       const double touched = cost.step_seconds + predict_touched_step(program, contact);
       spent = cost.setup_seconds + counts.steps() * (counts.open() * cost.step_seconds + contact.touched * touched);
     }
+    constexpr double nearly = 0.9;
+    counts.end(static_cast<double>(marcher.step()) * step > nearly * study_case.duration);
     return counts;
   } catch (const IndefiniteStep&) {
     return std::nullopt;

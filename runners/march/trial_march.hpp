@@ -23,6 +23,9 @@ class StepCounts final : public StepObserver {
   double in_contact() const { return (touched_ + held_ - runs_ * (1 - finer_)) / steps(); }
   /// Of the steps in contact that were made: points that push, and iterations.
   ContactWork contact() const;
+  /// Whether they are those of the whole duration, and not of its beginning.
+  bool whole() const { return whole_; }
+  void end(bool whole) { whole_ = whole; }
 
  private:
   void see(bool contact) {
@@ -33,7 +36,7 @@ class StepCounts final : public StepObserver {
   double finer_;
   double visited_ = 0, left_out_ = 0, held_ = 0, touched_ = 0, runs_ = 0;
   double solves_ = 0, points_ = 0, iterations_ = 0;
-  bool touches_ = false, before_ = false;
+  bool touches_ = false, before_ = false, whole_ = false;
 };
 
 /// Marches a case for at most 2000 steps, a fifth of `seconds`, which it is thought to take, and 5 ms, or a fiftieth of

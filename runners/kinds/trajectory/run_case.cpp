@@ -30,7 +30,8 @@ namespace ricochet {
 namespace {
 
 // A step that is left out in contact, s: one of a compliant law is made without a reading, others are composed.
-constexpr double made_step = 2.5e-7, composed_step = 0.5e-7;
+// 0.05 to 0.3 µs are measured of these.
+constexpr double made_step = 2.5e-7, composed_step = 1e-7;
 // Where none was counted, shares of time in contact. Of shaken or loaded scenes whose contact is left out, and of
 // flights that march it: 0.05 to 0.4 measured of shaken scenes, 0.01 to 0.2 of others.
 constexpr double held_driven = 0.5, marched_in_contact_driven = 0.15, marched_in_contact_free = 0.05;
@@ -364,7 +365,10 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
                (program.predicted_step_seconds + seconds_beside(study_case, program, counts));
   };
   const double begun = thread_seconds();
-  plan.predicted_seconds = seconds(trial_march(study_case, prepared, registry, seconds(std::nullopt)));
+  const double assumed = seconds(std::nullopt);
+  const auto counts = trial_march(study_case, prepared, registry, assumed);
+  // A beginning may not have come to its stops yet.
+  plan.predicted_seconds = counts && counts->whole() ? seconds(counts) : std::max(assumed, seconds(counts));
   plan.trial_seconds = thread_seconds() - begun;
   plan.bytes = bytes_of_row + bytes_of_sample * study_case.samples;
   return plan;

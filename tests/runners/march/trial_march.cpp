@@ -62,6 +62,7 @@ TEST_CASE("a trial is short, however many steps a case has, and none is made of 
   const auto finer = counted(study);
   REQUIRE(finer);
   CHECK(finer->steps() <= 2000);
+  CHECK(!finer->whole());
   study["duration"] = 1e-6;
   CHECK(!counted(study));
 }
@@ -75,5 +76,6 @@ TEST_CASE("a trial by flights covers the whole duration, and leaves out most of 
   const auto swings = counted(study);
   REQUIRE(swings);
   CHECK(swings->steps() >= 1900);
+  CHECK(swings->whole());
   CHECK(swings->open() < 0.5);
 }

