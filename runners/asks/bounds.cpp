@@ -57,7 +57,8 @@ std::string why_open(const Line& line, const Bounds& bounds) {
   const bool all = one.has_interval() && bounds.holds(one.least()) && bounds.holds(one.most());
   const bool within = !bounds.holds(one.low()) || !bounds.holds(one.high());
   if (!all && (!within || one.disproved)) return "it " + one.unsettled();
-  return all ? "one seed is too near to it" : "the limit lies within its interval";
+  if (all) return "one seed is too near to it";
+  return "the limit lies within its interval" + (one.few.empty() ? "" : ", and it " + one.few);
 }
 
 }  // namespace ricochet::asks

@@ -46,7 +46,8 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
       std::all_of(lines.all.begin(), lines.all.end(), [](const Line& line) { return line.known() || !line.applies(); });
   out.passes = unsettled + without == 0 && all_known ? Verdict::yes : Verdict::open;
   out.verdict = unsettled > 0 ? "not settled" : without > 0 ? "open" : "known";
-  constexpr std::size_t few = 3, most_words_of_values = 20;
+  constexpr std::size_t few = 3;
+  constexpr std::ptrdiff_t most_words_of_values = 20;
   std::vector<std::string> parts;
   for (const Line* line : known) parts.push_back(told(lines, line->estimate()) + line->place());
   std::string said = fmt::format("{}: {}", name, fmt::join(parts, ", "));

@@ -24,10 +24,10 @@ namespace {
 constexpr double much_open = 0.25;  // share of the range that is told first
 
 /// Motions and how many attractors each has.
-using MotionCounts = std::map<std::string, std::size_t>;
+using AttractorCounts = std::map<std::string, std::size_t>;
 
 /// "two of period 1 and no contact"; "" of none.
-std::string counts_text(const MotionCounts& counts) {
+std::string attractors_text(const AttractorCounts& counts) {
   std::vector<std::string> words;
   for (const auto& [motion, count] : counts) {
     static const char* const spoken[] = {"", "", "two of ", "three of ", "four of "};
@@ -37,7 +37,7 @@ std::string counts_text(const MotionCounts& counts) {
 }
 
 /// Whether all of these motions are among those.
-bool holds(const MotionCounts& those, const MotionCounts& these) {
+bool holds(const AttractorCounts& those, const AttractorCounts& these) {
   return std::all_of(these.begin(), these.end(), [&](const auto& one) {
     const auto found = those.find(one.first);
     return found != those.end() && found->second >= one.second;
@@ -51,8 +51,8 @@ struct ValueMotions {
   std::string word = {};                               ///< one of the motions as orbits.csv has it
 
   double open_share() const { return static_cast<double>(open) / static_cast<double>(open + decided); }
-  MotionCounts counts() const {
-    MotionCounts out;
+  AttractorCounts counts() const {
+    AttractorCounts out;
     for (const auto& [motion, attractor] : motions) ++out[motion];
     return out;
   }
@@ -62,14 +62,14 @@ struct ValueMotions {
 /// which none is decided stand apart.
 struct MotionStretch {
   double from = 0, to = 0;
-  MotionCounts counts = {};           ///< of all of its values
+  AttractorCounts counts = {};        ///< of all of its values
   std::size_t decided = 0, open = 0;  ///< orbits
   bool whole = false;                 ///< every start of one of its values is decided
   std::string word = {};              ///< one of the motions as orbits.csv has it
 
-  std::string motion() const { return counts_text(counts); }
+  std::string motion() const { return attractors_text(counts); }
   bool takes(const ValueMotions& next) const {
-    const MotionCounts shown = next.counts();
+    const AttractorCounts shown = next.counts();
     return shown.empty() == counts.empty() && (!whole || holds(counts, shown)) &&
            (next.open > 0 || holds(shown, counts));
   }
@@ -235,7 +235,7 @@ class MotionsAlong {
       double open = 0;
       for (const CaseMotions* one : heads_)
         if (const auto at = one->at.find(value); at != one->at.end()) {
-          if (at->second.open == 0) met.insert(counts_text(at->second.counts()));
+          if (at->second.open == 0) met.insert(attractors_text(at->second.counts()));
           open = std::max(open, at->second.open_share());
         }
       if (met.size() < 2) undecided_ += width * open;

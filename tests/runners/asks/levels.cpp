@@ -164,12 +164,12 @@ TEST_CASE("asks: the order of three sizes alone may be chance, that of four is c
     made.steps = steps;
     return answer_of(made.results(), {{"limit", "impulse"}, {"below", bound}});
   };
-  // 1.4, 1.2, 1.1: u = 0.125 decides 0.375 away.
-  const Answered near = below({4e-3, 2e-3, 1e-3}, 1.4);
+  // 1.4, 1.2, 1.1: u is their range.
+  const Answered near = below({4e-3, 2e-3, 1e-3}, 1.39);
   INFO(near.sentence);
   CHECK(near.passes == Verdict::open);
-  CHECK(near.reason == "it is known by three steps alone");
-  CHECK(below({4e-3, 2e-3, 1e-3}, 1.5).passes == Verdict::yes);
+  CHECK(near.reason == "the limit lies within its interval, and it is known by three steps alone");
+  CHECK(below({4e-3, 2e-3, 1e-3}, 1.41).passes == Verdict::yes);
   CHECK(below({8e-3, 4e-3, 2e-3, 1e-3}, 1.2).passes == Verdict::yes);
 }
 

@@ -52,9 +52,4 @@ inline Answered answer_of(const StudyResults& results, const Json& ask) {
   return answer_asks({ask_of(ask, 1)}, Evidence(choices), {}).all.front().second;
 }
 
-inline std::size_t words_in(const std::string& sentence) {
-  std::istringstream in(sentence);
-  return static_cast<std::size_t>(std::distance(std::istream_iterator<std::string>(in), {}));
-}
-
 }  // namespace ricochet::asks

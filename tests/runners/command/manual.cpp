@@ -132,6 +132,12 @@ TEST_CASE("manual: bash completes every command and option") {
              "${COMPREPLY[0]}\"");
   REQUIRE(std::system(("cd '" + (here / "").string() + "' && bash ask >said 2>/dev/null").c_str()) == 0);
   CHECK(read(here / "said") == "1 two words.json\n");
+  // Names are those that the program finds.
+  here.write("ask",
+             "source ./bash; ricochet() { printf 'role name\\ntime newmark\\ntime midpoint\\n'; }; "
+             "COMP_WORDS=(ricochet describe new); COMP_CWORD=2; _ricochet; echo \"${COMPREPLY[@]}\"");
+  REQUIRE(std::system(("cd '" + (here / "").string() + "' && bash ask >said 2>/dev/null").c_str()) == 0);
+  CHECK(read(here / "said") == "newmark\n");
 }
 
 TEST_CASE("manual: fish completes every command and option, and zsh reads its own") {

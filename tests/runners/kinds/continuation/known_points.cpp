@@ -43,7 +43,7 @@ SpecialRow only_one(const std::vector<SpecialRow>& points, PointKind kind, doubl
   std::vector<SpecialRow> found;
   for (const SpecialRow& one : points)
     if (one.kind == kind && std::abs(*one.parameter - near) < within) found.push_back(one);
-  INFO(kind << " near " << near);
+  INFO(word(kind) << " near " << near);
   REQUIRE(found.size() == 1);
   CHECK(*found[0].low <= *found[0].parameter);
   CHECK(*found[0].high >= *found[0].parameter);

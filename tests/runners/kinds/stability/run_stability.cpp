@@ -384,7 +384,7 @@ TEST_CASE("what grows apart from the stops limits no closed stop") {
   REQUIRE(rows.size() == 2);
   for (const LimitRow& row : rows) {
     INFO((row.closed ? "closed" : "open"));
-    CHECK(row.prediction == (row.closed ? "none" : "limit"));
+    CHECK(row.prediction == (row.closed ? RangeLimit::none : RangeLimit::limit));
     if (!row.closed) CHECK(*row.predicted == Approx(0.2).epsilon(1e-6));
   }
 }
