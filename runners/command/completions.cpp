@@ -10,7 +10,7 @@ namespace ricochet {
 namespace {
 
 /// What a shell offers for a word of the command line.
-enum class Offer { nothing, files, folders, studies, words };
+enum class Offer { nothing, files, folders, studies, methods, words };
 
 struct Operand {
   Offer offer = Offer::nothing;
@@ -18,6 +18,7 @@ struct Operand {
 };
 
 Offer offer_of(const std::string& name) {
+  if (name.starts_with("NAME|")) return Offer::methods;
   if (name == "FILE" || name.find("PLUGIN") != std::string::npos) return Offer::files;
   if (name.find(".json") != std::string::npos) return Offer::studies;
   return name == "A" || name.find("DIR") != std::string::npos ? Offer::folders : Offer::nothing;
@@ -69,17 +70,31 @@ std::string replaced(std::string text, std::string_view what, std::string_view w
 
 constexpr const char* generated = "# Made by `ricochet manual {}`.\n";
 
-/// How a shell writes offers: `words` with {} for the words.
+/// How a shell writes offers: `words` with {} for the words. Methods are those that the program finds there and then,
+/// and files.
 struct Shell {
-  const char *nothing, *files, *folders, *studies, *words;
+  const char *nothing, *files, *folders, *studies, *methods, *words;
 };
 constexpr Shell bash{
-    "COMPREPLY=()", "compopt -o filenames; mapfile -t COMPREPLY < <(compgen -f -- \"$word\")",
+    "COMPREPLY=()",
+    "compopt -o filenames; mapfile -t COMPREPLY < <(compgen -f -- \"$word\")",
     "compopt -o filenames; mapfile -t COMPREPLY < <(compgen -d -- \"$word\")",
     "compopt -o filenames; mapfile -t COMPREPLY < <(compgen -f -X '!*.json' -- \"$word\"; compgen -d -- \"$word\")",
+    "compopt -o filenames; mapfile -t COMPREPLY < <(compgen -W \"$(ricochet list 2>/dev/null | awk 'NR > 1 {print "
+    "$2}')\" "
+    "-- \"$word\"; compgen -f -- \"$word\")",
     "COMPREPLY=($(compgen -W '{}' -- \"$word\"))"};
-constexpr Shell zsh{" ", "_files", "_files -/", "_files -g \"*.json\"", "({})"};
-constexpr Shell fish{"-f", "-F", "-f -a '(__fish_complete_directories)'", "-f -a '(__fish_complete_suffix .json)'",
+constexpr Shell zsh{" ",
+                    "_files",
+                    "_files -/",
+                    "_files -g \"*.json\"",
+                    "{compadd -- $(ricochet list 2>/dev/null | awk \"NR > 1 {print \\$2}\"); _files}",
+                    "({})"};
+constexpr Shell fish{"-f",
+                     "-F",
+                     "-f -a '(__fish_complete_directories)'",
+                     "-f -a '(__fish_complete_suffix .json)'",
+                     "-F -a '(ricochet list 2>/dev/null | awk \"NR > 1 {print \\$2}\")'",
                      "-f -a '{}'"};
 
 std::string offer(const Shell& shell, const Operand& operand) {
@@ -92,6 +107,8 @@ std::string offer(const Shell& shell, const Operand& operand) {
       return shell.folders;
     case Offer::studies:
       return shell.studies;
+    case Offer::methods:
+      return shell.methods;
     case Offer::words:
       break;
   }
