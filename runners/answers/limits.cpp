@@ -69,6 +69,20 @@ std::optional<double> scaled_value(const MeasureWords& words, const CaseRecord& 
   return brought && *brought > 0 ? std::optional(*value / *brought) : std::nullopt;
 }
 
+Errors errors_of(const Cases& cases) {
+  std::map<std::string, double> impacts;  // by seed
+  for (const CaseRecord* record : cases) {
+    const auto count = measure(*record, "impacts");
+    if (!count) continue;
+    if (*count > 0 && !measure(*record, contact_steps_measure)) return Errors::saw_toothed;
+    const auto seed =
+        std::find_if(record->axes.begin(), record->axes.end(), [](const auto& axis) { return axis.first == "seed"; });
+    const auto [met, fresh] = impacts.emplace(seed == record->axes.end() ? "" : seed->second.dump(), *count);
+    if (met->second != *count) return Errors::saw_toothed;
+  }
+  return Errors::smooth;
+}
+
 namespace {
 
 /// The limit of a method whose `grid` and `done` are filled, at its finest case. `share`: its values are shares, whose
@@ -88,8 +102,11 @@ void find_limit(const Choices& study, const MeasureWords& words, bool share, con
     largest = std::max(largest, std::abs(value));
   }
   const double floor = 0x1p-52 * static_cast<double>(best.record->steps) * (share ? 1 : largest);
-  method.step = limit_of(by_step, floor, words.truth);
-  method.mesh = limit_of(by_mesh, floor);
+  Cases cases;
+  for (const Valued& one : method.done) cases.push_back(one.record);
+  const Errors errors = errors_of(cases);
+  method.step = limit_of(by_step, floor, words.truth, errors);
+  method.mesh = limit_of(by_mesh, floor, {}, errors);
   method.limit = combined(method.step, method.mesh);
   method.half = measure(*best.record, "confidence." + words.measure).value_or(0);
   method.gains = energy_kept(words, *best.record).value_or(0) > gains_above;

@@ -59,6 +59,10 @@ MeasureLimits limits_of(const Choices& study, const std::string& measure, bool c
 /// Whether loads in time, supports or stops in motion worked in a case: steady loads have a potential.
 bool is_driven(const CaseRecord& record);
 
+/// How the values of these cases err: saw-toothed where a rigid law throws points back, or where the number of impacts
+/// changes with the step.
+Errors errors_of(const Cases& cases);
+
 /// Whether nothing but contact and the method changes energies: no case is driven or damped.
 bool keeps_energy(const StudyResults& results);
 /// The same of some of its cases.

@@ -92,8 +92,9 @@ void put_sampling(Estimate& out, const BySeed& draws, const BySeed* halves) {
 
 }  // namespace
 
-Limits limits_at(const std::map<Size, BySeed>& values, const Size& finest, double floor) {
-  return {limit_of(along(values, finest, true), floor), limit_of(along(values, finest, false), floor)};
+Limits limits_at(const std::map<Size, BySeed>& values, const Size& finest, double floor, Errors errors) {
+  return {limit_of(along(values, finest, true), floor, {}, errors),
+          limit_of(along(values, finest, false), floor, {}, errors)};
 }
 
 Estimate estimate_of(const std::map<Size, BySeed>& values, const std::map<Size, BySeed>& halves, const Size& finest,
@@ -110,8 +111,8 @@ Estimate estimate_of(const std::map<Size, BySeed>& values, const std::map<Size, 
   for (const auto& one : {limits.step, limits.mesh})
     out.grows = out.grows || (one && one->status == LimitStatus::blows_up);
   // What moves one way goes on, what wanders stays about where it is. Of two sizes three times what first order leaves,
-  // 3 |d|/(r − 1) (Roache, 1994), where u is |d|.
-  constexpr double of_moving = 10, of_wandering = 2, of_two = 3;
+  // 3 |d|/(r − 1) (Roache, 1994), where u is |d|. The order of three sizes alone may be chance.
+  constexpr double of_moving = 10, of_wandering = 2, of_two = 3, of_three = 3;
   for (const auto& [limit, what, several] :
        {std::tuple(limits.step, "step", "steps"), std::tuple(limits.mesh, "mesh", "meshes")}) {
     if (!limit) continue;
@@ -127,6 +128,7 @@ Estimate estimate_of(const std::map<Size, BySeed>& values, const std::map<Size, 
       if (!out.two) out.few = std::string("is known by two ") + several + " alone";
       out.two = true;
     } else if (limit->status == LimitStatus::settles && !limit->order) {
+      if (*limit->uncertainty < limit->range) out.doubt = std::max(out.doubt, of_three);
       if (out.few.empty()) out.few = std::string("is known by three ") + several + " alone";
     }
   }

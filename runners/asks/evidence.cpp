@@ -369,11 +369,13 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
   }
   for (std::size_t k = 0; k < out.size(); ++k) {
     Point& point = out[k];
+    point.errors = answers::errors_of(point.behind);
     if (!share) drop_round_off(point, largest_of_all);
     round_off.push_back(point.floor);
     if (point.floor > 0) point.floor = std::max(point.floor, solves[k]);
     point.floor = std::max(point.floor, resolution(measure_of_all, point, !steps_chosen));
-    limits.push_back(point.finest ? std::optional(limits_at(point.values, *point.finest, point.floor)) : std::nullopt);
+    limits.push_back(point.finest ? std::optional(limits_at(point.values, *point.finest, point.floor, point.errors))
+                                  : std::nullopt);
   }
   std::vector<Limit*> all;
   for (auto& one : limits)

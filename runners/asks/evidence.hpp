@@ -63,6 +63,7 @@ struct Point {
   std::map<Size, std::map<std::string, double>> halves;  ///< half intervals of these, where known
   std::optional<Size> finest;
   double floor = 0;  ///< what round-off makes of a value
+  Errors errors = Errors::smooth;
   std::optional<Estimate> estimate;
   std::string none;  ///< why it has no value
   /// Equal for points of a compliant law that differ in the time scheme alone: as the step shrinks their values have
@@ -170,7 +171,8 @@ struct Limits {
   std::optional<Limit> step, mesh;
 };
 /// Of values by size and seed: means over the seeds that sizes have in common.
-Limits limits_at(const std::map<Size, std::map<std::string, double>>& values, const Size& finest, double floor);
+Limits limits_at(const std::map<Size, std::map<std::string, double>>& values, const Size& finest, double floor,
+                 Errors errors);
 
 /// The estimate at the finest size. `has_step`: whether there is a step to refine.
 Estimate estimate_of(const std::map<Size, std::map<std::string, double>>& values,

@@ -89,7 +89,9 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
     const auto doubt = [&](const Point& point) { return doubted ? point.estimate->doubt : 1; };
     return (doubt(second) * *second_u + weight_of_first * doubt(first) * *first_u) / unit;
   };
-  const Estimate estimate = estimate_of(differences, halves, *finest, limits_at(differences, *finest, floor), has_step);
+  const Errors errors = std::max(first.errors, second.errors);
+  const Estimate estimate =
+      estimate_of(differences, halves, *finest, limits_at(differences, *finest, floor, errors), has_step);
   out.difference = estimate.value;
   out.one_limit = !first.limit.empty() && first.limit == second.limit;
   const bool disproved =
@@ -115,7 +117,8 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
       for (const auto& [seed, half] : own->second) share_halves[size][seed] = half / std::abs(base);
   }
   const double round_off = floor / std::abs(out.base);
-  const Estimate share = estimate_of(shares, share_halves, *finest, limits_at(shares, *finest, round_off), has_step);
+  const Estimate share =
+      estimate_of(shares, share_halves, *finest, limits_at(shares, *finest, round_off, errors), has_step);
   out.share = share.value;
   out.share_u = open_of(share, both(1 + std::abs(share.value), std::abs(out.base)), round_off, 1);
   out.share_most = open_of(share, both(1 + std::abs(share.value), std::abs(out.base), true), round_off, share.doubt);

@@ -79,12 +79,15 @@ std::optional<Limit> vanishing(const Tail& t, Limit out, double floor) {
   return out;
 }
 
-/// By an order that three sizes show. A last difference may be small by chance: where impacts fall within steps, the
-/// error has no steady factor. Two orders that agree are needed for less than the range of the three.
+/// By an order that three sizes show; two orders that agree are needed for less than the last difference. One that
+/// turned, or fell more steeply than schemes do, is small by chance; any may be where the error has a saw tooth.
 Limit settling(const Tail& t, const std::vector<SizedValue>& values, const std::vector<double>& d, double order,
-               Limit out, double floor) {
+               Limit out, double floor, Errors errors) {
   const double last = std::abs(t.last);
-  double u = std::max({out.range, safety * last, t.rest(order, safety), t.first_order_rest(safety)});
+  double u = std::max(safety * last, t.rest(order, safety));
+  if (t.before * t.last < 0 || order > steepest_order || errors == Errors::saw_toothed)
+    u = std::max(u, t.first_order_rest(safety));
+  if (errors == Errors::saw_toothed) u = std::max(u, out.range);
   if (const std::size_t n = values.size(); n >= 4 && t.before * t.last > 0 && d[n - 4] * t.before > 0) {
     const auto earlier = order_of(values[n - 4].size, t.v1.size, t.v2.size, d[n - 4], t.before);
     if (earlier && std::abs(order - *earlier) <= orders_agree && order <= steepest_order) {
@@ -99,7 +102,7 @@ Limit settling(const Tail& t, const std::vector<SizedValue>& values, const std::
 }
 
 /// As the last sizes tell it, without a truth.
-Limit by_last_sizes(const std::vector<SizedValue>& values, double floor) {
+Limit by_last_sizes(const std::vector<SizedValue>& values, double floor, Errors errors) {
   Limit out = at_finest(values);
   const std::size_t n = values.size();
   if (n == 1) return out;
@@ -129,7 +132,7 @@ Limit by_last_sizes(const std::vector<SizedValue>& values, double floor) {
     return out;
   }
   if (const auto order = t.order(); order && *order >= lowest_order)
-    return settling(t, values, d, *order, std::move(out), floor);
+    return settling(t, values, d, *order, std::move(out), floor, errors);
   if (t.before * t.last > 0 && (n < 5 || d[n - 4] * t.before > 0)) {
     out.status = LimitStatus::moves;
     out.uncertainty = 2 * last;
@@ -147,11 +150,11 @@ Limit by_last_sizes(const std::vector<SizedValue>& values, double floor) {
 }
 
 /// By how much later values lie beyond what three coarser sizes, or more, told as settled; 0 where they hold them all.
-double missed(const std::vector<SizedValue>& values, double floor) {
+double missed(const std::vector<SizedValue>& values, double floor, Errors errors) {
   constexpr std::size_t fewest = 3;
   double most = 0;
   for (std::size_t m = fewest; m < values.size(); ++m) {
-    const Limit told = by_last_sizes({values.begin(), values.begin() + static_cast<std::ptrdiff_t>(m)}, floor);
+    const Limit told = by_last_sizes({values.begin(), values.begin() + static_cast<std::ptrdiff_t>(m)}, floor, errors);
     if (told.status != LimitStatus::settles) continue;
     for (std::size_t k = m; k < values.size(); ++k)
       if (const double off = std::abs(values[k].value - told.value); off > *told.uncertainty)
@@ -161,10 +164,10 @@ double missed(const std::vector<SizedValue>& values, double floor) {
 }
 
 /// Without a truth. Where no order is confirmed, the coarser sizes show how far such an interval may be off.
-Limit plain_limit(const std::vector<SizedValue>& values, double floor) {
-  Limit out = by_last_sizes(values, floor);
+Limit plain_limit(const std::vector<SizedValue>& values, double floor, Errors errors) {
+  Limit out = by_last_sizes(values, floor, errors);
   if (out.status == LimitStatus::settles && !out.order)
-    set(out, out.status, std::max(*out.uncertainty, missed(values, floor)));
+    set(out, out.status, std::max(*out.uncertainty, missed(values, floor, errors)));
   return out;
 }
 
@@ -218,11 +221,12 @@ std::optional<double> order_of(double h1, double h2, double h3, double d1, doubl
   return 0.5 * (low + high);
 }
 
-std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std::optional<double> truth) {
+std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std::optional<double> truth,
+                              Errors errors) {
   if (values.empty()) return std::nullopt;
   std::stable_sort(values.begin(), values.end(),
                    [](const SizedValue& a, const SizedValue& b) { return a.size > b.size; });
-  Limit out = plain_limit(values, floor);
+  Limit out = plain_limit(values, floor, errors);
   if (!truth || values.size() < 2) return out;
   std::vector<SizedValue> errors = values;
   for (SizedValue& one : errors) one.value -= *truth;

@@ -51,6 +51,10 @@ struct Limit {
 /// d₂ = v₃ − v₂ of v = a + b hᵖ; by bisection in [−3, 8], whose ends stand for all beyond. Nothing where d₁ = 0.
 std::optional<double> order_of(double h1, double h2, double h3, double d1, double d2);
 
+/// How a value errs. `smooth`: by powers of the size. `saw_toothed`: by where within a step impacts fall, so that the
+/// error has no steady factor and two values may be near to each other by chance.
+enum class Errors { smooth, saw_toothed };
+
 /// The lowest order that counts as convergence: what a convergent scheme shows through contact.
 inline constexpr double lowest_order = 0.5;
 
@@ -60,11 +64,13 @@ inline constexpr double lowest_order = 0.5;
 /// With the differences d of values from coarse to fine and the ratio r of the last sizes, the rest is
 /// 1.25 |d_last|/(rᵖ − 1) (Roache, 1994, for three sizes). Where two orders p in a row agree within 0.6, the
 /// uncertainty u is the rest, at least a tenth of |d_last|; p is then less by as much as the two differ. Without them
-/// d_last may be small by chance, and u is the largest of four: the range of the last three values, 1.25 |d_last|, the
-/// rest, and what first order leaves of the difference before, 1.25 |d_before| h₃/(h₁ − h₂). It is then at least by how
-/// much a later value missed the interval that three coarser sizes, or more, had told. Of two sizes u is |d_last|, of
-/// what moves 2 |d_last|, of what wanders the range of the last three values.
-std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std::optional<double> truth = {});
+/// u is at least 1.25 |d_last|, and by how much a later value missed the interval that three coarser sizes, or more,
+/// had told. Where d_last has another sign than the difference before it, or p > 4.5, it is small by chance: u is at
+/// least what first order leaves of that, 1.25 |d_before| h₃/(h₁ − h₂). Where errors have a saw tooth it always is, and
+/// at least the range of the last three values. Of two sizes u is |d_last|, of what moves 2 |d_last|, of what wanders
+/// that range.
+std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std::optional<double> truth = {},
+                              Errors errors = Errors::smooth);
 
 /// The limit over two refinements, at the finest of both: uncertainties are added, so are the ways to low and to high.
 /// The status is the worse of the two. A single size says nothing. Nothing where both are absent.

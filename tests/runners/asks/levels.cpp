@@ -164,13 +164,36 @@ TEST_CASE("asks: the order of three sizes alone may be chance, that of four is c
     made.steps = steps;
     return answer_of(made.results(), {{"limit", "impulse"}, {"below", bound}});
   };
-  // 1.4, 1.2, 1.1: u is their range.
-  const Answered near = below({4e-3, 2e-3, 1e-3}, 1.39);
+  // 1.4, 1.2, 1.1: u = 0.125 decides 0.375 away.
+  const Answered near = below({4e-3, 2e-3, 1e-3}, 1.4);
   INFO(near.sentence);
   CHECK(near.passes == Verdict::open);
-  CHECK(near.reason == "the limit lies within its interval, and it is known by three steps alone");
-  CHECK(below({4e-3, 2e-3, 1e-3}, 1.41).passes == Verdict::yes);
+  CHECK(near.reason == "it is known by three steps alone");
+  CHECK(below({4e-3, 2e-3, 1e-3}, 1.5).passes == Verdict::yes);
   CHECK(below({8e-3, 4e-3, 2e-3, 1e-3}, 1.2).passes == Verdict::yes);
+}
+
+TEST_CASE("asks: of rigid impacts, or where their number changes, three values are known to their range") {
+  // 1.4, 1.2, 1.1.
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.error = 0.4;
+  made.steps = {4e-3, 2e-3, 1e-3};
+  const StudyResults results = made.results();
+  const auto u = [&](const std::vector<double>& impacts, bool springs) {
+    StudyResults with = results;
+    for (std::size_t k = 0; k < with.cases.size(); ++k) {
+      with.cases[k].measures.emplace_back("impacts", impacts[k]);
+      if (springs) with.cases[k].measures.emplace_back(contact_steps_measure, 100);
+    }
+    const Answered answered = answer_of(with, {{"value", "impulse"}});
+    return *answered.rows.front().high - *answered.rows.front().value;
+  };
+  CHECK(u({3, 3, 3}, true) == Approx(0.125));
+  CHECK(u({0, 0, 0}, false) == Approx(0.125));
+  CHECK(u({3, 3, 3}, false) == Approx(0.3));
+  CHECK(u({3, 4, 4}, true) == Approx(0.3));
 }
 
 TEST_CASE("asks: a value that two steps tell is open, one of four is known") {

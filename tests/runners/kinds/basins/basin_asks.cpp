@@ -145,7 +145,7 @@ TEST_CASE("a choice changes the motions of a share of the starts, or does not, o
   CHECK(*out.rows.front().value == Approx(100 * 29.0 / 625));
   CHECK(out.passes == asks::Verdict::yes);
   out = ask(twice({b, c}), effect);
-  CHECK_THAT(out.sentence, Catch::Matchers::StartsWith("No: restitution changes the motion of 0 of 625 starts"));
+  CHECK_THAT(out.sentence, Catch::Matchers::StartsWith("No: restitution changes the motion of none of the 625 starts"));
   out = ask(twice({a, b, c}), effect);
   CHECK(out.verdict == "in part");
   const Json within = {{"effect", "time.restitution"}, {"on", "motions"}, {"within", 0.01}};
