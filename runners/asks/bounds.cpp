@@ -54,6 +54,7 @@ std::string why_open(const Line& line, const Bounds& bounds) {
   if (nothing_seen(line.point)) return "no stop is touched, in a doubtful run";
   const Estimate& one = line.estimate();
   if (!one.unknown().empty()) return one.unknown();
+  if (one.grows) return "it " + one.motion;
   const bool all = one.has_interval() && bounds.holds(one.least()) && bounds.holds(one.most());
   const bool within = !bounds.holds(one.low()) || !bounds.holds(one.high());
   if (!all && (!within || one.disproved)) return "it " + one.unsettled();

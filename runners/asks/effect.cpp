@@ -61,7 +61,7 @@ void judge(Told& told, double from) {
       told.reason = "both are zero, or round-off";
     } else if (!pair.u) {
       told.reason = pair.unknown;
-    } else if (std::abs(pair.difference) > *pair.u) {
+    } else if (std::abs(pair.difference) > pair.u_most.value_or(*pair.u)) {
       told.verdict = Verdict::yes;
       told.reason = first;
     } else {

@@ -225,10 +225,10 @@ class Enough {
     if (!need.seeds && !need.duration) return "";
     const std::size_t seeds = line.estimate().seeds;
     const std::string had =
-        (seeds > 1 ? fmt::format("of {} seeds ", seeds) : "of ") +
-        (evidence_.window() > 0 ? fmt::format("{}{} s ", seeds > 1 ? "with " : "", short_number(evidence_.window(), 3))
+        (seeds > 1 ? fmt::format("of {} seeds", seeds) : "of") +
+        (evidence_.window() > 0 ? fmt::format("{} {} s", seeds > 1 ? " with" : "", short_number(evidence_.window(), 3))
                                 : "");
-    return fmt::format("; {}{} would do", had, draws_words(need));
+    return fmt::format("; {}, {} would do", had, draws_words(need));
   }
 
   void add_rows(Answered& out, const Line& line, const Need& need, Verdict verdict) const {

@@ -253,9 +253,10 @@ bool is_compliant(const Point& point) {
 }
 
 /// Widens `own` where its interval and that of another exclude each other, though both have one limit: one of them is
-/// wrong, and it is not known which. What moves both alike, mesh and seeds, is no part of that.
+/// wrong, and it is not known which. What moves both alike, mesh and seeds, is no part of that. One that has not
+/// settled itself disproves nothing.
 void widen_by(Estimate& own, const Estimate& other) {
-  if (!own.step || !other.step || own.grows || other.grows) return;
+  if (!own.step || !other.step || own.grows || other.grows || !other.motion.empty()) return;
   const auto left = [](const Estimate& one) {
     return (one.motion.empty() ? 1 : one.doubt) * *one.step + one.sampling.value_or(0);
   };

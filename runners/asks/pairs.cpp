@@ -102,6 +102,7 @@ std::optional<Pair> pair_of(const Point& first, const Point& second) {
     return u;
   };
   out.u = open_of(estimate, both(1, 1), floor, 1);
+  out.u_most = open_of(estimate, both(1, 1, true), floor, estimate.doubt);
   if (!out.u) out.unknown = why_not(estimate);
   // What is not told from zero is no base of shares.
   if (std::abs(out.base) <= std::max(floor, first_u.value_or(0))) return out;

@@ -19,6 +19,7 @@ struct Pair {
   /// The difference as a share of the first at the same step and mesh, and what is open of that; nothing where the
   /// first is not told from zero.
   std::optional<double> share = {}, share_u = {};
+  std::optional<double> u_most = {};      ///< what is open of the difference where a yes or a no is told
   std::optional<double> share_most = {};  ///< what is open of it where a yes or a no is told (Estimate::doubt)
   std::string motion = {};                ///< of what is not settled: "still rises with the step"
   bool identical = false;                 ///< the same to the last bit at each of several sizes, and not nothing

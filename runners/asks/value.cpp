@@ -35,7 +35,9 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
                   : !why_unsure(line).empty()       ? "open"
                                                     : "known";
     if (row.reason.empty() && line.known())
-      row.reason = line.estimate().motion.empty() ? why_unsure(line) : line.estimate().motion;
+      row.reason = !line.estimate().motion.empty()                                  ? line.estimate().motion
+                   : line.estimate().unknown().empty() && !why_unsure(line).empty() ? "it " + why_unsure(line)
+                                                                                    : why_unsure(line);
     unsettled += row.verdict == "not settled";
     without += row.verdict == "open";
     out.rows.push_back(std::move(row));

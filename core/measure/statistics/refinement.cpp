@@ -228,9 +228,9 @@ std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std:
                    [](const SizedValue& a, const SizedValue& b) { return a.size > b.size; });
   Limit out = plain_limit(values, floor, errors);
   if (!truth || values.size() < 2) return out;
-  std::vector<SizedValue> errors = values;
-  for (SizedValue& one : errors) one.value -= *truth;
-  const double left = std::abs(errors.back().value);
+  std::vector<SizedValue> off = values;
+  for (SizedValue& one : off) one.value -= *truth;
+  const double left = std::abs(off.back().value);
   const auto reached = [&](double uncertainty, std::optional<double> order) {
     out.status = LimitStatus::reaches_truth;
     out.uncertainty = uncertainty;
@@ -244,8 +244,8 @@ std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std:
     return out;
   }
   if (values.size() < 3) return out;
-  const std::size_t n = errors.size();
-  const auto before = slope(errors[n - 3], errors[n - 2]), now = slope(errors[n - 2], errors[n - 1]);
+  const std::size_t n = off.size();
+  const auto before = slope(off[n - 3], off[n - 2]), now = slope(off[n - 2], off[n - 1]);
   if (before && now && std::min(*before, *now) >= lowest_order) reached(left, now);
   return out;
 }

@@ -70,7 +70,7 @@ struct MotionStretch {
   std::string motion() const { return attractors_text(counts); }
   bool takes(const ValueMotions& next) const {
     const AttractorCounts shown = next.counts();
-    return shown.empty() == counts.empty() && (!whole || holds(counts, shown)) &&
+    return shown.empty() == counts.empty() && (holds(counts, shown) || (!whole && holds(shown, counts))) &&
            (next.open > 0 || holds(shown, counts));
   }
   void add(double value, const ValueMotions& next) {
@@ -219,7 +219,7 @@ class MotionsAlong {
   }
 
   /// The share of the range of which the finest cases leave open what it does, that of the case with most undecided
-  /// starts. Where cases that decide all of theirs differ, nothing is open.
+  /// starts.
   void judge() {
     std::map<double, std::size_t> speak;
     for (const CaseMotions* one : heads_)
@@ -231,14 +231,12 @@ class MotionsAlong {
     for (const auto& [value, count] : speak)
       if (2 * count >= most) values.insert(value);
     for (const auto& [value, width] : widths_of(values)) {
-      std::set<std::string> met;
       double open = 0;
       for (const CaseMotions* one : heads_)
         if (const auto at = one->at.find(value); at != one->at.end()) {
-          if (at->second.open == 0) met.insert(attractors_text(at->second.counts()));
           open = std::max(open, at->second.open_share());
         }
-      if (met.size() < 2) undecided_ += width * open;
+      undecided_ += width * open;
     }
   }
 
@@ -345,10 +343,10 @@ class MotionsAlong {
       for (const CaseMotions* one : heads_)
         for (const MotionStretch& part : one->stretches)
           if (!part.motion().empty()) motions.insert(part.motion());
-      texts.push_back(motions.size() == 1
-                          ? fmt::format("{}{} throughout: no change{}.", before, *motions.begin(), after)
-                          : fmt::format("{}methods share no change between {}{}.", before,
-                                        answers::and_list({motions.begin(), motions.end()}), after));
+      texts.push_back(motions.size() == 1 ? fmt::format("{}{} {}: no change{}.", before, *motions.begin(),
+                                                        undecided_ > 0 ? "where it is decided" : "throughout", after)
+                                          : fmt::format("{}methods share no change between {}{}.", before,
+                                                        answers::and_list({motions.begin(), motions.end()}), after));
     }
     for (std::size_t count = said.size(); count-- > 0;) {
       std::vector<std::string> parts;
