@@ -49,7 +49,8 @@ Answered answer_value(const Ask& ask, const Evidence& evidence) {
   out.passes = unsettled + without == 0 && all_known ? Verdict::yes : Verdict::open;
   out.verdict = unsettled > 0 ? "not settled" : without > 0 ? "open" : "known";
   constexpr std::size_t few = 3;
-  constexpr std::ptrdiff_t most_words_of_values = 20;
+  // Of thirty some are left for what is not settled.
+  const std::ptrdiff_t most_words_of_values = unsettled + without > 0 ? 20 : 28;
   std::vector<std::string> parts;
   for (const Line* line : known) parts.push_back(told(lines, line->estimate()) + line->place());
   std::string said = fmt::format("{}: {}", name, fmt::join(parts, ", "));
