@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/loader/library.hpp>
@@ -74,6 +75,13 @@ std::optional<StepCounts> trial_march(const StudyCase& study_case, const Prepare
   if (!program.contact || prepared.steps < fewest_steps) return std::nullopt;
   // A step of somebody's method may never come to an end, and a plan has to.
   if (foreign_code_ran()) return std::nullopt;
+  // A step of somebody's method may never come to an end, and a plan has to: the program's own stand in one folder.
+  const auto folder = [&](Role role, const MethodChoice& method) {
+    return std::filesystem::path(registry.file(role, method.name)).parent_path();
+  };
+  if (folder(Role::contact, study_case.contact) != folder(Role::time, study_case.time) ||
+      folder(Role::mass, study_case.mass) != folder(Role::time, study_case.time))
+    return std::nullopt;
   const double step = trial_step(study_case, prepared),
                allowed = std::max(long_share * seconds, std::min(short_share * seconds, short_seconds));
   const auto most = std::min(trial_steps, static_cast<long long>(study_case.duration / step));
