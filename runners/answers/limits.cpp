@@ -32,10 +32,6 @@ std::optional<double> difference_uncertainty(std::vector<SizedValue> differences
 
 }  // namespace
 
-const char* word(Matters matters) {
-  return matters == Matters::yes ? "matters" : matters == Matters::no ? "does not matter" : "open";
-}
-
 std::optional<double> Method::at(double h, double elements) const {
   const auto found = grid.find({h, elements});
   return found == grid.end() ? std::nullopt : std::optional(found->second);
@@ -75,9 +71,7 @@ Errors errors_of(const Cases& cases) {
     const auto count = measure(*record, "impacts");
     if (!count) continue;
     if (*count > 0 && !measure(*record, contact_steps_measure)) return Errors::saw_toothed;
-    const auto seed =
-        std::find_if(record->axes.begin(), record->axes.end(), [](const auto& axis) { return axis.first == "seed"; });
-    const auto [met, fresh] = impacts.emplace(seed == record->axes.end() ? "" : seed->second.dump(), *count);
+    const auto [met, fresh] = impacts.emplace(axis(*record, "seed").text(), *count);
     if (met->second != *count) return Errors::saw_toothed;
   }
   return Errors::smooth;
@@ -164,6 +158,11 @@ bool is_driven(const CaseRecord& record) {
   return work != measure(record, "work_of_steady_loads").value_or(0);
 }
 
+bool is_of_scene(const std::string& column) {
+  const std::string role = axis_role(column);
+  return !is_method_role(role) && !is_refinement(role) && role != residual_axis;
+}
+
 bool keeps_energy(const StudyResults& results) {
   return keeps_energy(results, all_cases(results));
 }
@@ -172,9 +171,7 @@ bool keeps_energy(const StudyResults& results, const Cases& cases_of_study) {
   // A scheme that declares no work form leaves it open: those that do tell it for the scene that they share.
   std::vector<std::string> scene;
   for (const std::string& column : results.columns)
-    if (const std::string role = axis_role(column);
-        !is_method_role(role) && role != "step" && !is_refinement(role) && role != residual_axis)
-      scene.push_back(column);
+    if (is_of_scene(column)) scene.push_back(column);
   for (const Cases& cases : groups_of(with_status(cases_of_study, Status::done), scene)) {
     bool told = false;
     for (const CaseRecord* record : cases)

@@ -63,6 +63,9 @@ bool is_driven(const CaseRecord& record);
 /// changes with the step.
 Errors errors_of(const Cases& cases);
 
+/// Whether a column is none of methods, steps and meshes. Seeds and ways to march are among those that are.
+bool is_of_scene(const std::string& column);
+
 /// Whether nothing but contact and the method changes energies: no case is driven or damped.
 bool keeps_energy(const StudyResults& results);
 /// The same of some of its cases.
@@ -89,7 +92,9 @@ Difference paired(const Method& high, const Method& low);
 
 /// Whether a difference matters: |D| − u > T; does not: |D| + u ≤ T; is open.
 enum class Matters { yes, no, open };
-const char* word(Matters matters);
+constexpr std::array<const char*, 3> words_of(Matters) {
+  return {"matters", "does not matter", "open"};
+}
 
 /// One choice in one combination of all others.
 struct ChoiceRow {

@@ -8,10 +8,6 @@
 
 namespace ricochet::asks {
 
-const char* word(Verdict verdict) {
-  return verdict == Verdict::yes ? "yes" : verdict == Verdict::no ? "no" : "open";
-}
-
 Verdict all_of(const std::vector<Verdict>& verdicts) {
   const auto has = [&](Verdict one) { return std::find(verdicts.begin(), verdicts.end(), one) != verdicts.end(); };
   if (has(Verdict::no)) return Verdict::no;

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -10,7 +11,9 @@ namespace ricochet::asks {
 
 /// A verdict where the question has a yes or a no.
 enum class Verdict { yes, no, open };
-const char* word(Verdict verdict);
+constexpr std::array<const char*, 3> words_of(Verdict) {
+  return {"yes", "no", "open"};
+}
 /// Yes where all are, no where none is yes and none open; open otherwise.
 Verdict all_of(const std::vector<Verdict>& verdicts);
 

@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <functional>
 #include <ricochet/contract/registry.hpp>
+#include <ricochet/contract/worded.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,8 +12,9 @@
 namespace ricochet::checking {
 
 enum class Finding { ok, fails, not_applicable, not_declared };
-/// "ok", "FAILS", "not applicable", "not declared".
-const char* finding_word(Finding finding);
+constexpr std::array<const char*, 4> words_of(Finding) {
+  return {"ok", "FAILS", "not applicable", "not declared"};
+}
 
 /// What one trial of a method found: a sentence with what was measured and, where it fails, what was declared.
 struct Verdict {

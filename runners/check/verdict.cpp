@@ -95,20 +95,6 @@ CheckResult over_all(const std::string& name, const std::vector<Trial>& trials) 
 
 }  // namespace
 
-const char* finding_word(Finding finding) {
-  switch (finding) {
-    case Finding::ok:
-      return "ok";
-    case Finding::fails:
-      return "FAILS";
-    case Finding::not_applicable:
-      return "not applicable";
-    case Finding::not_declared:
-      break;
-  }
-  return "not declared";
-}
-
 CheckResult run_check(const std::string& name, const std::vector<Trial>& trials, const Isolation& isolation,
                       bool* hangs) {
   if (hangs) *hangs = false;

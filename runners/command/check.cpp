@@ -115,7 +115,7 @@ std::vector<CheckResult> checked(const Registry& registry, Role role, const std:
 
 void print(const CheckResult& result, std::ostream& out) {
   constexpr std::size_t indent = 38;
-  out << fmt::format("  {:<18}  {:<14}", result.check, checking::finding_word(result.finding));
+  out << fmt::format("  {:<18}  {:<14}", result.check, word(result.finding));
   bool first = true;
   for (const std::string& sentence : result.sentences) {
     out << (first ? "  " : "\n" + std::string(indent, ' ')) << sentence;

@@ -159,20 +159,6 @@ std::vector<std::string> lines_without(const std::vector<std::string>& lines, co
 
 }  // namespace
 
-const char* change_word(NumberChange change) {
-  switch (change) {
-    case NumberChange::none:
-      return "equal";
-    case NumberChange::round_off:
-      return "within round-off";
-    case NumberChange::beyond:
-      return "beyond round-off";
-    case NumberChange::missing:
-      return "only in one";
-  }
-  return "";
-}
-
 std::vector<CasePair> StudyComparison::status_changes() const {
   std::vector<CasePair> out;
   std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(out), [](const CasePair& pair) {

@@ -1,5 +1,7 @@
 #pragma once
+#include <array>
 #include <optional>
+#include <ricochet/contract/worded.hpp>
 #include <string>
 #include <vector>
 
@@ -23,7 +25,9 @@ struct CasePair {
 /// How two numbers differ. `round_off`: by no more than 2⁻⁵² × steps of the measure's scale, what the round-off of an
 /// integration may leave. `beyond`: by more.
 enum class NumberChange { none, round_off, beyond, missing };
-const char* change_word(NumberChange change);
+constexpr std::array<const char*, 4> words_of(NumberChange) {
+  return {"equal", "within round-off", "beyond round-off", "only in one"};
+}
 
 /// A measure of a case of both.
 struct MeasureChange {

@@ -222,7 +222,7 @@ Table comparison_table(const StudyComparison& found) {
   }
   for (const MeasureChange& one : found.measures)
     add({"measure", one.pair.a->id, other_id(one.pair), one.measure, one.a, one.b,
-         one.a && one.b ? Cell(one.relative) : Cell(), change_word(one.change)});
+         one.a && one.b ? Cell(one.relative) : Cell(), word(one.change)});
   for (const TableChange& one : found.tables)
     add({"table", one.pair.a->id, other_id(one.pair), one.table, nullptr, nullptr, nullptr,
          one.equal ? "equal" : "changed"});

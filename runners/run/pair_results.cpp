@@ -146,24 +146,6 @@ PairChange change_of(PairedValue& pair) {
 
 }  // namespace
 
-const char* change_word(PairChange change) {
-  switch (change) {
-    case PairChange::equal:
-      return "equal";
-    case PairChange::within:
-      return "within u";
-    case PairChange::beyond:
-      return "changed";
-    case PairChange::no_interval:
-      return "no interval";
-    case PairChange::only_a:
-      return "only in A";
-    case PairChange::only_b:
-      return "only in B";
-  }
-  return "";
-}
-
 bool PairedValue::has_values() const {
   const auto has = [](const std::optional<VerdictRow>& row) { return row && (row->value || row->low); };
   return has(a) || has(b);

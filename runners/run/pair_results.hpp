@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <ricochet/contract/worded.hpp>
 #include <string>
 #include <vector>
 
@@ -15,7 +17,9 @@ namespace ricochet {
 /// What became of a value [a⁻, a⁺] in [b⁻, b⁺]. `beyond`: the intervals share no value, |b − a| > u with u the sum of
 /// the half intervals that face each other. `no_interval`: different values, of which one at least has none.
 enum class PairChange { equal, within, beyond, no_interval, only_a, only_b };
-const char* change_word(PairChange change);
+constexpr std::array<const char*, 6> words_of(PairChange) {
+  return {"equal", "within u", "changed", "no interval", "only in A", "only in B"};
+}
 
 /// The same thing in both: of one ask, measure, level of all choices, stop and unit.
 struct PairedValue {

@@ -79,7 +79,7 @@ std::string group_html(const std::string& head, const std::string& id, const Val
   if (verdicts) table.add({"verdicts"});
   for (const PairedValue* one : values) {
     table.row(name_of(*one, with_measure));
-    table.text(change_word(one->change), one->change == PairChange::beyond ? "changed" : "");
+    table.text(word(one->change), one->change == PairChange::beyond ? "changed" : "");
     for (const auto& row : {one->a, one->b})
       if (row && (row->value || row->low))
         table.number(value_cell(*row) + (units.size() == 1 ? "" : unit_text(*row)));

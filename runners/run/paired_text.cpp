@@ -72,7 +72,7 @@ std::string values_text(const PairedResults& pairs) {
                                   any.unit == "1" ? "" : any.unit,
                                   said(one->a),
                                   said(one->b),
-                                  change_word(one->change)};
+                                  word(one->change)};
     if (met.insert(line).second && ++told <= most_values) table.add(std::move(line));
   }
   if (told > 0) out += table.text(2);
@@ -93,7 +93,7 @@ std::string counts_line(const PairedResults& pairs) {
   for (const PairChange one : {PairChange::beyond, PairChange::within, PairChange::no_interval, PairChange::equal,
                                PairChange::only_a, PairChange::only_b}) {
     const std::size_t count = pairs.count(one);
-    if (count > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count, change_word(one));
+    if (count > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count, word(one));
   }
   return out.empty() ? "none" : out;
 }
@@ -155,7 +155,7 @@ Table paired_table(const PairedResults& pairs) {
     const auto text = [](const std::string& words) { return words.empty() ? Cell() : Cell(words); };
     table.rows.push_back({one.table, text(one.of), any.measure, text(any.level), text(any.stop), text(any.unit),
                           a.value, a.low, a.high, b.value, b.low, b.high, one.difference, one.u, text(a.verdict),
-                          text(b.verdict), change_word(one.change)});
+                          text(b.verdict), word(one.change)});
   }
   return table;
 }
@@ -164,7 +164,7 @@ nlohmann::ordered_json paired_json(const PairedResults& pairs, const AnalysedRes
   nlohmann::ordered_json counts;
   for (const PairChange one : {PairChange::equal, PairChange::within, PairChange::beyond, PairChange::no_interval,
                                PairChange::only_a, PairChange::only_b})
-    counts[change_word(one)] = pairs.count(one);
+    counts[word(one)] = pairs.count(one);
   return {{"a", about(a)}, {"b", about(b)}, {"counts", counts}, {"rows", rows_as_json(paired_table(pairs))}};
 }
 

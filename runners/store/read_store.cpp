@@ -141,7 +141,7 @@ void read_study(SQLite::Database& database, StudyResults& results) {
 
 // Null for a case of another id or status than a case can have: what is damaged. The row is that of rows_query.
 std::optional<CaseRecord> case_of(SQLite::Statement& row) {
-  const auto status = status_of_word(row.getColumn(3).getString());
+  const auto status = of_word<Status>(row.getColumn(3).getString());
   CaseRecord record;
   record.id = row.getColumn(1).getString();
   if (!status || !is_case_id(record.id)) return std::nullopt;

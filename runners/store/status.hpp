@@ -1,7 +1,6 @@
 #pragma once
 #include <array>
-#include <optional>
-#include <string_view>
+#include <ricochet/contract/worded.hpp>
 
 namespace ricochet {
 
@@ -11,17 +10,9 @@ enum class Status : unsigned char { done, refused, diverged, failed };
 
 inline constexpr std::array statuses = {Status::done, Status::refused, Status::diverged, Status::failed};
 
-/// "done", "refused", "diverged", "failed": what stores and tables say.
-constexpr const char* word(Status status) {
-  constexpr std::array words = {"done", "refused", "diverged", "failed"};
-  return words[static_cast<std::size_t>(status)];
-}
-
-/// That of a word; none of any other.
-constexpr std::optional<Status> status_of_word(std::string_view said) {
-  for (const Status one : statuses)
-    if (said == word(one)) return one;
-  return std::nullopt;
+/// What stores and tables say.
+constexpr std::array<const char*, 4> words_of(Status) {
+  return {"done", "refused", "diverged", "failed"};
 }
 
 }  // namespace ricochet

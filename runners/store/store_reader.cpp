@@ -39,7 +39,7 @@ std::vector<StoreReader::Finished> StoreReader::finished() const {
       const std::string id = rows.getColumn(0).getString();
       if (damage().cases.contains(id) || !is_case_id(id)) continue;
       found.push_back({id_of_today(id), rows.getColumn(1).getString(),
-                       status_of_word(rows.getColumn(2).getString()) == Status::refused,
+                       of_word<Status>(rows.getColumn(2).getString()) == Status::refused,
                        rows.getColumn(3).getString()});
     }
   });

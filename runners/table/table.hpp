@@ -71,7 +71,7 @@ class Cell {
   Cell(std::string text) : content_(SharedWords(std::move(text))) {}
   Cell(const char* text) : Cell(std::string(text)) {}
   Cell(std::string_view text) : Cell(std::string(text)) {}
-  Cell(Worded auto value) : Cell(word(value)) {}
+  explicit Cell(Worded auto value) : Cell(word(value)) {}
   /// What is absent is nothing.
   template <class Value>
   Cell(const std::optional<Value>& value) {

@@ -190,7 +190,7 @@ checking::CheckResult one_check(const std::vector<checking::Check<Interface>>& c
 inline std::string text_of(const std::vector<checking::CheckResult>& results) {
   std::string text;
   for (const auto& result : results) {
-    text += std::string(checking::finding_word(result.finding)) + "  " + result.check;
+    text += std::string(word(result.finding)) + "  " + result.check;
     for (const std::string& sentence : result.sentences) text += "  " + sentence;
     text += "\n";
   }

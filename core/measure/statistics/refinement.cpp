@@ -173,30 +173,6 @@ Limit plain_limit(const std::vector<SizedValue>& values, double floor, Errors er
 
 }  // namespace
 
-std::string_view word(LimitStatus status) {
-  switch (status) {
-    case LimitStatus::one:
-      return "one";
-    case LimitStatus::same:
-      return "same";
-    case LimitStatus::two:
-      return "two";
-    case LimitStatus::settles:
-      return "settles";
-    case LimitStatus::reaches_truth:
-      return "reaches truth";
-    case LimitStatus::vanishes:
-      return "vanishes";
-    case LimitStatus::moves:
-      return "moves";
-    case LimitStatus::wanders:
-      return "wanders";
-    case LimitStatus::blows_up:
-      return "blows up";
-  }
-  return "";
-}
-
 bool Limit::settled() const {
   return status == LimitStatus::same || status == LimitStatus::settles || status == LimitStatus::reaches_truth ||
          status == LimitStatus::vanishes;

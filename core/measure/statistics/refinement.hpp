@@ -3,7 +3,6 @@
 #include <optional>
 #include <ricochet/contract/worded.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
 /// \file
@@ -28,8 +27,9 @@ enum class LimitStatus {
   wanders,        ///< none of these
   blows_up        ///< |v| grows with every refinement
 };
-/// "one", "same", "two", "settles", "reaches truth", "vanishes", "moves", "wanders", "blows up".
-std::string_view word(LimitStatus status);
+constexpr std::array<const char*, 9> words_of(LimitStatus) {
+  return {"one", "same", "two", "settles", "reaches truth", "vanishes", "moves", "wanders", "blows up"};
+}
 
 /// The limit of one method along a refinement, as far as its values tell.
 struct Limit {

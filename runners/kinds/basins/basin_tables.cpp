@@ -47,7 +47,7 @@ constexpr std::size_t no_start_group = regime_groups.size();
 
 std::size_t group_of(const CellRow& cell) {
   if (cell.status == no_start) return no_start_group;
-  if (status_of_word(cell.status.value_or("")).value_or(Status::done) != Status::done) return failed_group;
+  if (of_word<Status>(cell.status.value_or("")).value_or(Status::done) != Status::done) return failed_group;
   return report::regime_group(cell.regime, cell.period);
 }
 
@@ -59,7 +59,7 @@ ReadCell read_cell(const CellRow& row) {
           .period = row.period.value_or(0),
           .end = row.attractor.value_or(0) - 1,
           .group = static_cast<std::uint8_t>(group_of(row)),
-          .done = status_of_word(status) == Status::done,
+          .done = of_word<Status>(status) == Status::done,
           .filled = !row.marched.value_or(true)};
 }
 

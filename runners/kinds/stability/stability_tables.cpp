@@ -142,7 +142,7 @@ Table stability_cells_table(const StudyResults& results) {
       const auto growth = cell.radius ? std::optional(*cell.radius - 1) : std::nullopt;
       out.rows.push_back({record.id, closed, cell.step, Cell(cell.radius), Cell(growth), Cell(cell.worst),
                           prediction_at(cell), cell.behaviour ? word(*cell.behaviour) : "", cell.observed_unstable(),
-                          cell.disagrees(), cell.marginal, cell.status, cell.reason});
+                          cell.disagrees(), cell.marginal, word(cell.status), cell.reason});
     }
   });
   return out;

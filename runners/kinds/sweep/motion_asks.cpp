@@ -240,7 +240,7 @@ class MotionEffect {
     const asks::Verdict shown = one.verdict == asks::Verdict::open               ? one.verdict
                                 : (one.verdict == asks::Verdict::yes) != agrees_ ? asks::Verdict::yes
                                                                                  : asks::Verdict::no;
-    row.verdict = asks::word(shown);
+    row.verdict = ricochet::word(shown);
     row.reason = one.reason;
     row.cases = 2;
     row.left_out = 0;
@@ -272,7 +272,7 @@ class MotionEffect {
                                   : (changes == asks::Verdict::yes) != agrees_ ? asks::Verdict::yes
                                                                                : asks::Verdict::no;
       out.passes = shown;
-      out.verdict = asks::word(shown);
+      out.verdict = ricochet::word(shown);
       return std::string(shown == asks::Verdict::yes ? "Yes" : "No") + (!agrees_ ? ""
                                                                         : shown == asks::Verdict::yes
                                                                             ? ", they agree"
