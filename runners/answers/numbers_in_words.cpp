@@ -87,10 +87,9 @@ std::string value_to(const MeasureWords& measure, double value, std::optional<do
   if (v != 0 && (std::abs(v) < small || std::abs(v) >= large))
     return short_number(v, u > 0 && u < 0.1 * std::abs(v) ? 3 : 2) + unit;
   if (u <= 0) return short_number(v) + unit;
-  const int of_u = decimals(u, fine);
-  u = std::min(u, std::abs(v) > 0 ? std::abs(v) : u);
-  int places = decimals(u, fine);
-  if (!few && measure.factor == 100) places = of_u;
+  const double shown = std::min(u, std::abs(v) > 0 ? std::abs(v) : u);
+  int places = decimals(!few && measure.factor == 100 ? u : shown, fine);
+  u = shown;
   if (few && measure.factor == 100 && std::abs(v) < 100) {
     // Enough digits that what is lacking of 100 % keeps two.
     const double lacking = 100 - std::abs(v);

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "runners/answers/limits.hpp"
-#include "runners/study/axis_meaning.hpp"
 
 namespace ricochet::answers {
 namespace {
@@ -159,8 +158,7 @@ const TableType<StopRange>& uncertainty_type() {
 
 bool scene_varies(const Choices& study) {
   return std::any_of(study.varying().begin(), study.varying().end(), [](const std::string& column) {
-    const std::string role = axis_role(column);
-    return !is_method_role(role) && !is_refinement(column) && role != "march" && role != "seed";
+    return is_of_scene(column) && column != "march" && column != "seed";
   });
 }
 

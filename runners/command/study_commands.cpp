@@ -162,10 +162,6 @@ int report_pair(const Arguments& arguments, std::ostream& out) {
   return exit_done;
 }
 
-}  // namespace
-
-namespace {
-
 /// Whether a report was written, whatever it says of its cases and asks.
 bool has_report(int code) {
   return code == exit_done || code == exit_some_failed || code == exit_not_met;

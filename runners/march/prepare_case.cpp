@@ -14,13 +14,9 @@
 #include "runners/march/seconds.hpp"
 
 namespace ricochet {
-namespace {
-
 bool explicit_step(const StepPlan& plan) {
   return std::all_of(plan.stages.begin(), plan.stages.end(), [](const Stage& stage) { return stage.matrix.K == 0; });
 }
-
-}  // namespace
 
 Said beyond_explicit_limit(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
                            const std::function<PlanOrRefusal(double)>& plan_at) {

@@ -48,10 +48,13 @@ class RunError : public std::runtime_error {
   bool of_plugin_;
 };
 
+/// Whether a scheme is explicit: no stage of its plan solves with K.
+bool explicit_step(const StepPlan& plan);
+
 /// The sentence with which the step h (s) of an explicit scheme is refused where the free structure grows in it. The
-/// spectral radius of the step, contact open, is then beyond 1. A scheme is explicit where no stage of `plan` solves
-/// with K. It names the largest stable step, found by bisection of the spectrum over plans that `plan_at` makes. ""
-/// where the step is stable, the scheme is implicit, or the structure has more dofs than modes are found of.
+/// spectral radius of the step, contact open, is then beyond 1. It names the largest stable step, found by bisection of
+/// the spectrum over plans that `plan_at` makes. "" where the step is stable, the scheme is implicit, or the structure
+/// has more dofs than modes are found of.
 Said beyond_explicit_limit(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
                            const std::function<PlanOrRefusal(double)>& plan_at);
 

@@ -5,14 +5,13 @@
 #include <filesystem>
 #include <numbers>
 #include <ricochet/engine/flight/flight.hpp>
-#include <ricochet/loader/library.hpp>
 
 namespace ricochet {
 namespace {
 
 constexpr long long trial_steps = 2000;
 
-// Of the first mode, s; infinite where the march has no modes, or that mode does not swing.
+// Of the first mode that swings, s; 0 where the march has no modes, or none swings.
 double first_period(const Program& program) {
   if (!program.model->modal()) return 0;
   const Eigen::VectorXd stiffness = program.model->stiffness().diagonal(),
@@ -24,8 +23,15 @@ double first_period(const Program& program) {
   return period;
 }
 
-bool is_explicit(const StepPlan& plan) {
-  return std::all_of(plan.stages.begin(), plan.stages.end(), [](const Stage& stage) { return stage.matrix.K == 0; });
+// A step of somebody's method may never come to an end, and a plan has to. The program's own methods stand in one
+// folder: what calls one from another folder is not tried.
+bool from_one_folder(const StudyCase& study_case, const Registry& registry) {
+  const auto methods = methods_of(study_case);
+  const auto folder = [&](const auto& one) {
+    return std::filesystem::path(registry.file(one.first, one.second->name)).parent_path();
+  };
+  return std::all_of(methods.begin(), methods.end(),
+                     [&](const auto& one) { return folder(one) == folder(methods.front()); });
 }
 
 // The step of the trial, s: the whole duration in so many steps where the first mode sees no difference.
@@ -33,7 +39,7 @@ double trial_step(const StudyCase& study_case, const Prepared& prepared) {
   constexpr double steps_of_mode = 100;
   const Program& program = *prepared.program;
   const double whole = study_case.step * static_cast<double>(prepared.steps) / static_cast<double>(trial_steps);
-  if (is_explicit(program.plan)) return study_case.step;
+  if (explicit_step(program.plan)) return study_case.step;
   return std::max(study_case.step, std::min(whole, first_period(program) / steps_of_mode));
 }
 
@@ -72,16 +78,7 @@ std::optional<StepCounts> trial_march(const StudyCase& study_case, const Prepare
   constexpr long long fewest_steps = 200, together = 100;
   constexpr double long_share = 0.02, short_share = 0.2, short_seconds = 5e-3;
   const Program& program = *prepared.program;
-  if (!program.contact || prepared.steps < fewest_steps) return std::nullopt;
-  // A step of somebody's method may never come to an end, and a plan has to.
-  if (foreign_code_ran()) return std::nullopt;
-  // A step of somebody's method may never come to an end, and a plan has to: the program's own stand in one folder.
-  const auto folder = [&](Role role, const MethodChoice& method) {
-    return std::filesystem::path(registry.file(role, method.name)).parent_path();
-  };
-  if (folder(Role::contact, study_case.contact) != folder(Role::time, study_case.time) ||
-      folder(Role::mass, study_case.mass) != folder(Role::time, study_case.time))
-    return std::nullopt;
+  if (!program.contact || prepared.steps < fewest_steps || !from_one_folder(study_case, registry)) return std::nullopt;
   const double step = trial_step(study_case, prepared),
                allowed = std::max(long_share * seconds, std::min(short_share * seconds, short_seconds));
   const auto most = std::min(trial_steps, static_cast<long long>(study_case.duration / step));

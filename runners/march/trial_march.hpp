@@ -41,7 +41,7 @@ class StepCounts final : public StepObserver {
 
 /// Marches a case for at most 2000 steps, a fifth of `seconds`, which it is thought to take, and 5 ms, or a fiftieth of
 /// `seconds` where that is more. In modes steps are as long as the whole duration takes, up to a hundredth of the first
-/// mode's period. Nothing where the case has too few steps, or a step went wrong.
+/// mode's period. Nothing where the case has too few steps, a method comes from another folder, or a step went wrong.
 std::optional<StepCounts> trial_march(const StudyCase& study_case, const Prepared& prepared, const Registry& registry,
                                       double seconds);
 

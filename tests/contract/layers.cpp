@@ -215,7 +215,7 @@ TEST_CASE("folders include what lies below them, and every folder has its rule")
         "runners/plan_files"}},
       {"runners/store", {"core/contract", "core/loader", "runners/table", "runners/study"}},
       {"runners/march",
-       {"core/contract", "core/loader", "core/engine", "core/measure", "core/scene", "runners/table", "runners/study",
+       {"core/contract", "core/engine", "core/measure", "core/scene", "runners/table", "runners/study",
         "runners/store"}},
       {"runners/report", {"core/contract", "core/scene", "runners/table", "runners/study", "runners/store"}},
       {"runners/answers", {"core/measure", "runners/table", "runners/study", "runners/store", "runners/report"}},

@@ -143,13 +143,12 @@ class MotionsAlong {
     for (const CaseMotions& one : told_) {
       add_row(out, one.level, "undecided", "of the range", asks::per_cent * one.undecided, {}, {}, "%");
       for (const MotionStretch& part : one.stretches) {
-        const std::string motion = part.motion().empty() ? "undecided" : part.motion();
-        const std::size_t open = part.open;
-        add_row(out, one.level, motion,
-                open > 0 && !part.motion().empty()
-                    ? fmt::format("{} of {} orbits are undecided", open, open + part.decided)
-                    : "",
-                {}, part.from, part.to, parameter_.unit);
+        const bool decided = !part.counts.empty();
+        const std::string motion = decided ? part.motion() : "undecided";
+        const std::string open = decided && part.open > 0
+                                     ? fmt::format("{} of {} orbits are undecided", part.open, part.open + part.decided)
+                                     : "";
+        add_row(out, one.level, motion, open, {}, part.from, part.to, parameter_.unit);
         drawn.push_back({{"name", one.level},
                          {"motion", motion},
                          {"group", part.group().name},
@@ -233,9 +232,7 @@ class MotionsAlong {
     for (const auto& [value, width] : widths_of(values)) {
       double open = 0;
       for (const CaseMotions* one : heads_)
-        if (const auto at = one->at.find(value); at != one->at.end()) {
-          open = std::max(open, at->second.open_share());
-        }
+        if (const auto at = one->at.find(value); at != one->at.end()) open = std::max(open, at->second.open_share());
       undecided_ += width * open;
     }
   }
