@@ -84,7 +84,8 @@ const MeasureInfo* measure_info(const std::string& name) {
 std::vector<std::string> standing_measures(const std::string& kind) {
   std::vector<std::string> names;
   if (const Kind* known = find_kind(kind); known && known->measures_stand())
-    for (const MeasureInfo& info : known->measures) names.emplace_back(info.name);
+    for (const MeasureInfo& info : known->measures)
+      if (!info.where_met) names.emplace_back(info.name);
   return names;
 }
 

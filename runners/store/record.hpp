@@ -121,6 +121,7 @@ struct MeasureInfo {
   /// Of a time that is counted in whole steps: how many it may be off by, "1" or the measure that counts them.
   const char* whole_steps = "";
   const char* floor = "";  ///< the measure of the same case that says what it is uncertain by; "": none
+  bool where_met = false;  ///< cases.csv has it only where a case has one
 };
 
 /// The measures of all kinds, in order. Given by the registry of kinds.

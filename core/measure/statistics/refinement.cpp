@@ -12,7 +12,7 @@ constexpr double safety = 1.25;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double orders_agree = 0.6, steepest_order = 4.5;
-constexpr double grows = 1.5, grown = 3;
+constexpr double grows = 1.5, grown = 3, growth_exponent = -0.3;
 constexpr double falls = 0.35, width = 0.6;
 
 /// Orders of |e| between sizes that follow each other; nothing where one is zero.
@@ -119,8 +119,10 @@ Limit by_last_sizes(const std::vector<SizedValue>& values, double floor, Errors 
   }
   const Tail t{values[n - 3], values[n - 2], values[n - 1], d[n - 3], d[n - 2]};
   if (const auto limit = vanishing(t, out, floor)) return *limit;
+  // What grows as a power of the size; differences that only do not shrink may still add up to a limit.
+  const auto exponent = t.order();
   if (std::abs(t.v2.value) > grows * std::abs(t.v1.value) && std::abs(t.v3.value) > grows * std::abs(t.v2.value) &&
-      std::abs(t.v3.value) > grown * std::abs(values.front().value) && last > std::abs(t.before)) {
+      std::abs(t.v3.value) > grown * std::abs(values.front().value) && exponent && *exponent <= growth_exponent) {
     out.status = LimitStatus::blows_up;
     out.uncertainty = infinity;
     out.low = t.lowest();

@@ -48,7 +48,9 @@ class MatrixReader {
 
  private:
   void read_header() {
-    const auto line = content_line("%%");
+    const auto line = content_line([](std::string_view text) {
+      return text.starts_with("%%") || lower_case(text).find("matrixmarket") != std::string::npos;
+    });
     const std::string expected =
         "; expected %%MatrixMarket matrix, coordinate or array, real or integer, symmetric or general";
     if (!line) throw FileError(lines_.name() + " is empty" + expected);
@@ -68,12 +70,12 @@ class MatrixReader {
     symmetric_ = lower[4] == "symmetric";
   }
 
-  /// The next line that says something and is no comment, unless that begins with `but`.
-  std::optional<std::string_view> content_line(std::string_view but = "") {
+  /// The next line that says something and is no comment, or is one that is looked for.
+  std::optional<std::string_view> content_line(bool (*wanted)(std::string_view) = nullptr) {
     while (const auto line = lines_.next()) {
       const std::string_view text = trimmed(*line);
       if (text.empty()) continue;
-      if (!is_comment(text) || (!but.empty() && text.starts_with(but))) return text;
+      if (!is_comment(text) || (wanted && wanted(text))) return text;
       ++comments_;
     }
     return std::nullopt;

@@ -269,9 +269,10 @@ DofTable read_dof_table(std::string_view content, const std::string& name) {
     for (const auto& [text, what] : {std::pair(&one.node, "node"), {&one.component, "component"}})
       if (!is_name(*text))
         file.fail(row, fmt::format("\"{}\" for {}; expected a word without spaces", shortened(*text), what));
-    if (!one.held.empty() && !is_name(one.held))
-      file.fail(row,
-                fmt::format("\"{}\" for held; expected nothing, fixed or the name of a support", shortened(one.held)));
+    // A column of 0 and 1 is a common way to say it, and 0 no name of a support.
+    if (!one.held.empty() && (!is_name(one.held) || one.held == "0"))
+      file.fail(row, fmt::format("\"{}\" for held; expected nothing where it is free, fixed or the name of a support",
+                                 shortened(one.held)));
     for (std::size_t axis = 0; axis < axes.size(); ++axis) one.place[axis] = file.number(row, axes[axis]);
     const auto [first, fresh] = known.emplace(std::pair(one.node, one.component), one.dof);
     if (!fresh) file.fail(row, fmt::format("{} is dof {} and dof {}", one.text(), first->second, one.dof));

@@ -67,8 +67,9 @@ std::vector<MeasureInfo> energy_measures() {
       {"work_of_steady_loads", "J", "Of that what loads that do not depend on time gave: what their potential fell by.",
        Of::motion, true},
       {"dissipated_at_contact", "J",
-       "Energy taken out by the contact efforts over the run, less what springs at the stops still store.", Of::motion,
-       false, "energy_brought_in"},
+       "Energy taken out by the contact efforts over the run, less what springs at the stops still store. Friction is "
+       "apart.",
+       Of::motion, false, "energy_brought_in"},
       {"stored_at_stops", "J", "Energy that springs at the stops hold at the end beyond that at the start.", Of::motion,
        true, "energy_brought_in"},
       {"balance_residual", "J",
@@ -167,9 +168,23 @@ std::vector<MeasureInfo> run_measures() {
   };
 }
 
+/// Of cases in which something rubs.
+std::vector<MeasureInfo> friction_measures() {
+  std::vector<MeasureInfo> measures = {
+      {"dissipated_by_friction", "J",
+       "Energy taken out by friction over the run, less what springs along the surfaces still store.", Of::motion,
+       false, "energy_brought_in"},
+      {"friction_residual", "1", "Largest residual of friction over the run, over the largest effort.", Of::motion,
+       true},
+      {"friction_turns", "1", "Most turns between contact and friction that one stage took.", Of::computation},
+  };
+  for (MeasureInfo& measure : measures) measure.where_met = true;
+  return measures;
+}
+
 std::vector<MeasureInfo> trajectory_measures() {
   std::vector<MeasureInfo> all = energy_measures();
-  for (const std::vector<MeasureInfo>& more : {contact_measures(), run_measures()})
+  for (const std::vector<MeasureInfo>& more : {contact_measures(), run_measures(), friction_measures()})
     all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -181,6 +196,7 @@ std::vector<MeasureInfo> with_readings(std::vector<MeasureInfo> measures) {
       {"energy_left", {"the energy left", more, 1.0}},
       {"energy_ratio", {"the energy left", more, 1.0}},
       {"dissipated_at_contact", {"energy lost at the stops", less, 0.0}},
+      {"dissipated_by_friction", {"energy lost by friction", less, 0.0}},
       {"largest_step_gain", {"largest energy gain of one step", less, std::nullopt, true}},
       {"contact_force_deviation", {"deviation of the force", less, std::nullopt, true}},
       {"contact_force_mean", {"mean force", neither}},
@@ -276,7 +292,13 @@ std::vector<std::string> observed_energies(const StudyResults& results) {
   if (std::any_of(results.cases.begin(), results.cases.end(),
                   [](const CaseRecord& record) { return measure(record, "window_tip_rms").has_value(); }))
     return {"window_tip_rms", "window_force", "window_impact_rate", "window_power"};
-  return {driven ? "dissipated_at_contact" : "energy_left", "impulse", "tip_displacement_end"};
+  std::vector<std::string> names = {driven ? "dissipated_at_contact" : "energy_left", "impulse",
+                                    "tip_displacement_end"};
+  const bool rubs = std::any_of(results.cases.begin(), results.cases.end(), [](const CaseRecord& record) {
+    return measure(record, "dissipated_by_friction").has_value();
+  });
+  if (rubs) names.insert(names.begin() + 1, "dissipated_by_friction");
+  return names;
 }
 
 // Names of the points of a study, or of their fields: "mid_moment".

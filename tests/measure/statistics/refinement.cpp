@@ -126,6 +126,21 @@ TEST_CASE("statuses: one, same, two, moves, wanders, blows up, vanishes, reaches
   CHECK_FALSE(limit_of({}, 0));
 }
 
+TEST_CASE("what grows as a power of the size has no limit, growth that slows down moves") {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> power(0.5, 2), offset(0, 0.5);
+  for (int draw = 0; draw < 200; ++draw) {
+    const double p = power(random), c = offset(random);
+    std::vector<SizedValue> powers;
+    for (int k = 0; k < 4; ++k) powers.push_back({std::pow(10, -k), c + std::pow(10, k * p)});
+    CHECK(limit_of(powers, 0)->status == LimitStatus::blows_up);
+  }
+  // A share that tends to 1.
+  const auto slows = limit_of({{1, 0.008}, {0.1, 0.09}, {0.01, 0.30}, {0.001, 0.55}}, 0);
+  CHECK(slows->status == LimitStatus::moves);
+  CHECK((slows->low <= 1 && 1 <= slows->high));
+}
+
 TEST_CASE("scaling values scales the limit, and changes no status") {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;

@@ -62,6 +62,9 @@ TEST_CASE("a fault of a Matrix Market file has file, line, what was found and wh
       matrix_fault("%%MatrixMarket matrix coordinate complex general\n", 2) ==
       "K.mtx, line 1: \"%%MatrixMarket matrix coordinate complex general\"; expected %%MatrixMarket matrix, coordinate "
       "or array, real or integer, symmetric or general");
+  CHECK(matrix_fault("%MatrixMarket matrix coordinate real general\n2 2 0\n", 2) ==
+        "K.mtx, line 1: \"%MatrixMarket matrix coordinate real general\"; expected %%MatrixMarket matrix, coordinate "
+        "or array, real or integer, symmetric or general");
   CHECK(matrix_fault(header + "2 2\n", 2) == "K.mtx, line 2: \"2 2\"; expected rows, columns and number of entries");
   CHECK(matrix_fault(header + "3 3 1\n1 1 1\n", 2) == "K.mtx is 3 × 3; expected 2 × 2, the dofs of dofs.csv");
   CHECK(matrix_fault(header + "2 2 2\n1 1 1\n", 2) == "K.mtx, line 3: end of file after 1 of 2 entries");
@@ -116,6 +119,8 @@ TEST_CASE("a fault of a table of dofs has file, line, what was found and what wa
         "dofs.csv, line 2: \"one\" for dof; expected a whole number from 1");
   CHECK(table_fault(table_header + "1,,uy,0,0,0,\n") ==
         "dofs.csv, line 2: \"\" for node; expected a word without spaces");
+  CHECK(table_fault(table_header + "1,N1,uy,0,0,0,1\n2,N2,uy,0,0,0,0\n") ==
+        "dofs.csv, line 3: \"0\" for held; expected nothing where it is free, fixed or the name of a support");
   CHECK(table_fault(table_header + "1,N1,uy,0,nan,0,\n") ==
         "dofs.csv, line 2: \"nan\" for y; expected a finite number");
   CHECK(table_fault(table_header + "1,\"N1\",uy,0,0,0,\n") == "no error");
