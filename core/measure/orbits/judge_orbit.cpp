@@ -149,6 +149,7 @@ JudgedOrbit judge(const Orbit& orbit, const SectionPlan& plan, const std::option
   input.sticks = orbit.lasting > 0;
   input.recurrence = out.recurrence;
   input.zero_one = out.zero_one;
+  input.shrunk = shrunk_ranges(orbit.readings);
   input.exponent = exponent;
   input.impacts_per_period = impacts_per_period(orbit);
   input.settled = orbit.settled;

@@ -230,6 +230,29 @@ double lag_distance(const SectionSeries& series, const std::vector<double>& scal
   return largest;
 }
 
+double shrunk_ranges(const SectionSeries& series) {
+  constexpr int thirds = 3;
+  const int length = series.periods() / thirds;
+  if (length < fewest_fitted) return 1;
+  double largest = 0;
+  for (int c = 0; c < series.width; ++c) {
+    double first = 0, before = HUGE_VAL;
+    for (int third = 0; third < thirds; ++third) {
+      double low = HUGE_VAL, high = -HUGE_VAL;
+      for (int k = 0; k < length; ++k) {
+        const double x = series.row(series.periods() - (thirds - third) * length + k)[c];
+        low = std::min(low, x);
+        high = std::max(high, x);
+      }
+      if (!(high - low < before)) return 1;
+      before = high - low;
+      if (third == 0) first = before;
+    }
+    largest = std::max(largest, before / first);
+  }
+  return largest;
+}
+
 Settling::Settling(std::vector<double> scale_per_column, double relative_tolerance, int longest_lag)
     : scale(std::move(scale_per_column)),
       tolerance(relative_tolerance),

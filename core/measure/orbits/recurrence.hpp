@@ -49,6 +49,11 @@ Recurrence find_recurrence(const SectionSeries& series, const std::vector<double
 /// The largest d_k(lag) of (1) over all rows of the series; infinite where there are none so far apart.
 double lag_distance(const SectionSeries& series, const std::vector<double>& scale, int lag);
 
+/// The largest range of a column in the last third of the rows over that in the first, where the range of every column
+/// shrinks from third to third. 1 otherwise, and below 24 rows. An orbit on a torus fills the same ranges again; one
+/// that still approaches another shrinks them, however slowly its distances do.
+double shrunk_ranges(const SectionSeries& series);
+
 /// The same question asked once per period of an integration that waits for its transient to end. Plain data, O(longest
 /// · width) per period, no allocation after construction.
 struct Settling {

@@ -51,7 +51,7 @@ int cycle_of(const MotionClass& motion, int period) {
 namespace {
 
 constexpr double regular_below = 0.2, chaotic_above = 0.8;
-constexpr double seen_growth = 2;   // of a deviation over the window, to contradict what repeats
+constexpr double seen_growth = 2;   // of a deviation over the window
 constexpr double approached = 0.5;  // of the first distance at the end of the window
 
 std::string count_text(int n, const char* what) {
@@ -86,43 +86,71 @@ std::string repeats_text(const RegimeInput& input) {
   return text;
 }
 
+// Growth of a deviation over the window, at the lower end of the exponent's interval: its logarithm. Nothing without T.
+std::optional<double> least_growth(const RegimeInput& input) {
+  if (input.forcing_period <= 0) return std::nullopt;
+  return input.exponent->low * input.forcing_period * input.recurrence.window;
+}
+
 // Whether the exponent's interval lies above zero by what the window would show.
 bool grows(const RegimeInput& input) {
   if (!input.exponent || input.exponent->low <= 0) return false;
-  if (input.forcing_period <= 0) return true;
-  return input.exponent->low * input.forcing_period * input.recurrence.window >= std::log(seen_growth);
+  const std::optional<double> growth = least_growth(input);
+  return !growth || *growth >= std::log(seen_growth);
 }
 
-bool still_arriving(const Recurrence& r) {
+// Whether a deviation grows by more than neighbours of a regular orbit may part: N-fold over N periods (shear).
+bool outgrows_shear(const RegimeInput& input) {
+  const std::optional<double> growth = least_growth(input);
+  return !growth || *growth > std::log(input.recurrence.window);
+}
+
+bool regular(const RegimeInput& input) {
+  return input.zero_one && *input.zero_one < regular_below;
+}
+
+bool distances_halve(const Recurrence& r) {
   return r.window > 0 && r.contraction < 1 && std::pow(r.contraction, r.window) < approached;
 }
 
-// Whether the 0–1 test tells an orbit that is regular, and not on its way to one that repeats.
-bool stays_regular(const RegimeInput& input) {
-  return input.zero_one && *input.zero_one < regular_below && !still_arriving(input.recurrence);
+bool ranges_shrink(const RegimeInput& input) {
+  return input.shrunk < 1;
+}
+
+bool still_arriving(const RegimeInput& input) {
+  return distances_halve(input.recurrence) || ranges_shrink(input);
+}
+
+std::string arriving_text(const RegimeInput& input) {
+  if (ranges_shrink(input))
+    return fmt::format("ranges shrink from third to third of the window, to {:.3g}", input.shrunk);
+  return fmt::format("distances shrink by {:.4g} per period", input.recurrence.contraction);
 }
 
 // What is missing, or what contradicts, where nothing is decided.
 std::string undecided_text(const RegimeInput& input) {
   std::string text = distance_text(input);
-  const Recurrence& r = input.recurrence;
-  const std::string settling = fmt::format(", distances shrink by {:.4g} per period: still settling", r.contraction);
+  const std::string settling = ", " + arriving_text(input) + ": still settling";
   if (input.exponent) {
-    const Interval& e = *input.exponent;
-    text += ", " + exponent_text(e);
-    if (e.high < 0) {
+    text += ", " + exponent_text(*input.exponent);
+    if (input.exponent->high < 0) {
       text += fmt::format(" and {}", zero_one_text(input));
       return text + (input.settled ? ": neighbours approach each other, the period may exceed the longest looked for"
                                    : ": neighbours approach each other, a longer transient may settle");
     }
+    if (grows(input))
+      return text + fmt::format(", but {}: neighbours of a regular orbit part as far in {} periods; keep more periods",
+                                regular(input) ? zero_one_text(input) + " is regular" : arriving_text(input),
+                                input.recurrence.window);
     if (!input.zero_one) return text + ": " + zero_one_text(input) + " tells regular from chaotic";
-    if (*input.zero_one < regular_below) return text + " and " + zero_one_text(input) + settling;
+    if (regular(input)) return text + " and " + zero_one_text(input) + settling;
     return text + fmt::format(" and {}: neither regular (below {}) nor an exponent above zero; keep more periods",
                               zero_one_text(input), regular_below);
   }
   text += fmt::format(", no exponent, {}", zero_one_text(input));
   if (!input.zero_one) return text + ": keep more periods or ask for an exponent";
-  if (*input.zero_one < regular_below && still_arriving(r)) return text + settling;
+  const bool decides = *input.zero_one > chaotic_above ? ranges_shrink(input) : regular(input);
+  if (decides && still_arriving(input)) return text + settling;
   return text + ": ask for an exponent or keep more periods";
 }
 
@@ -151,12 +179,16 @@ RegimeVerdict classify(const RegimeInput& input) {
   const std::string impacts = fmt::format(", {:.4g} impacts per period", input.impacts_per_period);
   if (input.exponent) {
     const std::string text = exponent_text(*input.exponent) + ", " + zero_one_text(input) + ", " + distance_text(input);
-    if (input.exponent->low > 0) return {{Regime::chaotic}, 0, text + impacts};
-    if (input.exponent->high >= 0 && stays_regular(input)) return {{Regime::quasi_periodic}, 0, text + impacts};
+    const bool doubted = regular(input) || ranges_shrink(input);
+    if (grows(input)) {
+      if (!doubted || outgrows_shear(input)) return {{Regime::chaotic}, 0, text + impacts};
+    } else if (input.exponent->high >= 0 && regular(input) && !still_arriving(input)) {
+      return {{Regime::quasi_periodic}, 0, text + impacts};
+    }
   } else if (input.zero_one) {
     const std::string text = zero_one_text(input) + " without an exponent, " + distance_text(input);
-    if (*input.zero_one > chaotic_above) return {{Regime::chaotic}, 0, text + impacts};
-    if (r.window > 0 && stays_regular(input)) return {{Regime::quasi_periodic}, 0, text + impacts};
+    if (*input.zero_one > chaotic_above && !ranges_shrink(input)) return {{Regime::chaotic}, 0, text + impacts};
+    if (r.window > 0 && regular(input) && !still_arriving(input)) return {{Regime::quasi_periodic}, 0, text + impacts};
   }
   return {{Regime::undecided}, 0, undecided_text(input) + cut};
 }

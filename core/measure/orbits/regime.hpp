@@ -58,6 +58,7 @@ struct RegimeInput {
   std::optional<Interval>
       exponent;  ///< largest Lyapunov exponent, 1/s; −∞: superstable; those owed to the scheme are set apart
   std::optional<double> zero_one;  ///< K
+  double shrunk = 1;               ///< shrunk_ranges() of its section; below 1: they shrink
   double impacts_per_period = 0;
   bool settled = true;        ///< false: the transient was cut at its cap
   double tolerance = 0;       ///< of the recurrence, relative
@@ -76,12 +77,14 @@ struct RegimeVerdict {
 
 /// 1. No contact: no stop was touched. At rest: one was, and that contact never opened.
 /// 2. Undecided: the step does not tell whether the section repeats at a shorter lag than the one found, or at all.
-/// 3. Periodic: the section repeats; chattering where a point that rebounds came to rest. An exponent whose interval
-///    lies above zero contradicts that: undecided. Not so where T is known and the growth it means over the window,
-///    e^{low T window}, is less than 2.
-/// 4. Chaotic: the exponent's interval lies above zero; without an exponent, K > 0.8.
-/// 5. Quasi-periodic: K < 0.2, the exponent's interval, if any, holds zero, and the section does not approach an orbit.
-///    It does where distances halved over the window.
+/// 3. Periodic: the section repeats; chattering where a point that rebounds came to rest. An exponent above zero
+///    contradicts that: undecided. It is above zero where its interval is, and the growth it means over the window,
+///    e^{low T window}, is 2 or more (where T is known).
+/// 4. Chaotic: the exponent is above zero. Neighbours of a regular orbit part in proportion to time, N-fold over a
+///    window of N periods. So where K < 0.2, or the ranges of the section shrink, the growth must exceed N: else
+///    undecided. Without an exponent, K > 0.8 and ranges that do not shrink.
+/// 5. Quasi-periodic: K < 0.2, the exponent's interval, if any, holds zero or growth below 2, and the section does not
+///    approach an orbit. It does where distances halved over the window, or its ranges shrink.
 /// 6. Undecided otherwise; the sentence says what is missing or what contradicts.
 /// `failed` is for those who march: nothing is classified as failed here.
 RegimeVerdict classify(const RegimeInput& input);

@@ -145,6 +145,59 @@ TEST_CASE("recurrence: a spiral into an orbit is that orbit or not known yet, ne
   CHECK(arrived >= 12);
 }
 
+namespace {
+
+/// Two harmonics about an orbit of period 1, multipliers ρ e^{±iθ}, with the readings half a period before.
+SectionSeries spiral(int rows, double rho, double turn, double phase) {
+  return series_of(rows, [=](int k) {
+    std::vector<double> row;
+    for (const double at : {k + phase, k + phase - 0.5}) {
+      const double angle = 2 * std::numbers::pi * turn * at, size = std::pow(rho, at);
+      row.push_back(size * (std::cos(angle) + 0.3 * size * std::cos(2 * angle + 1)));
+      row.push_back(size * (std::sin(angle) + 0.2 * size * std::sin(2 * angle)));
+    }
+    return row;
+  });
+}
+
+constexpr double irrational_turns[] = {0.3819, 0.2763, 0.4142, 0.1357};
+
+}  // namespace
+
+TEST_CASE("ranges: a spiral shrinks from third to third as slowly as it may, and by as much as its multiplier says") {
+  for (const double rho : {0.98, 0.99, 0.995, 0.998, 0.999})
+    for (const double turn : irrational_turns) {
+      INFO("ρ = " << rho << ", θ = " << turn << " turns");
+      const double shrunk = shrunk_ranges(spiral(300, rho, turn, 0));
+      CHECK(shrunk < 1);
+      // Between the largest readings of the first and the last third lie 200 periods, and the few of which an angle
+      // comes round again: ten. The second harmonic shrinks by the square, with a third of the size.
+      CHECK(shrunk < std::pow(rho, 190));
+      CHECK(shrunk > std::pow(rho, 210) * (1 + 0.3 * std::pow(rho, 200)) / 1.3 * 0.9);
+    }
+}
+
+TEST_CASE("ranges: a torus fills them again, chaos too") {
+  int shrinking = 0, tori = 0;
+  for (const int rows : {60, 100, 200, 300})
+    for (const double turn : irrational_turns)
+      for (int k = 0; k < 10; ++k, ++tori) shrinking += shrunk_ranges(spiral(rows, 1, turn, 7.3 * k)) < 1;
+  // Two ranges that differ by chance alone fall twice in 1 of 36.
+  CHECK(36 * shrinking <= tori);
+  int falling = 0;
+  for (int k = 0; k < 100; ++k) {
+    const SectionSeries x = logistic(4, 120, 100 + 37 * k), y = logistic(3.9, 120, 100 + 41 * k);
+    falling += shrunk_ranges(series_of(120, [&](int i) { return std::vector<double>{*x.row(i), *y.row(i)}; })) < 1;
+  }
+  // 1 of 36, and three standard deviations of that many.
+  CHECK(falling <= 100 / 36 + 5);
+  // Too few rows, no variation, nothing at all: nothing shrinks.
+  CHECK(shrunk_ranges(spiral(23, 0.9, 0.3819, 0)) == 1);
+  CHECK(shrunk_ranges(spiral(24, 0.9, 0.3819, 0)) < 1);
+  CHECK(shrunk_ranges(scalar(100, [](int) { return 0.3; })) == 1);
+  CHECK(shrunk_ranges({}) == 1);
+}
+
 TEST_CASE("recurrence: what slows down without arriving is not taken for an orbit") {
   // The ghost of a saddle-node drifts like 1/k, a period doubling at its threshold decays like k^(−1/2).
   CHECK(recurrence(scalar(300, [](int k) { return 1 / (50.0 + k); })).period == 0);

@@ -206,6 +206,57 @@ TEST_CASE("regime: exponents decide what does not repeat, the 0–1 test where t
   CHECK(says(classify(input), "too few periods"));
 }
 
+TEST_CASE("regime: an exponent that shear explains makes no chaos of what is regular or still approaches") {
+  // Neighbours on tori part in proportion to time: 300-fold over 300 periods, e^5.7.
+  const double sheared = std::log(300.0) / 300;
+  const auto judged = [&](double low, double K, double shrunk) {
+    RegimeInput input = touched();
+    input.forcing_period = 2;
+    input.exponent = Interval{low / 2 + 0.01, low / 2, low / 2 + 0.02};
+    input.zero_one = K;
+    input.shrunk = shrunk;
+    return classify(input);
+  };
+  for (const double growth : {0.2, 0.9, 1.1, 20.0}) {
+    INFO(growth << " times what shear explains");
+    const double low = growth * sheared;
+    CHECK(judged(low, 0.9, 1).motion.regime == Regime::chaotic);
+    CHECK(judged(low, 0.5, 1).motion.regime == Regime::chaotic);
+    const Regime doubted = growth > 1 ? Regime::chaotic : Regime::undecided;
+    CHECK(judged(low, 0.1, 1).motion.regime == doubted);
+    CHECK(judged(low, 0.9, 0.8).motion.regime == doubted);
+    if (growth > 1) continue;
+    CHECK(says(judged(low, 0.1, 1), "K = 0.10 is regular: neighbours of a regular orbit part as far in 300 periods"));
+    CHECK(says(judged(low, 0.9, 0.8), "ranges shrink from third to third of the window, to 0.8: neighbours"));
+  }
+  // A growth below 2 over the window is no sign above zero, as round-off of a conserved area is none.
+  for (const double low : {1e-17, 0.9 * std::numbers::ln2 / 300}) {
+    CHECK(judged(low, 0.1, 1).motion.regime == Regime::quasi_periodic);
+    CHECK(judged(low, 0.9, 1).motion.regime == Regime::undecided);
+  }
+}
+
+TEST_CASE("regime: ranges that shrink belong to an orbit that is being approached, with and without an exponent") {
+  RegimeInput input = touched();
+  for (const bool exponent : {true, false})
+    for (const double K : {0.1, 0.9}) {
+      INFO((exponent ? "with an exponent, K = " : "without, K = ") << K);
+      input.exponent.reset();
+      if (exponent) input.exponent = Interval{0.0, -0.01, 0.01};
+      input.zero_one = K;
+      input.shrunk = 1;
+      const Regime kept = K < 0.5 ? Regime::quasi_periodic : exponent ? Regime::undecided : Regime::chaotic;
+      CHECK(classify(input).motion.regime == kept);
+      input.shrunk = 0.97;
+      CHECK(classify(input).motion.regime == Regime::undecided);
+      if (kept != Regime::undecided)
+        CHECK(says(classify(input), "ranges shrink from third to third of the window, to 0.97: still settling"));
+    }
+  // What repeats does, whatever its ranges.
+  input.recurrence = third;
+  CHECK(classify(input).motion == MotionClass{Regime::periodic, 3});
+}
+
 TEST_CASE("regime: a transient cut at its cap is told") {
   RegimeInput input = touched(third);
   CHECK_FALSE(says(classify(input), "cap"));
