@@ -61,7 +61,60 @@ class Balance {
   }
   const VectorXd& effort() const { return effort_; }
 
+  /// Moves points that push against rigid bounds from where a solve left them, K⁻¹ times round-off, onto these bounds.
+  /// There each lies beyond by what its place is rounded to in any coordinates, so that every scheme finds it closed.
+  void put_on_bounds(VectorXd& q) {
+    if (!law_ || law_->reads()) return;
+    const std::vector<Pressed> pressed = pressed_points();
+    const auto count = static_cast<Index>(pressed.size());
+    if (count == 0) return;
+    MatrixXd directions(count, problem_.points());
+    for (Index k = 0; k < count; ++k) directions.row(k) = pressed[static_cast<std::size_t>(k)].direction;
+    const MatrixXd compliance = directions * problem_.measured() * moved_ * directions.transpose();
+    const auto factor = compliance.completeOrthogonalDecomposition();
+    constexpr int turns = 2;  // the first leaves round-off of its own
+    for (int turn = 0; turn < turns; ++turn) {
+      const VectorXd place = directions * (problem_.measured() * q + lift_);
+      VectorXd left(count);
+      for (Index k = 0; k < count; ++k) left[k] = pressed[static_cast<std::size_t>(k)].bound - place[k];
+      const VectorXd more = directions.transpose() * factor.solve(left);
+      effort_ += more;
+      q += moved_ * more;
+    }
+  }
+
  private:
+  /// d·x = b: a point, or a circle, that pushes.
+  struct Pressed {
+    Eigen::RowVectorXd direction;  // d, of the places of all points
+    double bound = 0;              // b, m
+  };
+
+  std::vector<Pressed> pressed_points() const {
+    // Of what the efforts move a point by: sums in modes are rounded to less.
+    constexpr double rounded = 4e-12;
+    const VectorXd moved = problem_.measured() * (moved_ * effort_);
+    std::vector<Pressed> found;
+    for (int i = 0; i < problem_.points(); ++i) {
+      const int axis = problem_.circle_axis(i);
+      const double size = axis == 0 ? std::hypot(effort_[i], effort_[i + 1]) : std::abs(effort_[i]);
+      if (axis == 1 || size == 0) continue;
+      Pressed one{Eigen::RowVectorXd::Zero(problem_.points())};
+      if (axis == 0) {
+        const StopCircle circle = StopCircle::of(lower_, upper_, i);
+        one.direction[i] = -effort_[i] / size;
+        one.direction[i + 1] = -effort_[i + 1] / size;
+        one.bound = circle.radius + one.direction[i] * circle.centre[0] + one.direction[i + 1] * circle.centre[1];
+      } else {
+        one.direction[i] = effort_[i] > 0 ? -1 : 1;
+        one.bound = effort_[i] > 0 ? -lower_[i] : upper_[i];
+      }
+      one.bound += rounded * std::abs(one.direction.dot(moved));
+      found.push_back(std::move(one));
+    }
+    return found;
+  }
+
   VectorXd solved(const VectorXd& right) {
     VectorXd x(right.size());
     ldlt_.solve(right.data(), x.data());
@@ -137,8 +190,10 @@ Equilibrium equilibrium(const SemiDiscrete& problem, const VectorXd& load, const
       const VectorXd pushed = problem.measured().transpose() * balance.effort();
       const double left = (problem.stiffness * q - load - pushed).norm(),
                    rounded = first ? 0 : units * (problem.stiffness.cwiseAbs() * q.cwiseAbs()).norm();
-      if (held || left <= std::max(balanced * std::max(size, (problem.stiffness * q).norm()), rounded))
-        return {q, pushed};
+      if (held || left <= std::max(balanced * std::max(size, (problem.stiffness * q).norm()), rounded)) {
+        balance.put_on_bounds(q);
+        return {q, problem.measured().transpose() * balance.effort()};
+      }
     }
     first = false;
   }

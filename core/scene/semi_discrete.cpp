@@ -336,7 +336,9 @@ std::optional<Refusal> begin(const InitialSpec& initial, const Eigen::VectorXd& 
     problem.position = std::move(found.position);
     if (!found.pushed.isZero(0)) pushed = std::move(found.pushed);
   }
-  check_start(problem, "/scene/initial/displacement", "the initial displacement", beyond);
+  // A law that lets points rest somewhere lets them start there.
+  if (!initial.equilibrium || !law)
+    check_start(problem, "/scene/initial/displacement", "the initial displacement", beyond);
   if (!initial.equilibrium && law && problem.inertia.kernel_dimension > 0)
     pushed = pushed_at_start(*law, *parameters, problem);
   if (initial.projection != InitialSpec::Projection::constraint) {
