@@ -130,7 +130,7 @@ Limit by_last_sizes(const std::vector<SizedValue>& values, double floor, Errors 
     return out;
   }
   if (last <= floor) {
-    set(out, LimitStatus::settles, floor);
+    set(out, LimitStatus::settles, errors == Errors::saw_toothed ? std::max(floor, out.range) : floor);
     return out;
   }
   if (const auto order = t.order(); order && *order >= lowest_order)

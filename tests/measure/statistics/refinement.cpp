@@ -126,6 +126,12 @@ TEST_CASE("statuses: one, same, two, moves, wanders, blows up, vanishes, reaches
   CHECK_FALSE(limit_of({}, 0));
 }
 
+TEST_CASE("with a saw tooth a last step within the floor is no agreement") {
+  const std::vector<SizedValue> values = {{4, 1.156}, {2, 1.141}, {1, 1.138}};
+  CHECK(*limit_of(values, 0.004, {}, Errors::saw_toothed)->uncertainty == Approx(1.156 - 1.138));
+  CHECK(*limit_of(values, 0.004)->uncertainty == Approx(0.004));
+}
+
 TEST_CASE("what grows as a power of the size has no limit, growth that slows down moves") {
   std::mt19937_64 random(12);
   std::uniform_real_distribution<double> power(0.5, 2), offset(0, 0.5);
