@@ -68,6 +68,13 @@ std::optional<Sentence> say_no_contact(const Choices& study) {
                   {Clause{.form = "status", .status = "untouched"}}};
 }
 
+/// Whether friction did anything: a friction damper is pressed without contact.
+bool rubbed(const CaseRecord& record) {
+  return std::any_of(record.measures.begin(), record.measures.end(), [](const auto& one) {
+    return one.second != 0 && (one.first == "dissipated_by_friction" || one.first.starts_with("friction_impulse["));
+  });
+}
+
 }  // namespace
 
 std::optional<Sentence> say_untouched(const Choices& study) {
@@ -79,7 +86,7 @@ std::optional<Sentence> say_untouched(const Choices& study) {
     const auto own = measure(record, "smallest_gap");
     if (record.status != Status::done || !own) continue;
     const auto instants = measure(record, "contact_instants"), tip = measure(record, "largest_tip_displacement");
-    if (!instants || *instants > 0 || !tip) return std::nullopt;
+    if (!instants || *instants > 0 || !tip || rubbed(record)) return std::nullopt;
     // Of the case that comes nearest.
     if (looked.empty() || *tip * gap > largest * *own) gap = *own, largest = *tip;
     looked.push_back(&record);

@@ -25,7 +25,9 @@ std::optional<double> half_interval(const std::vector<double>& draws) {
 }
 
 std::string Estimate::unknown() const {
-  return has_step && !step && !grows ? "one step: what it leaves open is not known" : "";
+  if (grows) return "";
+  if (has_step && !step) return "one step: what it leaves open is not known";
+  return one_mesh ? "one mesh alone has a value" : "";
 }
 
 std::optional<double> Estimate::u() const {

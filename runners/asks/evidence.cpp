@@ -7,12 +7,14 @@
 #include <functional>
 #include <iterator>
 #include <numbers>
+#include <set>
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/limits.hpp"
 #include "runners/answers/set_names.hpp"
 #include "runners/asks/verdicts.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/store/study_tables.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/text.hpp"
@@ -88,9 +90,12 @@ std::vector<std::string> Evidence::measures(const Ask& ask, const std::string& n
     for (const CaseRecord& record : results().cases) {
       for (const auto& [one, value] : record.measures) {
         add(one);
-        // A stop that is never touched has a line of what is told in contact alone.
+        // A stop that is never touched has a line of what is told in contact alone, where it may have it.
         if (whole || value != 0 || record.status != Status::done || !one.starts_with("contact_time[")) continue;
-        if (const std::string stop = split_measure(one).second; !contains(untouched, stop)) untouched.push_back(stop);
+        const std::string stop = split_measure(one).second, of_stop = "[" + stop + "]";
+        const MeasureInfo* info = measure_info(name + of_stop);
+        if ((!info || measure(record, info->stands_with + of_stop)) && !contains(untouched, stop))
+          untouched.push_back(stop);
       }
       // What has no limit under a law has a line all the same.
       for (const auto& [item, why] : record.left_out) add(item);
@@ -217,6 +222,12 @@ std::optional<double> least_of(const CaseRecord& record, const std::string& name
 
 namespace {
 
+/// Whether a case has a number of it that no smaller step approaches.
+bool without_limit(const CaseRecord& record, const std::string& name) {
+  return std::any_of(record.left_out.begin(), record.left_out.end(),
+                     [&](const auto& item) { return item.first == name && item.second == no_count; });
+}
+
 /// Beside what others have of a measure, values that are all round-off are zero.
 void drop_round_off(Point& point, double largest_of_all) {
   constexpr double nothing = 1e-15;
@@ -315,6 +326,11 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
   InOrderMet<std::string, Point> groups;
   for (const CaseRecord* record : cases) groups[study_.key(*record, columns)].cases.push_back(record);
   const bool has_step = contains(results().columns, "step") || contains(results().columns, "steps_per_period");
+  const auto meshes_of = [&](const Cases& all) {
+    std::set<double> meshes;
+    for (const CaseRecord* record : all) meshes.insert(study_.elements(*record).value_or(1));
+    return meshes.size();
+  };
   // A refinement that is a choice refines nothing.
   const bool steps_chosen = contains(columns, "step") || contains(columns, "steps_per_period"),
              mesh_chosen = contains(columns, "elements") || contains(columns, "modes");
@@ -324,16 +340,16 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
   double largest_of_all = 0;
   const auto [base, stop] = split_measure(measure_of_all);
   const std::string at_stops = stop.empty() ? "" : base + "[";
-  constexpr double of_solves = 1e-12;  // a solve multiplies round-off by the condition of its matrix
+  constexpr double of_solves = 1e-9;  // a solve multiplies round-off by the condition of its matrix
   const auto words = answers::measure_words(measure_of_all);
   const bool share = shares || words.scale == "1";
   for (auto& [key, point] : std::move(groups).list()) {
     double scale = 0, values = 0;  // of round-off, of solves
     bool counts = true;            // whole numbers have neither
     for (const CaseRecord* record : point.cases) {
-      const auto value = record->status != Status::done ? std::nullopt
-                         : shares                       ? answers::scaled_value(words, *record)
-                                                        : measure(*record, measure_of_all);
+      const auto value = record->status != Status::done || without_limit(*record, measure_of_all) ? std::nullopt
+                         : shares ? answers::scaled_value(words, *record)
+                                  : measure(*record, measure_of_all);
       if (!value || !std::isfinite(*value)) continue;
       point.behind.push_back(record);
       if (!mesh_chosen && !study_.on_finest_mesh(*record)) continue;
@@ -391,6 +407,8 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
     Estimate& one = *out[k].estimate;
     if (std::abs(one.value) <= round_off[k]) one.value = 0;
     one.beyond = least_of(*out[k].behind.front(), measure_of_all).has_value();
+    // What other meshes would say is not known where they have no value.
+    one.one_mesh = !mesh_chosen && one.meshes == 1 && meshes_of(out[k].cases) > 1;
     // What nothing refines and nothing draws is known as it is.
     if (!one.has_step && !one.grows && !one.u()) one.step = out[k].floor;
   }
@@ -401,7 +419,9 @@ LeftOut Evidence::left_out(const std::string& name, const Cases& cases) const {
   InOrderMet<std::string, LeftOut::Reason> groups;  // reasons that differ in numbers alone are one
   LeftOut out;
   for (const CaseRecord* record : cases) {
-    if (record->status == Status::done && (measure(*record, name) || least_of(*record, name))) continue;
+    if (record->status == Status::done && !without_limit(*record, name) &&
+        (measure(*record, name) || least_of(*record, name)))
+      continue;
     ++out.count;
     std::string why, key;
     if (record->partial) {

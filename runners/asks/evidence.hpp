@@ -27,6 +27,7 @@ struct Estimate {
   std::string motion;                ///< "still falls with the step" of what is not settled
   std::string few;                   ///< "is known by two steps alone", where they leave more than u; or by three
   bool two = false;                  ///< whether two sizes alone tell it, and leave more than u
+  bool one_mesh = false;             ///< of several that were asked one alone has a value
   bool disproved = false;            ///< whether a scheme with the same limit excludes what the step alone tells
   double doubt = 1;                  ///< of what is not settled: so many times u may be between it and its limit
   std::optional<double> order;       ///< in the step

@@ -122,6 +122,8 @@ struct MeasureInfo {
   const char* whole_steps = "";
   const char* floor = "";  ///< the measure of the same case that says what it is uncertain by; "": none
   bool where_met = false;  ///< cases.csv has it only where a case has one
+  /// Of a measure of a stop that is blank while nothing touches it: the one that stands wherever this one may.
+  const char* stands_with = "contact_time";
 };
 
 /// The measures of all kinds, in order. Given by the registry of kinds.

@@ -33,6 +33,10 @@ TableType<ReasonRow> reasons_type();
 inline constexpr const char* no_limit =
     "no limit as the step shrinks: a rigid law throws a point with mass back within a step, by impulse over step";
 
+/// The same of a number of impacts.
+inline constexpr const char* no_count =
+    "no limit as the step shrinks: a point that rebounds comes to rest on its stop, which it hits without number";
+
 namespace answers {
 
 /// One thing that a sentence says of some methods: a row of `answers`.

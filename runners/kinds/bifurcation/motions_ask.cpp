@@ -48,6 +48,7 @@ bool holds(const AttractorCounts& those, const AttractorCounts& these) {
 struct ValueMotions {
   std::set<std::pair<std::string, int>> motions = {};  ///< each attractor once
   std::size_t decided = 0, open = 0;                   ///< starts
+  std::size_t ended = 0;                               ///< of the open: refused, diverged or failed
   std::string word = {};                               ///< one of the motions as orbits.csv has it
 
   double open_share() const { return static_cast<double>(open) / static_cast<double>(open + decided); }
@@ -64,6 +65,7 @@ struct MotionStretch {
   double from = 0, to = 0;
   AttractorCounts counts = {};        ///< of all of its values
   std::size_t decided = 0, open = 0;  ///< orbits
+  std::size_t ended = 0;              ///< of the open: refused, diverged or failed
   bool whole = false;                 ///< every start of one of its values is decided
   std::string word = {};              ///< one of the motions as orbits.csv has it
 
@@ -78,6 +80,7 @@ struct MotionStretch {
     for (const auto& [one, count] : next.counts()) counts[one] = std::max(counts[one], count);
     decided += next.decided;
     open += next.open;
+    ended += next.ended;
     if (!next.word.empty()) word = next.word;
     whole = whole || next.open == 0;
   }
@@ -144,10 +147,13 @@ class MotionsAlong {
       add_row(out, one.level, "undecided", "of the range", asks::per_cent * one.undecided, {}, {}, "%");
       for (const MotionStretch& part : one.stretches) {
         const bool decided = !part.counts.empty();
-        const std::string motion = decided ? part.motion() : "undecided";
-        const std::string open = decided && part.open > 0
-                                     ? fmt::format("{} of {} orbits are undecided", part.open, part.open + part.decided)
-                                     : "";
+        const std::string motion = decided ? part.motion() : part.ended == part.open ? "no orbit" : "undecided";
+        std::string open =
+            decided && part.open > part.ended
+                ? fmt::format("{} of {} orbits are undecided", part.open - part.ended, part.open + part.decided)
+                : "";
+        if (part.ended > 0)
+          open += fmt::format("{}{} refused or not followed to the end", open.empty() ? "" : ", ", part.ended);
         add_row(out, one.level, motion, open, {}, part.from, part.to, parameter_.unit);
         drawn.push_back({{"name", one.level},
                          {"motion", motion},
@@ -169,6 +175,7 @@ class MotionsAlong {
  private:
   static void add_run(ValueMotions& at, const DiagramRun& run) {
     run.decided() ? ++at.decided : ++at.open;
+    at.ended += !run.settled && !run.status.empty();
     if (!run.decided()) return;
     at.motions.emplace(motion_words(run.motion), run.attractor);
     at.word = ricochet::text(run.motion);
@@ -310,7 +317,15 @@ class MotionsAlong {
     const bool open = undecided_ > much_open;
     out.passes = open || told_.empty() ? asks::Verdict::open : asks::Verdict::yes;
     out.verdict = open ? "undecided" : "decided";
-    const std::string share = answers::percent(undecided_) + " of the range is undecided";
+    std::size_t ended = 0;
+    for (const CaseMotions& one : told_)
+      for (const MotionStretch& part : one.stretches) ended += part.ended;
+    const std::string share =
+        answers::percent(undecided_) + " of the range is undecided" + (ended > 0 ? " or has no orbit" : "");
+    if (ended > 0)
+      out.aside.push_back(
+          ended == 1 ? "One orbit is refused or not followed to its end: values.csv says why."
+                     : fmt::format("{} orbits are refused or not followed to their ends: values.csv says why.", ended));
     if (open) out.reason = share;
     if (undecided_ > 0) asks::warn_too_short(out, evidence_.results().study);
     if (!any_decided()) {

@@ -118,7 +118,8 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   put_measure(record, "reference_of_law", rigid || meets_own_stops(study_case, of_the_mesh) ? 1 : 0);
   recorder.finish(marcher);
   contacts.finish();
-  add_contact(record, contacts, marcher);
+  const auto restitution = largest_restitution(study_case, *marcher.program().problem, registry);
+  add_contact(record, contacts, marcher, {.restitution = restitution.value_or(0)});
   put_measure(record, "active_set_changes", static_cast<double>(sampler.contact().changes()));
   if (whole) {
     record.status = Status::done;
@@ -135,7 +136,7 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   }
   std::vector<Said> doubts = run_doubts(study_case, prepared);
   doubts.push_back(GapWatch::crossed(marcher, recorder));
-  doubts.push_back(struck.told(marcher, largest_restitution(study_case, *marcher.program().problem, registry)));
+  doubts.push_back(struck.told(marcher, restitution));
   add_doubts(record, doubts);
   return record;
 }

@@ -486,11 +486,13 @@ class PointsAsk {
                                                  : fmt::format(", {} unconfirmed", single.size());
     std::vector<std::string> texts;
     const std::string own_ends = text(this->ends(&*first));
-    const std::string who = methods_.size() > 1 ? "with " + study_.name(*first->record) + ", " : "";
+    const bool several = methods_.size() > 1;
+    const std::string who = several ? "with " + study_.name(*first->record) + ", " : "",
+                      one = several ? fmt::format("with one of {} methods, ", methods_.size()) : "";
     for (const bool named : {true, false})
       for (std::size_t count = list.size(); count > 0; --count) {
         if (named && count < list.size() && count < 2) continue;
-        texts.push_back(answers::capitalised((named ? who : "") + text(list, count) + unsure + "; " +
+        texts.push_back(answers::capitalised((named ? who : one) + text(list, count) + unsure + "; " +
                                              (named ? own_ends : ends) + "."));
       }
     out.sentence = asks::fitting(texts);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 #include <utility>
 
@@ -131,6 +132,34 @@ void blank_without_limit(CaseRecord& record, const StopContacts& contacts, const
       record.left_out.emplace_back(name, no_limit);
 }
 
+/// Stops on which a point comes to rest by rebounds: it flies ever shorter, and then stays for longer than it flew.
+std::vector<bool> chattered_to_rest(const std::vector<Impact>& impacts, int stops, double h) {
+  constexpr double short_flight = 10, lasting = 10, at_once = 2.5;  // steps
+  std::vector<bool> found(static_cast<std::size_t>(stops), false);
+  std::map<std::pair<int, StopSide>, const Impact*> before;
+  for (const Impact& one : impacts) {
+    const Impact*& last = before[{one.point, one.side}];
+    const bool rests = one.open_end || one.duration > lasting * h;
+    if (rests && last && last->duration < at_once * h && one.time - last->time < short_flight * h)
+      found[static_cast<std::size_t>(one.point)] = true;
+    last = &one;
+  }
+  return found;
+}
+
+// Counts of impacts have no limit there. What was counted stays in the tables.
+void leave_out_counts(CaseRecord& record, const StopContacts& contacts, const Marcher& marcher, double restitution) {
+  if (marcher.law().reads() || restitution <= 0) return;
+  const StopList& list = contacts.list();
+  const std::vector<bool> chattered = chattered_to_rest(contacts.impacts(), list.count(), marcher.program().h);
+  for (std::size_t stop = 0; stop < chattered.size(); ++stop) {
+    if (!chattered[stop]) continue;
+    if (record.left_out.empty() || record.left_out.back().second != no_count)
+      record.left_out.emplace_back("impacts", no_count);
+    if (!list.names[stop].empty()) record.left_out.emplace_back("impacts[" + list.names[stop] + "]", no_count);
+  }
+}
+
 }  // namespace
 
 void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher& marcher, const StopWatches& watches) {
@@ -188,6 +217,7 @@ void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher
   record.tables.push_back(std::move(stops));
   add_stop_tables(record, problem, watches);
   blank_without_limit(record, contacts, marcher);
+  leave_out_counts(record, contacts, marcher, watches.restitution);
 }
 
 void describe_contact(std::vector<CaseRecord>& records) {

@@ -214,8 +214,8 @@ void fill_energies(CaseRecord& record, const Marcher& marcher, const EnergyAudit
   if (start > round_off * brought_in) put("energy_ratio", end / start);
   if (balances || !energy.driven) {
     put("energy_brought_in", brought_in);
-    // Less than round-off of the energies that it is made of is nothing.
-    if (brought_in > 0x1p-40 * (std::abs(start) + std::abs(energy.first.load) + std::abs(energy.first.elastic)))
+    // Less than round-off of the energies that it is made of is nothing, nor what puts a point at rest on its bound.
+    if (brought_in > 0x1p-36 * (std::abs(start) + std::abs(energy.first.load) + std::abs(energy.first.elastic)))
       put("energy_left", end / brought_in);
     put("largest_step_gain", energy.largest_step_gain);
   }
@@ -445,12 +445,13 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
     put_measure(record, "friction_residual", friction.residual());
     put_measure(record, "friction_turns", friction.most_turns());
   }
-  add_contact(record, contacts, marcher, {&outputs, &tangents, &friction});
+  const auto restitution = largest_restitution(study_case, *problem, registry);
+  add_contact(record, contacts, marcher, {&outputs, &tangents, &friction, restitution.value_or(0)});
   doubts.push_back(GapWatch::crossed(marcher, recorder));
   doubts.push_back(sampler.gaps().passed());
   if (const PluginManual* law = registry.manual(Role::contact, study_case.contact.name))
     doubts.push_back(beyond_table(study_case.contact, *law, measure(record, "deepest_penetration").value_or(0)));
-  doubts.push_back(struck.told(marcher, largest_restitution(study_case, *problem, registry)));
+  doubts.push_back(struck.told(marcher, restitution));
   const auto resolved =
       contact_steps(study_case, marcher, recorder, measure(record, "deepest_penetration").value_or(0), registry);
   if (resolved) put_measure(record, contact_steps_measure, resolved->steps);

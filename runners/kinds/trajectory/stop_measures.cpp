@@ -156,6 +156,23 @@ const StopMeasure stop_measures[] = {
      },
      Needs::friction, true}};
 
+/// The measure that every stop has which may have one with such needs, touched or not.
+const char* witness(Needs needs) {
+  switch (needs) {
+    case Needs::nothing:
+      return "contact_time";
+    case Needs::window:
+      return "window_force";
+    case Needs::shocks:
+      return "shock_rate";
+    case Needs::tangent:
+      return "wear_power";
+    case Needs::friction:
+      return "slip_distance";
+  }
+  return "";
+}
+
 const StopMeasure* find_measure(const std::string& name) {
   const auto one = std::find_if(std::begin(stop_measures), std::end(stop_measures),
                                 [&](const StopMeasure& candidate) { return name == candidate.name; });
@@ -310,6 +327,7 @@ const MeasureInfo* stop_measure_info(const std::string& name) {
   made->info.aside = one->column;
   made->info.whole_steps = one->whole_steps;
   made->info.floor = one->floor;
+  made->info.stands_with = witness(one->needs);
   if (half) made->info.of = MeasureInfo::Of::computation;
   return &(known[name] = std::move(made))->info;
 }

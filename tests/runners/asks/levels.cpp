@@ -7,6 +7,7 @@
 
 #include "runners/kinds/kind.hpp"
 #include "runners/run/analysed_results.hpp"
+#include "runners/store/study_tables.hpp"
 #include "tests/runners/asks/made_tables.hpp"
 
 using namespace ricochet;
@@ -392,6 +393,63 @@ TEST_CASE("asks: a stop that is never touched has its line, and its reason") {
       std::find_if(answered.rows.begin(), answered.rows.end(), [](const VerdictRow& one) { return one.stop == "p2"; });
   REQUIRE(row != answered.rows.end());
   CHECK(row->reason.find("the stop is never touched") != std::string::npos);
+}
+
+TEST_CASE("asks: a stop without a surface has no line of what runs along one, touched or not") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 0.5; };
+  made.error = 1e-3;
+  made.measure = "wear_power[plate]";
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) {
+    record.measures.emplace_back("contact_time[plate]", 0.5);
+    record.measures.emplace_back("contact_time[end]", 0.0);
+  }
+  const Answered answered = answer_of(results, {{"limit", "wear_power"}, {"below", 1}});
+  CHECK(answered.passes == Verdict::yes);
+  CHECK(std::none_of(answered.rows.begin(), answered.rows.end(), [](const auto& row) { return row.stop == "end"; }));
+}
+
+TEST_CASE("asks: of several meshes one alone with a value tells neither yes nor no") {
+  Made made;
+  made.choices = {{"elements", {"6", "12"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 0.5; };
+  made.error = 1e-3;
+  StudyResults results = made.results();
+  for (CaseRecord& record : results.cases) record.axes[0].second = std::stod(record.axes[0].second.get<std::string>());
+  const Json ask = {{"limit", "impulse"}, {"below", 1}};
+  CHECK(answer_of(results, ask).passes == Verdict::yes);
+  for (CaseRecord& record : results.cases)
+    if (record.axes[0].second == 12) record.measures.clear();
+  const Answered lost = answer_of(results, ask);
+  CHECK(lost.passes == Verdict::open);
+  CHECK(lost.rows.front().reason.find("one mesh alone has a value") != std::string::npos);
+}
+
+TEST_CASE("asks: a count that has no limit is no value, whatever was counted") {
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 38; };
+  made.measure = "impacts";
+  StudyResults results = made.results();
+  const Json ask = {{"limit", "impacts"}, {"below", 60}};
+  CHECK(answer_of(results, ask).passes == Verdict::yes);
+  for (CaseRecord& record : results.cases) record.left_out.emplace_back("impacts", no_count);
+  CHECK(answer_of(results, ask).passes == Verdict::open);
+}
+
+TEST_CASE("asks: what is held open beyond a limit is not said to hold it") {
+  // 2, 1.5 and 1.25 of two steps: u is the last difference, three times that reach the limit.
+  Made made;
+  made.choices = {{"mass", {"m0"}}};
+  made.truth = [](const std::vector<std::size_t>&) { return 1.0; };
+  made.error = 1;
+  made.steps = {2e-3, 1e-3};
+  const Answered answered = answer_of(made.results(), {{"limit", "impulse"}, {"below", 0.9}});
+  CHECK(answered.passes == Verdict::open);
+  CHECK(answered.rows.front().reason.find("lies within") == std::string::npos);
+  CHECK(answered.rows.front().reason.find("two steps alone") != std::string::npos);
 }
 
 TEST_CASE("asks: what is refused throughout is left out of a limit by name") {

@@ -1,8 +1,10 @@
 // Energies of trajectories under steady loads: the same share wherever the motion ends.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "runners/store/record_values.hpp"
+#include "runners/store/study_tables.hpp"
 #include "tests/runners/kinds/trajectory/case_runs.hpp"
 
 using namespace ricochet;
@@ -49,6 +51,53 @@ TEST_CASE("a ball has 81 % of its energy left after a bounce of 0.9, at the top 
       CHECK(of(record, "energy_left") == Approx(end < 0.45 ? 1 : 0.81).epsilon(1e-3));
       CHECK(of(record, "work_of_loads") == Approx(of(record, "work_of_steady_loads")));
     }
+}
+
+TEST_CASE("a rod that rests on its grid is never thrown back, and pushes as statics say, whatever mesh and scheme") {
+  Json study = Json::parse(R"({
+    "name": "rests", "kind": "trajectory",
+    "scene": {"structure": {"type": "beam", "length": 1.2, "section": {"type": "given", "EI": 23.5, "rhoS": 0.105},
+                            "damping": {"ratio": 0.02}},
+              "stops": [{"name": "grid", "at": {"x": 0.8}}],
+              "load": [{"shape": "-0.981", "time": "1"}], "initial": {"equilibrium": true}},
+    "mesh": {"elements": [3, 6, 12, 24, 60]},
+    "methods": {"mass": ["consistent", "lumped"], "contact": "signorini",
+                "time": [{"name": "newmark-dumont-paoli", "beta": 0.5}, "moreau-jean"]},
+    "step": 1e-4, "duration": 0.004, "samples": 10
+  })");
+  // w(b) of the uniform load less R b³/3EI is the bound, b = 0.8 m.
+  constexpr double EI = 23.5, q = 0.981, L = 1.2, b = 0.8;
+  constexpr double free = q * b * b * (6 * L * L - 4 * L * b + b * b) / (24 * EI);
+  for (const double gap : {0.0, 0.002}) {
+    study["scene"]["stops"][0]["lower"] = -gap;
+    const double push = (free - gap) * 3 * EI / (b * b * b);
+    for (const CaseRecord& record : CaseRuns().of(study)) {
+      INFO(gap);
+      for (const auto& [axis, level] : record.axes) INFO(axis << ' ' << level);
+      REQUIRE(record.status == Status::done);
+      CHECK(of(record, "impacts") == 0);
+      // Nothing moves: no energy is there to have a share of.
+      CHECK_FALSE(measure(record, "energy_left"));
+      // Places at nodes of cubic elements are exact; K u of sixty is rounded to 1e-5 of its sums.
+      CHECK(of(record, "peak_force[grid]") == Approx(push).epsilon(2e-5));
+      CHECK(of(record, "mean_force[grid]") == Approx(push).epsilon(2e-5));
+    }
+  }
+}
+
+TEST_CASE("a ball that comes to rest by rebounds hits without number, one that is caught does not") {
+  const auto has_no_count = [](const CaseRecord& record) {
+    return std::any_of(record.left_out.begin(), record.left_out.end(),
+                       [](const auto& item) { return item.first == "impacts" && item.second == no_count; });
+  };
+  // At rest after √(2/g) (1 + e)/(1 − e) = 1.36 s of e = 0.5.
+  for (const char* name : {"moreau-jean", "nonsmooth-generalised-alpha"}) {
+    INFO(name);
+    const Json rebounds = {{"name", name}, {"restitution", 0.5}}, caught = {{"name", name}, {"restitution", 0.0}};
+    CHECK(has_no_count(CaseRuns().first_of(dropped(rebounds, 1e-3, 2))));
+    CHECK_FALSE(has_no_count(CaseRuns().first_of(dropped(rebounds, 1e-3, 1))));
+    CHECK_FALSE(has_no_count(CaseRuns().first_of(dropped(caught, 1e-3, 2))));
+  }
 }
 
 TEST_CASE("a ball that bounces elastically keeps its energy by elastic schemes, and Newmark makes thirteen times it") {
