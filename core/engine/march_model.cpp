@@ -109,9 +109,15 @@ double MarchModel::times_full(const RowMatrix& rows, int row, const double* x) c
 Eigen::VectorXd MarchModel::to_model(const Eigen::VectorXd& nodal) const {
   if (!modal()) return nodal;
   // φᵀ(K + σM)φ = 1, hence Φ⁻¹ = Φᵀ(K + σM).
-  Eigen::VectorXd push = problem_->stiffness * nodal;
-  if (shift_ != 0) push += shift_ * apply_mass(problem_->inertia, nodal);
-  return modes_.transpose() * push;
+  const auto in_modes = [&](const Eigen::VectorXd& x) {
+    Eigen::VectorXd push = problem_->stiffness * x;
+    if (shift_ != 0) push += shift_ * apply_mass(problem_->inertia, x);
+    return Eigen::VectorXd(modes_.transpose() * push);
+  };
+  // K x is rounded to its largest terms: the second turn gives back what that leaves of x.
+  Eigen::VectorXd model = in_modes(nodal);
+  model += in_modes(nodal - modes_ * model);
+  return model;
 }
 
 Eigen::VectorXd MarchModel::to_nodal(const Eigen::VectorXd& model) const {
