@@ -30,7 +30,7 @@ class KnownColumns final : public DelassusColumns {
 class Balance {
  public:
   Balance(const SemiDiscrete& problem, const VectorXd& lift, ContactLaw* law, double shift)
-      : problem_(problem), lift_(lift), law_(law), columns_(MatrixXd()) {
+      : problem_(problem), lift_(lift), law_(law), is_held_(shift == 0), columns_(MatrixXd()) {
     diagonal_ = problem.stiffness.diagonal();
     const double largest = diagonal_.maxCoeff() > 0 ? diagonal_.maxCoeff() : 1.0;
     for (double& one : diagonal_) one = shift * (one > 0 ? one : largest);
@@ -65,7 +65,7 @@ class Balance {
   /// There each lies beyond by what its place is rounded to in any coordinates, so that every scheme finds it closed.
   void put_on_bounds(VectorXd& q) {
     if (!law_ || law_->reads()) return;
-    const std::vector<Pressed> pressed = pressed_points();
+    const std::vector<Pressed> pressed = pressed_points(q);
     const auto count = static_cast<Index>(pressed.size());
     if (count == 0) return;
     MatrixXd directions(count, problem_.points());
@@ -90,10 +90,11 @@ class Balance {
     double bound = 0;              // b, m
   };
 
-  std::vector<Pressed> pressed_points() const {
-    // Of what the efforts move a point by: sums in modes are rounded to less.
-    constexpr double rounded = 4e-12;
-    const VectorXd moved = problem_.measured() * (moved_ * effort_);
+  std::vector<Pressed> pressed_points(const VectorXd& q) const {
+    // Of what the efforts move a point by: sums in modes are rounded to less. What nothing holds is moved by no effort.
+    constexpr double rounded = 1e-13;
+    const VectorXd place = problem_.measured() * q + lift_;
+    const VectorXd moved = is_held_ ? VectorXd(problem_.measured() * (moved_ * effort_)) : place;
     std::vector<Pressed> found;
     for (int i = 0; i < problem_.points(); ++i) {
       const int axis = problem_.circle_axis(i);
@@ -159,6 +160,7 @@ class Balance {
   const SemiDiscrete& problem_;
   VectorXd lift_;
   ContactLaw* law_;
+  bool is_held_;
   SparseLdlt ldlt_;
   MatrixXd moved_;  // (K + D)⁻¹Gᵀ
   KnownColumns columns_;
@@ -171,9 +173,9 @@ bool has_factor(const SparseMatrix& stiffness) {
   return ldlt.factorise(stiffness);
 }
 
-}  // namespace
-
-Equilibrium equilibrium(const SemiDiscrete& problem, const VectorXd& load, const VectorXd& lift, ContactLaw* law) {
+/// `on_bounds`: with what pushes put on its bounds.
+Equilibrium balanced_state(const SemiDiscrete& problem, const VectorXd& load, const VectorXd& lift, ContactLaw* law,
+                           bool on_bounds) {
   ContactLaw* acting = law && !law->absent() ? law : nullptr;
   const bool held = (problem.held || problem.in_modes()) && has_factor(problem.stiffness);
   VectorXd q = VectorXd::Zero(problem.stiffness.rows());
@@ -191,7 +193,7 @@ Equilibrium equilibrium(const SemiDiscrete& problem, const VectorXd& load, const
       const double left = (problem.stiffness * q - load - pushed).norm(),
                    rounded = first ? 0 : units * (problem.stiffness.cwiseAbs() * q.cwiseAbs()).norm();
       if (held || left <= std::max(balanced * std::max(size, (problem.stiffness * q).norm()), rounded)) {
-        balance.put_on_bounds(q);
+        if (on_bounds) balance.put_on_bounds(q);
         return {q, problem.measured().transpose() * balance.effort()};
       }
     }
@@ -202,11 +204,17 @@ Equilibrium equilibrium(const SemiDiscrete& problem, const VectorXd& load, const
                    "the load");
 }
 
+}  // namespace
+
+Equilibrium equilibrium(const SemiDiscrete& problem, const VectorXd& load, const VectorXd& lift, ContactLaw* law) {
+  return balanced_state(problem, load, lift, law, true);
+}
+
 std::optional<double> lowest_potential(const SemiDiscrete& problem, const VectorXd& load, ContactLaw* law) {
   const VectorXd lift = lift_at_start(problem);
   VectorXd q;
   try {
-    q = equilibrium(problem, load, lift, law).position;
+    q = balanced_state(problem, load, lift, law, false).position;
   } catch (const InputError&) {
     return std::nullopt;
   }

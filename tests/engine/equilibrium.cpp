@@ -81,15 +81,15 @@ TEST_CASE("a rod between two rigid dimples rests on them, whatever its mesh") {
 }
 
 TEST_CASE("what pushes at rest against rigid bounds lies on them, beyond by round-off, whatever the mesh") {
-  for (const int elements : {3, 6, 12, 60}) {
+  for (int elements = 3; elements < 100; elements += 3) {
     INFO(elements);
     SceneSpec scene = preloaded_beam();
     scene.stops.named[0].at = at_length(2.0 / 3);
     const auto rests = problem_of(scene, elements, {"consistent"}, Choice{"signorini"});
     const double place = (rests->contact * rests->position)[0];
-    // The effort moves it by less than 0.01 m.
+    // It lies beyond by 1e-13 of what the effort moves it by, less than 0.01 m.
     CHECK(place <= 0.01);
-    CHECK(place > 0.01 * (1 - 1e-11));
+    CHECK(place > 0.01 * (1 - 2e-13));
   }
 }
 

@@ -214,8 +214,8 @@ void fill_energies(CaseRecord& record, const Marcher& marcher, const EnergyAudit
   if (start > round_off * brought_in) put("energy_ratio", end / start);
   if (balances || !energy.driven) {
     put("energy_brought_in", brought_in);
-    // Less than round-off of the energies that it is made of is nothing, nor what puts a point at rest on its bound.
-    if (brought_in > 0x1p-36 * (std::abs(start) + std::abs(energy.first.load) + std::abs(energy.first.elastic)))
+    // Less than round-off of the energies that it is made of, K q of many elements among them, is nothing.
+    if (brought_in > 0x1p-33 * (std::abs(start) + std::abs(energy.first.load) + std::abs(energy.first.elastic)))
       put("energy_left", end / brought_in);
     put("largest_step_gain", energy.largest_step_gain);
   }

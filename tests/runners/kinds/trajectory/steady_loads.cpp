@@ -78,9 +78,9 @@ TEST_CASE("a rod that rests on its grid is never thrown back, and pushes as stat
       CHECK(of(record, "impacts") == 0);
       // Nothing moves: no energy is there to have a share of.
       CHECK_FALSE(measure(record, "energy_left"));
-      // Places at nodes of cubic elements are exact; K u of sixty is rounded to 1e-5 of its sums.
-      CHECK(of(record, "peak_force[grid]") == Approx(push).epsilon(2e-5));
-      CHECK(of(record, "mean_force[grid]") == Approx(push).epsilon(2e-5));
+      // Places at nodes of cubic elements are exact.
+      CHECK(of(record, "peak_force[grid]") == Approx(push).epsilon(1e-7));
+      CHECK(of(record, "mean_force[grid]") == Approx(push).epsilon(1e-7));
     }
   }
 }
