@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <ricochet/contact_solvers/circle_solver.hpp>
 #include <ricochet/contract/errors.hpp>
