@@ -19,6 +19,11 @@ bool unresolved(const Point& point) {
   });
 }
 
+/// Whether a whole interval keeps to them.
+bool keeps(const Bounds& bounds, double low, double high) {
+  return bounds.holds(low) && bounds.holds(high);
+}
+
 /// Whether a whole interval lies beyond.
 bool breaks(const Bounds& bounds, double low, double high) {
   return (bounds.below && low >= *bounds.below) || (bounds.above && high <= *bounds.above);
@@ -30,13 +35,12 @@ Kept kept(const Line& line, const Bounds& bounds) {
   Kept out;
   if (!line.known() || !line.estimate().has_interval() || unresolved(line.point)) return out;
   const Estimate& one = line.estimate();
-  const auto holds = [&](double low, double high) { return bounds.holds(low) && bounds.holds(high); };
-  bool all = holds(one.least(), one.most()), beyond = breaks(bounds, one.least(), one.most());
+  bool all = keeps(bounds, one.least(), one.most()), beyond = breaks(bounds, one.least(), one.most());
   if (const auto& draws = line.point.values.at(*line.point.finest); draws.size() > 1 && line.point.halves.empty()) {
     const double refinement = one.doubt * (one.step.value_or(0) + one.mesh.value_or(0));
     out.draws = draws.size();
     for (const auto& [seed, value] : draws) {
-      all = all && holds(value - refinement, value + refinement);
+      all = all && keeps(bounds, value - refinement, value + refinement);
       out.beyond += breaks(bounds, value - refinement, value + refinement) ? 1 : 0;
     }
     beyond = beyond || out.beyond > 0;
@@ -57,8 +61,8 @@ std::string why_open(const Line& line, const Bounds& bounds) {
   const Estimate& one = line.estimate();
   if (!one.unknown().empty()) return one.unknown();
   if (one.grows) return "it " + one.motion;
-  const bool all = one.has_interval() && bounds.holds(one.least()) && bounds.holds(one.most());
-  const bool within = !breaks(bounds, one.low(), one.high()) && (!bounds.holds(one.low()) || !bounds.holds(one.high()));
+  const bool all = one.has_interval() && keeps(bounds, one.least(), one.most());
+  const bool within = !breaks(bounds, one.low(), one.high()) && !keeps(bounds, one.low(), one.high());
   if (!all && (!within || one.disproved)) return "it " + one.unsettled();
   if (all) return "one seed is too near to it";
   return "the limit lies within its interval" + (one.few.empty() ? "" : ", and it " + one.few);

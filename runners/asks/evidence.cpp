@@ -7,7 +7,6 @@
 #include <functional>
 #include <iterator>
 #include <numbers>
-#include <set>
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/limits.hpp"
@@ -326,11 +325,6 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
   InOrderMet<std::string, Point> groups;
   for (const CaseRecord* record : cases) groups[study_.key(*record, columns)].cases.push_back(record);
   const bool has_step = contains(results().columns, "step") || contains(results().columns, "steps_per_period");
-  const auto meshes_of = [&](const Cases& all) {
-    std::set<double> meshes;
-    for (const CaseRecord* record : all) meshes.insert(study_.elements(*record).value_or(1));
-    return meshes.size();
-  };
   // A refinement that is a choice refines nothing.
   const bool steps_chosen = contains(columns, "step") || contains(columns, "steps_per_period"),
              mesh_chosen = contains(columns, "elements") || contains(columns, "modes");
@@ -408,7 +402,10 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
     if (std::abs(one.value) <= round_off[k]) one.value = 0;
     one.beyond = least_of(*out[k].behind.front(), measure_of_all).has_value();
     // What other meshes would say is not known where they have no value.
-    one.one_mesh = !mesh_chosen && one.meshes == 1 && meshes_of(out[k].cases) > 1;
+    one.one_mesh = !mesh_chosen && one.meshes == 1 &&
+                   std::any_of(out[k].cases.begin(), out[k].cases.end(), [&](const CaseRecord* record) {
+                     return study_.elements(*record).value_or(1) != out[k].finest->second;
+                   });
     // What nothing refines and nothing draws is known as it is.
     if (!one.has_step && !one.grows && !one.u()) one.step = out[k].floor;
   }

@@ -14,6 +14,7 @@
 #include "runners/march/seconds.hpp"
 
 namespace ricochet {
+
 bool explicit_step(const StepPlan& plan) {
   return std::all_of(plan.stages.begin(), plan.stages.end(), [](const Stage& stage) { return stage.matrix.K == 0; });
 }

@@ -119,7 +119,7 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   recorder.finish(marcher);
   contacts.finish();
   const auto restitution = largest_restitution(study_case, *marcher.program().problem, registry);
-  add_contact(record, contacts, marcher, {.restitution = restitution.value_or(0)});
+  add_contact(record, contacts, marcher, restitution);
   put_measure(record, "active_set_changes", static_cast<double>(sampler.contact().changes()));
   if (whole) {
     record.status = Status::done;

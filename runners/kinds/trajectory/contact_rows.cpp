@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 #include <utility>
 
@@ -148,21 +149,22 @@ std::vector<bool> chattered_to_rest(const std::vector<Impact>& impacts, int stop
 }
 
 // Counts of impacts have no limit there. What was counted stays in the tables.
-void leave_out_counts(CaseRecord& record, const StopContacts& contacts, const Marcher& marcher, double restitution) {
-  if (marcher.law().reads() || restitution <= 0) return;
+void leave_out_counts(CaseRecord& record, const StopContacts& contacts, const Marcher& marcher,
+                      std::optional<double> restitution) {
+  if (marcher.law().reads() || restitution.value_or(0) <= 0) return;
   const StopList& list = contacts.list();
   const std::vector<bool> chattered = chattered_to_rest(contacts.impacts(), list.count(), marcher.program().h);
-  for (std::size_t stop = 0; stop < chattered.size(); ++stop) {
-    if (!chattered[stop]) continue;
-    if (record.left_out.empty() || record.left_out.back().second != no_count)
-      record.left_out.emplace_back("impacts", no_count);
-    if (!list.names[stop].empty()) record.left_out.emplace_back("impacts[" + list.names[stop] + "]", no_count);
-  }
+  if (std::find(chattered.begin(), chattered.end(), true) == chattered.end()) return;
+  record.left_out.emplace_back("impacts", no_count);
+  for (std::size_t stop = 0; stop < chattered.size(); ++stop)
+    if (chattered[stop] && !list.names[stop].empty())
+      record.left_out.emplace_back("impacts[" + list.names[stop] + "]", no_count);
 }
 
 }  // namespace
 
-void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher& marcher, const StopWatches& watches) {
+void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher& marcher,
+                 std::optional<double> restitution, const StopWatches& watches) {
   put_measure(record, "impacts", static_cast<double>(contacts.count()));
   const SemiDiscrete& problem = *marcher.program().problem;
   if (!marcher.program().contact) return add_stop_tables(record, problem, watches);
@@ -217,7 +219,7 @@ void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher
   record.tables.push_back(std::move(stops));
   add_stop_tables(record, problem, watches);
   blank_without_limit(record, contacts, marcher);
-  leave_out_counts(record, contacts, marcher, watches.restitution);
+  leave_out_counts(record, contacts, marcher, restitution);
 }
 
 void describe_contact(std::vector<CaseRecord>& records) {

@@ -446,7 +446,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
     put_measure(record, "friction_turns", friction.most_turns());
   }
   const auto restitution = largest_restitution(study_case, *problem, registry);
-  add_contact(record, contacts, marcher, {&outputs, &tangents, &friction, restitution.value_or(0)});
+  add_contact(record, contacts, marcher, restitution, {&outputs, &tangents, &friction});
   doubts.push_back(GapWatch::crossed(marcher, recorder));
   doubts.push_back(sampler.gaps().passed());
   if (const PluginManual* law = registry.manual(Role::contact, study_case.contact.name))

@@ -26,7 +26,6 @@ struct StopWatches {
   const OutputWatch* outputs = nullptr;
   const TangentWatch* tangents = nullptr;
   const FrictionWatch* friction = nullptr;
-  double restitution = 0;  ///< the largest
 };
 
 /// What is known of a stop, on one side or on both.
@@ -48,10 +47,10 @@ std::vector<Table> stop_table_heads();
 /// The contacts of lane 0, as the record keeps them. `impacts` has a row per impact. `stops` has a row per contact
 /// point, or clearance, and side that ever closed. Beside them are the measures impacts, peak_contact_force and
 /// contact_time, and a note where the list of impacts ended before the run did. Counts that no smaller step approaches
-/// are left out of answers (no_count). Without contact there are no impacts, and nothing else is said. What else looks
-/// at the stops adds columns at their ends, and tables.
+/// are left out of answers (no_count); `restitution` is the largest. Without contact there are no impacts, and nothing
+/// else is said. What else looks at the stops adds columns at their ends, and tables.
 void add_contact(CaseRecord& record, const StopContacts& contacts, const Marcher& marcher,
-                 const StopWatches& watches = {});
+                 std::optional<double> restitution, const StopWatches& watches = {});
 
 /// Units and meanings of these tables, for records that come from a store.
 void describe_contact(std::vector<CaseRecord>& records);

@@ -288,16 +288,15 @@ std::vector<std::string> measure_names(const std::vector<MeasureInfo>& measures)
 std::vector<std::string> observed_energies(const StudyResults& results) {
   const bool driven = std::any_of(results.cases.begin(), results.cases.end(),
                                   [](const CaseRecord& record) { return answers::is_driven(record); });
+  const auto any_has = [&](const char* name) {
+    return std::any_of(results.cases.begin(), results.cases.end(),
+                       [&](const CaseRecord& record) { return measure(record, name).has_value(); });
+  };
   // Paths of a chaotic motion part; its means do not.
-  if (std::any_of(results.cases.begin(), results.cases.end(),
-                  [](const CaseRecord& record) { return measure(record, "window_tip_rms").has_value(); }))
-    return {"window_tip_rms", "window_force", "window_impact_rate", "window_power"};
-  std::vector<std::string> names = {driven ? "dissipated_at_contact" : "energy_left", "impulse",
-                                    "tip_displacement_end"};
-  const bool rubs = std::any_of(results.cases.begin(), results.cases.end(), [](const CaseRecord& record) {
-    return measure(record, "dissipated_by_friction").has_value();
-  });
-  if (rubs) names.insert(names.begin() + 1, "dissipated_by_friction");
+  if (any_has("window_tip_rms")) return {"window_tip_rms", "window_force", "window_impact_rate", "window_power"};
+  std::vector<std::string> names = {driven ? "dissipated_at_contact" : "energy_left"};
+  if (any_has("dissipated_by_friction")) names.emplace_back("dissipated_by_friction");
+  names.insert(names.end(), {"impulse", "tip_displacement_end"});
   return names;
 }
 
