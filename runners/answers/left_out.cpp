@@ -11,8 +11,7 @@
 namespace ricochet::answers {
 
 std::string why_without(const std::string& name, const CaseRecord& record) {
-  for (const auto& [item, reason] : record.left_out)
-    if (item == name) return reason;
+  if (const std::string& reason = why_left_out(record, name); !reason.empty()) return reason;
   // What is told of the time in contact alone.
   if (const std::size_t stop = name.find('['); stop != std::string::npos)
     if (measure(record, "contact_time" + name.substr(stop)) == 0.0) return "the stop is never touched";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runners/store/study_tables.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/text.hpp"
@@ -59,10 +60,22 @@ std::optional<double> energy_kept(const MeasureWords& words, const CaseRecord& r
 }
 
 std::optional<double> scaled_value(const MeasureWords& words, const CaseRecord& record) {
-  const auto value = measure(record, words.measure);
+  const auto value = told_measure(record, words.measure);
   if (!value || words.scale != "energy_brought_in") return value;
   const auto brought = measure(record, words.scale);
   return brought && *brought > 0 ? std::optional(*value / *brought) : std::nullopt;
+}
+
+bool without_limit(const Choices& study, const Cases& cases, const std::string& name) {
+  const CaseRecord* finest = nullptr;
+  for (const CaseRecord* record : cases)
+    if (record->status == Status::done && (!finest || study.finer(*record, *finest))) finest = record;
+  return finest && is_without_limit(why_left_out(*finest, name));
+}
+
+std::optional<double> bound_of(const MeasureWords& words, bool share) {
+  if (words.most) return words.most;
+  return share && words.scale == "energy_brought_in" ? std::optional(1.0) : std::nullopt;
 }
 
 Errors errors_of(const Cases& cases) {
@@ -101,6 +114,9 @@ void find_limit(const Choices& study, const MeasureWords& words, bool share, con
   const Errors errors = errors_of(cases);
   method.step = limit_of(by_step, floor, words.truth, errors);
   method.mesh = limit_of(by_mesh, floor, {}, errors);
+  if (const auto most = bound_of(words, share))
+    for (auto* one : {&method.step, &method.mesh})
+      if (*one) bound_growth(**one, *most);
   method.limit = combined(method.step, method.mesh);
   method.half = measure(*best.record, "confidence." + words.measure).value_or(0);
   method.gains = energy_kept(words, *best.record).value_or(0) > gains_above;
@@ -132,6 +148,7 @@ MeasureLimits limits_of(const Choices& study, const std::string& name, bool cons
     Method method;
     method.cases = members;
     std::vector<Valued> coarser;
+    if (without_limit(study, members, name)) members.clear();
     for (const CaseRecord* record : members) {
       if (record->status != Status::done) continue;
       const auto value = scaled_value(out.words, *record);

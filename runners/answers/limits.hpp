@@ -53,6 +53,12 @@ std::optional<double> energy_kept(const MeasureWords& words, const CaseRecord& r
 /// A measure over its scale where that belongs to the case: a share of 1 or of the energy that was brought in.
 std::optional<double> scaled_value(const MeasureWords& words, const CaseRecord& record);
 
+/// Whether the finest of these cases says that no step approaches the measure: what coarser ones have is no limit then.
+bool without_limit(const Choices& study, const Cases& cases, const std::string& measure);
+
+/// What no value of it exceeds: `most`, and 1 of a share of the energy that was brought in.
+std::optional<double> bound_of(const MeasureWords& words, bool share);
+
 /// Of the cases given, all of one study. `conservative`: the truth of the measure and its direction hold.
 MeasureLimits limits_of(const Choices& study, const std::string& measure, bool conservative, const Cases& cases);
 

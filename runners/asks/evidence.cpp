@@ -13,7 +13,6 @@
 #include "runners/answers/set_names.hpp"
 #include "runners/asks/verdicts.hpp"
 #include "runners/store/record_values.hpp"
-#include "runners/store/study_tables.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/text.hpp"
@@ -221,12 +220,6 @@ std::optional<double> least_of(const CaseRecord& record, const std::string& name
 
 namespace {
 
-/// Whether a case has a number of it that no smaller step approaches.
-bool without_limit(const CaseRecord& record, const std::string& name) {
-  return std::any_of(record.left_out.begin(), record.left_out.end(),
-                     [&](const auto& item) { return item.first == name && item.second == no_count; });
-}
-
 /// Beside what others have of a measure, values that are all round-off are zero.
 void drop_round_off(Point& point, double largest_of_all) {
   constexpr double nothing = 1e-15;
@@ -340,10 +333,11 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
   for (auto& [key, point] : std::move(groups).list()) {
     double scale = 0, values = 0;  // of round-off, of solves
     bool counts = true;            // whole numbers have neither
+    const bool limitless = answers::without_limit(study_, point.cases, measure_of_all);
     for (const CaseRecord* record : point.cases) {
-      const auto value = record->status != Status::done || without_limit(*record, measure_of_all) ? std::nullopt
-                         : shares ? answers::scaled_value(words, *record)
-                                  : measure(*record, measure_of_all);
+      const auto value = record->status != Status::done || limitless ? std::nullopt
+                         : shares                                    ? answers::scaled_value(words, *record)
+                                                                     : told_measure(*record, measure_of_all);
       if (!value || !std::isfinite(*value)) continue;
       point.behind.push_back(record);
       if (!mesh_chosen && !study_.on_finest_mesh(*record)) continue;
@@ -387,6 +381,9 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
     point.floor = std::max(point.floor, resolution(measure_of_all, point, !steps_chosen));
     limits.push_back(point.finest ? std::optional(limits_at(point.values, *point.finest, point.floor, point.errors))
                                   : std::nullopt);
+    if (const auto most = answers::bound_of(words, share); most && limits.back())
+      for (auto* one : {&limits.back()->step, &limits.back()->mesh})
+        if (*one) bound_growth(**one, *most);
   }
   std::vector<Limit*> all;
   for (auto& one : limits)
@@ -416,9 +413,7 @@ LeftOut Evidence::left_out(const std::string& name, const Cases& cases) const {
   InOrderMet<std::string, LeftOut::Reason> groups;  // reasons that differ in numbers alone are one
   LeftOut out;
   for (const CaseRecord* record : cases) {
-    if (record->status == Status::done && !without_limit(*record, name) &&
-        (measure(*record, name) || least_of(*record, name)))
-      continue;
+    if (record->status == Status::done && (told_measure(*record, name) || least_of(*record, name))) continue;
     ++out.count;
     std::string why, key;
     if (record->partial) {

@@ -28,6 +28,18 @@ std::optional<double> measure(const CaseRecord& record, const std::string& name)
   return std::nullopt;
 }
 
+const std::string& why_left_out(const CaseRecord& record, const std::string& name) {
+  static const std::string none;
+  const auto found = std::find_if(record.left_out.begin(), record.left_out.end(),
+                                  [&](const auto& item) { return item.first == name; });
+  return found == record.left_out.end() ? none : found->second;
+}
+
+std::optional<double> told_measure(const CaseRecord& record, const std::string& name) {
+  const auto value = measure(record, name);
+  return value && why_left_out(record, name).empty() ? value : std::nullopt;
+}
+
 void put_measure(CaseRecord& record, const std::string& name, double value) {
   if (std::isfinite(value)) record.measures.emplace_back(name, value);
 }

@@ -17,6 +17,13 @@ bool went_wrong(const CaseRecord& record);
 /// The measure of this name, if the case has it.
 std::optional<double> measure(const CaseRecord& record, const std::string& name);
 
+/// Why it is left out of the case, by its own rows of what is left out; "" where it is not.
+const std::string& why_left_out(const CaseRecord& record, const std::string& name);
+
+/// The measure of this name, if the case has it and does not leave it out: what was counted without number stays in
+/// tables of cases alone.
+std::optional<double> told_measure(const CaseRecord& record, const std::string& name);
+
 /// Adds a measure to the record; one that is not finite is left out.
 void put_measure(CaseRecord& record, const std::string& name, double value);
 

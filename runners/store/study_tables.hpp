@@ -37,6 +37,11 @@ inline constexpr const char* no_limit =
 inline constexpr const char* no_count =
     "no limit as the step shrinks: a point that rebounds comes to rest on its stop, which it hits without number";
 
+/// Whether a measure is left out for one of these: then its coarser steps have no limit either.
+inline bool is_without_limit(const std::string& reason) {
+  return reason == no_limit || reason == no_count;
+}
+
 namespace answers {
 
 /// One thing that a sentence says of some methods: a row of `answers`.

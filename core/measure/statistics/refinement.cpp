@@ -256,6 +256,16 @@ std::optional<Limit> combined(const std::optional<Limit>& step, const std::optio
   return out;
 }
 
+void bound_growth(Limit& limit, double most) {
+  if (limit.status != LimitStatus::blows_up || std::abs(limit.value) > most) return;
+  limit.status = LimitStatus::moves;
+  limit.uncertainty = 2 * limit.range;
+  limit.trend = limit.value > 0 ? 1 : -1;
+  const double end = limit.value + 2 * limit.trend * limit.range;
+  limit.low = std::min(limit.value, end);
+  limit.high = std::max(limit.value, end);
+}
+
 void widen(Limit& limit, double half) {
   if (!limit.uncertainty) return;
   *limit.uncertainty += half;

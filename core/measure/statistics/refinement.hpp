@@ -76,6 +76,10 @@ std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std:
 /// The status is the worse of the two. A single size says nothing. Nothing where both are absent.
 std::optional<Limit> combined(const std::optional<Limit>& step, const std::optional<Limit>& mesh);
 
+/// What grows, but lies within the bound |v| ≤ most that nothing exceeds, moves: u is twice the range of the last
+/// three.
+void bound_growth(Limit& limit, double most);
+
 /// Adds half an interval of the value itself, as of a mean over a window.
 void widen(Limit& limit, double half);
 

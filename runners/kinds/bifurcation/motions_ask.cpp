@@ -70,6 +70,8 @@ struct MotionStretch {
   std::string word = {};              ///< one of the motions as orbits.csv has it
 
   std::string motion() const { return attractors_text(counts); }
+  /// Whether every start was refused, diverged or failed.
+  bool none() const { return counts.empty() && ended == open; }
   bool takes(const ValueMotions& next) const {
     const AttractorCounts shown = next.counts();
     return shown.empty() == counts.empty() && (holds(counts, shown) || (!whole && holds(shown, counts))) &&
@@ -86,6 +88,7 @@ struct MotionStretch {
   }
   /// The group of motions by which it is drawn.
   report::RegimeGroup group() const {
+    if (none()) return {"no orbit", report::regime_groups[report::failed_group].colour};
     if (counts.empty()) return report::regime_groups[report::undecided_group];
     if (counts.size() > 1 || counts.begin()->second > 1) return {"several motions", "#7FBF3F"};
     return report::regime_groups[report::regime_group(word, std::nullopt)];
@@ -147,7 +150,7 @@ class MotionsAlong {
       add_row(out, one.level, "undecided", "of the range", asks::per_cent * one.undecided, {}, {}, "%");
       for (const MotionStretch& part : one.stretches) {
         const bool decided = !part.counts.empty();
-        const std::string motion = decided ? part.motion() : part.ended == part.open ? "no orbit" : "undecided";
+        const std::string motion = decided ? part.motion() : part.none() ? "no orbit" : "undecided";
         std::string open =
             decided && part.open > part.ended
                 ? fmt::format("{} of {} orbits are undecided", part.open - part.ended, part.open + part.decided)

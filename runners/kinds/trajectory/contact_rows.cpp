@@ -135,7 +135,7 @@ void blank_without_limit(CaseRecord& record, const StopContacts& contacts, const
 
 /// Stops on which a point comes to rest by rebounds: it flies ever shorter, and then stays for longer than it flew.
 std::vector<bool> chattered_to_rest(const std::vector<Impact>& impacts, int stops, double h) {
-  constexpr double short_flight = 10, lasting = 10, at_once = 2.5;  // steps
+  constexpr double short_flight = 10, lasting = 10, at_once = 3.5;  // steps
   std::vector<bool> found(static_cast<std::size_t>(stops), false);
   std::map<std::pair<int, StopSide>, const Impact*> before;
   for (const Impact& one : impacts) {

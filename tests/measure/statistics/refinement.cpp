@@ -145,6 +145,14 @@ TEST_CASE("what grows as a power of the size has no limit, growth that slows dow
   const auto slows = limit_of({{1, 0.008}, {0.1, 0.09}, {0.01, 0.30}, {0.001, 0.55}}, 0);
   CHECK(slows->status == LimitStatus::moves);
   CHECK((slows->low <= 1 && 1 <= slows->high));
+  // A share of 1 that is far below it.
+  auto small = limit_of({{1, 1e-9}, {0.5, 1e-8}, {0.25, 1e-7}}, 0);
+  bound_growth(*small, 1e-8);
+  CHECK(small->status == LimitStatus::blows_up);
+  bound_growth(*small, 1);
+  CHECK(small->status == LimitStatus::moves);
+  CHECK(*small->uncertainty == Approx(2 * (1e-7 - 1e-9)));
+  CHECK(small->high == Approx(small->value + *small->uncertainty));
 }
 
 TEST_CASE("scaling values scales the limit, and changes no status") {

@@ -1,10 +1,12 @@
 // Of which level, stop and value a verdict speaks, and what is not settled.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <ricochet/contract/said_format.hpp>
 #include <set>
 
+#include "runners/answers/limits.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/run/analysed_results.hpp"
 #include "runners/store/study_tables.hpp"
@@ -435,8 +437,18 @@ TEST_CASE("asks: a count that has no limit is no value, whatever was counted") {
   StudyResults results = made.results();
   const Json ask = {{"limit", "impacts"}, {"below", 60}};
   CHECK(answer_of(results, ask).passes == Verdict::yes);
-  for (CaseRecord& record : results.cases) record.left_out.emplace_back("impacts", no_count);
+  // The finest alone says so: what coarser steps counted is no limit either.
+  const Choices before(results);
+  auto& finest = *std::min_element(results.cases.begin(), results.cases.end(),
+                                   [&](const auto& a, const auto& b) { return before.finer(a, b); });
+  finest.left_out.emplace_back("impacts", no_count);
   CHECK(answer_of(results, ask).passes == Verdict::open);
+  for (const bool all : {false, true}) {
+    if (all)
+      for (CaseRecord& record : results.cases) record.left_out.emplace_back("impacts", no_count);
+    CHECK(answer_of(results, ask).rows.front().reason.find("without number") != std::string::npos);
+    CHECK(answers::limits_of(Choices(results), "impacts", false, all_cases(results)).with_limit().empty());
+  }
 }
 
 TEST_CASE("asks: what is held open beyond a limit is not said to hold it") {

@@ -86,15 +86,16 @@ TEST_CASE("a rod that rests on its grid is never thrown back, and pushes as stat
 }
 
 TEST_CASE("a ball that comes to rest by rebounds hits without number, one that is caught does not") {
-  const auto has_no_count = [](const CaseRecord& record) {
-    return std::any_of(record.left_out.begin(), record.left_out.end(),
-                       [](const auto& item) { return item.first == "impacts" && item.second == no_count; });
-  };
+  const auto has_no_count = [](const CaseRecord& record) { return why_left_out(record, "impacts") == no_count; };
   // At rest after √(2/g) (1 + e)/(1 − e) = 1.36 s of e = 0.5.
-  for (const char* name : {"moreau-jean", "nonsmooth-generalised-alpha"}) {
+  for (const char* name : {"moreau-jean", "nonsmooth-generalised-alpha", "newmark-dumont-paoli", "paoli-schatzman"}) {
     INFO(name);
     const Json rebounds = {{"name", name}, {"restitution", 0.5}}, caught = {{"name", name}, {"restitution", 0.0}};
-    CHECK(has_no_count(CaseRuns().first_of(dropped(rebounds, 1e-3, 2))));
+    // Those that solve for positions close a point for two steps or three.
+    for (const double h : {4e-3, 2e-3, 1e-3, 5e-4}) {
+      INFO(h);
+      CHECK(has_no_count(CaseRuns().first_of(dropped(rebounds, h, 2))));
+    }
     CHECK_FALSE(has_no_count(CaseRuns().first_of(dropped(rebounds, 1e-3, 1))));
     CHECK_FALSE(has_no_count(CaseRuns().first_of(dropped(caught, 1e-3, 2))));
   }
