@@ -50,7 +50,7 @@ const TableType<MeasureLimit>& limits_type() {
              &MeasureLimit::value)
         .add({"u", "", "Uncertainty that step and mesh leave, in `unit`; none of a single size, and of what grows."},
              &MeasureLimit::uncertainty)
-        .add({"low", "", "Where the limit may be: from."}, &MeasureLimit::low)
+        .add({"low", "", "Where the limit may be: from; none without u."}, &MeasureLimit::low)
         .add({"high", "", "Where the limit may be: to."}, &MeasureLimit::high)
         .add({"unit", "", "Unit of these."}, &MeasureLimit::unit)
         .add({"status", "",
@@ -95,8 +95,10 @@ Table limits_table(const Choices& study, const std::vector<std::string>& measure
       const auto sizes = [](const std::optional<Limit>& along) { return along ? static_cast<int>(along->sizes) : 0; };
       MeasureLimit row{.measure = measure, .id = method->finest->id, .value = factor * limit.value};
       row.uncertainty = finite(limit.uncertainty, factor);
-      row.low = finite(limit.low, factor);
-      row.high = finite(limit.high, factor);
+      if (row.uncertainty) {
+        row.low = finite(limit.low, factor);
+        row.high = finite(limit.high, factor);
+      }
       row.unit = limits.words.unit;
       row.status = word(limit.status);
       row.order = limit.order;
@@ -158,7 +160,8 @@ Table differences_table(const Choices& study, const std::vector<std::string>& me
         {"most", "", "The level with the largest value."},
         {"least", "", "The level with the smallest value."},
         {"verdict", "",
-         "matters: the difference is beyond 1 % and its uncertainty; does not matter: both within; open."}})
+         "matters: the difference is beyond 1 % and its uncertainty; does not matter: both within; open, also without "
+         "u."}})
     table.columns.push_back(column);
   for (const std::string& measure : measures) {
     const MeasureLimits limits = limits_of(study, measure, keeps_energy(results), all_cases(results));

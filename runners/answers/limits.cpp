@@ -249,7 +249,8 @@ Difference farthest(const std::vector<const Method*>& methods) {
 }
 
 Matters ChoiceRow::matters() const {
-  const double u = uncertainty.value_or(0);
+  if (!uncertainty) return Matters::open;
+  const double u = *uncertainty;
   return difference - u > tolerance ? Matters::yes : difference + u <= tolerance ? Matters::no : Matters::open;
 }
 

@@ -96,7 +96,7 @@ struct Difference {
 Difference farthest(const std::vector<const Method*>& methods);
 Difference paired(const Method& high, const Method& low);
 
-/// Whether a difference matters: |D| − u > T; does not: |D| + u ≤ T; is open.
+/// Whether a difference matters: |D| − u > T; does not: |D| + u ≤ T; is open, without u too.
 enum class Matters { yes, no, open };
 constexpr std::array<const char*, 3> words_of(Matters) {
   return {"matters", "does not matter", "open"};

@@ -71,18 +71,15 @@ void add_rows_of(const StudyResults& results, const char* name, const char* leve
   const Records records = by_id(results);
   const TableReader rows(*table);
   const std::size_t words = rows.column_if_any(level), stop = rows.column_if_any("stop"),
-                    id = rows.column_if_any("case"), u = rows.column_if_any("u");
+                    id = rows.column_if_any("case");
   for (std::size_t r = 0; r < rows.size(); ++r) {
     VerdictRow row;
     std::tie(row.measure, row.stop) = asks::split_measure(rows.text(r, "measure"));
     if (stop != TableReader::absent) row.stop = rows.text(r, stop);
     row.level = rows.text(r, words);
     row.value = rows.number(r, "value");
-    // The bounds of a single size are its value: without u there is no interval.
-    if (u == TableReader::absent || rows.number(r, u)) {
-      row.low = rows.number(r, "low");
-      row.high = rows.number(r, "high");
-    }
+    row.low = rows.number(r, "low");
+    row.high = rows.number(r, "high");
     row.unit = rows.text(r, "unit");
     Row key{row.measure, row.stop, row.unit};
     const auto record = records.find(rows.text(r, id));

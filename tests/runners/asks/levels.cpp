@@ -6,6 +6,7 @@
 #include <ricochet/contract/said_format.hpp>
 #include <set>
 
+#include "runners/answers/answer.hpp"
 #include "runners/answers/limits.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/run/analysed_results.hpp"
@@ -718,4 +719,24 @@ TEST_CASE("asks: the interval of a peak holds what two steps miss between them")
   // A mean is no peak.
   for (CaseRecord& record : results.cases) record.measures.front().first = "mean_force[wall]";
   CHECK(*answer_of(results, {{"value", "mean_force"}}).rows.front().high < top);
+}
+
+TEST_CASE("tables of limits: a single step leaves no interval and no verdict") {
+  Made made;
+  made.choices = {{"mass", {"m0", "m1"}}};
+  made.truth = [](const std::vector<std::size_t>& at) { return at[0] == 0 ? 1.0 : 2.0; };
+  for (const bool one : {true, false}) {
+    INFO(one);
+    if (one) made.steps = {1e-3};
+    const StudyResults results = made.results();
+    const Choices study(results);
+    const Table limits = answers::limits_table(study, {"impulse"});
+    const TableReader rows(limits);
+    REQUIRE(rows.size() == 2);
+    for (const char* column : {"u", "low", "high"}) CHECK(rows.number(0, column).has_value() == !one);
+    const Table differences = answers::differences_table(study, {"impulse"});
+    REQUIRE(TableReader(differences).size() == 1);
+    CHECK(TableReader(differences).text(0, "verdict") == (one ? "open" : "matters"));
+    made.steps = {4e-3, 2e-3, 1e-3, 5e-4};
+  }
 }

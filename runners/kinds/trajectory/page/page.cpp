@@ -106,12 +106,11 @@ SummaryMeasures of_cases(const std::vector<answers::MeasureLimit>& limits) {
     if (found == out.end()) {
       out.emplace_back(row.measure, SummaryMeasure{row.unit, value, value, row.low, row.high});
       found = out.end() - 1;
-      if (!row.uncertainty) found->second.low.reset();
     }
     SummaryMeasure& one = found->second;
     one.least = std::min(one.least, value);
     one.largest = std::max(one.largest, value);
-    if (!row.uncertainty || !row.low || !row.high) one.low.reset();
+    if (!row.low || !row.high) one.low.reset();
     if (one.low) one.low = std::min(*one.low, *row.low);
     if (one.low) one.high = std::max(one.high.value_or(*row.high), *row.high);
     if (row.step_moves) one.step = std::max(one.step.value_or(0), *row.step_moves);
