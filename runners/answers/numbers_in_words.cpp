@@ -23,7 +23,7 @@ double magnitude(double value) {
 int decimals(double uncertainty, bool fine) {
   int exponent = static_cast<int>(std::floor(std::log10(uncertainty)));
   if (fine && uncertainty / std::pow(10, exponent) < begins_with_one) --exponent;
-  constexpr int most = 8;
+  constexpr int most = 14;
   return std::clamp(-exponent, 0, most);
 }
 
@@ -66,7 +66,21 @@ MeasureWords measure_words(const std::string& measure) {
 
 namespace {
 
-/// `few`: of a per cent no more digits than are read, whatever u allows.
+/// Significant digits of v down to the last digit of an uncertainty u > 0.
+int digits_down_to(double v, double u, bool fine) {
+  const int extra = fine && u < begins_with_one * magnitude(u) ? 1 : 0;
+  return static_cast<int>(std::floor(std::log10(std::abs(v))) - std::floor(std::log10(u))) + 1 + extra;
+}
+
+/// Decimal places with which what a per cent lacks of 100 keeps two digits.
+int places_of_percent(double v) {
+  const double lacking = 100 - std::abs(v);
+  const int wanted = lacking > 0 && lacking < 1 ? 1 - static_cast<int>(std::floor(std::log10(lacking))) : 2;
+  return std::max(wanted, std::abs(v) < 1 ? 3 : 2);
+}
+
+/// `few`: no more digits than are read, whatever u allows; else as many as u asks for, so that value ± u holds the
+/// value.
 std::string value_to(const MeasureWords& measure, double value, std::optional<double> uncertainty, bool with_unit,
                      bool fine, bool few = true) {
   const std::string unit = with_unit ? unit_after(measure) : "";
@@ -75,29 +89,30 @@ std::string value_to(const MeasureWords& measure, double value, std::optional<do
   if (measure.decades) return short_number(v, 2) + unit;
   // Of a sequence that is the same within round-off the value alone is said.
   constexpr double round_off = 1e-9;
-  if (u <= round_off * std::abs(v)) u = 0;
+  const bool known = u > 0 && u <= round_off * std::abs(v);
+  if (known) u = 0;
   if (v == 0 && u == 0) return "0" + unit;
   if (measure.unit.empty() && u < 1 && v == std::round(v) && std::abs(v) < many) return fmt::format("{:.0f}", v);
   // All of it, as far as four digits of a per cent say.
   constexpr double all_of_it = 5e-5;
-  if (measure.unit == "%" && std::abs(v - 100) < all_of_it) return "100" + unit;
-  constexpr double negligible = 1e-3;
-  if (std::abs(v) < (u < negligible ? u : negligible * u)) return "0" + unit;
+  const double lacking = std::abs(v - 100);
+  if (measure.unit == "%" && lacking < all_of_it && (few || u == 0 || lacking <= u)) return "100" + unit;
+  constexpr double negligible = 0.05;  // half of what the last digit of u tells
+  if (std::abs(v) < negligible * u) return "0" + unit;
   constexpr double small = 1e-3, large = 1e5;
-  if (v != 0 && (std::abs(v) < small || std::abs(v) >= large))
-    return short_number(v, u > 0 && u < 0.1 * std::abs(v) ? 3 : 2) + unit;
-  if (u <= 0) return short_number(v) + unit;
+  if (std::abs(v) < small || std::abs(v) >= large) {
+    constexpr int least = 2, read = 4, of_known = 6;
+    const int digits = u > 0 ? std::max(least, digits_down_to(v, u, fine)) : known ? of_known : read;
+    return short_number(v, few && u > 0 ? std::min(digits, read) : digits) + unit;
+  }
+  const bool of_percent = few && measure.factor == 100 && std::abs(v) < 100;
+  if (u <= 0) return (of_percent && lacking < 1 ? fixed(v, places_of_percent(v)) : short_number(v)) + unit;
   const double shown = std::min(u, std::abs(v) > 0 ? std::abs(v) : u);
   int places = decimals(!few && measure.factor == 100 ? u : shown, fine);
   u = shown;
-  if (few && measure.factor == 100 && std::abs(v) < 100) {
-    // Enough digits that what is lacking of 100 % keeps two.
-    const double lacking = 100 - std::abs(v);
-    const int wanted = lacking > 0 && lacking < 1 ? 1 - static_cast<int>(std::floor(std::log10(lacking))) : 2;
-    places = std::min(places, std::max(wanted, std::abs(v) < 1 ? 3 : 2));
-  }
-  constexpr int most = 6;
-  places = std::min(places, most);
+  if (of_percent) places = std::min(places, places_of_percent(v));
+  constexpr int read_places = 6;
+  if (few) places = std::min(places, read_places);
   if (u >= 10 && std::abs(v) >= 10) {
     const double digit = magnitude(u) / (fine && u < begins_with_one * magnitude(u) ? 10 : 1);
     return fixed(std::round(v / digit) * digit, 0) + unit;
@@ -145,6 +160,14 @@ std::string percent(double share) {
   if (size >= times) return short_number(share, 2) + " times";
   if (size >= whole) return fmt::format("{:.0f} %", 100 * share);
   return short_number(100 * share, 2) + " %";
+}
+
+std::string percent_beside(double share, double other) {
+  std::string text = percent(share);
+  constexpr int most = 15;
+  for (int digits = 3; share != other && text == percent(other) && digits <= most; ++digits)
+    if (std::string more = short_number(100 * share, digits) + " %"; more != text) text = std::move(more);
+  return text;
 }
 
 }  // namespace ricochet::answers

@@ -38,6 +38,9 @@ std::string with_uncertainty(const MeasureWords& measure, double value, std::opt
 /// A share in per cent to two digits: "0.012 %", "39 %", "the same" below 1e-7 %, "12 times" from 1000 % on.
 std::string percent(double share);
 
+/// The same with as many more digits as tell it from another share.
+std::string percent_beside(double share, double other);
+
 /// "1 of 48 cases".
 std::string capitalised(std::string text);
 

@@ -78,7 +78,7 @@ const char* verdict(const Spread& spread) {
 
 MeasureWords prefixed(MeasureWords words, double scale) {
   constexpr double thousandths = 0.1, millionths = 1e-4;
-  if (words.unit != "W" && words.unit != "m") return words;
+  if ((words.unit != "W" && words.unit != "m") || scale == 0) return words;
   if (scale < millionths) {
     words.factor *= 1e6;
     words.unit = "µ" + words.unit;

@@ -366,6 +366,10 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
         }
     point.floor *= counts ? 0 : share ? 1 : scale;
     largest_of_all = std::max(largest_of_all, scale);
+    // Places are known beside the largest displacement.
+    if (words.unit == "m")
+      for (const CaseRecord* record : point.behind)
+        largest_of_all = std::max(largest_of_all, measure(*record, "largest_tip_displacement").value_or(0));
     solves.push_back(counts ? 0 : of_solves * values);
     for (const auto& [size, value] : point.values)
       if (!point.finest || finer(size, *point.finest)) point.finest = size;
@@ -396,7 +400,11 @@ std::vector<Point> Evidence::alone(const std::string& measure_of_all, const Case
   for (std::size_t k = 0; k < out.size(); ++k) {
     if (!out[k].estimate) continue;
     Estimate& one = *out[k].estimate;
-    if (std::abs(one.value) <= round_off[k]) one.value = 0;
+    if (std::abs(one.value) <= round_off[k]) {
+      one.value = 0;
+      for (auto* left : {&one.step, &one.mesh})
+        if (*left && **left <= 2 * round_off[k]) *left = 0;
+    }
     one.beyond = least_of(*out[k].behind.front(), measure_of_all).has_value();
     // What other meshes would say is not known where they have no value.
     one.one_mesh = !mesh_chosen && one.meshes == 1 &&

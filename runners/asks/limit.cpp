@@ -96,6 +96,7 @@ Answered answer_limit(const Ask& ask, const Evidence& evidence) {
   VerdictRow limit;
   limit.level = "the limit";
   limit.unit = lines.words.unit;
+  limit.given = true;
   for (const double one : at) {
     limit.value = one;
     out.rows.push_back(limit);

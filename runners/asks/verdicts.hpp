@@ -26,8 +26,18 @@ struct VerdictRow {
   std::optional<std::size_t> cases = {}, left_out = {};
   std::string sentence = {};
   std::string of_case = {};  ///< a case with these levels, by id; no column
+  bool allowed = false;      ///< whether its numbers must not be exceeded, and are told rounded down; no column
+  bool given = false;        ///< whether the value is the ask's own, told in full; no column
 };
 const TableType<VerdictRow>& verdicts_type();
+
+/// What a case does at one place of a sweep, in a word.
+struct WordAtPlace {
+  std::string of_case, level;  ///< its id, and its levels in words
+  std::string place;           ///< "0.0719 m, start rest"
+  std::string word;            ///< "period 2"
+  bool known = true;           ///< false of "undecided"
+};
 
 /// What answers one ask. The rows hold every number that the sentence says.
 struct Answered {
@@ -38,6 +48,8 @@ struct Answered {
   std::vector<VerdictRow> rows = {};    ///< one for each level
   std::vector<std::string> aside = {};  ///< what was left out and what warns, a sentence each
   std::size_t cases = 0, left_out = 0;
+  /// Where the same ask of another result is compared by words, these stand in place of rows.
+  std::vector<WordAtPlace> words = {};
   /// What is drawn beside the sentence: {"form", …}; null: nothing.
   nlohmann::ordered_json figure = nullptr;
 };

@@ -174,7 +174,7 @@ std::string AskFigure::axis_title(const char* axis) const {
 }
 
 std::string AskFigure::label_at(double value) const {
-  return number_text(value, 4) + (unit_.empty() ? "" : " " + unit_);
+  return number_text(value, 7) + (unit_.empty() ? "" : " " + unit_);
 }
 
 double AskFigure::legend(std::vector<std::string> names, double top, bool boxes) {
@@ -187,8 +187,10 @@ double AskFigure::legend(std::vector<std::string> names, double top, bool boxes)
     if (x > side && (x + wide > width - side || lines.size() > 1)) x = side, y += line_height;
     if (boxes)
       draw_.box(x, y - 9, 9, 9, fmt::format("part s{}", k % colours), "", colours_.empty() ? "" : colours_[k]);
+    else if (k < lines_)
+      draw_.line(x, y - dot, x + lane, y - dot, fmt::format("branch s{}", k % colours));
     else
-      draw_.sign(x + dot, y - dot, k);
+      draw_.sign(x + dot, y - dot, signs_.empty() ? k : signs_[k - lines_]);
     for (std::size_t l = 0; l < lines.size(); ++l)
       draw_.text(x + 1.4 * lane, y + (l == 0 ? 0 : line_height) * static_cast<double>(l), lines[l]);
     x += wide + gap;

@@ -93,6 +93,8 @@ class AskFigure {
   std::string unit_;
   std::vector<double> at_;
   std::string floor_;                 ///< what the legend calls the dashed lines of floors; "" where there are none
+  std::size_t lines_ = 0;             ///< so many names of a legend are those of lines
+  std::vector<std::size_t> signs_;    ///< the series whose signs stand for the other names; empty: their places
   std::vector<std::string> colours_;  ///< of the names of a legend; empty: those of series
   Drawing draw_;
 };

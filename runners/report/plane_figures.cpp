@@ -35,7 +35,10 @@ class PlaneFigure : public AskFigure {
   /// `aside`: what stands beside its place of x, to each side. `labels`: what tells the series apart.
   Frame frame(const std::vector<std::string>& labels, const std::vector<double>& xs, const std::vector<double>& ys,
               const std::string& across, const std::string& upwards, bool log_x, bool log_y, double aside) {
-    double top = legend(labels, 0);
+    // A long legend stands below.
+    constexpr std::size_t most_above = 8;
+    const bool above = labels.size() <= most_above;
+    double top = above ? legend(labels, 0) : 0;
     for (const std::string& one : wrapped(upwards + (log_y ? ", logarithmic" : ""), width - 2 * side)) {
       top += line_height;
       draw_.text(side / 2, top, one, "title");
@@ -53,7 +56,8 @@ class PlaneFigure : public AskFigure {
     }
     ticks(x, top, bottom);
     place_lines(y, longest + gap);
-    return {x, y, top, bottom, title(across, bottom + line_height, log_x)};
+    const double end = title(across, bottom + line_height, log_x);
+    return {x, y, top, bottom, above ? end : legend(labels, end)};
   }
 
   std::string plane(const std::vector<Series>& all, const std::vector<std::pair<double, double>>& between,
@@ -78,7 +82,10 @@ class PlaneFigure : public AskFigure {
     const auto [lowest, highest] = std::minmax_element(ys.begin(), ys.end());
     constexpr double seen = 0.02;  // of the axis
     const bool whiskers = log_y ? widest > 0 : widest > seen * (*highest - *lowest);
-    const double apart = all.size() < 2 ? 0 : whiskers ? std::min(5.0, 24.0 / others) : std::min(2.0, 8.0 / others);
+    double apart = all.size() < 2 ? 0 : whiskers ? std::min(5.0, 24.0 / others) : std::min(2.0, 8.0 / others);
+    // No mark stands nearer to the next place than to its own.
+    constexpr double of_places = 0.5;
+    if (others > 0) apart = std::min(apart, of_places * between_places(xs, log_x) / others);
     const Frame in = frame(names, xs, ys, across, upwards, log_x, log_y, apart * others / 2 + dot + 2);
     for (const auto& [from, to] : between)
       draw_.box(in.x.at(from), in.top, in.x.at(to) - in.x.at(from), in.bottom - in.top, "between");
@@ -88,6 +95,19 @@ class PlaneFigure : public AskFigure {
   }
 
  private:
+  /// The least distance of two places on an axis, about; infinite of one place.
+  static double between_places(std::vector<double> xs, bool logarithms) {
+    if (logarithms)
+      for (double& x : xs) x = std::log(x);
+    std::sort(xs.begin(), xs.end());
+    const double whole = xs.back() - xs.front();
+    constexpr double same = 1e-9, drawn = 0.8;  // of the width
+    double least = INFINITY;
+    for (std::size_t k = 1; k < xs.size(); ++k)
+      if (const double apart = xs[k] - xs[k - 1]; apart > same * whole) least = std::min(least, apart);
+    return std::isfinite(least) ? drawn * width * least / whole : INFINITY;
+  }
+
   /// Lines across at values, each labelled at its right end, below the line where one above is near.
   void place_lines(const FigureAxis& y, double from) {
     double last = INFINITY;
@@ -167,8 +187,12 @@ class Curves : public PlaneFigure {
         if (!std::isfinite(x) || !std::isfinite(y) || (logarithms && (x <= 0 || y <= 0))) continue;
         series.points.push_back({x, Mark(Json{{"value", y}})});
       }
-      if (logarithms && series.floor && *series.floor <= 0) series.floor.reset();
       if (series.points.empty()) continue;
+      // One that lies far below all would stretch the axis.
+      constexpr double far = 100;
+      const auto lowest = std::min_element(series.points.begin(), series.points.end(),
+                                           [](const auto& a, const auto& b) { return *a.mark.value < *b.mark.value; });
+      if (logarithms && series.floor && far * *series.floor < *lowest->mark.value) series.floor.reset();
       if (series.floor) floor_ = "error floor";
       all.push_back(std::move(series));
     }
@@ -202,6 +226,9 @@ class Branches : public PlaneFigure {
     if (xs.empty()) return "";
     std::vector<std::string> labels = names;
     labels.insert(labels.end(), kinds.begin(), kinds.end());
+    lines_ = names.size();
+    for (std::size_t place = 0; place < kinds.size(); ++place) signs_.push_back(series_of_kind(place));
+    if (any_unstable()) floor_ = "unstable";
     const Frame in = frame(labels, xs, ys, axis_title("x"), axis_title("y"), false, false, dot + 2);
     for (std::size_t k = 0; k < names.size(); ++k)
       draw_branch(list_of(list_of(figure_, "series")[k], "points"), k, names[k], in);
@@ -210,13 +237,21 @@ class Branches : public PlaneFigure {
       const std::string kind = text_of(mark, "kind");
       const double x = *number_of(mark, "value");
       const auto place = static_cast<std::size_t>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
-      draw_.sign(in.x.at(x), in.y.at(*number_of(mark, "tip")), names.size() + place,
+      draw_.sign(in.x.at(x), in.y.at(*number_of(mark, "tip")), series_of_kind(place),
                  fmt::format("{}: {} at {}", kind, text_of(mark, "branch"), number_text(x, 5)));
     }
     return draw_.svg(in.end, axis_title("y"), true);
   }
 
  private:
+  /// Signs of special points have one colour, which is that of no branch but the eighth, and differ in form.
+  static std::size_t series_of_kind(std::size_t place) { return colours - 1 + colours * place; }
+  bool any_unstable() const {
+    for (const Json& one : list_of(figure_, "series"))
+      for (const Json& point : list_of(one, "points"))
+        if (is_point(point) && !(point.size() > 2 && point[2].is_boolean() && point[2].get<bool>())) return true;
+    return false;
+  }
   static bool is_point(const Json& point) {
     return point.is_array() && point.size() >= 2 && point[0].is_number() && point[1].is_number() &&
            std::isfinite(point[0].get<double>()) && std::isfinite(point[1].get<double>());

@@ -37,7 +37,7 @@ class RowFigure : public AskFigure {
     axis_.emplace(values, logarithms, left, right, most_ticks);
     double y = legend(names, 0, boxes);
     y = labels_at(*axis_, y);
-    constexpr double tall = 420;
+    constexpr double tall = 300;  // of the box in which a person sees it
     double height = 0;
     for (const Row& row : all) height += lane * row.lanes + 2 * gap + (beside ? 0 : line_height);
     // Of a tall one the axis is at both ends.

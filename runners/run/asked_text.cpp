@@ -32,6 +32,15 @@ std::string unit_of(const VerdictRow& row) {
 std::string value_cell(const VerdictRow& row) {
   if (!row.value && row.low && row.high && *row.low == *row.high) return short_number(*row.low);
   if (!row.value) return row.low && row.high ? short_number(*row.low) + " to " + short_number(*row.high) : "";
+  constexpr int in_full = 12;
+  if (row.given) return short_number(*row.value, in_full);
+  if (row.allowed && *row.value > 0) {
+    constexpr int digits = 3;
+    const auto down = [](double value) { return value > 0 ? short_number_down(value, digits) : short_number(value); };
+    const std::string value = down(*row.value);
+    if (!row.low || !row.high || *row.low == *row.high) return value;
+    return fmt::format("{} ({} to {})", value, down(*row.low), down(*row.high));
+  }
   answers::MeasureWords words;
   words.unit = unit_of(row);
   words.decades = words.unit != "%" && answers::measure_words(row.measure).decades;

@@ -18,12 +18,14 @@ namespace ricochet {
 namespace {
 
 using asks::VerdictRow;
+using asks::WordAtPlace;
 
 /// A value with what tells it from the others of its result.
 struct KeyedValue {
   std::string table, of;
   Row key;
   VerdictRow row;
+  bool in_words = false;
 };
 
 std::string json_text(const asks::Ask& ask) {
@@ -42,15 +44,29 @@ Records by_id(const StudyResults& results) {
 void add_verdicts(const AnalysedResults& results, const std::vector<std::string>& chosen,
                   std::vector<KeyedValue>& out) {
   const Records records = by_id(results);
-  for (const auto& [ask, answered] : results.asked.all)
+  const auto add_levels = [&](Row& key, const std::string& of_case, const std::string& level) {
+    if (const auto record = records.find(of_case); record == records.end())
+      key.emplace_back(level);
+    else
+      for (Cell& cell : axes_of(*record->second, chosen)) key.push_back(std::move(cell));
+  };
+  for (const auto& [ask, answered] : results.asked.all) {
+    for (const WordAtPlace& one : answered.words) {
+      Row key{one.place};
+      add_levels(key, one.of_case, one.level);
+      VerdictRow row;
+      row.level = one.level + (one.level.empty() ? "" : ", ") + one.place;
+      row.verdict = one.word;
+      row.reason = one.known ? "" : one.word;
+      out.push_back({"verdicts", json_text(ask), std::move(key), std::move(row), true});
+    }
+    if (!answered.words.empty()) continue;
     for (const VerdictRow& row : answered.rows) {
       Row key{row.measure, row.stop, row.unit};
-      if (const auto record = records.find(row.of_case); record == records.end())
-        key.emplace_back(row.level);
-      else
-        for (Cell& cell : axes_of(*record->second, chosen)) key.push_back(std::move(cell));
+      add_levels(key, row.of_case, row.level);
       out.push_back({"verdicts", json_text(ask), std::move(key), row});
     }
+  }
 }
 
 /// Columns of both but those that are refined.
@@ -128,6 +144,10 @@ PairChange change_of(PairedValue& pair) {
   if (!pair.b) return PairChange::only_a;
   if (!pair.a) return PairChange::only_b;
   const VerdictRow &a = *pair.a, &b = *pair.b;
+  if (pair.in_words)
+    return a.verdict == b.verdict                 ? PairChange::equal
+           : a.reason.empty() && b.reason.empty() ? PairChange::beyond
+                                                  : PairChange::no_interval;
   const auto known = [](const VerdictRow& row) { return row.value || row.low; };
   if (known(a) != known(b)) return known(a) ? PairChange::only_a : PairChange::only_b;
   if (a.value && b.value) pair.difference = *b.value - *a.value;
@@ -145,7 +165,7 @@ PairChange change_of(PairedValue& pair) {
 
 bool PairedValue::has_values() const {
   const auto has = [](const std::optional<VerdictRow>& row) { return row && (row->value || row->low); };
-  return has(a) || has(b);
+  return in_words || has(a) || has(b);
 }
 
 std::string PairedValue::level() const {
@@ -159,6 +179,12 @@ std::size_t PairedResults::count(PairChange change) const {
       std::count_if(values.begin(), values.end(), [&](const PairedValue& one) { return one.change == change; }));
 }
 
+std::size_t PairedResults::count(PairChange change, bool in_words) const {
+  return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), [&](const PairedValue& one) {
+    return one.change == change && one.in_words == in_words;
+  }));
+}
+
 PairedResults pair_results(const AnalysedResults& a, const AnalysedResults& b) {
   PairedResults out{compare_studies(a, b), {}, {}};
   const std::vector<std::string> chosen = chosen_columns(a, b);
@@ -166,12 +192,12 @@ PairedResults pair_results(const AnalysedResults& a, const AnalysedResults& b) {
   std::map<std::string, std::size_t> places;
   for (KeyedValue& one : values_of(a, chosen, told)) {
     places[key_of(one.key)] = out.values.size();
-    out.values.push_back({one.table, one.of, std::move(one.row), {}});
+    out.values.push_back({.table = one.table, .of = one.of, .a = std::move(one.row), .in_words = one.in_words});
   }
   for (KeyedValue& one : values_of(b, chosen, told)) {
     const auto place = places.find(key_of(one.key));
     if (place == places.end())
-      out.values.push_back({one.table, one.of, {}, std::move(one.row)});
+      out.values.push_back({.table = one.table, .of = one.of, .b = std::move(one.row), .in_words = one.in_words});
     else
       out.values[place->second].b = std::move(one.row);
   }

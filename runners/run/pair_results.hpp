@@ -15,7 +15,8 @@
 namespace ricochet {
 
 /// What became of a value [a⁻, a⁺] in [b⁻, b⁺]. `beyond`: the intervals share no value, |b − a| > u with u the sum of
-/// the half intervals that face each other. `no_interval`: different values, of which one at least has none.
+/// the half intervals that face each other. `no_interval`: different values, of which one at least has none. Of words:
+/// equal, beyond, or `no_interval` where one is "undecided".
 enum class PairChange { equal, within, beyond, no_interval, only_a, only_b };
 constexpr std::array<const char*, 6> words_of(PairChange) {
   return {"equal", "within u", "changed", "no interval", "only in A", "only in B"};
@@ -27,6 +28,7 @@ struct PairedValue {
   std::string of;     ///< the ask as JSON; "" of other tables
   std::optional<asks::VerdictRow> a = {}, b = {};
   PairChange change = PairChange::equal;
+  bool in_words = false;                          ///< two verdicts at one place, and no numbers
   std::optional<double> difference = {}, u = {};  ///< b − a, and what the intervals leave of it
 
   const asks::VerdictRow& any() const { return a ? *a : *b; }
@@ -48,6 +50,8 @@ struct PairedResults {
   std::vector<PairedValue> values;  ///< table by table, in A's order, then what B alone has
 
   std::size_t count(PairChange change) const;
+  /// Those in words or in numbers alone.
+  std::size_t count(PairChange change, bool in_words) const;
 };
 
 /// Rows of verdicts, limits and uncertainty. A limit is found again by its case's levels on the axes of both, step and

@@ -40,8 +40,8 @@ std::vector<const PairedValue*> by_change(const PairedResults& pairs) {
   return out;
 }
 
-std::string said(const std::optional<VerdictRow>& row) {
-  return row ? value_cell(*row) : "";
+std::string said(const PairedValue& value, const std::optional<VerdictRow>& row) {
+  return !row ? "" : value.in_words ? row->verdict : value_cell(*row);
 }
 
 std::string asks_text(const PairedResults& pairs) {
@@ -70,8 +70,8 @@ std::string values_text(const PairedResults& pairs) {
                                   any.stop,
                                   any.level,
                                   any.unit == "1" ? "" : any.unit,
-                                  said(one->a),
-                                  said(one->b),
+                                  said(*one, one->a),
+                                  said(*one, one->b),
                                   word(one->change)};
     if (met.insert(line).second && ++told <= most_values) table.add(std::move(line));
   }
@@ -98,18 +98,43 @@ std::string counts_line(const PairedResults& pairs) {
   return out.empty() ? "none" : out;
 }
 
-std::string paired_verdict(const PairedResults& pairs) {
-  const std::size_t beyond = pairs.count(PairChange::beyond), bare = pairs.count(PairChange::no_interval),
-                    only = pairs.count(PairChange::only_a) + pairs.count(PairChange::only_b),
-                    both = pairs.values.size() - only;
-  if (both == 0) return "No value is in both.";
-  if (pairs.count(PairChange::equal) == both && only == 0) return "Nothing changed: every value is equal.";
+namespace {
+
+/// How many numbers changed beyond u; "" where none is in both.
+std::string numbers_changed(const PairedResults& pairs) {
+  const auto count = [&](PairChange change) { return pairs.count(change, false); };
+  const std::size_t beyond = count(PairChange::beyond), bare = count(PairChange::no_interval),
+                    both = beyond + bare + count(PairChange::within) + count(PairChange::equal);
+  if (both == 0) return "";
   std::string out = beyond > 0 ? fmt::format("{} of {} changed by more than the two uncertainties together", beyond,
                                              report::count_text(both, "value", "values"))
                                : fmt::format("No value is known to have changed, of {} in both", both);
   if (bare > 0)
     out += fmt::format("; of {} that differ{} this cannot be told, without an interval", bare, bare == 1 ? "s" : "");
   return out + ".";
+}
+
+/// In how many places the motion is another one; "" where none is in both.
+std::string words_changed(const PairedResults& pairs) {
+  const auto count = [&](PairChange change) { return pairs.count(change, true); };
+  const std::size_t beyond = count(PairChange::beyond), open = count(PairChange::no_interval),
+                    both = beyond + open + count(PairChange::equal);
+  if (both == 0) return "";
+  std::string out =
+      fmt::format("The motion of {} of {} is another one", beyond, report::count_text(both, "orbit", "orbits"));
+  if (open > 0) out += fmt::format("; {} {} undecided in one of the two", open, open == 1 ? "is" : "are");
+  return out + ".";
+}
+
+}  // namespace
+
+std::string paired_verdict(const PairedResults& pairs) {
+  const std::size_t only = pairs.count(PairChange::only_a) + pairs.count(PairChange::only_b),
+                    both = pairs.values.size() - only;
+  if (both == 0) return "No value is in both.";
+  if (pairs.count(PairChange::equal) == both && only == 0) return "Nothing changed: every value is equal.";
+  const std::string words = words_changed(pairs), numbers = numbers_changed(pairs);
+  return words + (words.empty() || numbers.empty() ? "" : " ") + numbers;
 }
 
 std::string paired_text(const PairedResults& pairs, const AnalysedResults& a, const AnalysedResults& b) {

@@ -184,6 +184,12 @@ std::string short_number(double value, int digits) {
   return with_minus(text);
 }
 
+std::string short_number_down(double value, int digits) {
+  const double digit = std::pow(10.0, std::floor(std::log10(value)) - (digits - 1));
+  constexpr double round_off = 1e-9;
+  return short_number(std::floor(value / digit * (1 + round_off)) * digit, digits);
+}
+
 std::string fraction_text(double value) {
   if (value == 0.5) return "½";
   if (value == 0.25) return "¼";

@@ -53,6 +53,8 @@ double to_digits(double value, int digits);
 std::string with_minus(std::string text);
 /// `digits` significant digits, at least as many as a whole number below 1e5 has; exponents short: "1.2e-5".
 std::string short_number(double value, int digits = 4);
+/// The same of a value above 0 rounded down: of what must not be exceeded.
+std::string short_number_down(double value, int digits);
 /// 0.5 as "½", 0.25 as "¼", 0.75 as "¾"; else short_number().
 std::string fraction_text(double value);
 

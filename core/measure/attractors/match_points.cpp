@@ -78,8 +78,10 @@ class Matching {
  private:
   double distance(const CasePoint& a, const CasePoint& b) const {
     const double apart = std::max(0.0, std::abs(a.parameter - b.parameter) - a.half - b.half);
-    return apart / scales_.parameter + std::abs(a.displacement - b.displacement) / scales_.displacement +
-           arc_weight * std::abs(a.arc - b.arc) / scales_.arc;
+    double moved = std::abs(a.displacement - b.displacement) / scales_.displacement;
+    if (a.turns && b.turns)
+      moved -= std::sqrt((std::abs(a.parameter - b.parameter) + a.half + b.half) / scales_.parameter);
+    return apart / scales_.parameter + std::max(0.0, moved) + arc_weight * std::abs(a.arc - b.arc) / scales_.arc;
   }
 
   /// Whether two points may be one. How prominent a fold of the motion is depends on how far its branch goes.

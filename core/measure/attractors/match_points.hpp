@@ -21,6 +21,7 @@ struct CasePoint {
   double displacement = 0;  ///< of the tip at the strobe, m
   double arc = 0;           ///< along the branch from its start, m
   double prominence = 0;    ///< of a fold: how far the parameter goes back; 0: not known
+  bool turns = false;       ///< whether the parameter goes back there, as λ − λ_f ∝ (u − u_f)²
 };
 
 /// What distances between points are measured by, > 0.
@@ -49,7 +50,8 @@ struct MatchedPoints {
 /// Names special points over cases, by the links of all cases (one for each owner).
 ///
 /// The distance of two points of a family is |Δλ|/Λ + |Δu|/U + |Δs|/(10 S), |Δλ| less what both intervals explain. Arcs
-/// count a tenth, because folds that a step invents lengthen them. Folds whose prominences differ by more than a factor
+/// count a tenth, because folds that a step invents lengthen them. Where the parameter turns, |Δu|/U is less what its
+/// interval leaves of u, √((|Δλ| + both half intervals)/Λ). Folds whose prominences differ by more than a factor
 /// of 3 are no pair. Points of linked cases are paired one to one, nearest first, up to 0.05. The bound may be narrower
 /// along a refinement. The next coarser pairs that are told from others give it: no other point is less than three
 /// times as far. It is four times the largest distance of such pairs of the family, 0.001 at least. A point that its

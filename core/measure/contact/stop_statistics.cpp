@@ -26,14 +26,26 @@ void StopStatistics::see(const Marcher& marcher) {
 }
 
 void StopStatistics::instant(const ContactInstant& one) {
-  const int part = window_.of(one.time, 1e-6 * h_);
-  if (part < 0) return;
-  PushTotals& totals = pushes_[2 * at(one.point, part) + static_cast<std::size_t>(one.side)];
-  totals.impulse += one.given;
-  totals.squares += one.given * one.force;
-  totals.contact_time += one.lasts;
-  totals.peak = std::max(totals.peak, one.force);
-  totals.impacts += one.closes;
+  const double slack = 1e-6 * h_, begins = one.time - one.lasts;
+  const auto totals = [&](int part) -> PushTotals& {
+    return pushes_[2 * at(one.point, part) + static_cast<std::size_t>(one.side)];
+  };
+  const auto add = [&](int part, double share) {
+    PushTotals& of = totals(part);
+    of.impulse += share * one.given;
+    of.squares += share * one.given * one.force;
+    of.contact_time += share * one.lasts;
+    of.peak = std::max(of.peak, one.force);
+  };
+  const int part = window_.of(one.time, slack);
+  if (part >= 0) totals(part).impacts += one.closes;
+  if (part >= 0 && begins >= window_.begin(part) - slack) return add(part, 1);
+  if (one.time <= window_.from || begins >= window_.to) return;
+  // It began before a part does, or ends after the window.
+  for (int k = 0; k < window_.count; ++k) {
+    const double inside = std::min(one.time, window_.begin(k + 1)) - std::max(begins, window_.begin(k));
+    if (inside > 0) add(k, inside / one.lasts);
+  }
 }
 
 RunningMoments StopStatistics::displacement(int point) const {

@@ -275,6 +275,7 @@ std::optional<MotionSampler::Read> MotionSampler::read(double t) {
   long long n = std::llround(ratio);
   const bool whole = std::abs(ratio - static_cast<double>(n)) <= rounding_of_steps;
   if (!whole) n = static_cast<long long>(std::floor(ratio));
+  at_steps_ += whole;
   if (whole && n == 0) return Read{problem.position, problem.velocity, 0};
   if (whole) {
     const std::array<const State*, 3> s = {at(n - 1), at(n), at(n + 1)};

@@ -123,6 +123,9 @@ class MotionSampler {
   bool next();
 
   std::size_t sampled() const { return next_; }
+  /// With which order in the step velocities are read: 2 by (q_{n+1} − q_{n−1})/2h where most times are at steps, else
+  /// 3 by the slope of a cubic.
+  int velocity_order() const { return 2 * at_steps_ > sampled() ? 2 : 3; }
   const SampledMotion& motion() const { return motion_; }
   /// The motion, events included.
   SampledMotion finish();
@@ -154,7 +157,7 @@ class MotionSampler {
   double offset_ = 0;       // of the impulses kept, in steps
   std::deque<State> states_;
   SampledMotion motion_;
-  std::size_t next_ = 0;
+  std::size_t next_ = 0, at_steps_ = 0;
   bool started_ = false;
 };
 

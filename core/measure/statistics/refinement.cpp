@@ -298,6 +298,7 @@ bool OrderRun::clean() const {
     falling += slopes[k] >= falls;
     like += inside || (slopes[k] >= falls && std::abs(slopes[k] - order) <= width);
   }
+  if (length == 2 && order > steepest_of_two) return false;
   if (length == 2) return like == falling && most - least <= narrow * order;
   const auto begin = slopes.begin() + static_cast<std::ptrdiff_t>(first),
              end = begin + static_cast<std::ptrdiff_t>(length);

@@ -110,6 +110,7 @@ struct OrderRun {
   /// Whether it may be one of chance. Then it has two slopes alone, half of all at most, and ends before the finest
   /// error above the floor.
   bool in_passing = false;
+  static constexpr double steepest_of_two = 3.4;
   std::optional<double> stops_at;     ///< the error at which the fall ends: the smallest that was seen
   double last = 0, last_size = 0;     ///< the error at the finest size
   double smallest = 0;                ///< of all errors
@@ -119,7 +120,7 @@ struct OrderRun {
   std::vector<double> beyond;
   /// Whether the run is what the error does: no chance, at least half of the slopes that fall are like it, one beyond
   /// it at most is not. Slopes that fall off by 0.3 of the order approach a level. Two slopes alone agree to 0.15 of
-  /// it, and no other falls.
+  /// it, and no other falls; above order 3.4 they are chance.
   bool clean() const;
 };
 constexpr std::array<const char*, 6> words_of(OrderRun::Verdict) {

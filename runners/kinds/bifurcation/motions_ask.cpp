@@ -106,6 +106,7 @@ struct CaseMotions {
   const CaseRecord* record = nullptr;
   std::string level;
   std::map<double, ValueMotions> at = {};
+  std::vector<asks::WordAtPlace> orbits = {};
   std::vector<MotionStretch> stretches = {};
   std::vector<MotionChange> changes = {};
   double undecided = 0;  ///< share of the range
@@ -135,7 +136,7 @@ class MotionsAlong {
     parameter_.unit = report::shown_unit(parameter_.unit);
     for (std::size_t c = 0; c < swept.records.size(); ++c)
       if (std::find(cases_.begin(), cases_.end(), swept.records[c]) != cases_.end())
-        read(*swept.records[c], swept.diagram.cases[c]);
+        read(*swept.records[c], swept.diagram.cases[c], swept.diagram.starts);
     find_heads();
     judge();
   }
@@ -170,6 +171,7 @@ class MotionsAlong {
                 std::string("changes between these") + (change.open_between ? "; undecided values between" : ""), {},
                 change.low, change.high, parameter_.unit);
     }
+    for (const CaseMotions* one : heads_) out.words.insert(out.words.end(), one->orbits.begin(), one->orbits.end());
     say(out);
     out.figure = {{"form", "ranges"}, {"x", spoken(parameter_.name)}, {"x_unit", parameter_.unit}, {"rows", drawn}};
     return out;
@@ -184,7 +186,7 @@ class MotionsAlong {
     at.word = ricochet::text(run.motion);
   }
 
-  void read(const CaseRecord& record, const DiagramCase& of) {
+  void read(const CaseRecord& record, const DiagramCase& of, const std::vector<DiagramStart>& starts) {
     CaseMotions& out = told_.emplace_back();
     out.record = &record;
     out.level = evidence_.level(record, columns_);
@@ -193,6 +195,14 @@ class MotionsAlong {
       if (!std::isfinite(run.parameter)) continue;
       by_start[run.start][run.parameter] = &run;
       add_run(out.at[run.parameter], run);
+      out.orbits.push_back(
+          {record.id, out.level,
+           fmt::format("{:.10g}{}, start {}", run.parameter, parameter_.unit.empty() ? "" : " " + parameter_.unit,
+                       starts[static_cast<std::size_t>(run.start)].name),
+           run.decided()                         ? motion_words(run.motion)
+           : !run.settled && !run.status.empty() ? run.status
+                                                 : "undecided",
+           run.decided()});
     }
     // Where the study refined, only starts whose motion changed were marched: others are as on both sides.
     for (auto& [value, at] : out.at)
@@ -228,10 +238,17 @@ class MotionsAlong {
   }
 
   /// The share of the range of which the finest cases leave open what it does, that of the case with most undecided
-  /// starts.
+  /// starts. Those without any orbit tell nothing of the motion.
   void judge() {
-    std::map<double, std::size_t> speak;
+    std::vector<const CaseMotions*> followed;
     for (const CaseMotions* one : heads_)
+      if (!std::all_of(one->stretches.begin(), one->stretches.end(), [](const auto& part) { return part.none(); }))
+        followed.push_back(one);
+    lost_ = heads_.size() - followed.size();
+    // Where no method has any orbit, that is what is told.
+    if (followed.empty()) followed = heads_;
+    std::map<double, std::size_t> speak;
+    for (const CaseMotions* one : followed)
       for (const auto& [value, at] : one->at) ++speak[value];
     std::size_t most = 0;
     for (const auto& [value, count] : speak) most = std::max(most, count);
@@ -241,7 +258,7 @@ class MotionsAlong {
       if (2 * count >= most) values.insert(value);
     for (const auto& [value, width] : widths_of(values)) {
       double open = 0;
-      for (const CaseMotions* one : heads_)
+      for (const CaseMotions* one : followed)
         if (const auto at = one->at.find(value); at != one->at.end()) open = std::max(open, at->second.open_share());
       undecided_ += width * open;
     }
@@ -325,6 +342,9 @@ class MotionsAlong {
       for (const MotionStretch& part : one.stretches) ended += part.ended;
     const std::string share =
         answers::percent(undecided_) + " of the range is undecided" + (ended > 0 ? " or has no orbit" : "");
+    if (lost_ > 0 && heads_.size() > lost_)
+      out.aside.push_back(fmt::format("{} of {} methods have no orbit; the share that is undecided is of the others.",
+                                      lost_, heads_.size()));
     if (ended > 0)
       out.aside.push_back(
           ended == 1 ? "One orbit is refused or not followed to its end: values.csv says why."
@@ -387,6 +407,7 @@ class MotionsAlong {
   std::vector<CaseMotions> told_;
   std::vector<const CaseMotions*> heads_;
   double undecided_ = 0;
+  std::size_t lost_ = 0;  // of the heads: without any orbit
 };
 
 /// "/scene/support/pulsation": "scene.support.pulsation", "support.pulsation", "pulsation", and itself.

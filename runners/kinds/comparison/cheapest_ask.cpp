@@ -138,7 +138,7 @@ class CheapestAsk {
     else if (unknown)
       out.reason = "a finer size has no error";
     else
-      out.reason = "it ends at " + answers::percent(*share(*out.best));
+      out.reason = "it ends at " + answers::percent_beside(*share(*out.best), within_);
   }
 
   std::string level(const Reach& one) const { return study_.words(*one.cases.front(), study_.columns()); }
@@ -210,7 +210,7 @@ class CheapestAsk {
       }
       const Reach& best = *never.front();
       out.reason = best.reason;
-      const std::string least = answers::percent(*share(*best.best));
+      const std::string least = answers::percent_beside(*share(*best.best), within_);
       out.sentence = asks::fitting(
           {fmt::format("{}: no method brings {} within {} and keeps it there; the least is {} with {}{}{}.",
                        hidden ? "Open" : "Nobody", error, asked, least, name(best), at(*best.best),

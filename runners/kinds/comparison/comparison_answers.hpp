@@ -13,12 +13,20 @@ namespace ricochet {
 Table order_runs_table(const Choices& study);
 
 /// One method's errors along a refinement, at the finest of the other.
+/// The order in the step that an error may show.
+struct ShownOrder {
+  std::optional<double> order;  ///< what the scheme declares, or less where velocities are read by less
+  std::string because = {};     ///< why it is less
+};
+ShownOrder shown_order(const CaseRecord& record, const std::string& error);
+
 struct MethodRun {
   Cases cases;
   const CaseRecord* finest = nullptr;
   OrderRun run;
-  std::optional<double> declared, motion;  ///< what the scheme declares; what a motion at rest would err by
-  std::vector<SizedValue> errors = {};     ///< the coarsest first
+  ShownOrder declared;
+  std::optional<double> motion;         ///< what a motion at rest would err by
+  std::vector<SizedValue> errors = {};  ///< the coarsest first
   double floor = 0;
 };
 

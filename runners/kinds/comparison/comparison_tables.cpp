@@ -9,6 +9,7 @@
 #include <set>
 
 #include "runners/json/json_text.hpp"
+#include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/study/body_keys.hpp"
@@ -173,7 +174,8 @@ std::optional<OrderRow> order_row(const StudyResults& results, const Cases& grou
   if (!finest) return std::nullopt;
   OrderQuestion question;
   // A declared order is one in h; the two ends of an interval of time are no norm of the motion.
-  if (refined == "step") question.declared = measure(*finest, "declared_order");
+  const ShownOrder shown = refined == "step" ? shown_order(*finest, error) : ShownOrder{};
+  question.declared = shown.order;
   question.refined = refined == "step" ? "step" : "element length";
   question.other_error = other_error(results, *finest, other, "error." + error);
   question.other = refined == "step" ? "the mesh" : "the step";
@@ -190,8 +192,8 @@ std::optional<OrderRow> order_row(const StudyResults& results, const Cases& grou
     told.saturates_at = saturates_at(question, measure(*finest, "reference_of_law") != 0.0);
   }
   told.verdict = fit.verdict;
-  told.reason =
-      fit.reason + (fit.gci ? fmt::format("; grid convergence index of the finest point used: {:.2g}", *fit.gci) : "");
+  told.reason = fit.reason + (shown.because.empty() ? "" : "; " + shown.because) +
+                (fit.gci ? fmt::format("; grid convergence index of the finest point used: {:.2g}", *fit.gci) : "");
   return told;
 }
 

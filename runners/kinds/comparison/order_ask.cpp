@@ -52,8 +52,8 @@ constexpr double orders_agree = 0.35;
 
 /// Whether a clean order in the step is less than the one that the scheme declares.
 bool below_declared(const Method& method) {
-  return method.found == Found::clean && method.run->declared &&
-         method.run->run.order < *method.run->declared - orders_agree;
+  const auto& declared = method.run->declared.order;
+  return method.found == Found::clean && declared && method.run->run.order < *declared - orders_agree;
 }
 
 class OrderAsk {
@@ -170,14 +170,17 @@ class OrderAsk {
     switch (run.verdict) {
       case Run::order:
         if (!run.clean())
-          parts.push_back(fmt::format("{} of {} slopes agree", run.length, run.slopes.size()));
+          parts.push_back(run.length == 2 && run.order > OrderRun::steepest_of_two
+                              ? "two slopes alone, steeper than a scheme's"
+                              : fmt::format("{} of {} slopes agree", run.length, run.slopes.size()));
         else if (!run.beyond.empty())
           parts.push_back(fmt::format("{:.2f} once at finer sizes", run.beyond.front()));
         if (run.stops_at) parts.push_back("the error ends at " + with_unit(*run.stops_at) + share);
-        if (refined == "step" && one.declared)
-          parts.push_back(std::abs(run.order - *one.declared) <= orders_agree
+        if (const auto& declared = one.declared.order; refined == "step" && declared)
+          parts.push_back(!one.declared.because.empty() ? one.declared.because
+                          : std::abs(run.order - *declared) <= orders_agree
                               ? "as declared"
-                              : "the scheme declares " + fraction_text(*one.declared));
+                              : "the scheme declares " + fraction_text(*declared));
         break;
       case Run::stops:
         parts.push_back("the error ends at " + with_unit(run.smallest) + share);

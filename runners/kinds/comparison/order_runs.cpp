@@ -50,7 +50,7 @@ std::vector<MethodRun> runs_of(const Choices& study, const Cases& all, const std
     one.floor = floor;
     one.cases = cases;
     one.run = *order_run(errors, floor);
-    if (step) one.declared = measure(*one.finest, "declared_order");
+    if (step) one.declared = shown_order(*one.finest, error);
     if (const auto motion = measure(*one.finest, "size." + error); motion && *motion > 0) one.motion = motion;
     out.push_back(std::move(one));
   }
@@ -89,7 +89,8 @@ Table order_runs_table(const Choices& study) {
         for (Cell cell :
              {Cell(refined), Cell(error), Cell(word(one.run.verdict)), slope(one.run.order), slope(one.run.least),
               slope(one.run.most), slope(one.run.from), slope(one.run.to), Cell(one.run.stops_at),
-              one.run.stops_at && one.motion ? Cell(*one.run.stops_at / *one.motion) : Cell(), Cell(one.declared)})
+              one.run.stops_at && one.motion ? Cell(*one.run.stops_at / *one.motion) : Cell(),
+              Cell(one.declared.order)})
           row.push_back(std::move(cell));
         table.rows.push_back(std::move(row));
       }

@@ -112,6 +112,7 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   record.steps = std::min(marcher.step(), prepared.steps);
   const bool whole = sampler.sampled() == set.grid.times.size();
   put_measure(record, "horizon", set.horizon);
+  put_measure(record, "velocity_order", sampler.velocity_order());
   put_measure(record, "steps_visited", static_cast<double>(marcher.steps_visited()));
   const bool of_the_mesh = set.applicable.front()->of_the_mesh;
   put_measure(record, "reference_of_mesh", of_the_mesh ? 1 : 0);

@@ -488,7 +488,7 @@ class PointsAsk {
     const std::string own_ends = text(this->ends(&*first));
     const bool several = methods_.size() > 1;
     const std::string who = several ? "with " + study_.name(*first->record) + ", " : "",
-                      one = several ? fmt::format("with one of {} methods, ", methods_.size()) : "";
+                      one = several ? fmt::format("with the first of {} methods, ", methods_.size()) : "";
     for (const bool named : {true, false})
       for (std::size_t count = list.size(); count > 0; --count) {
         if (named && count < list.size() && count < 2) continue;

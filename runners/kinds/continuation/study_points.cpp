@@ -64,6 +64,7 @@ StudyPoints::StudyPoints(const Choices& study) : study_(study) {
     if (!changes_orbit(one.kind) || !one.row.parameter) continue;
     points.push_back(one);
     points.back().family = word(one.kind);
+    points.back().turns = one.kind == PointKind::fold;
     if (one.branch >= 0)
       points.back().family += fmt::format(" of period {} {}", one.period,
                                           !one.symmetric   ? ""

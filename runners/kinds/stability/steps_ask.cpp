@@ -46,9 +46,7 @@ bool by_the_stop(double open, double closed) {
 
 /// A largest step in three digits, rounded down: a step that is read off a sentence must be allowed.
 std::string step_words(double step) {
-  const double digit = std::pow(10.0, std::floor(std::log10(step)) - 2);
-  constexpr double round_off = 1e-9;
-  return short_number(std::floor(step / digit * (1 + round_off)) * digit, 3);
+  return short_number_down(step, 3);
 }
 
 class StepsAsk {
@@ -90,6 +88,7 @@ class StepsAsk {
       row.measure = "step";
       row.level = level(one);
       row.value = one.step;
+      row.allowed = true;
       row.low = one.low;
       row.high = one.high;
       row.unit = "s";

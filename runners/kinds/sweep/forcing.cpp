@@ -271,12 +271,17 @@ void check_forcing(const SceneSpec& scene) {
           "says no period, and steps per period need one: expected \"period\" (s) of a table that repeats, or "
           "\"pulsation\" (rad/s) of a formula that does. A displacement may have an amplitude and a pulsation instead");
   const std::vector<Wave> waves = driving(scene);
-  if (waves.empty())
-    throw InputError("/scene/support/pulsation",
+  if (waves.empty()) {
+    const auto forces = harmonic_forces(scene);
+    const auto of_force =
+        std::find_if(forces.begin(), forces.end(), [](const auto& one) { return one.force.amplitude != 0; });
+    const bool shaken = scene.support.amplitude != 0 || of_force == forces.end();
+    throw InputError(shaken ? "/scene/support/pulsation" : of_force->pointer + "/pulsation",
                      fmt::format("no forcing has a period (the pulsation is 0), and steps per period need one. "
                                  "Expected: a pulsation above 0 of the support{}, the period of a motion or a table, "
                                  "or sin(ωt) and cos(ωt) in a load",
-                                 harmonic_forces(scene).empty() ? "" : " or of a force"));
+                                 forces.empty() ? "" : " or of a force"));
+  }
   const double said = stated(scene);
   if (const auto apart = common_period(waves).apart) {
     const Wave &one = waves[apart->first], &other = waves[apart->second];

@@ -104,6 +104,22 @@ TEST_CASE("a finer pair is not farther apart than four times what coarser pairs 
   CHECK(match_points(nearer, chain(3), scales).names == 1);
 }
 
+TEST_CASE("where the parameter turns, the motion is known as the root of its parameter is") {
+  // Found within λ ± half: u is open by the root of that over the curvature. By chance two coarser ones agree better.
+  std::vector<CasePoint> points;
+  const double half[] = {2.6e-6, 8e-6, 1.8e-5}, at[] = {0.2234311, 0.2234310, 0.2234276};
+  const double u[] = {-0.131547, -0.130800, -0.130819};
+  for (const bool turns : {true, false}) {
+    points.clear();
+    for (std::size_t c = 0; c < 3; ++c) {
+      points.push_back({c, 1, "fold", at[c], half[c], u[c], 0.54, 0, turns});
+      points.push_back({c, 1, "fold", 0.0876201 - 1e-6 * static_cast<double>(c), 1e-7, -0.0848, 0.16, 0, turns});
+    }
+    const MatchedPoints found = match_points(points, chain(3), {0.295, 0.2947, 1});
+    CHECK(found.names == (turns ? 2 : 1));
+  }
+}
+
 TEST_CASE("what points of one kind show is no bound for another") {
   // First contacts stay where they are; folds move by 1e-4 m, and the coarsest case has another one.
   std::vector<CasePoint> points = {point(0, 0.1005), point(1, 0.1004), point(2, 0.0931)};

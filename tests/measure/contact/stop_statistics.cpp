@@ -174,3 +174,34 @@ TEST_CASE("the second shock of a mass between two springs is that of its closed 
   CHECK(second.peak == Approx(9950.37).epsilon(share));
   CHECK(second.impulse == Approx(198.0198).epsilon(share));
 }
+
+TEST_CASE("what is always in contact is so for all of a window that cuts steps, in each of its parts") {
+  constexpr double mass = 100, stiffness = 1e4, stop = 1e6, force = 500;
+  SceneSpec scene;
+  scene.structure = OscillatorSpec{mass, stiffness, 0, {}};
+  scene.stops.upper = Formula(0.0);
+  scene.stops.place = StopsSpec::Place::tip;
+  scene.load.formula = Formula(force);
+  scene.initial.displacement = Formula(0.5 * force / (stiffness + stop));
+  const auto time = GENERATE(Choice{"newmark-dumont-paoli", {{"beta", 0.25}}}, Choice{"newmark"},
+                             Choice{"moreau-jean", {{"theta", 0.7}}}, Choice{"hht-alpha"});
+  INFO(time.name);
+  constexpr double step = 1e-3;
+  Marcher made = marcher(
+      scene, 1, {{"consistent"}, {"penalty", {{"stiffness", stop}, {"evaluation", std::string("implicit")}}}, time},
+      step);
+  const WindowParts window{0.10037, 0.40012, 7};
+  StopStatistics statistics(made, window);
+  ImpactRecorder recorder(made);
+  recorder.tell(&statistics);
+  made.start({&recorder});
+  made.march(std::llround(0.5 / step) - made.step(), {&recorder});
+  recorder.finish(made);
+  double impulse = 0;
+  for (int part = 0; part < window.count; ++part) {
+    const PushTotals pushed = statistics.pushed(0, StopSide::upper, part);
+    CHECK(pushed.contact_time == Approx(window.length()).epsilon(1e-9));
+    impulse += pushed.impulse;
+  }
+  CHECK(impulse == Approx(statistics.pushed(0, StopSide::upper).impulse).epsilon(1e-12));
+}

@@ -238,6 +238,19 @@ TEST_CASE("errors that do not fall, jump about, or lie at the floor have no orde
   CHECK_FALSE(order_run({}, 0));
 }
 
+TEST_CASE("two slopes alone that are steeper than any scheme's are no clean order") {
+  const auto of = [](double p, std::size_t sizes) {
+    std::vector<SizedValue> errors;
+    for (std::size_t k = 0; k < sizes; ++k)
+      errors.push_back({std::pow(0.5, k), std::pow(0.5, p * static_cast<double>(k))});
+    return order_run(errors, 0)->clean();
+  };
+  CHECK(of(2, 3));
+  CHECK(of(3, 3));
+  CHECK_FALSE(of(4.2, 3));
+  CHECK(of(4, 5));
+}
+
 TEST_CASE("two slopes that agree before the finest errors may be chance, and are said to be in passing") {
   // Slopes 2, 2, 0, 0: the level is met after two.
   const auto passing = order_run({{1, 1}, {0.5, 0.25}, {0.25, 0.0625}, {0.125, 0.0625}, {0.0625, 0.0625}}, 0);

@@ -1,4 +1,6 @@
 // report --compare: what it says of two results is what their tables say.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -193,6 +195,51 @@ TEST_CASE("report --compare: what is no pair of results of one kind is told in a
     CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
   }
   CHECK_FALSE(fs::exists(here / "comparison.html"));
+}
+
+TEST_CASE("report --compare: motions of a sweep are compared orbit by orbit at the finest step") {
+  const Folder here;
+  const auto sweep = [&](const std::string& out, double stop, double pulsation) {
+    auto study = nlohmann::ordered_json::parse(R"json({
+      "name": "swept", "question": "Which motions?", "ask": [{"motions": "support.amplitude"}], "kind": "bifurcation",
+      "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.1},
+                "stops": {"at": "tip"}, "support": {"amplitude": 0.1}},
+      "methods": {"mass": "consistent", "contact": "signorini",
+                  "time": {"name": "newmark-dumont-paoli", "restitution": 0.7}},
+      "parameter": {"pointer": "/scene/support/amplitude", "from": 0.05, "to": 0.35, "count": 4},
+      "steps_per_period": [100, 200], "transient": {"periods": 60, "at_most": 120}, "keep": 64})json");
+    study["scene"]["stops"]["upper"] = stop;
+    study["scene"]["support"]["pulsation"] = pulsation;
+    here.write(out + ".json", study.dump());
+    REQUIRE(here.run("run " + out + ".json --out " + out).code == 0);
+  };
+  sweep("one", 0.2, 1.2);
+  sweep("other", 0.05, 2.8);
+  fs::copy(here / "one", here / "copy", fs::copy_options::recursive);
+  CHECK_THAT(here.run("report --compare one copy").out, Contains("Nothing changed"));
+  const Outcome said = here.run("report --compare one other");
+  REQUIRE(said.code == 0);
+  const auto motions = [&](const std::string& folder) {
+    std::map<std::string, std::string> out;
+    for (const auto& row : rows_of(here / (folder + "/values.csv")))
+      if (row.at("steps_per_period") == "200")
+        out[row.at("parameter") + row.at("start")] =
+            row.at("class") + (row.at("class") == "periodic" ? row.at("period") : "");
+    return out;
+  };
+  const auto a = motions("one"), b = motions("other");
+  REQUIRE(a.size() == b.size());
+  std::map<std::string, std::size_t> expected, found;
+  for (const auto& [place, motion] : a) {
+    const std::string& other = b.at(place);
+    ++expected[motion == other ? "equal" : motion == "undecided" || other == "undecided" ? "no interval" : "changed"];
+  }
+  for (const auto& row : rows_of(here / "comparison.csv"))
+    if (row.at("table") == "verdicts") ++found[row.at("change")];
+  CHECK(found == expected);
+  CHECK(expected["changed"] > 0);
+  CHECK_THAT(said.out,
+             Contains(fmt::format("The motion of {} of {} orbits is another one", expected["changed"], a.size())));
 }
 
 }  // namespace command_tests

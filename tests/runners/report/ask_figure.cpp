@@ -529,12 +529,16 @@ TEST_CASE("what is not stable of a branch is broken, every special point has its
   const Drawn drawn = read(svg);
   check_within(drawn);
   check_apart(drawn);
-  CHECK(all_of(svg, "class=\"branch s0\"").size() == 2);
+  // One of them, and that of the other branch, in the legend.
+  CHECK(all_of(svg, "class=\"branch s0\"").size() == 3);
+  CHECK(all_of(svg, "class=\"branch s1\"").size() == 1);
+  // Two special points and two words of the legend, in one colour that is no branch's.
+  CHECK(all_of(svg, "class=\"dot s7\"").size() == 4);
   CHECK(all_of(svg, "class=\"branch s0 unstable\"").size() == 1);
   CHECK(all_of(svg, "class=\"branch s1 unstable\"").size() == 1);
   CHECK(all_of(svg, "<title>fold: a at 1<").size() == 1);
   CHECK(all_of(svg, "<title>graze: a at 5<").size() == 1);
-  for (const char* one : {"fine", "coarse", "fold", "graze", "amplitude (m)", "displacement (m)"})
+  for (const char* one : {"fine", "coarse", "fold", "graze", "unstable", "amplitude (m)", "displacement (m)"})
     check_named(drawn, one);
 }
 

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "runners/kinds/comparison/comparison_tables.hpp"
+#include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"
 
@@ -54,4 +54,17 @@ TEST_CASE("a way of marching is part of the method: both ways of one scene stand
     CHECK(rows.text(row, "case") == "other");
     CHECK(rows.text(row, "other_case") == "one");
   }
+}
+
+TEST_CASE("errors of velocities show no order beyond that of their reading") {
+  CaseRecord record;
+  record.measures = {{"declared_order", 3}, {"velocity_order", 2}};
+  for (const char* error : {"velocity-l2", "energy"}) {
+    CHECK(shown_order(record, error).order == 2);
+    CHECK(shown_order(record, error).because == "velocities are read by order 2, the scheme declares 3");
+  }
+  CHECK(shown_order(record, "displacement-l2").order == 3);
+  record.measures[1].second = 3;
+  CHECK(shown_order(record, "energy").order == 3);
+  CHECK(shown_order(record, "energy").because.empty());
 }

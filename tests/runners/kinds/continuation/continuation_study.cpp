@@ -67,6 +67,14 @@ TEST_CASE("a scene without a forcing period has no orbits") {
   check_says(
       error_of(with("/scene/support/pulsation", 0)),
       {"/scene/support/pulsation: no forcing has a period (the pulsation is 0)", "the period of a motion or a table"});
+  // Where it is a force that repeats not, its key is named.
+  Json study = tube_continuation();
+  study["scene"] = Json::parse(R"json({
+    "structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "force": {"amplitude": 1, "pulsation": 0}},
+    "stops": {"lower": -0.3, "upper": 0.2, "at": "tip"}})json");
+  study["parameter"] = Json::parse(R"({"pointer": "/scene/stops/upper", "from": 0.1, "to": 0.2})");
+  study.erase("mesh");
+  check_says(error_of(study), {"/scene/structure/force/pulsation: no forcing has a period"});
 }
 
 TEST_CASE("a load of another period is an error") {
