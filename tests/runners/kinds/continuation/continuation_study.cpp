@@ -73,6 +73,7 @@ TEST_CASE("a scene without a forcing period has no orbits") {
     "structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "force": {"amplitude": 1, "pulsation": 0}},
     "stops": {"lower": -0.3, "upper": 0.2, "at": "tip"}})json");
   study["parameter"] = Json::parse(R"({"pointer": "/scene/stops/upper", "from": 0.1, "to": 0.2})");
+  study["orbits"] = Json::parse(R"([{"at": 0.15, "periods": 30}])");
   study.erase("mesh");
   check_says(error_of(study), {"/scene/structure/force/pulsation: no forcing has a period"});
 }
