@@ -154,6 +154,27 @@ Verdict knows_no_direction(const Friction& subject) {
   });
 }
 
+// What it says of sticking and sliding beside the motion that its effort leaves. A law that neither creeps nor gives
+// way sticks within its bound, and slides by all of the velocity.
+std::string wrong_slip(const FrictionLaw& law, const Rubbed& one) {
+  const bool exact = law.creeps(0.97) == 0 && law.gives_way() == 0;
+  const Eigen::VectorXd u = one.rate();
+  for (int i = 0; i < one.points(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double slid = one.slid[at], moves = one.of(u, i).norm(), push = one.of(one.effort, i).norm();
+    if (!(slid >= 0)) return fmt::format("a point slides at {:.3g} m/s, below 0", slid);
+    if (one.sticks[at] != 0 && slid != 0) return "a point that sticks slides";
+    constexpr double within = 0.99, tolerance = 1e-6, floor = 1e-9;
+    if (!exact) continue;
+    if (one.sticks[at] == 0 && std::abs(slid - moves) > tolerance * moves + floor)
+      return fmt::format("a point moves at {:.6g} m/s, and slides at {:.6g} by what it says", moves, slid);
+    if (one.sticks[at] == 0 && push < within * one.bound[at])
+      return fmt::format("a point is held by {:.3g} of its bound, and does not stick by what it says",
+                         push / one.bound[at]);
+  }
+  return "";
+}
+
 Verdict finds_one_effort(const Friction& subject) {
   return everywhere(subject, [](FrictionLaw& law, std::mt19937& random, int points, int rows) -> std::string {
     Rubbed one = drawn(random, law, points, rows), other = one;
@@ -170,10 +191,7 @@ Verdict finds_one_effort(const Friction& subject) {
     again.solve(law);
     twice.solve(law);
     if (again.effort != twice.effort) return "the same problem gives other bits";
-    for (int i = 0; i < points; ++i)
-      if (again.sticks[static_cast<std::size_t>(i)] != 0 && again.slid[static_cast<std::size_t>(i)] != 0)
-        return "a point that sticks slides";
-    return "";
+    return wrong_slip(law, again);
   });
 }
 

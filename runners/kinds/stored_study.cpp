@@ -42,7 +42,8 @@ nlohmann::ordered_json single_study(const StudyResults& results, const CaseRecor
   }
   study["scene"].erase("steps_per_period");
   for (const auto& [key, value] : results.study.items())
-    if (!study.contains(key) && key != "exclude") study[key] = value;
+    // What was asked of all cases is not asked of one.
+    if (!study.contains(key) && key != "exclude" && key != "ask") study[key] = value;
   return study;
 }
 

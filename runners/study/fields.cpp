@@ -99,7 +99,8 @@ Field duration() {
 }
 
 Field samples() {
-  return integer("samples", {2, 1000000, false, false}, 200, "Number of points of each sampled curve.");
+  return integer("samples", {2, 1000000, false, false}, 200,
+                 "Number of equal parts of the time of each sampled curve: one point more.");
 }
 
 Field optional(Field field) {

@@ -66,8 +66,19 @@ TEST_CASE("friction laws with one thing wrong are caught") {
   caught("no direction is special", "another effort", {}, [](FrictionProblem& problem) {
     for (int i = 0; i < problem.rows(); ++i) problem.effort[i] = std::max(problem.effort[i], -0.5 * problem.bound[0]);
   });
-  caught("one effort, found without memory", "a point that sticks slides", {}, [](FrictionProblem& problem) {
-    for (int i = 0; i < problem.points; ++i) problem.slid[i] += 1e-3;
+  const char* found = "one effort, found without memory";
+  caught(found, "a point that sticks slides", {}, [](FrictionProblem& problem) {
+    for (int i = 0; i < problem.points; ++i)
+      if (problem.sticks[i] != 0) problem.slid[i] += 1e-3;
+  });
+  caught(found, "and slides at", {}, [](FrictionProblem& problem) {
+    for (int i = 0; i < problem.points; ++i) problem.slid[i] *= 10;
+  });
+  caught(found, "below 0", {}, [](FrictionProblem& problem) {
+    for (int i = 0; i < problem.points; ++i) problem.slid[i] *= -1;
+  });
+  caught(found, "does not stick by what it says", {}, [](FrictionProblem& problem) {
+    for (int i = 0; i < problem.points; ++i) problem.sticks[i] = 0;
   });
   caught("holds and slides", "drifts", {}, [](FrictionProblem& problem) { problem.effort[0] *= 0.99; });
   // Exact friction that says it were a spring of 1e6 N/m.

@@ -177,7 +177,7 @@ TEST_CASE("check: wrong efforts of compliant laws are caught") {
   caught(false, Wrong::effort, "potential", "its potential grows by");
   caught(false, Wrong::effort, "constant stiffness", "declares that its force is 20000 N/m");
   caught(false, Wrong::pulls, "force law", "pulls");
-  caught(false, Wrong::no_number, "force law", "not finite");
+  caught(false, Wrong::no_number, "force law", "no finite force");
   caught(false, Wrong::no_number_alone, "solution", "answers one point no force");
   caught(false, Wrong::unanswered_alone, "solution", "answers one point no force");
   for (const char* check : {"slopes", "potential", "constant stiffness", "dissipation"})

@@ -11,7 +11,6 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-
 nlohmann::json study(const std::string& kind) {
   nlohmann::json out = nlohmann::json::parse(R"({
     "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.1,
@@ -25,6 +24,8 @@ nlohmann::json study(const std::string& kind) {
 
 nlohmann::json trajectory() {
   nlohmann::json out = study("trajectory");
+  // A choice that one case alone does not have.
+  out["ask"] = nlohmann::json::array({{{"effect", "time"}, {"on", "impulse"}}});
   out.update(nlohmann::json{{"step", {0.01, 0.005}}, {"duration", 10}, {"samples", 50}});
   return out;
 }
@@ -117,7 +118,8 @@ TEST_CASE("A case of stability prints its rows, and orbits are sent to point") {
   const ScratchFolder other;
   nlohmann::json sweep = study("bifurcation");
   sweep["scene"]["stops"]["upper"] = 0.25;
-  sweep.update(nlohmann::json::parse(R"({"parameter": {"pointer": "/scene/stops/upper", "from": 0.1, "to": 0.3, "count": 2},
+  sweep.update(
+      nlohmann::json::parse(R"({"parameter": {"pointer": "/scene/stops/upper", "from": 0.1, "to": 0.3, "count": 2},
                                "steps_per_period": 64, "start": ["rest"],
                                "transient": {"periods": 4, "at_most": 4}, "keep": 16})"));
   const std::string orbits = run(other, sweep);
