@@ -319,7 +319,10 @@ std::optional<TextPosition> locate(const std::string& text, const std::string& p
     }
     return true;
   });
-  if (!found) return std::nullopt;
+  if (!found && pointer.empty()) return std::nullopt;
+  // The whole document holds a key that is missing at the top.
+  if (!found) offset = text.find_first_not_of(" \t\r\n");
+  if (offset == std::string::npos) return std::nullopt;
   return position_of(text, offset);
 }
 

@@ -47,7 +47,7 @@ class SyntaxError : public InputError {
 Json parse_json(const std::string& text);
 
 /// Where the value of a JSON pointer stands in a valid JSON text: its key, or the element of a list. When the pointer
-/// names nothing (a missing key), where its nearest ancestor stands. None for the whole document.
+/// names nothing (a missing key), where its nearest ancestor stands. None of the whole document.
 std::optional<TextPosition> locate(const std::string& text, const std::string& pointer);
 
 /// Bytes of the largest text that is read.

@@ -52,7 +52,9 @@ TEST_CASE("What is missing is told at its nearest ancestor") {
   CHECK(place(text, "/a/c") == "1:2");
   CHECK(place(text, "/a/b/7") == "2:1");
   CHECK(place(text, "/a/bb") == "1:2");
-  CHECK(place(text, "/z") == "none");
+  CHECK(place(text, "/z") == "1:1");
+  CHECK(place("\n  {}", "/z") == "2:3");
+  CHECK(place(" ", "/z") == "none");
 }
 
 TEST_CASE("Broken JSON is told with line and column, in words, with the line and a caret") {
