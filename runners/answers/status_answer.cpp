@@ -6,22 +6,11 @@
 #include "runners/answers/answer.hpp"
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"
+#include "runners/answers/thirty_words.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet::answers {
 namespace {
-
-constexpr std::size_t longest_reason = 160;
-
-/// Whole sentences of the reason, or a whole clause, that are not too long.
-std::string shortened(const std::string& reason) {
-  if (reason.size() <= longest_reason) return reason;
-  for (const char* end : {". ", "; ", ": ", ", "}) {
-    const std::size_t at = reason.rfind(end, longest_reason);
-    if (at != std::string::npos && at > 20) return reason.substr(0, at);
-  }
-  return reason.substr(0, reason.rfind(' ', longest_reason)) + " …";
-}
 
 /// Every method with its cases, in the study's order.
 struct Listed {
@@ -78,9 +67,9 @@ std::string at_steps(const Choices& study, const Cases& cases) {
   return " at h = " + and_list(words) + " s";
 }
 
-/// "Doubtful: 4 of 48 cases (those with …): why."; `how`: the status and the word for it.
-Sentence told_of(const Choices& study, const Listed& methods, const SetNames& names,
-                 const std::pair<std::string, std::string>& how, const Cases& some, const std::string& reason) {
+/// "Doubtful: 4 of 48 cases (those with …): why."
+Sentence told_of(const Choices& study, const Listed& methods, const SetNames& names, const Doubt& doubt) {
+  const Cases& some = doubt.cases;
   const std::size_t total = study.results().cases.size();
   const std::set<const CaseRecord*> chosen(some.begin(), some.end());
   const Members members = members_where(methods, [&](const CaseRecord* one) { return chosen.contains(one); });
@@ -91,11 +80,10 @@ Sentence told_of(const Choices& study, const Listed& methods, const SetNames& na
   constexpr std::size_t longest = 120;
   const std::string own = without_count(who).empty() ? who : without_count(who),
                     shown = own.size() <= longest ? own : names.shared(members);
-  std::string text = fmt::format("{}: {} of {} case{}{}", how.second, some.size(), total, total == 1 ? "" : "s",
-                                 some.size() == total ? "" : " (" + shown + ")");
-  if (!reason.empty()) text += ": " + reason;
-  if (!text.ends_with('.') && !text.ends_with("…")) text += ".";
-  return {text, {status_clause(how.first, who, some.size(), total)}};
+  const std::string must = fmt::format("Doubtful: {} of {} case{}{}", some.size(), total, total == 1 ? "" : "s",
+                                       some.size() == total ? "" : " (" + shown + ")");
+  return {with_reason(must, doubt.text, doubt.differs ? ", in the first of them" : ""),
+          {status_clause("doubtful", who, some.size(), total)}};
 }
 
 }  // namespace
@@ -124,9 +112,7 @@ std::vector<Sentence> doubted(const Choices& study) {
   const Listed methods = methods_of(study);
   const SetNames names(study, methods.firsts);
   const std::size_t told = doubts.size() <= most ? doubts.size() : most - 1;
-  for (std::size_t k = 0; k < told; ++k)
-    out.push_back(told_of(study, methods, names, {"doubtful", "Doubtful"}, doubts[k].cases,
-                          doubts[k].text + (doubts[k].differs ? ", in the first of them" : "")));
+  for (std::size_t k = 0; k < told; ++k) out.push_back(told_of(study, methods, names, doubts[k]));
   if (told < doubts.size())
     out.push_back({fmt::format("{} more doubts are in reasons.csv.", doubts.size() - told),
                    {status_clause("doubtful", "", 0, study.results().cases.size())}});
@@ -143,9 +129,9 @@ std::vector<Sentence> refused_references(const Choices& study) {
   const std::size_t total = study.results().cases.size();
   for (const auto& [refusal, cases] : counts.list()) {
     const std::string name = refusal.substr(0, refusal.find(": "));
-    out.push_back({fmt::format("The reference {} does not apply{}: {}.", name,
-                               cases == total ? "" : fmt::format(" to {} of {} cases", cases, total),
-                               shortened(refusal.substr(std::min(refusal.size(), name.size() + 2)))),
+    const std::string must = fmt::format("The reference {} does not apply{}", name,
+                                         cases == total ? "" : fmt::format(" to {} of {} cases", cases, total));
+    out.push_back({with_reason(must, refusal.substr(std::min(refusal.size(), name.size() + 2))),
                    {status_clause("reference refused", name, cases, total)}});
   }
   return out;

@@ -38,26 +38,6 @@ const TableType<VerdictRow>& verdicts_type() {
   return all;
 }
 
-std::ptrdiff_t words_in(const std::string& sentence) {
-  std::istringstream words(sentence);
-  return std::distance(std::istream_iterator<std::string>(words), {});
-}
-
-bool fits(const std::string& sentence) {
-  constexpr std::ptrdiff_t most = 30;
-  return words_in(sentence) <= most;
-}
-
-std::string in_thirty_words(std::string must, const std::vector<std::vector<std::string>>& rest) {
-  for (const std::vector<std::string>& part : rest)
-    for (const std::string& wording : part)
-      if (fits(must + wording)) {
-        must += wording;
-        break;
-      }
-  return must + ".";
-}
-
 std::vector<const Ask*> Asked::unmet() const {
   std::vector<const Ask*> out;
   for (const auto& [ask, answered] : all)

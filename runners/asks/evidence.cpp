@@ -455,10 +455,14 @@ std::vector<std::string> LeftOut::told() const {
   const std::size_t shown = reasons.size() > all_told ? most : reasons.size();
   std::size_t rest = 0;
   for (std::size_t k = 0; k < sorted.size(); ++k)
-    if (k < shown)
-      out.push_back("Left out: " + sorted[k].said() + ".");
-    else
+    if (k < shown) {
+      const std::string& text = sorted[k].text;
+      const std::size_t colon = std::min(text.size(), text.find(": "));
+      out.push_back(answers::with_reason(fmt::format("Left out: {} {}", sorted[k].count, text.substr(0, colon)),
+                                         text.substr(std::min(text.size(), colon + 2))));
+    } else {
       rest += sorted[k].count;
+    }
   if (rest > 0)
     out.push_back(
         fmt::format("Left out: {} more for {} other reasons, which are in reasons.csv.", rest, sorted.size() - shown));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <ricochet/measure/orbits/regime.hpp>
 
+#include "runners/answers/set_names.hpp"
 #include "runners/asks/verbs.hpp"
 #include "runners/json/json_text.hpp"
 #include "runners/store/record.hpp"
@@ -119,6 +120,41 @@ void leave_out(Answered& out, const Cases& left) {
   for (auto& [key, group] : std::move(groups).list()) all.reasons.push_back(std::move(group));
   for (std::string& line : all.told()) out.aside.push_back(std::move(line));
   out.left_out = left.size();
+}
+
+Answered runs_of_places(const Ask& ask, const Evidence& evidence, const std::string& name,
+                        const std::function<Places(const CaseRecord&)>& places) {
+  Answered out = runs_verb().answer(ask, evidence);
+  Places sum;
+  for (const CaseRecord* record : evidence.cases(ask)) {
+    const Places own = places(*record);
+    sum.all += own.all;
+    for (const auto& [status, count] : own.ended) sum.ended[status] += count;
+  }
+  std::size_t ended = 0;
+  std::vector<std::string> counts;
+  for (const auto& [status, count] : sum.ended) {
+    VerdictRow row;
+    row.level = name + " " + status;
+    row.value = static_cast<double>(count);
+    row.unit = "1";
+    row.verdict = status;
+    out.rows.push_back(std::move(row));
+    counts.push_back(fmt::format("{} {}", count, status));
+    ended += count;
+  }
+  if (ended == 0) return out;
+  const std::string told = fmt::format("of their {} {}, {}", sum.all, name, answers::and_list(counts));
+  const bool refused = sum.ended.size() == 1 && sum.ended.contains(word(Status::refused));
+  if (out.passes == Verdict::yes) {
+    out.passes = refused ? Verdict::open : Verdict::no;
+    out.verdict = refused ? "some refused" : "no";
+    out.sentence = fmt::format("{} of {} cases run; {}.", out.cases, out.cases, told);
+  } else {
+    out.sentence.pop_back();
+    out.sentence = fitting({fmt::format("{}; {}.", out.sentence, told), out.sentence + "."});
+  }
+  return out;
 }
 
 }  // namespace ricochet::asks

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -42,5 +43,15 @@ void leave_out(Answered& out, const Cases& cases, const std::vector<Told>& told)
     if (!known.contains(one)) left.push_back(one);
   leave_out(out, left);
 }
+
+/// Of the orbits or cells of one case: how many there are, and by status those refused or not followed to the end.
+struct Places {
+  std::size_t all = 0;
+  std::map<std::string, std::size_t> ended = {};
+};
+
+/// The verb `runs` where each case has many orbits, `name`: theirs count beside the cases.
+Answered runs_of_places(const Ask& ask, const Evidence& evidence, const std::string& name,
+                        const std::function<Places(const CaseRecord&)>& places);
 
 }  // namespace ricochet::asks

@@ -38,6 +38,7 @@ Answered answer_runs(const Ask& ask, const Evidence& evidence) {
   out.cases = cases.size();
   std::size_t done = 0, wrong = 0;
   std::vector<std::string> others;
+  InOrderMet<std::string, std::size_t> by_status;
   for (const Ending& one : endings(cases)) {
     VerdictRow row;
     row.level = one.status;
@@ -51,6 +52,7 @@ Answered answer_runs(const Ask& ask, const Evidence& evidence) {
       done += one.cases.size();
     else {
       others.push_back(fmt::format("{} {} ({})", one.cases.size(), one.status, short_reason(one.reason)));
+      by_status[one.status] += one.cases.size();
       wrong += went_wrong(*one.cases.front()) ? one.cases.size() : 0;
     }
   }
@@ -63,8 +65,18 @@ Answered answer_runs(const Ask& ask, const Evidence& evidence) {
   out.passes = done == cases.size() ? Verdict::yes : wrong > 0 ? Verdict::no : Verdict::open;
   // What is refused was never to run.
   out.verdict = done == cases.size() ? "yes" : wrong > 0 ? "no" : "some refused";
-  out.sentence = done == cases.size() ? fmt::format("Yes: all {} cases run.", done)
-                                      : fmt::format("{} of {} cases run; {}.", done, cases.size(), some_of(others));
+  if (done == cases.size()) {
+    out.sentence = fmt::format("Yes: all {} cases run.", done);
+    return out;
+  }
+  const auto with = [&](const std::vector<std::string>& rest) {
+    return fmt::format("{} of {} cases run; {}.", done, cases.size(), some_of(rest));
+  };
+  out.sentence = with(others);
+  if (fits(out.sentence)) return out;
+  std::vector<std::string> counts;
+  for (const auto& [status, count] : by_status.list()) counts.push_back(fmt::format("{} {}", count, status));
+  out.sentence = with(counts);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "runners/answers/thirty_words.hpp"
 #include "runners/table/row_type.hpp"
 
 namespace ricochet::asks {
@@ -56,12 +57,6 @@ struct Answered {
 
 inline constexpr double per_cent = 100;  ///< rows and figures have shares in per cent
 
-std::ptrdiff_t words_in(const std::string& sentence);
-/// Whether a sentence has at most thirty words.
-bool fits(const std::string& sentence);
-
-/// What must be said, and of the rest as much as thirty words hold. Each part begins with its own mark, "; …"; of its
-/// wordings the first that fits is taken.
-std::string in_thirty_words(std::string must, const std::vector<std::vector<std::string>>& rest);
+using answers::fits, answers::in_thirty_words, answers::words_in;
 
 }  // namespace ricochet::asks

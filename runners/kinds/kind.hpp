@@ -94,7 +94,7 @@ struct ForecastContext {
 /// which outlive it.
 struct Analysis {
   report::KindPage page = {};   ///< what its reports show; empty: what every page has
-  asks::OwnAnswers verbs = {};  ///< what answers the verbs that its kind declares (StudyKind::verbs)
+  asks::OwnAnswers verbs = {};  ///< the verbs that its kind declares (StudyKind::verbs) or tells more of
 };
 
 /// A kind of study, all that the program knows of it.

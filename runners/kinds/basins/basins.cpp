@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 
+#include "runners/asks/kind_verbs.hpp"
 #include "runners/kinds/all_kinds.hpp"
 #include "runners/kinds/basins/basin_analysis.hpp"
 #include "runners/kinds/basins/cell_scenes.hpp"
@@ -45,6 +46,16 @@ std::vector<Field> basins_keys() {
   return fields;
 }
 
+asks::Places ended_cells(const BasinAnalysis& basins, const CaseRecord& record) {
+  asks::Places out;
+  if (const auto starts = basins.starts.find(record.id); starts != basins.starts.end())
+    out.all = starts->second.cells - starts->second.no_starts;
+  for (const report::BasinImage& image : basins.images)
+    if (image.record == &record)
+      for (const auto& [reason, cells] : image.reasons) out.ended[word(Status::failed)] += cells;
+  return out;
+}
+
 class BasinsKind final : public SweepKind {
  public:
   BasinsKind()
@@ -69,8 +80,13 @@ class BasinsKind final : public SweepKind {
         report::basins_page(basins),
         {{"motions", [basins](const asks::Ask& ask,
                               const asks::Evidence& evidence) { return motions_of_basins(ask, evidence, *basins); }},
-         {"effect on motions", [basins](const asks::Ask& ask, const asks::Evidence& evidence) {
+         {"effect on motions",
+          [basins](const asks::Ask& ask, const asks::Evidence& evidence) {
             return effect_on_basins(ask, evidence, *basins);
+          }},
+         {"runs", [basins](const asks::Ask& ask, const asks::Evidence& evidence) {
+            return asks::runs_of_places(ask, evidence, basins->of_states ? "starts" : "cells",
+                                        [&](const CaseRecord& record) { return ended_cells(*basins, record); });
           }}}};
   }
 };

@@ -8,6 +8,7 @@
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 
+#include "runners/asks/kind_verbs.hpp"
 #include "runners/kinds/all_kinds.hpp"
 #include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/sweep/diagram_tables.hpp"
@@ -59,6 +60,15 @@ std::vector<Field> bifurcation_keys() {
   return fields;
 }
 
+asks::Places ended_orbits(const CaseRecord& record) {
+  asks::Places out;
+  for (const OrbitRow& orbit : orbits_of(record)) {
+    ++out.all;
+    if (!orbit.done()) ++out.ended[orbit.status];
+  }
+  return out;
+}
+
 class BifurcationKind final : public SweepKind {
  public:
   BifurcationKind()
@@ -82,8 +92,12 @@ class BifurcationKind final : public SweepKind {
     return {report::bifurcation_page(),
             {{"motions", [swept](const asks::Ask& ask,
                                  const asks::Evidence& evidence) { return motions_of_sweep(ask, evidence, *swept); }},
-             {"effect on motions", [swept](const asks::Ask& ask, const asks::Evidence& evidence) {
+             {"effect on motions",
+              [swept](const asks::Ask& ask, const asks::Evidence& evidence) {
                 return effect_on_sweep(ask, evidence, *swept);
+              }},
+             {"runs", [](const asks::Ask& ask, const asks::Evidence& evidence) {
+                return asks::runs_of_places(ask, evidence, "orbits", ended_orbits);
               }}}};
   }
 };

@@ -162,6 +162,36 @@ TEST_CASE("motions beside each other are counted by attractor", "[asks]") {
   CHECK_THAT(out.sentence, Contains("period 1 to two of period 1 (1–2), two of period 1 to period 2 (2–3"));
 }
 
+TEST_CASE("orbits that are refused or end early keep a sweep from having run", "[asks]") {
+  const auto runs_of = [](std::size_t refused, std::size_t diverged, bool all_done = true) {
+    Made made = study_of({{one, one, two}, {one, two, two}});
+    if (!all_done) {
+      made.results.cases[1].status = Status::refused;
+      made.results.cases[1].reasons = {Said("it does not apply")};
+    }
+    const Choices choices(made.results);
+    const asks::Evidence evidence(choices);
+    return asks::runs_of_places(asks::ask_of({{"runs", true}}, 1), evidence, "orbits", [&](const CaseRecord& record) {
+      asks::Places out{3, {}};
+      if (record.id != "c0") return out;
+      if (refused > 0) out.ended["refused"] = refused;
+      if (diverged > 0) out.ended["diverged"] = diverged;
+      return out;
+    });
+  };
+  CHECK(runs_of(0, 0).sentence == "Yes: all 2 cases run.");
+  CHECK(runs_of(0, 0).passes == asks::Verdict::yes);
+  const asks::Answered refused = runs_of(2, 0), ended = runs_of(1, 1), both = runs_of(2, 0, false);
+  CHECK(refused.sentence == "2 of 2 cases run; of their 6 orbits, 2 refused.");
+  CHECK(refused.passes == asks::Verdict::open);
+  CHECK(ended.sentence == "2 of 2 cases run; of their 6 orbits, 1 diverged and 1 refused.");
+  CHECK(ended.passes == asks::Verdict::no);
+  CHECK(ended.rows.back().level == "orbits refused");
+  CHECK(*ended.rows.back().value == 1);
+  CHECK(both.sentence == "1 of 2 cases run; 1 refused (it does not apply); of their 6 orbits, 2 refused.");
+  CHECK(both.passes == asks::Verdict::open);
+}
+
 TEST_CASE("rows in another order change no verdict", "[asks]") {
   std::mt19937 random(11);
   for (int draw = 0; draw < 30; ++draw) {
