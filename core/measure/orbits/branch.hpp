@@ -67,6 +67,7 @@ struct BranchState {
   long long pieces = 0;
   double step = 0;      ///< of a branch that goes by steps, m
   int orientation = 0;  ///< of such a branch: the sign of the determinant of its bordered matrix
+  int begins = 0;       ///< of such a branch: where x stands in the period (MapClock)
 };
 
 /// Why following stopped.
@@ -171,6 +172,9 @@ struct MarkedOrbit {
   double parameter = 0, arc = 0, tip = 0;
   long long corner = 0;  ///< of the piece that it is on
   Eigen::VectorXd x;
+  /// Its multipliers, the largest first, where they are not those of the corner.
+  std::vector<std::complex<double>> leading = {};
+  Outside outside = {};
 };
 
 /// How a branch ended: at an end of the range, at its first orbit, where it becomes part of another branch, at a point
@@ -180,6 +184,9 @@ enum class TraceEnd { none, range, closed, joined, asked, limit, left, missing }
 constexpr std::array<const char*, 8> words_of(TraceEnd) {
   return {"", "range", "closed", "joined", "asked", "limit", "left", "missing"};
 }
+
+/// Impacts of such a share of the speed that they had are grazes.
+inline constexpr double graze_share = 0.01;
 
 /// A branch as far as it was followed.
 struct BranchTrace {

@@ -27,10 +27,16 @@ StepFollower::StepFollower(FollowedMap& map, const MapClock& clock, VectorXd x, 
   now_ = {std::move(x), parameter};
   step_ = limits.first > 0 ? limits.first : first_step * range();
   Step first{now_, map.march(now_.x, parameter, clock, true)};
+  if (!first.image.end && first.image.quiet != clock.begins) {
+    now_.x = first.to.x = map.moved(now_.x, parameter, clock, first.image.quiet);
+    clock_.begins = first.image.quiet;
+    first.image = map.march(now_.x, parameter, clock_, true);
+  }
   if (first.image.end) {
     trace_.end_by(TraceEnd::left, "the first orbit cannot be marched: " + text(first.image.end));
     return;
   }
+  first_ = now_.x;
   if (!set_tangent(way, first.image.derivative)) return;
   first.multipliers = multipliers_of(first.image.derivative);
   orientation_ = way * outside(first.multipliers).side();
@@ -66,11 +72,13 @@ StepFollower::StepFollower(FollowedMap& map, const MapClock& clock, const Branch
   now_ = {state.x, state.parameter};
   along_ = {state.along, state.parameter_along};
   orientation_ = state.orientation;
+  clock_.begins = state.begins;
+  first_ = first_orbit();
   if (limits_.branch.ends_at_image) apart_ = asymmetry(now_);
 }
 
 BranchState StepFollower::state() const {
-  return {now_.x, now_.parameter, {}, along_.x, along_.parameter, {}, 0, 0, step_, orientation_};
+  return {now_.x, now_.parameter, {}, along_.x, along_.parameter, {}, 0, 0, step_, orientation_, clock_.begins};
 }
 
 double StepFollower::range() const {
@@ -82,8 +90,12 @@ bool StepFollower::within(const Point& point) const {
 }
 
 std::optional<FollowedMap::Image> StepFollower::image_of(const Point& point, bool derivative) {
+  return image_over(point, clock_, derivative);
+}
+
+std::optional<FollowedMap::Image> StepFollower::image_over(const Point& point, const MapClock& clock, bool derivative) {
   try {
-    FollowedMap::Image made = map_->march(point.x, point.parameter, clock_, derivative);
+    FollowedMap::Image made = map_->march(point.x, point.parameter, clock, derivative);
     if (!made.end) return made;
     failure_ = text(made.end);
   } catch (const Refusal& refusal) {
@@ -188,7 +200,7 @@ ShotOrbit StepFollower::towards(const VectorXd& x, double parameter, double arc)
   orbit.found = correct(step, along);
   orbit.iterations = step.iterations;
   if (orbit.found) orbit.residual = map_->metric().size(step.image.image - step.to.x);
-  orbit.x = std::move(step.to.x);
+  orbit.x = orbit.found ? std::move(step.image.strobe) : std::move(step.to.x);
   orbit.parameter = step.to.parameter;
   return orbit;
 }
@@ -212,7 +224,7 @@ void StepFollower::keep(Step step) {
   corner.slowest = step.image.slowest;
   trace_.rebounds = std::max(trace_.rebounds, step.image.rebounds);
   trace_.corners.push_back(std::move(corner));
-  trace_.states.emplace(static_cast<long long>(trace_.corners.size()) - 1, std::move(step.to.x));
+  trace_.states.emplace(static_cast<long long>(trace_.corners.size()) - 1, std::move(step.image.strobe));
 }
 
 // Marks between the last orbit and the next one, solved from between them.
@@ -225,7 +237,12 @@ void StepFollower::mark_up_to(const Point& next) {
     const double arc = trace_.corners.back().arc + secant_to({at.x, mark}).second;
     const bool known = !trace_.marks.empty() && trace_.marks.back().parameter == mark &&
                        std::abs(trace_.marks.back().arc - arc) <= smallest_step * arc;
-    if (!known) trace_.marks.push_back({mark, arc, map_->march(at.x, mark, clock_).tip, pieces() - 1, at.x});
+    if (known) continue;
+    FollowedMap::Image made = map_->march(at.x, mark, clock_, true);
+    std::vector<std::complex<double>> multipliers = multipliers_of(made.derivative);
+    const Outside beyond = outside(multipliers);
+    multipliers.resize(std::min(multipliers.size(), static_cast<std::size_t>(limits_.branch.multipliers)));
+    trace_.marks.push_back({mark, arc, made.tip, pieces() - 1, std::move(made.strobe), std::move(multipliers), beyond});
   }
 }
 
@@ -252,7 +269,7 @@ bool StepFollower::comes_back(const Point& secant, double far) const {
   constexpr std::size_t fewest = 8;
   constexpr double aside = 0.05;  // of the step
   if (trace_.corners.size() < fewest || trace_.corners.front().way != trace_.corners.back().way) return false;
-  const Point back{trace_.states.at(0) - now_.x, trace_.corners.front().parameter - now_.parameter};
+  const Point back{first_ - now_.x, trace_.corners.front().parameter - now_.parameter};
   const double along = overlap(back, secant), length = std::sqrt(overlap(back, back));
   return along >= 0 && along <= far && std::sqrt(std::max(0.0, length * length - along * along)) < aside * far;
 }
@@ -296,12 +313,10 @@ StepFollower::Verdict StepFollower::judge(Step& step) {
 }
 
 std::string StepFollower::why_left(const Step& tried) const {
-  // Impacts of a hundredth of the speed that they had are grazes.
-  constexpr double graze_share = 0.01;
   const double slowest = trace_.corners.back().slowest;
   double fastest = 0;
   for (const BranchCorner& corner : trace_.corners) fastest = std::max(fastest, corner.slowest);
-  if (trace_.rebounds > 0 && (tried.image.runs != trace_.corners.back().runs || slowest < graze_share * fastest))
+  if (trace_.rebounds > 0 && slowest < graze_share * fastest)
     return fmt::format("an impact becomes a graze, where the derivative is infinite; ended at λ = {:.10g}, {:.3g} m/s",
                        now_.parameter, slowest);
   return fmt::format("the branch was left at λ = {:.10g}: {}step below {:.3g} m; {}", now_.parameter,
@@ -339,6 +354,36 @@ std::optional<StepFollower::Step> StepFollower::next_orbit() {
   }
 }
 
+// The divisor of its period after which an orbit is back already; 0: none.
+int StepFollower::repeats_after(const Step& step) {
+  MapClock part = clock_;
+  for (part.period = 1; part.period < clock_.period; ++part.period) {
+    if (clock_.period % part.period != 0) continue;
+    part.begins = static_cast<int>(clock_.begins % part.steps());
+    const auto made = image_over(step.to, part, false);
+    if (made && map_->metric().size(made->image - step.to.x) <= std::max(largest_round_off, 2 * step.image.placed))
+      return part.period;
+  }
+  return 0;
+}
+
+// From here on x stands elsewhere in the period.
+void StepFollower::stand(const Point& before, int begins) {
+  const Point last{map_->moved(before.x, before.parameter, clock_, begins), before.parameter};
+  now_.x = map_->moved(now_.x, now_.parameter, clock_, begins);
+  clock_.begins = begins;
+  first_ = first_orbit();
+  const auto [secant, far] = secant_to(last);
+  along_ = {-secant.x, -secant.parameter};
+  if (limits_.branch.ends_at_image) apart_ = asymmetry(now_);
+}
+
+VectorXd StepFollower::first_orbit() const {
+  MapClock strobe = clock_;
+  strobe.begins = 0;
+  return map_->moved(trace_.states.at(0), trace_.corners.front().parameter, strobe, clock_.begins);
+}
+
 // Goes to the next orbit.
 void StepFollower::take(Step step) {
   const auto [secant, far] = secant_to(step.to);
@@ -347,6 +392,9 @@ void StepFollower::take(Step step) {
     trace_.end_by(TraceEnd::joined, fmt::format("its orbits become their own images at {:.10g}", step.to.parameter));
   else
     mark_up_to(step.to);
+  if (const int sooner = limits_.branch.ends_sooner ? repeats_after(step) : 0; sooner > 0)
+    trace_.end_by(TraceEnd::joined, fmt::format("its orbits repeat after {} period{} from {:.10g} on", sooner,
+                                                sooner == 1 ? "" : "s", step.to.parameter));
   if (!trace_.ended() && comes_back(secant, far))
     trace_.end_by(TraceEnd::closed, "closed: the branch came back to its first orbit");
   if (trace_.ended()) return;
@@ -360,7 +408,8 @@ void StepFollower::take(Step step) {
   // The secant that ends here is that of the corner before.
   trace_.corners.back().way = step.to.parameter < now_.parameter ? -1 : 1;
   keep(step);
-  now_ = std::move(step.to);
+  const Point before = std::exchange(now_, std::move(step.to));
+  if (step.image.quiet != clock_.begins) stand(before, step.image.quiet);
   if (anew && !set_tangent(orientation_ * side, step.image.derivative)) return;
   if (step.iterations <= easy) step_ = std::min(growth * step_, largest_step * range());
   if (step.iterations > hard) step_ /= growth;

@@ -10,7 +10,7 @@ OwnMarch march_of(Marcher& marcher, const Read& read, const StateMetric& metric,
                   const MapClock& clock, int periods) {
   OwnMarch own;
   for (int n = 0; n < periods && !own.end; ++n) {
-    if (n > 0) marcher.set_clock(0);
+    if (n > 0) marcher.set_clock(clock.begins);
     marcher.march(static_cast<long long>(clock.period) * clock.steps_per_period);
     own.end = marcher.status(0).end;
     if (own.end) break;
@@ -29,9 +29,9 @@ OwnMarch own_march(PeriodicMap& map, const Eigen::VectorXd& x, double parameter,
       marcher, [&](const LaneState& state) { return map.vector().read(state); }, map.metric(), x, clock, periods);
 }
 
-OwnMarch own_march(const SteppedMap& map, const Eigen::VectorXd& x, double parameter, const MapClock& clock,
-                   int periods) {
-  auto [marcher, group] = map.begin(x, parameter);
+OwnMarch own_march(SteppedMap& map, const Eigen::VectorXd& orbit, double parameter, const MapClock& told, int periods) {
+  const auto [x, clock] = quiet_orbit(map, orbit, parameter, told);
+  auto [marcher, group] = map.begin(x, parameter, 0, clock.begins);
   const int own_group = group;
   return march_of(
       marcher, [&](const LaneState& state) { return map.read(state, own_group); }, map.metric(), x, clock, periods);

@@ -14,8 +14,7 @@ struct OwnMarch {
   LaneEnd end;              ///< none: the march went to its end
 };
 OwnMarch own_march(PeriodicMap& map, const Eigen::VectorXd& x, double parameter, const MapClock& clock, int periods);
-OwnMarch own_march(const SteppedMap& map, const Eigen::VectorXd& x, double parameter, const MapClock& clock,
-                   int periods);
+OwnMarch own_march(SteppedMap& map, const Eigen::VectorXd& x, double parameter, const MapClock& clock, int periods);
 
 /// Periods over which an orbit that is told is marched.
 inline constexpr int told_periods = 2;

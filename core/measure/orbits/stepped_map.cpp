@@ -71,6 +71,33 @@ class ContactWatch final : public StepObserver {
     out.shortest = runs.shortest;
     out.penetration = deepest;
   }
+  /// Steps from where x stands to the middle of the longest time without contact; 0 where no contact is near, or that
+  /// middle is hardly farther from one.
+  long long to_quiet(bool half, int steps_per_period) const {
+    const auto n = static_cast<long long>(steps());
+    constexpr long long before = 2, after = 4;  // steps of an impact beside its contact
+    std::vector<std::pair<long long, long long>> busy;
+    for (std::size_t point = 0; point < points_; ++point)
+      each_run(
+          n, half, [&](long long k) { return sides_[static_cast<std::size_t>(k) * points_ + point]; },
+          [&](long long begin, long long length) { busy.emplace_back(begin - before, begin + length + after); });
+    if (busy.empty()) return 0;
+    std::sort(busy.begin(), busy.end());
+    // Round the period, from the end of the first contact on.
+    long long end = busy.front().second, longest = 0, middle = 0, nearest = n;
+    for (std::size_t k = 1; k <= busy.size(); ++k) {
+      const auto [from, to] = k < busy.size() ? busy[k] : std::pair(busy.front().first + n, busy.front().second + n);
+      if (from - end > longest) longest = from - end, middle = end + longest / 2;
+      // The next time that x stands between both, or within a contact.
+      for (const long long at : {0LL, n})
+        if (at >= end && at < from) nearest = std::min(at - end, from - at);
+      end = std::max(end, to);
+    }
+    const bool free = nearest < n;
+    constexpr int part = 16, share = 4;
+    if (longest == 0 || (free && nearest >= std::min<long long>(steps_per_period / part, longest / share))) return 0;
+    return middle % n;
+  }
   double deepest = 0;
 
  private:
@@ -123,12 +150,12 @@ LaneState SteppedMap::unit(int k) const {
   return state;
 }
 
-std::pair<Marcher, int> SteppedMap::begin(const VectorXd& x, double parameter, int tangents) const {
+std::pair<Marcher, int> SteppedMap::begin(const VectorXd& x, double parameter, int tangents, int begins) const {
   Scene scene = make_(parameter, tangents);
   Marcher marcher(std::move(scene.program));
   LaneState state = template_;
   vector_->write(x, state);
-  marcher.set_clock(0);
+  marcher.set_clock(begins);
   LaneSpec lane = marcher.program().lanes[0];
   if (open_) {
     lane.lower.setConstant(-std::numeric_limits<double>::infinity());
@@ -143,7 +170,7 @@ SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const M
   if (derivative) out.derivative.resize(size(), size());
   for (int first = 0; first == 0 || (derivative && first < size()); first += most_tangents) {
     const int columns = derivative ? std::min(most_tangents, size() - first) : 0;
-    auto [marcher, group] = begin(x, parameter, columns);
+    auto [marcher, group] = begin(x, parameter, columns, clock.begins);
     for (int k = 0; k < columns; ++k) marcher.set_tangent(0, k, carry_(unit(first + k), group_, group));
     std::optional<ImpactJump> jump;
     if (rebounds_) jump.emplace(marcher, ImpactJump::Orbit::placed);
@@ -151,15 +178,33 @@ SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const M
     Observers observers;
     if (first == 0) observers.add(&watch);
     if (jump && jump->needed()) observers.add(&*jump);
-    const StrobeTip tip = march_over(marcher, clock, observers);
+    StrobeTip tip;
+    if (clock.begins == 0) {
+      tip = march_over(marcher, clock, observers);
+    } else {
+      marcher.march(clock.steps() - clock.begins - 1, observers);
+      const double before = marcher.tip(0);
+      marcher.march(1, observers);
+      tip.displacement = clock.sign() * marcher.tip(0);
+      if (first == 0) out.strobe = clock.sign() * read(marcher.lane_state(0), group);
+      marcher.march(1, observers);
+      tip.velocity = clock.sign() * (marcher.tip(0) - before) / (2 * marcher.program().h);
+      marcher.march(clock.begins - 1, observers);
+    }
     out.tip = tip.displacement;
     out.tip_velocity = tip.velocity;
     out.end = marcher.status(0).end;
     if (out.end) return out;
     if (first == 0) {
       out.image = clock.sign() * read(marcher.lane_state(0), group);
+      if (clock.begins == 0) out.strobe = x;
       watch.sum(marcher.program().h, clock.half, out);
-      if (!rebounds_) out.rebounds = out.placed = out.slowest = 0;
+      out.quiet = clock.begins;
+      if (rebounds_)
+        out.quiet =
+            static_cast<int>((clock.begins + watch.to_quiet(clock.half, clock.steps_per_period)) % clock.steps());
+      else
+        out.rebounds = out.placed = out.slowest = 0;
     }
     for (int k = 0; k < columns; ++k) out.derivative.col(first + k) = clock.sign() * read(marcher.tangent(0, k), group);
     out.untold = out.untold || (jump && jump->untold(0) > 0);
@@ -167,21 +212,48 @@ SteppedMap::Image SteppedMap::march(const VectorXd& x, double parameter, const M
   return out;
 }
 
-ShotOrbit shoot(FollowedMap& map, VectorXd x, double parameter, const MapClock& clock, double tolerance, int most) {
+VectorXd SteppedMap::moved(const VectorXd& x, double parameter, const MapClock& clock, int begins) {
+  if (begins == clock.begins) return x;
+  auto [marcher, group] = begin(x, parameter, 0, clock.begins);
+  std::optional<ImpactJump> jump;
+  if (rebounds_) jump.emplace(marcher, ImpactJump::Orbit::placed);
+  Observers observers;
+  if (jump && jump->needed()) observers.add(&*jump);
+  const bool round = begins < clock.begins;
+  marcher.march(begins - clock.begins + (round ? clock.steps() : 0), observers);
+  return (round ? clock.sign() : 1) * read(marcher.lane_state(0), group);
+}
+
+QuietOrbit quiet_orbit(FollowedMap& map, const VectorXd& x, double parameter, const MapClock& clock) {
+  QuietOrbit out{x, clock};
+  const FollowedMap::Image made = map.march(x, parameter, clock);
+  if (made.end) return out;
+  out.clock.begins = made.quiet;
+  out.x = map.moved(x, parameter, clock, made.quiet);
+  return out;
+}
+
+ShotOrbit shoot(FollowedMap& map, VectorXd x, double parameter, const MapClock& told, double tolerance, int most) {
+  MapClock clock = told;
   ShotOrbit orbit;
   orbit.parameter = parameter;
   orbit.nearest = std::numeric_limits<double>::infinity();
   const MatrixXd one = MatrixXd::Identity(map.size(), map.size());
-  VectorXd best = x;
+  QuietOrbit best{x, clock};
   for (;; ++orbit.iterations) {
-    const FollowedMap::Image made = map.march(x, parameter, clock, true);
+    FollowedMap::Image made = map.march(x, parameter, clock, true);
+    if (!made.end && made.quiet != clock.begins) {
+      x = map.moved(x, parameter, clock, made.quiet);
+      clock.begins = made.quiet;
+      made = map.march(x, parameter, clock, true);
+    }
     orbit.end = made.end;
     if (made.end) break;
     const VectorXd left = made.image - x;
     const double last = std::exchange(orbit.residual, map.metric().size(left));
     if (orbit.residual < orbit.nearest) {
       orbit.nearest = orbit.residual;
-      best = x;
+      best = {x, clock};
     }
     // Where an iteration gains nothing any more the rest is round-off.
     const bool settled = orbit.iterations > 1 && orbit.residual < stalled * tolerance && orbit.residual > 0.1 * last;
@@ -193,7 +265,8 @@ ShotOrbit shoot(FollowedMap& map, VectorXd x, double parameter, const MapClock& 
     if (!correction.allFinite()) break;
     x += correction;
   }
-  orbit.x = orbit.found ? best : x;
+  if (!orbit.found) best = {std::move(x), clock};
+  orbit.x = map.moved(best.x, parameter, best.clock, told.begins);
   orbit.residual = orbit.nearest;
   return orbit;
 }
@@ -210,10 +283,11 @@ std::optional<VectorXd> free_orbit(SteppedMap& map, double parameter, const MapC
 }
 
 double round_off_of_map(SteppedMap& map, const VectorXd& x, double parameter, const MapClock& clock) {
-  const double apart =
-      map.metric().size(map.march(x, parameter, clock).image - map.march(one_unit_on(x), parameter, clock).image);
+  const QuietOrbit at = quiet_orbit(map, x, parameter, clock);
+  const double apart = map.metric().size(map.march(at.x, parameter, at.clock).image -
+                                         map.march(one_unit_on(at.x), parameter, at.clock).image);
   const double steps = std::sqrt(static_cast<double>(clock.steps()));
-  return std::max(apart, steps * std::numeric_limits<double>::epsilon() * map.metric().size(x));
+  return std::max(apart, steps * std::numeric_limits<double>::epsilon() * map.metric().size(at.x));
 }
 
 // Steps of arclength over contacts that come or go, and over corners.
@@ -320,6 +394,7 @@ FollowedMap::Image ReferenceOrbits::march(const Eigen::VectorXd& x, double param
   if (!made.stopped.empty()) throw Refusal{std::move(made.stopped)};
   Image out;
   out.image = clock.sign() * made.state;
+  out.strobe = x;
   if (derivative) out.derivative = clock.sign() * made.derivative;
   out.runs = made.impacts;
   std::tie(out.tip, out.tip_velocity) = scene.map->tip(x);

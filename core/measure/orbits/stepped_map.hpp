@@ -26,11 +26,27 @@ class FollowedMap {
     double slowest = 0;   ///< least approach among these, m/s; 0: none rebounds
     double pace = 0;      ///< of contact points, rms speed over rms distance from their mean place, rad/s
     double placed = 0;    ///< u h pace: what is left of u where impacts are placed within their steps, m
-    double tip = 0, tip_velocity = 0, penetration = 0;
+    double tip = 0, tip_velocity = 0, penetration = 0;  ///< of the tip at t = 0 of the forcing
+    Eigen::VectorXd strobe;                             ///< x at t = 0 of the forcing
+    int quiet = 0;        ///< where x stands farthest from impacts (MapClock::begins); the clock's own if none is near
     bool untold = false;  ///< an impact had no jump
   };
   virtual Image march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool derivative = false) = 0;
+  /// The same motion as x, where another clock begins.
+  virtual Eigen::VectorXd moved(const Eigen::VectorXd& x, double, const MapClock&, int) { return x; }
 };
+
+/// An orbit by a state that no impact is near. Where one passes the instant at which x stands, x jumps from orbit to
+/// orbit and P' there is not the motion's.
+struct QuietOrbit {
+  Eigen::VectorXd x;
+  MapClock clock;
+};
+QuietOrbit quiet_orbit(FollowedMap& map, const Eigen::VectorXd& x, double parameter, const MapClock& clock);
+/// On pieces x may stand anywhere.
+inline QuietOrbit quiet_orbit(PeriodicMap&, const Eigen::VectorXd& x, double, const MapClock& clock) {
+  return {x, clock};
+}
 
 /// Orbits that give back speed and are nearer than so many of their rebounds are not told apart.
 inline constexpr double unresolved = 5;
@@ -59,8 +75,10 @@ class SteppedMap final : public FollowedMap {
   const Program& reference() const { return *reference_; }
 
   Image march(const Eigen::VectorXd& x, double parameter, const MapClock& clock, bool derivative = false) override;
-  /// A marcher of this value with its lane at x, at the strobe, and so many tangents; the group of its scene.
-  std::pair<Marcher, int> begin(const Eigen::VectorXd& x, double parameter, int tangents = 0) const;
+  Eigen::VectorXd moved(const Eigen::VectorXd& x, double parameter, const MapClock& clock, int begins) override;
+  /// A marcher of this value with its lane at x, so many steps after the strobe, and so many tangents; the group of its
+  /// scene.
+  std::pair<Marcher, int> begin(const Eigen::VectorXd& x, double parameter, int tangents = 0, int begins = 0) const;
   /// A state of a program at this value, as x.
   Eigen::VectorXd read(const LaneState& state, int group) const;
   /// Whether stops are left out from here on.
@@ -108,6 +126,7 @@ struct ArcSteps {
 ///   - The branch turns by more than 45 degrees.
 ///   - The count of multipliers outside changes within more than `located` of the range.
 ///   - The bordered matrix changes the sign of its determinant: the step goes back along the branch.
+/// Where an impact comes near the instant at which x stands, x goes to where none is near (QuietOrbit).
 /// Below 1e-9 of the range's length the steps are at a corner of a piecewise smooth map. They go on along the null
 /// direction beyond it, or the branch ends.
 class StepFollower {
@@ -150,6 +169,8 @@ class StepFollower {
   double range() const;  // m
   bool within(const Point& point) const;
   std::optional<FollowedMap::Image> image_of(const Point& point, bool derivative = false);
+  std::optional<FollowedMap::Image> image_over(const Point& point, const MapClock& clock, bool derivative);
+  int repeats_after(const Step& step);
   bool correct(Step& step, const Point& along);
   std::optional<Point> tangent(const Point& at, const Eigen::MatrixXd& derivative);
   bool set_tangent(int way, const Eigen::MatrixXd& derivative);
@@ -167,6 +188,8 @@ class StepFollower {
   bool reaches_end(const Point& beyond);
   std::string why_left(const Step& tried) const;
   void take(Step step);
+  void stand(const Point& before, int begins);
+  Eigen::VectorXd first_orbit() const;
   bool comes_back(const Point& secant, double far) const;
   void mark_up_to(const Point& next);
   void place_contact(const Step& beyond);
@@ -180,6 +203,7 @@ class StepFollower {
   int orientation_ = 0;    // sign of det(1 − P') dλ/ds, which a branch keeps
   double corner_ = -1;     // arc of the last corner that was turned
   Eigen::VectorXd apart_;  // x − its image, where branches end at images
+  Eigen::VectorXd first_;  // the first orbit, where x stands now
   std::string failure_;
   BranchTrace trace_;
 };

@@ -42,6 +42,13 @@ double told_apart(const SteppedMap&, const FollowedMap::Image& image) {
   return unresolved * image.rebounds;
 }
 
+VectorXd at_strobe(PeriodicMap&, const VectorXd& x, double, const MapClock&) {
+  return x;
+}
+VectorXd at_strobe(SteppedMap& map, const VectorXd& x, double parameter, const MapClock& clock) {
+  return map.moved(x, parameter, clock, 0);
+}
+
 }  // namespace
 
 Eigen::MatrixXd derivative_at(PeriodicMap& map, const ShotOrbit& orbit, const MapClock& clock) {
@@ -65,21 +72,26 @@ std::optional<SwitchedOrbit> switch_branch(Map& map, const MapClock& clock, cons
   for (const double widths : {1.0, 2.0, 4.0})
     for (const double side : {1.0, -1.0}) {
       const double parameter = point.parameter + side * widths * width;
-      const ShotOrbit own = x_at(parameter);
+      ShotOrbit own = x_at(parameter);
       if (!own.found) continue;
-      auto v = critical_vector(derivative_at(map, own, clock), massless(map, clock));
+      const QuietOrbit quiet = quiet_orbit(map, own.x, parameter, clock);
+      own.x = quiet.x;
+      doubled.begins = quiet.clock.begins;
+      auto v = critical_vector(derivative_at(map, own, quiet.clock), massless(map, clock));
       if (!v) continue;
       *v /= map.metric().size(*v);
       // Where impacts rebound an orbit of a small amplitude is not told from the one that it leaves.
-      const double told = told_apart(map, map.march(own.x, parameter, clock)),
+      const double told = told_apart(map, map.march(own.x, parameter, quiet.clock)),
                    apart = std::max(same_orbit * scale, told);
       for (const double amplitude : {1e-3, 3e-3, 1e-2, 3e-2, 0.1})
         for (const double way : {1.0, -1.0}) {
           if (amplitude > 1e-2 && told == 0) continue;
           ShotOrbit other = shoot(map, own.x + way * amplitude * scale * *v, parameter, doubled, tolerance);
           if (!other.found) continue;
-          const auto once = map.march(other.x, parameter, clock);
+          const auto once = map.march(other.x, parameter, quiet.clock);
           if (once.end || map.metric().size(once.image - other.x) < apart) continue;
+          other.x = at_strobe(map, other.x, parameter, doubled);
+          doubled.begins = 0;
           return SwitchedOrbit{std::move(other), doubled};
         }
     }

@@ -56,7 +56,8 @@ void serialize(Archive& archive, BranchCorner& corner) {
 
 template <class Archive>
 void serialize(Archive& archive, MarkedOrbit& mark) {
-  archive(mark.parameter, mark.arc, mark.tip, mark.corner, mark.x);
+  auto& [parameter, arc, tip, corner, x, leading, outside] = mark;
+  archive(parameter, arc, tip, corner, x, leading, outside.total, outside.above, outside.below, outside.pairs);
 }
 
 template <class Archive>
@@ -67,8 +68,8 @@ void serialize(Archive& archive, BranchTrace& trace) {
 
 template <class Archive>
 void serialize(Archive& archive, BranchState& state) {
-  auto& [x, parameter, sets, along, parameter_along, change, arc, pieces, step, orientation] = state;
-  archive(x, parameter, sets, along, parameter_along, change, arc, pieces, step, orientation);
+  auto& [x, parameter, sets, along, parameter_along, change, arc, pieces, step, orientation, begins] = state;
+  archive(x, parameter, sets, along, parameter_along, change, arc, pieces, step, orientation, begins);
 }
 
 template <class Archive>
@@ -78,7 +79,7 @@ void serialize(Archive& archive, KeptBranch& kept) {
 
 namespace {
 
-constexpr int branches_version = 6;
+constexpr int branches_version = 7;
 constexpr double keep_interval = 2;  // s
 
 struct KeptWithSets {

@@ -119,10 +119,11 @@ BranchPoint by_steps(SteppedMap& map, const ContinuationPlan& plan, const MapClo
     point.way = fmt::format("{} iterations from the rows at {} and {} m", shot.iterations, csv_number(kept.at->arc),
                             csv_number(kept.next->arc));
   }
-  const SteppedMap::Image made = map.march(point.x, point.parameter, clock, true);
+  const QuietOrbit quiet = quiet_orbit(map, point.x, point.parameter, clock);
+  const SteppedMap::Image made = map.march(quiet.x, point.parameter, quiet.clock, true);
   if (made.end) throw PointRefused("the orbit cannot be marched: " + text(made.end));
   point.multipliers = multipliers_of(made.derivative);
-  point.residual = map.metric().size(made.image - point.x);
+  point.residual = map.metric().size(made.image - quiet.x);
   return point;
 }
 

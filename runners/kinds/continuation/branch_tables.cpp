@@ -79,7 +79,8 @@ BranchRow orbit_row(PeriodicMap& map, const MapClock& clock, const Eigen::Vector
 }
 
 BranchRow orbit_row(SteppedMap& map, const MapClock& clock, const Eigen::VectorXd& x, double parameter) {
-  return with_march(row_of(map, map.march(x, parameter, clock), clock, x, parameter),
+  const QuietOrbit quiet = quiet_orbit(map, x, parameter, clock);
+  return with_march(row_of(map, map.march(quiet.x, parameter, quiet.clock), clock, quiet.x, parameter),
                     own_march(map, x, parameter, clock, told_periods));
 }
 
@@ -136,7 +137,10 @@ void add_mark(Map& map, const FollowedBranch& branch, const MarkedOrbit& mark, i
   BranchRow row = orbit_row(map, branch.clock, mark.x, mark.parameter);
   row.branch = branch.name;
   row.arc = mark.arc;
-  put_multipliers(corner.leading, corner.raw.outside, multipliers, row);
+  if (mark.leading.empty())
+    put_multipliers(corner.leading, corner.raw.outside, multipliers, row);
+  else
+    put_multipliers(mark.leading, mark.outside, multipliers, row);
   row.iterations = 0;
   row.pieces = 0;
   row.direction = corner.way;

@@ -72,7 +72,8 @@ class OrbitSearch {
   void check_march(const FirstOrbit& found) {
     constexpr double late = 4;
     const OwnMarch own = own_march_of(map_, found.shot.x, orbit_.at, found.clock);
-    const Impacts impacts = impacts_of(map_.march(found.shot.x, orbit_.at, found.clock));
+    const auto quiet = quiet_orbit(map_, found.shot.x, orbit_.at, found.clock);
+    const Impacts impacts = impacts_of(map_.march(quiet.x, orbit_.at, quiet.clock));
     const double far = std::max(image_tolerance * starts_.gap, late * impacts.rebounds),
                  fast = far * std::max(map_.metric().pulsation(), impacts.pace);
     if (!own.end && own.displacement <= far && own.velocity <= fast) return;
@@ -121,9 +122,10 @@ class OrbitSearch {
 
   // Whether the map brings an orbit back to itself: to a millionth of the gap, or to what placed impacts leave.
   bool returns(const Eigen::VectorXd& x, const MapClock& clock) const {
-    const auto made = map_.march(x, orbit_.at, clock);
+    const auto quiet = quiet_orbit(map_, x, orbit_.at, clock);
+    const auto made = map_.march(quiet.x, orbit_.at, quiet.clock);
     return !made.end &&
-           map_.metric().size(made.image - x) <= std::max(image_tolerance * starts_.gap, impacts_of(made).placed);
+           map_.metric().size(made.image - quiet.x) <= std::max(image_tolerance * starts_.gap, impacts_of(made).placed);
   }
 
   // The divisor of the period after which the orbit is back already; 0: none.

@@ -56,6 +56,7 @@ StepFollower begin_branch(SteppedMap& map, const MapClock& clock, const ShotOrbi
                           const BranchLimits& limits, double round_off, std::optional<KeptBranch> kept) {
   ArcSteps steps;
   steps.branch = limits;
+  steps.branch.ends_sooner = !clock.half && clock.period > 1;
   steps.tolerance = round_offs * round_off;
   if (kept) return {map, clock, kept->entry, steps, std::move(kept->trace)};
   return {map, clock, shot.x, shot.parameter, way, steps};
@@ -64,7 +65,9 @@ StepFollower begin_branch(SteppedMap& map, const MapClock& clock, const ShotOrbi
 // An orbit and its twins, 1e-6, 1e-7 and 1e-8 of the gap apart, are marched for one period. The derivative predicts how
 // far apart they are then: the result is the least relative error of that. It holds as far as no contact changes.
 template <class Map>
-double twin_error(Map& map, const ShotOrbit& shot, const MapClock& clock, double gap) {
+double twin_error(Map& map, ShotOrbit shot, const MapClock& told, double gap) {
+  const auto [x, clock] = quiet_orbit(map, shot.x, shot.parameter, told);
+  shot.x = x;
   const Eigen::MatrixXd derivative = derivative_at(map, shot, clock);
   const Eigen::VectorXd own = map.march(shot.x, shot.parameter, clock).image;
   Eigen::VectorXd by = derivative * Eigen::VectorXd::Ones(shot.x.size());
@@ -162,10 +165,12 @@ class ContinuationRun {
   void add_orbit(FollowedBranch& branch, const ShotOrbit& shot) {
     BranchRow row = orbit_row(map_, branch.clock, shot.x, shot.parameter);
     std::vector<std::complex<double>> all;
-    if constexpr (by_steps)
-      all = multipliers_of(derivative_at(map_, shot, branch.clock));
-    else
+    if constexpr (by_steps) {
+      const auto [x, clock] = quiet_orbit(map_, shot.x, shot.parameter, branch.clock);
+      all = multipliers_of(map_.march(x, shot.parameter, clock, true).derivative);
+    } else {
       all = multipliers_of(map_, branch.clock, derivative_at(map_, shot, branch.clock));
+    }
     row.branch = branch.name;
     row.arc = 0;
     put_multipliers(all, outside(all), plan_.multipliers, row);

@@ -47,6 +47,29 @@ TEST_CASE("tangent columns of a stepped map are the product of affine steps") {
   }
 }
 
+TEST_CASE("an orbit is the same wherever its state stands in the period") {
+  const int steps = 200;
+  PeriodicMap pieces = tube_map(steps, 4);
+  SteppedMap map = amplitude_map(steps, 4);
+  const Eigen::VectorXd x = settled_tube(pieces, 0.09, steps, 20, 4);
+  for (const bool half : {false, true}) {
+    const MapClock clock{steps, 1, half};
+    const SteppedMap::Image image = map.march(x, 0.09, clock);
+    for (const int begins : {1, 37, 99}) {
+      MapClock there = clock;
+      there.begins = begins;
+      const Eigen::VectorXd y = map.moved(x, 0.09, clock, begins);
+      // Once round: as far as the map goes.
+      CHECK(map.metric().size(map.moved(y, 0.09, there, 0) - image.image) == 0);
+      const SteppedMap::Image made = map.march(y, 0.09, there, true);
+      CHECK(map.metric().size(made.strobe - image.image) == 0);
+      CHECK(map.metric().size(made.image - map.moved(image.image, 0.09, clock, begins)) < 1e-13);
+      // The support stands at A sin 2π, off 0 by round-off.
+      CHECK(made.tip == Approx(map.march(image.image, 0.09, clock).tip).epsilon(1e-14));
+    }
+  }
+}
+
 TEST_CASE("steps of arclength follow the branch that pieces follow") {
   const int steps = 200;
   PeriodicMap pieces = tube_map(steps, 4);

@@ -275,6 +275,86 @@ TEST_CASE("impact orbits double their period where a multiplier of the closed fo
   CHECK(found == 2);
 }
 
+TEST_CASE(
+    "a marked orbit has its own multipliers, and a doubled branch ends where its orbits repeat after one period") {
+  // m = 0.2 kg, k = 80 N/m, c = 0.4 N s/m over ω₀ = 20 rad/s and m: pulsations over 20, times times 20.
+  Impacting one;
+  one.damping = 0.1;
+  one.restitution = 0.75;
+  one.stop = 0;
+  one.pulsation = 2.4;
+  Json study = study_of(one, "moreau-jean", 2.3, 2.85, 2.4, 1000);
+  study["scene"].erase("initial");
+  study["parameter"]["pointer"] = "/scene/structure/force/pulsation";
+  study["orbits"] = {{{"at", 2.4}, {"from", "rest"}, {"periods", 200}}};
+  study["mark"] = {{"parameter", {2.5, 2.65}}};
+  study.erase("switch");
+  const CaseRecord record = continued(study);
+  INFO(record.reason());
+  REQUIRE(record.status == Status::done);
+  std::size_t marks = 0;
+  std::map<double, double> single;  // tip of the orbits of period 1 by pulsation
+  for (const BranchRow& row : rows_of(record)) {
+    if (!row.parameter || row.period != 1) continue;
+    single[*row.parameter] = *row.tip_displacement;
+    if (*row.parameter != 2.5 && *row.parameter != 2.65) continue;
+    ++marks;
+    one.pulsation = *row.parameter;
+    // ∏ (1 + μ) of the closed form; the multipliers of a rebound are first order in h.
+    const auto orbit = impact_orbit(one, 1);
+    REQUIRE(orbit);
+    std::complex<double> product = 1;
+    for (const auto& root : row.multipliers) product *= 1.0 + root.value_or(0);
+    CHECK(product.real() == Approx(orbit->at_minus_one).margin(0.02));
+  }
+  CHECK(marks == 2);
+  std::size_t doubled = 0;
+  for (const BranchRow& row : rows_of(record)) {
+    if (row.period != 2 || !row.parameter) continue;
+    const auto same = single.find(*row.parameter);
+    if (same != single.end()) CHECK(std::abs(*row.tip_displacement - same->second) > 1e-6);
+    ++doubled;
+  }
+  CHECK(doubled > 0);
+}
+
+TEST_CASE("an impact that passes the instant at which periods begin changes nothing of its orbits") {
+  // The phase of the force shifts an orbit in time: its impact goes once round the period.
+  const std::string time = GENERATE("moreau-jean", "newmark-dumont-paoli");
+  Impacting one;
+  one.damping = 0.15;
+  one.pulsation = 1.6;
+  one.restitution = 0.7;
+  one.stop = 0.4;
+  const double force = 1.5;
+  const auto orbit = impact_orbit(one, force);
+  REQUIRE(orbit);
+  REQUIRE(orbit->largest < 0.9);
+  Json study = study_of(one, time, -3.2, 3.2, force, 600);
+  study["scene"]["structure"]["force"]["amplitude"] = force;
+  study["parameter"]["pointer"] = "/scene/structure/force/phase";
+  study["orbits"][0]["at"] = 0;
+  const CaseRecord record = continued(study);
+  INFO(study.dump() << " " << record.reason());
+  REQUIRE(record.status == Status::done);
+  const std::vector<SpecialRow> points = points_of(record);
+  CHECK(points.size() == 2);
+  for (const SpecialRow& point : points) {
+    CHECK(point.kind == PointKind::end);
+    CHECK(std::abs(*point.parameter) == Approx(3.2));
+  }
+  std::size_t rows = 0;
+  for (const BranchRow& row : rows_of(record)) {
+    if (row.multipliers.empty() || !row.multipliers.front()) continue;
+    ++rows;
+    INFO(row.branch << " at " << *row.parameter);
+    // First order in h, 0.7 % of a period.
+    CHECK(std::abs(*row.multipliers.front()) == Approx(orbit->largest).margin(0.02));
+    CHECK(row.impacts_per_period == 1);
+  }
+  CHECK(rows > 20);
+}
+
 TEST_CASE("a branch with rebounds keeps to its scene, and its doubled orbits are none that it had") {
   // Beyond 2.03 rad/s the orbits meet the lower stop too: Newton's method runs off there.
   Impacting one;
