@@ -174,12 +174,14 @@ std::optional<std::string> static_modes_text(const SceneSpec& scene, const SemiD
   const bool own = problem.space.given || (beam && beam->supports);
   if (!own || problem.static_modes.cols() == 0) return std::nullopt;
   const VectorXd sums = problem.static_modes.rowwise().sum();
+  if (problem.space.given && problem.space.given->direction.empty()) return std::nullopt;
   const std::vector<DofPlace> places = problem.space.given ? std::vector<DofPlace>() : dof_places(problem.space);
   double least = HUGE_VAL, most = -HUGE_VAL;
   for (Index i = 0; i < sums.size(); ++i) {
     const auto dof = static_cast<std::size_t>(i);
-    constexpr int rotation = 3;
-    if (problem.space.given ? problem.space.given->direction[dof] == rotation : places[dof].slope) continue;
+    constexpr int unknown = -1, rotation = 3;
+    const int direction = problem.space.given ? problem.space.given->direction[dof] : places[dof].slope ? rotation : 1;
+    if (direction == unknown || direction == rotation) continue;
     least = std::min(least, sums[i]);
     most = std::max(most, sums[i]);
   }

@@ -104,10 +104,10 @@ struct ModalFiles {
 ///     K = diag(m_k ω_k², Λ⁻¹),   M = diag(m_k, Vᵀ M_r V),   u(point i) = Σ_k Φ_ik η_k + Σ_l V_il ζ_l
 ///
 /// with R = V Λ Vᵀ the residual flexibility and M_r its mass. A row of `shapes` called like a support, which
-/// `static_modes` names, is its participation Φᵀ(Mψ_j + M_fs e_j) in kg. `ratios` receives the damping of the elastic
-/// modes. Throws FileError for counts that differ, modes that stand twice or miss, and unknown points. The same for
-/// frequencies below 0, masses not above 0 and ratios not in ]−1, 1[. A residual must be symmetric and positive
-/// semidefinite.
+/// `static_modes` names, is its participation s_j = Φᵀ(Mψ_j + M_fs e_j) in kg. Of ψ_j the modes carry m⁻¹ s_j, a point
+/// the rest. `ratios` receives the damping of the elastic modes. Throws FileError for counts that differ, modes that
+/// stand twice or miss, and unknown points. The same for frequencies below 0, masses not above 0 and ratios not in
+/// ]−1, 1[. A residual must be symmetric and positive semidefinite.
 AssembledStructure modal_structure(const ModalFiles& files, std::vector<double>& ratios);
 
 }  // namespace ricochet

@@ -200,7 +200,7 @@ Residual read_residual(const ModalFiles& files, const NamedRows& shapes) {
   return out;
 }
 
-/// Supports, and what they move and carry; the static modes by point.
+/// Supports, and what they move and carry; the static modes by point. Those of the modes are η = M⁻¹Φᵀ(Mψ + M_fs e).
 NamedRows add_supports(AssembledStructure& out, const ModalFiles& files, const NamedRows& shapes, Index modes) {
   NamedRows moved;
   if (files.static_modes) {
@@ -220,6 +220,7 @@ NamedRows add_supports(AssembledStructure& out, const ModalFiles& files, const N
       throw FileError(fmt::format("{}: no row of the support \"{}\", its participation in kg{}", files.shapes.name,
                                   shortened(name), nearest_text(name, shapes.names)));
     out.support_loads.col(j).head(modes) = shapes.values.row(row).transpose();
+    for (Index k = 0; k < modes; ++k) out.static_modes(k, j) = out.support_loads(k, j) / out.mass.coeff(k, k);
   }
   return moved;
 }
@@ -272,9 +273,13 @@ AssembledStructure modal_structure(const ModalFiles& files, std::vector<double>&
     if (const Index at = residual.rows.find(name); at >= 0)
       for (Index l = 0; l < beside.values.size(); ++l)
         if (beside.vectors(at, l) != 0) row.free.emplace_back(static_cast<int>(count + l), beside.vectors(at, l));
+    // What the modes do not carry of the static mode.
     const Index at = moved.find(name);
-    for (Index j = 0; j < supports && at >= 0; ++j)
-      if (moved.values(at, j) != 0) row.held.emplace_back(static_cast<int>(j), moved.values(at, j));
+    for (Index j = 0; j < supports; ++j) {
+      double held = at >= 0 ? moved.values(at, j) : 0;
+      for (const auto& [dof, value] : row.free) held -= value * out.static_modes(dof, j);
+      if (held != 0) row.held.emplace_back(static_cast<int>(j), held);
+    }
     out.modes->points[name] = std::move(row);
   }
   return out;

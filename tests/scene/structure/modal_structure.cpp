@@ -1,6 +1,10 @@
 // A structure that is described by its modes: what is read of the tables, and what is refused.
+#include <fmt/format.h>
+
 #include <Eigen/LU>
+#include <cmath>
 #include <numbers>
+#include <ricochet/measure/stability/structure_physics.hpp>
 #include <ricochet/scene/structure/assembled_structure.hpp>
 
 #include "tests/scene/structure/beam_files.hpp"
@@ -87,8 +91,38 @@ TEST_CASE("supports of a description push its modes and move its points") {
   CHECK(structure.supports == std::vector<std::string>{"ground"});
   CHECK(structure.support_loads(0, 0) == 0.7);
   CHECK(structure.support_loads(1, 0) == 0.3);
-  CHECK(structure.row(at_point("b"), "/at").held == std::vector<std::pair<int, double>>{{0, 0.8}});
+  // Modes and the rest of a point carry its static mode together.
+  for (const auto& [point, share] : {std::pair("a", 1.0), {"b", 0.8}}) {
+    const PlaceRow row = structure.row(at_point(point), "/at");
+    double sum = row.held.at(0).second;
+    for (const auto& [dof, value] : row.free) sum += value * structure.static_modes(dof, 0);
+    CHECK(sum == Approx(share).epsilon(1e-15));
+  }
   CHECK_THROWS_WITH(structure.row(at_point("ground"), "/at"), Catch::Contains("no point \"ground\""));
+}
+
+TEST_CASE("all modes of a structure at rest are those of the structure at rest, however its support moves") {
+  // Two masses of 1 kg, m₂–m₁–base by springs of 1 N/m: φ = (1, g), (g, −1) over √(1 + g²), g the golden ratio.
+  const double g = 0.5 * (1 + std::sqrt(5.0)), size = std::sqrt(1 + g * g), turn = 2 * std::numbers::pi;
+  Tables tables;
+  tables.modes = fmt::format("mode,frequency,mass,damping\n1,{},1,0\n2,{},1,0\n", 1 / g / turn, g / turn);
+  tables.shapes = fmt::format("point,1,2\none,{},{}\ntwo,{},{}\nbase,{},{}\n", 1 / size, g / size, g / size, -1 / size,
+                              (1 + g) / size, (g - 1) / size);
+  tables.static_modes = "point,base\none,1\ntwo,1\n";
+  SceneSpec scene;
+  auto structure = std::make_shared<AssembledStructure>(read(tables));
+  scene.structure = AssembledSpec{structure, {}, at_point("one")};
+  for (const char* point : {"one", "two"}) {
+    const PlaceRow row = structure->row(at_point(point), "/at");
+    double carried = 0;
+    for (const auto& [dof, value] : row.free) carried += value * structure->static_modes(dof, 0);
+    CHECK(carried == Approx(1).epsilon(1e-15));
+    for (const auto& [support, rest] : row.held) CHECK(std::abs(rest) < 1e-15);
+  }
+  // Neither a mesh nor a direction of its dofs is known.
+  const auto physics = structure_physics(scene, 1, *testing::mass("consistent"));
+  REQUIRE(std::holds_alternative<StructurePhysics>(physics));
+  CHECK(std::get<StructurePhysics>(physics).pulsations.front() == Approx(1 / g).epsilon(1e-14));
 }
 
 TEST_CASE("what is wrong with a description in modes is told with its file and line") {
