@@ -21,7 +21,8 @@
 namespace ricochet {
 namespace {
 
-constexpr int most_refinements = 40;       // halvings
+constexpr int most_refinements = 80;       // halvings
+constexpr int most_marched_on = 8;         // times that chains are marched on over their changes of class
 constexpr std::size_t most_brackets = 48;  // per start, that are refined at once
 
 class BifurcationRun {
@@ -157,14 +158,63 @@ class BifurcationRun {
     const Json& wanted = case_.settings.value("refine", Json(nullptr));
     if (!wanted.is_number() || scheduler_->over_budget()) return;
     const auto tolerance = wanted.get<double>();
-    for (int round = 0; round < most_refinements; ++round) {
-      int added = 0;
-      for (const Middle& middle : middles(tolerance)) added += add_middle(middle);
-      if (added == 0) return;
+    const auto march = [&] {
       analyse_groups();
       scheduler_->restore(saved_);
       scheduler_->run(stop_, keep);
+    };
+    int marched_on = 0;
+    for (int round = 0; round < most_refinements; ++round) {
+      int added = 0;
+      for (const Middle& middle : middles(tolerance)) added += add_middle(middle);
+      if (added > 0) {
+        march();
+        continue;
+      }
+      const std::vector<Ending> endings = chain_endings();
+      if (endings.empty() || ++marched_on > most_marched_on) return;
+      march();
+      for (const Ending& one : endings) settle(one);
     }
+  }
+
+  // The far side of a change of class of a chain, marched on from the near side. What it did from farther off may be
+  // the jump of the parameter's doing, where another motion exists beside.
+  struct Ending {
+    std::size_t start;
+    double value;
+    int near, task;
+  };
+
+  std::vector<std::optional<MotionClass>> classes_of(std::size_t start) const {
+    std::vector<std::optional<MotionClass>> classes;
+    for (const Value& value : known_)
+      classes.push_back(value.tasks[start] < 0 ? std::nullopt
+                                               : rough_class(scheduler_->orbit(value.tasks[start]), section_));
+    return classes;
+  }
+
+  std::vector<Ending> chain_endings() {
+    std::vector<Ending> all;
+    for (std::size_t s = 0; s < starts_.size(); ++s) {
+      const bool up = starts_[s].kind == StartSpec::up;
+      if (!up && starts_[s].kind != StartSpec::down) continue;
+      for (const auto& [below, above] : class_changes(classes_of(s))) {
+        Value &near = known_[up ? below : above], &far = known_[up ? above : below];
+        if (scheduler_->task(far.tasks[s]).after == near.tasks[s]) continue;
+        OrbitTask task = task_at(far, starts_[s]);
+        task.after = near.tasks[s];
+        all.push_back({s, far.value, near.tasks[s], scheduler_->add(std::move(task))});
+      }
+    }
+    return all;
+  }
+
+  // The orbit from the near side stands for its value from here on.
+  void settle(const Ending& one) {
+    if (!scheduler_->finished(one.task)) return;
+    for (Value& value : known_)
+      if (value.value == one.value) value.tasks[one.start] = one.task;
   }
 
   // Half way between two neighbours from one start whose classes differ.
@@ -177,11 +227,8 @@ class BifurcationRun {
   std::vector<Middle> middles(double tolerance) {
     std::vector<Middle> all;
     for (std::size_t s = 0; s < starts_.size(); ++s) {
-      std::vector<std::optional<MotionClass>> classes;
-      for (const Value& value : known_)
-        classes.push_back(value.tasks[s] < 0 ? std::nullopt : rough_class(scheduler_->orbit(value.tasks[s]), section_));
       std::size_t brackets = 0;
-      for (const auto& [below, above] : class_changes(classes)) {
+      for (const auto& [below, above] : class_changes(classes_of(s))) {
         const Value &left = known_[below], &right = known_[above];
         if (right.value - left.value <= tolerance) continue;
         if (brackets++ < most_brackets)

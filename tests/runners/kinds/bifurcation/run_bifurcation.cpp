@@ -258,6 +258,37 @@ TEST_CASE("bifurcation: changes of class are bracketed down to the tolerance") {
   CHECK(grazing);
 }
 
+TEST_CASE("bifurcation: a chain changes where its own motion does, not where a jump of the parameter throws it") {
+  // A motion with impacts exists beside the one without from 0.775 N on; that first touches the stop at d |k − mω² +
+  // icω|.
+  Json text = oscillator_sweep({0.2}, 0);
+  text["scene"]["structure"] = Json::parse(R"({"type": "oscillator", "mass": 0.2, "stiffness": 80, "damping": 0.5,
+                                                "force": {"amplitude": 1, "pulsation": 28}})");
+  text["scene"].erase("support");
+  text["scene"]["stops"] = {{"upper", 0.01}, {"at", "tip"}};
+  text["methods"]["contact"] = {{"name", "penalty"}, {"stiffness", 4000}};
+  text["methods"]["time"] = {{"name", "newmark"}, {"beta", 0.25}, {"gamma", 0.5}};
+  text["parameter"] = {{"pointer", "/scene/structure/force/amplitude"}, {"from", 0.2}, {"to", 0.9}, {"count", 15}};
+  text["steps_per_period"] = 400;
+  text["start"] = {"up"};
+  text["transient"] = {{"periods", 150}, {"at_most", 300}};
+  text["refine"] = 2e-4;
+  const CaseRecord record = run_sweep(text);
+  INFO(record.reason());
+  REQUIRE(record.status == Status::done);
+  const double touches = 0.01 * std::hypot(80 - 0.2 * 28 * 28, 0.5 * 28);
+  std::size_t changes = 0;
+  for (const ChangeRow& row : changes_of(record)) {
+    if (row.start != "up" || row.from != "no contact") continue;
+    ++changes;
+    // 400 steps of a period have the amplitude to (ωh)²/24, 1e-5.
+    CHECK(row.low <= touches * (1 + 1e-4));
+    CHECK(row.high >= touches * (1 - 1e-4));
+    CHECK(row.high - row.low <= 2e-4);
+  }
+  CHECK(changes == 1);
+}
+
 TEST_CASE("bifurcation: the load at which a mass leaves its stop is bracketed, below it nothing strikes") {
   // Weight 1 N, the force a cos ωt lifts from a = 1 on.
   Json text = oscillator_sweep({0.8, 0.9, 1, 1.1, 1.2}, GENERATE(0.0, 0.5));
