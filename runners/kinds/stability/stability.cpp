@@ -52,6 +52,8 @@ void check_stability(const Json& study) {
     if ((*steps)["from"].get<double>() > (*steps)["to"].get<double>())
       throw InputError("/steps/from", fmt::format("the range begins at {} s and ends at {} s; expected from ≤ to",
                                                   (*steps)["from"].get<double>(), (*steps)["to"].get<double>()));
+    if ((*steps)["count"].get<int>() == 1 && (*steps)["from"].get<double>() < (*steps)["to"].get<double>())
+      throw InputError("/steps/count", "one step of a range tells nothing of it; expected two or more, or from = to");
   }
 }
 
@@ -90,7 +92,7 @@ std::vector<MeasureInfo> stability_measures() {
        {"the stable step of the plan", 1}},
       {"limit_observed",
        "s",
-       "Largest stable step of the range, found by marching and bisection.",
+       "Largest stable step of the range, by marching as long as the case does, and bisection.",
        Of::motion,
        false,
        "",

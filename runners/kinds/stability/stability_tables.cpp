@@ -30,7 +30,8 @@ TableType<StabilityRow> stability_type() {
            &StabilityRow::marginal)
       .add({"limit_predicted", "s", "Largest step of the range up to which the radius stays at 1; empty: none found."},
            &StabilityRow::limit_predicted)
-      .add({"limit_observed", "s", "Largest step up to which marches stay bounded, by bisection; empty: none found."},
+      .add({"limit_observed", "s",
+            "Largest step up to which these marches stay bounded, by bisection; empty: none found."},
            &StabilityRow::limit_observed)
       .add({"status", "", "stable, marginal, unstable, failed or refused."}, &StabilityRow::status)
       .add({"reason", "", "What grows and how fast, and where prediction and march disagree."}, &StabilityRow::reason);

@@ -44,6 +44,12 @@ bool by_the_stop(double open, double closed) {
   return 2 * closed * closed < open * open;
 }
 
+/// Whether marches with contact grow at a step that the open structure allows.
+bool by_contact(double open, const LimitRow& closed) {
+  constexpr double tolerance = 0.05;  // of bisections
+  return *closed.observed < (1 - tolerance) * open;
+}
+
 /// A largest step in three digits, rounded down: a step that is read off a sentence must be allowed.
 std::string step_words(double step) {
   return short_number_down(step, 3);
@@ -111,6 +117,11 @@ class StepsAsk {
     if (unlike > 0)
       out.aside.push_back(
           fmt::format("Marches have another limit than the spectrum with {} of {}.", unlike, limits_.size()));
+    const Members marched = members(
+        [](const StepLimit& one) { return one.step && one.closed.observed && *one.step == *one.closed.observed; });
+    if (!marched.empty())
+      out.aside.push_back(
+          "What marches with contact allow is that of their duration: longer ones may grow at smaller steps.");
     say_mesh(out);
     say_gains(out);
     const Members twofold = members(
@@ -155,8 +166,19 @@ class StepsAsk {
         if (!step || by_the_stop(*step, *closed.predicted)) out.bound = Bound::stop;
         step = step ? std::min(*step, *closed.predicted) : *closed.predicted;
       }
-      const LimitRow& own = has_closed ? closed : open;
-      if (!step && own.observed) {
+      // Of a stop without a spectrum its marches tell, where they grow below what the open structure allows.
+      const bool alone = !has_closed && made(closed.observation);
+      const LimitRow& own = has_closed || (alone && closed.observed) ? closed : open;
+      if (alone && closed.observation == RangeLimit::below) {
+        out.bound = Bound::everywhere;
+        parts.emplace_back("no march with contact is stable at any step of the range");
+      } else if (alone && closed.observed && (!step || by_contact(*step, closed))) {
+        out.bound = Bound::marched;
+        out.step = closed.observed;
+        parts.push_back(fmt::format("marches with contact are stable to {} s", step_words(*closed.observed)));
+        if (step) parts.push_back(fmt::format("without contact {} s", step_words(*step)));
+        parts.emplace_back("the closed stop was not predicted");
+      } else if (!step && own.observed) {
         // No spectrum grows, and yet the scene does.
         out.bound = Bound::marched;
         out.step = own.observed;
@@ -193,8 +215,8 @@ class StepsAsk {
 
   void say_gains(asks::Answered& out) const {
     const Members gain = members([](const StepLimit& one) {
-      return one.closed.prediction == RangeLimit::none && one.closed.disagreeing > 0 && made(one.closed.observation) &&
-             one.closed.observation != RangeLimit::none;
+      return one.open.prediction == RangeLimit::none && one.closed.prediction == RangeLimit::none &&
+             one.closed.disagreeing > 0 && made(one.closed.observation) && one.closed.observation != RangeLimit::none;
     });
     if (!gain.empty())
       out.aside.push_back(fmt::format("Impacts make energy though every spectrum is stable in {} of {}: {}.",
@@ -285,7 +307,11 @@ class StepsAsk {
             verb.clear();
             break;
           case Bound::marched:
-            parts.push_back(fmt::format("marches grow{} beyond {}, though no spectrum does", who, steps(of)));
+            parts.push_back(fmt::format(
+                "marches grow{} beyond {}{}", who, steps(of),
+                std::all_of(of.begin(), of.end(), [&](std::size_t k) { return made(limits_[k].closed.prediction); })
+                    ? ", though no spectrum does"
+                    : ""));
             break;
           case Bound::none:
             parts.push_back(fmt::format("no limit{} from {}", who, range_));

@@ -135,6 +135,12 @@ TEST_CASE("central differences: the predicted limit, the observed one within 2 %
   CHECK(result.noted("open: stable up to h ="));
 }
 
+TEST_CASE("one step tells nothing of a range") {
+  CHECK_THROWS_WITH(run(study_text("consistent", "none", dumont_paoli(0), 1e-4, 1e-2, 1)),
+                    Catch::Matchers::Contains("one step of a range tells nothing of it"));
+  CHECK(run(study_text("consistent", "none", dumont_paoli(0), 1e-4, 1e-4, 1)).record.status == Status::done);
+}
+
 TEST_CASE("marginal cells are named, refused ones say why") {
   const Json singular = {{"name", "singular"}, {"velocity", "P1"}};
   const Result quarter = run(study_text(singular, "signorini", dumont_paoli(0.25), 1e-4, 1e-2, 3));

@@ -149,6 +149,44 @@ TEST_CASE("a step beyond which marches grow is not allowed, whatever the spectru
   }
 }
 
+TEST_CASE("marches with a closed stop that has no spectrum bound the step below what the mesh allows", "[asks]") {
+  const auto told = [](std::optional<double> marched, RangeLimit how) {
+    return ask({{4, 4e-4, 1e-3}}, [&](LimitRow&, LimitRow& closed) {
+      closed.prediction = RangeLimit::not_made;
+      closed.predicted = {};
+      closed.observation = how;
+      closed.observed = marched;
+      closed.agrees.reset();
+    });
+  };
+  const asks::Answered below = told(9e-5, RangeLimit::limit), above = told(3.99e-4, RangeLimit::limit),
+                       never = told({}, RangeLimit::below), all = told({}, RangeLimit::none);
+  CHECK(below.rows.front().verdict == "marches alone");
+  CHECK(*below.rows.front().value == 9e-5);
+  CHECK(below.sentence == "Marches grow beyond 9e-5 s.");
+  CHECK_THAT(below.rows.front().reason, Contains("the closed stop was not predicted"));
+  CHECK(above.rows.front().verdict == "the mesh");
+  CHECK(never.passes == asks::Verdict::no);
+  CHECK(all.rows.front().verdict == "the mesh");
+}
+
+TEST_CASE("impacts make no energy where the open structure has a limit of its own", "[asks]") {
+  const auto gains = [](RangeLimit open_limit) {
+    const asks::Answered out = ask({{4, 1e-4, 1e-3}}, [&](LimitRow& open, LimitRow& closed) {
+      open.prediction = open.observation = open_limit;
+      if (open_limit == RangeLimit::none) open.predicted = open.observed = {};
+      closed.prediction = RangeLimit::none;
+      closed.predicted = {};
+      closed.disagreeing = 2;
+      closed.observed = 5e-4;
+    });
+    return std::any_of(out.aside.begin(), out.aside.end(),
+                       [](const std::string& one) { return one.starts_with("Impacts make energy"); });
+  };
+  CHECK(gains(RangeLimit::none));
+  CHECK_FALSE(gains(RangeLimit::limit));
+}
+
 TEST_CASE("a scene that meets the stop only as it grows without contact shows nothing of contact", "[stability]") {
   const auto cell = [](bool stable, bool touched) {
     ObservedCell one;
